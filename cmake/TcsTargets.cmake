@@ -1,0 +1,40 @@
+# What every target of tcs shares: the language, the warnings, the include root.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+
+option(TCS_WERROR "Treat warnings as errors" ON)
+
+function(tcs_target_defaults target)
+  target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                           -Wno-missing-field-initializers)
+  if(TCS_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+function(tcs_add_library target)
+  add_library(${target} STATIC ${ARGN})
+  tcs_target_defaults(${target})
+endfunction()
+
+function(tcs_add_executable target)
+  add_executable(${target} ${ARGN})
+  tcs_target_defaults(${target})
+endfunction()
+
+# One GoogleTest executable, its cases registered with CTest under one label.
+#   tcs_add_gtest(name LABEL unit SOURCES a.cc b.cc LIBS x y)
+function(tcs_add_gtest target)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LIBS" ${ARGN})
+  tcs_add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main GTest::gmock)
+  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)
+endfunction()
