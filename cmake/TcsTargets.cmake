@@ -10,12 +10,23 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 
 option(TCS_WERROR "Treat warnings as errors" ON)
 
+include(TcsSanitizers)
+
+# tcs_target_defaults(name [NO_SANITIZE])
 function(tcs_target_defaults target)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "NO_SANITIZE" "" "")
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Wno-missing-field-initializers)
+  # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict)
+  endif()
   if(TCS_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(NOT ARG_NO_SANITIZE)
+    tcs_target_sanitize(${target})
   endif()
 endfunction()
 

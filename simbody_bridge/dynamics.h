@@ -1,10 +1,20 @@
-// The engine-neutral interface to the physics: a leaf of the scheduler tree that moves only when it is told to.
+// The engine-neutral interface to the physics: a leaf of the scheduler tree that moves only when it
+// is told to.
 //
-// Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w. Positions,
-// orientations, velocities and wrenches are expressed in the world frame; a body's position is its centre of mass.
-// Ownership: the implementation owns the engine; values are copied in and out. Not thread-safe: one thread, the
-// coordinator's, calls it. Errors: a violated precondition is a bug of ours and aborts; an integration that the
-// engine cannot complete throws DynamicsError with one sentence.
+// Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w.
+// Positions, orientations, velocities and wrenches are expressed in the world frame; a body's
+// position is its centre of mass. Ownership: the implementation owns the engine; values are copied
+// in and out. Not thread-safe: one thread, the coordinator's, calls it.
+//
+// Errors: a violated precondition is a bug of ours and aborts. A world or a wrench without physical
+// meaning, or an integration that cannot be completed, throws DynamicsError with one sentence. A
+// call other than AdvanceTo that throws has changed nothing; after AdvanceTo has thrown, only
+// Restore and destruction are meaningful.
+//
+// Determinism: two instances given the same world and the same calls compute bitwise the same
+// states (same build, same kind of processor). AdvanceTo's targets belong to "the same calls": each
+// one ends an integration step, so other targets on the way give states that differ within the
+// integrator's accuracy. Read and Save change nothing.
 #pragma once
 
 #include <array>
@@ -19,13 +29,14 @@ namespace tcs {
 
 struct BodyState {
   std::array<double, 3> position_m{};
-  std::array<double, 4> orientation_xyzw{0, 0, 0, 1};
+  std::array<double, 4> orientation_xyzw{0, 0, 0,
+                                         1};  // unit length; as an initial value, within 1e-3
   std::array<double, 3> linear_velocity_mps{};
   std::array<double, 3> angular_velocity_radps{};
 };
 
 struct Wrench {
-  std::array<double, 3> force_n{};    // at the centre of mass
+  std::array<double, 3> force_n{};  // at the centre of mass
   std::array<double, 3> torque_nm{};
 };
 
@@ -36,8 +47,9 @@ struct BodySpec {
   BodyState initial;
 };
 
-// A cube around the origin whose walls push back: outside |x| > half_extent the force is
-// stiffness * penetration - damping * outward velocity, per axis, never pulling.
+// A cube around the origin whose walls push back. Per axis, a body whose centre is outside, |x| >
+// half_extent, is pushed inwards with stiffness * penetration + damping * outward velocity, but
+// never pulled outwards.
 struct RegionSpec {
   double half_extent_m = 10.0;
   double stiffness_npm = 50.0;
@@ -54,9 +66,11 @@ enum class IntegratorKind {
 
 struct IntegratorSpec {
   IntegratorKind kind = IntegratorKind::kRungeKutta3;
-  // Fixed steps of this length; 0 means error-controlled with `accuracy`.
+  // Steps of this length, counted from the last stop (an AdvanceTo target or the time of a
+  // command); the last step before a stop is shorter where the length does not fit. 0:
+  // error-controlled with `accuracy`.
   VirtualDuration fixed_step{};
-  double accuracy = 1e-3;
+  double accuracy = 1e-3;  // relative error of one step, between 0 and 1
 };
 
 struct WorldSpec {
@@ -84,17 +98,21 @@ class Dynamics {
 
   virtual VirtualTime Now() const = 0;
 
-  // Integrates to exactly `t` >= Now(), in pieces at the times of pending commands.
+  // Integrates to exactly `t` >= Now(), never beyond, in pieces at the times of pending commands.
   virtual void AdvanceTo(VirtualTime t) = 0;
 
-  // From `t` >= Now() on, `wrench` acts on body `body` (index into WorldSpec::bodies) until a later command
-  // replaces it. Commands for one instant apply in the order they were given; the last one stays.
+  // From `t` >= Now() on, `wrench` acts on body `body` (index into WorldSpec::bodies) until a later
+  // command replaces it. Commands for one instant apply in the order they were given; the last one
+  // stays. A command for Now() acts from the next AdvanceTo on and does not change what Read says.
   virtual void Apply(int body, const Wrench& wrench, VirtualTime t) = 0;
 
   // The state at Now().
   virtual BodyState Read(int body) const = 0;
 
-  // Replays from a checkpoint repeat bitwise; saving must not change what the run itself goes on to compute.
+  // A checkpoint holds the state, the acting wrenches, the pending commands and the integrator's
+  // next step size: after Restore the same calls compute bitwise what they computed in the run that
+  // was saved, with every integrator, fixed or error-controlled, and also after an AdvanceTo that
+  // threw.
   virtual std::unique_ptr<Checkpoint> Save() = 0;
   virtual void Restore(const Checkpoint& checkpoint) = 0;
 };

@@ -1,5 +1,5 @@
-// A scenario as the coordinator runs it: plain values, already checked. The YAML form is described in
-// docs/SCENARIO.md; LoadScenario (load.h) is the only way in.
+// A scenario as the coordinator runs it: plain values, already checked. The YAML form is described
+// in docs/SCENARIO.md; LoadScenario (load.h) is the only way in.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,19 @@
 namespace tcs {
 
 enum class ClientClass {
-  kPeriodic,    // a controller: activated by time or data, expected to be idle again before the next activation
+  kPeriodic,  // a controller: activated by time or data, expected to be idle again before the next
+              // activation
   kBestEffort,  // a planner: computes whenever nothing more urgent wants the processor
 };
 
 struct ClientSpec {
-  std::string name;                  // unique in the scenario: "ROBOT/CLIENT" as written in the YAML
+  std::string name;  // unique in the scenario: "ROBOT/CLIENT" as written in the YAML
   std::vector<std::string> command;  // argv; command[0] is an absolute path after loading
   std::string working_directory;     // absolute; the scenario file's folder
   ClientClass client_class = ClientClass::kBestEffort;
-  int priority = 0;                  // higher runs first on its robot
+  int priority = 0;                                // higher runs first on its robot
   std::map<std::string, std::string> environment;  // added to tcsim's own
-  std::optional<int> body;           // index into world.bodies
+  std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
 };
@@ -42,7 +43,8 @@ struct UdpEndpoint {
   std::uint16_t port = 0;
 };
 
-// The state of `bodies`, sampled every `period` from time 0 on and sent `latency` later as one JSON datagram.
+// The state of `bodies`, sampled every `period` from time 0 on and sent `latency` later as one JSON
+// datagram.
 struct SensorChannelSpec {
   std::string name;
   std::vector<int> bodies;  // indices into world.bodies
@@ -51,7 +53,8 @@ struct SensorChannelSpec {
   UdpEndpoint to;
 };
 
-// Datagrams received on `listen` are wrenches for `body`, applied at the virtual time of the send plus `latency`.
+// Datagrams received on `listen` are wrenches for `body`, applied at the virtual time of the send
+// plus `latency`.
 struct CommandChannelSpec {
   std::string name;
   int body = 0;
@@ -69,7 +72,8 @@ struct Scenario {
   std::vector<RobotSpec> robots;
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;
-  VirtualDuration csv_period = VirtualDuration::Milliseconds(10);  // of the body states written to DIR
+  VirtualDuration csv_period =
+      VirtualDuration::Milliseconds(10);  // of the body states written to DIR
 };
 
 }  // namespace tcs

@@ -1,0 +1,20 @@
+// Durations as people write them, in scenarios and on the command line.
+#pragma once
+
+#include <string_view>
+
+#include "coordinator/scenario/load_error.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+// "1ms", "20s", "1.5 s", "0.01" (no unit: seconds), "1e-3"; units ns, us (or µs), ms, s, min, h.
+// The decimal number is taken exactly: what is not a whole number of nanoseconds is an error, as is
+// what is negative or above kLongestDuration. Zero is a duration. Independent of the locale.
+[[nodiscard]] LoadResult<VirtualDuration> ParseDuration(std::string_view text);
+
+// Leaves room to add two of them: 146 years.
+inline constexpr VirtualDuration kLongestDuration =
+    VirtualDuration::Nanoseconds(std::int64_t{1} << 62);
+
+}  // namespace tcs

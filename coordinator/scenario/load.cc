@@ -1,0 +1,82 @@
+#include "coordinator/scenario/load.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "coordinator/scenario/sections.h"
+#include "coordinator/scenario/yaml_reader.h"
+
+namespace tcs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestFile = 1 << 20;
+
+std::string ReadFile(const std::string& path) {
+  const auto fail = [&path](const std::string& why) {
+    throw ScenarioMistake{path + ": " + why + "; give the path of a scenario file"};
+  };
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "re"));
+  if (!file) fail(std::string("cannot be read: ") + std::strerror(errno));
+  std::string text(kLargestFile + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get())) fail(std::string("cannot be read: ") + std::strerror(errno));
+  if (text.size() > kLargestFile) fail("is larger than 1 MiB");
+  return text;
+}
+
+std::string FolderOf(const std::string& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const fs::path folder = fs::canonical(absolute.parent_path(), error);
+  return (error ? absolute.parent_path() : folder).string();
+}
+
+Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
+  const YamlMap top = ParseYaml(path, ReadFile(path)).AsMap();
+  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
+                 "channels"});
+  Scenario scenario;
+  scenario.path = path;
+  scenario.name = fs::path(path).stem().string();
+  if (const YamlValue* name = top.Find("name")) {
+    scenario.name = name->AsText();
+    if (scenario.name.empty()) name->Fail("is empty; name the scenario or leave the key out");
+  }
+  scenario.duration = top.Require("duration", "duration: 20s").AsPositiveDuration();
+  if (const YamlValue* drift = top.Find("drift")) {
+    scenario.drift_bound = drift->AsPositiveDuration();
+  }
+  if (const YamlValue* seed = top.Find("seed")) scenario.seed = seed->AsUnsigned64();
+  if (const YamlValue* period = top.Find("csv_period")) {
+    scenario.csv_period = period->AsPositiveDuration();
+  }
+  scenario.duration = overrides.duration.value_or(scenario.duration);
+  scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
+  scenario.seed = overrides.seed.value_or(scenario.seed);
+
+  LoadWorld(top, &scenario);
+  LoadRobots(top, FolderOf(path), &scenario);
+  LoadChannels(top, &scenario);
+  return scenario;
+}
+
+}  // namespace
+
+LoadResult<Scenario> LoadScenario(const std::string& path, const ScenarioOverrides& overrides) {
+  try {
+    return Load(path, overrides);
+  } catch (const ScenarioMistake& mistake) {
+    return LoadError{mistake.message};
+  }
+}
+
+}  // namespace tcs

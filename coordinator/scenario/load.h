@@ -1,0 +1,29 @@
+// The way from a YAML file (docs/SCENARIO.md) to a Scenario.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "coordinator/scenario/load_error.h"
+#include "coordinator/scenario/scenario.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+// What the command line sets in the file's stead; the values must be valid (durations above 0).
+struct ScenarioOverrides {
+  std::optional<VirtualDuration> duration;
+  std::optional<VirtualDuration> drift;
+  std::optional<std::uint64_t> seed;  // also what ${seed} stands for
+};
+
+// Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the
+// files it names change or the ports it names are taken. The first mistake is the error, one
+// sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "). Reads the
+// environment (PATH, ${NAME}); not thread-safe against those who change it.
+[[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
+                                                const ScenarioOverrides& overrides = {});
+
+}  // namespace tcs

@@ -1,0 +1,125 @@
+// `robots` of a scenario file: virtual computers and the clients on them.
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "coordinator/scenario/executable.h"
+#include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
+#include "coordinator/scenario/substitute.h"
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMostCores = 64;
+constexpr double kSlowest = 1e-3;
+constexpr double kFastest = 1e3;
+
+void LoadCpu(const YamlValue& value, RobotSpec* robot) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"cores", "speed"});
+  if (const YamlValue* cores = map.Find("cores")) {
+    robot->cores = static_cast<int>(cores->AsInteger(1, kMostCores));
+  }
+  if (const YamlValue* speed = map.Find("speed")) {
+    robot->speed = speed->AsPositiveNumber(" (1.0 is the host's speed)");
+    if (robot->speed < kSlowest || robot->speed > kFastest) {
+      speed->Fail("is " + speed->AsText() + "; it must be between 0.001 and 1000");
+    }
+  }
+}
+
+ClientClass LoadClass(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "periodic") return ClientClass::kPeriodic;
+  if (text == "best-effort" || text == "best_effort") return ClientClass::kBestEffort;
+  value.Fail("is the unknown '" + text + "'; " +
+             Suggest(text, {"periodic", "best-effort"}, "classes"));
+}
+
+std::vector<std::string> LoadCommand(const YamlValue& value, const std::string& folder,
+                                     std::uint64_t seed) {
+  std::vector<std::string> command;
+  const std::vector<YamlValue> words = value.AsList("[./controller, --rate, 100]");
+  for (const YamlValue& word : words) command.push_back(Substitute(word, seed));
+
+  LoadResult<std::string> program = FindExecutable(command[0], folder);
+  if (const auto* error = std::get_if<LoadError>(&program)) {
+    words[0].FailPlainly(value.name() + ": " + error->message);
+  }
+  command[0] = std::get<std::string>(std::move(program));
+  if (const auto error = CheckExecutable(command[0])) {
+    words[0].FailPlainly(value.name() + ": " + error->message);
+  }
+  return command;
+}
+
+std::map<std::string, std::string> LoadEnvironment(const YamlValue& value, std::uint64_t seed) {
+  std::map<std::string, std::string> environment;
+  const YamlMap map = value.AsMap();
+  for (const YamlMap::Entry& entry : map.entries()) {
+    if (entry.key.empty() ||
+        entry.key.find_first_of(std::string_view("=\0", 2)) != std::string::npos) {
+      entry.value.Fail("is no environment variable's name: it must not be empty or contain '='");
+    }
+    environment[entry.key] = Substitute(entry.value, seed);
+  }
+  return environment;
+}
+
+ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
+                      const std::string& folder, const Scenario& scenario) {
+  CheckName(entry);
+  const YamlMap map = entry.value.AsMap();
+  map.AllowOnly({"command", "class", "priority", "body", "environment", "fixed_call_cost"});
+  ClientSpec client;
+  client.name = robot + "/" + entry.key;
+  client.working_directory = folder;
+  client.command =
+      LoadCommand(map.Require("command", "command: [./controller]"), folder, scenario.seed);
+  if (const YamlValue* v = map.Find("class")) client.client_class = LoadClass(*v);
+  if (const YamlValue* v = map.Find("priority")) {
+    client.priority = static_cast<int>(v->AsInteger(0, 99));
+  }
+  if (const YamlValue* v = map.Find("body")) client.body = FindBody(*v, scenario);
+  if (const YamlValue* v = map.Find("environment")) {
+    client.environment = LoadEnvironment(*v, scenario.seed);
+  }
+  if (const YamlValue* v = map.Find("fixed_call_cost")) {
+    client.fixed_call_cost = v->AsPositiveDuration();
+  }
+  return client;
+}
+
+RobotSpec LoadRobot(const YamlMap::Entry& entry, const std::string& folder,
+                    const Scenario& scenario) {
+  CheckName(entry);
+  const YamlMap map = entry.value.AsMap();
+  map.AllowOnly({"cpu", "clients"});
+  RobotSpec robot;
+  robot.name = entry.key;
+  if (const YamlValue* cpu = map.Find("cpu")) LoadCpu(*cpu, &robot);
+  const YamlValue& clients =
+      map.Require("clients", "clients: {controller: {command: [./controller]}}");
+  const YamlMap client_map = clients.AsMap();
+  if (client_map.entries().empty()) clients.Fail("is empty; a robot needs at least one client");
+  for (const YamlMap::Entry& client : client_map.entries()) {
+    robot.clients.push_back(LoadClient(client, robot.name, folder, scenario));
+  }
+  return robot;
+}
+
+}  // namespace
+
+void LoadRobots(const YamlMap& top, const std::string& folder, Scenario* scenario) {
+  const YamlValue& robots =
+      top.Require("robots", "robots: {predator: {clients: {controller: {command: [./fly]}}}}");
+  const YamlMap map = robots.AsMap();
+  if (map.entries().empty()) robots.Fail("is empty; a scenario needs at least one robot");
+  for (const YamlMap::Entry& entry : map.entries()) {
+    scenario->robots.push_back(LoadRobot(entry, folder, *scenario));
+  }
+}
+
+}  // namespace tcs

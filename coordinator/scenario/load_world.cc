@@ -1,0 +1,158 @@
+// `dynamics` and `bodies` of a scenario file.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
+
+namespace tcs {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, IntegratorKind>, 5> kIntegrators = {{
+    {"runge_kutta3", IntegratorKind::kRungeKutta3},
+    {"runge_kutta_merson", IntegratorKind::kRungeKuttaMerson},
+    {"verlet", IntegratorKind::kVerlet},
+    {"semi_explicit_euler2", IntegratorKind::kSemiExplicitEuler2},
+    {"explicit_euler", IntegratorKind::kExplicitEuler},
+}};
+
+IntegratorKind LoadIntegratorKind(const YamlValue& value) {
+  const std::string text = value.AsText();
+  std::vector<std::string> known;
+  for (const auto& [name, kind] : kIntegrators) {
+    if (name == text) return kind;
+    known.emplace_back(name);
+  }
+  value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "integrators"));
+}
+
+IntegratorSpec LoadIntegrator(const YamlMap& dynamics) {
+  IntegratorSpec integrator;
+  if (const YamlValue* kind = dynamics.Find("integrator")) {
+    integrator.kind = LoadIntegratorKind(*kind);
+  }
+  const YamlValue* accuracy = dynamics.Find("accuracy");
+  const YamlValue* step = dynamics.Find("step");
+  if (accuracy != nullptr && step != nullptr) {
+    step->Fail(
+        "cannot be given beside accuracy: one sets fixed steps, the other error control; "
+        "remove one");
+  }
+  if (accuracy != nullptr) {
+    integrator.accuracy = accuracy->AsPositiveNumber(" (a relative error)");
+    if (integrator.accuracy >= 1) accuracy->Fail("is 1 or more; it must be below 1, like 1e-3");
+  }
+  if (step != nullptr) integrator.fixed_step = step->AsPositiveDuration();
+  return integrator;
+}
+
+RegionSpec LoadRegion(const YamlValue& value) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"half_extent", "stiffness", "damping"});
+  RegionSpec region;
+  if (const YamlValue* v = map.Find("half_extent")) {
+    region.half_extent_m = v->AsPositiveNumber(" (metres)");
+  }
+  if (const YamlValue* v = map.Find("stiffness")) {
+    region.stiffness_npm = v->AsNonNegativeNumber(" (N/m)");
+  }
+  if (const YamlValue* v = map.Find("damping")) {
+    region.damping_nspm = v->AsNonNegativeNumber(" (N·s/m)");
+  }
+  return region;
+}
+
+std::array<double, 3> LoadInertia(const YamlValue& value) {
+  const std::array<double, 3> inertia = value.AsVector3();
+  for (const double moment : inertia) {
+    if (!(moment > 0)) {
+      value.Fail("is impossible: every principal moment must be positive (kg·m²)");
+    }
+  }
+  const double largest = *std::max_element(inertia.begin(), inertia.end());
+  const double sum = inertia[0] + inertia[1] + inertia[2];
+  // Flat bodies reach the limit; rounding is forgiven.
+  if (largest > (sum - largest) + 1e-12 * sum) {
+    value.Fail(
+        "is impossible: no principal moment can exceed the sum of the other two; correct it");
+  }
+  return inertia;
+}
+
+std::array<double, 4> LoadOrientation(const YamlValue& value) {
+  const std::vector<double> q = value.AsNumbers(4, "[0, 0, 0, 1] (x, y, z, w)");
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(std::abs(norm - 1) <= 1e-3)) {
+    value.Fail("is not a unit quaternion [x, y, z, w] (its norm is " + std::to_string(norm) +
+               "); normalise it");
+  }
+  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
+}
+
+BodySpec LoadBody(const YamlMap::Entry& entry) {
+  CheckName(entry);
+  const YamlMap map = entry.value.AsMap();
+  map.AllowOnly(
+      {"mass", "inertia", "position", "orientation", "linear_velocity", "angular_velocity"});
+  BodySpec body;
+  body.name = entry.key;
+  body.mass_kg = map.Require("mass", "mass: 1.0").AsPositiveNumber(" (kilograms)");
+  body.inertia_kgm2 = LoadInertia(map.Require("inertia", "inertia: [0.1, 0.1, 0.1]"));
+  BodyState& initial = body.initial;
+  if (const YamlValue* v = map.Find("position")) initial.position_m = v->AsVector3();
+  if (const YamlValue* v = map.Find("orientation")) initial.orientation_xyzw = LoadOrientation(*v);
+  if (const YamlValue* v = map.Find("linear_velocity")) {
+    initial.linear_velocity_mps = v->AsVector3();
+  }
+  if (const YamlValue* v = map.Find("angular_velocity")) {
+    initial.angular_velocity_radps = v->AsVector3();
+  }
+  return body;
+}
+
+}  // namespace
+
+void LoadWorld(const YamlMap& top, Scenario* scenario) {
+  const YamlValue* dynamics = top.Find("dynamics");
+  const YamlValue* bodies = top.Find("bodies");
+  if (dynamics == nullptr) {
+    if (bodies != nullptr) bodies->Fail("need physics; add the key dynamics, like dynamics: {}");
+    return;
+  }
+  const YamlMap map = dynamics->AsMap();
+  map.AllowOnly({"integrator", "accuracy", "step", "gravity", "region"});
+  WorldSpec world;
+  world.integrator = LoadIntegrator(map);
+  if (const YamlValue* gravity = map.Find("gravity")) world.gravity_mps2 = gravity->AsVector3();
+  if (const YamlValue* region = map.Find("region")) {
+    world.has_region = true;
+    world.region = LoadRegion(*region);
+  }
+
+  if (bodies == nullptr) {
+    dynamics->Fail("has no bodies to move; add the key bodies, or remove dynamics");
+  }
+  const YamlMap body_map = bodies->AsMap();
+  if (body_map.entries().empty()) bodies->Fail("is empty; describe at least one body");
+  for (const YamlMap::Entry& entry : body_map.entries()) world.bodies.push_back(LoadBody(entry));
+  scenario->world = std::move(world);
+}
+
+int FindBody(const YamlValue& value, const Scenario& scenario) {
+  const std::string name = value.AsText();
+  if (!scenario.world) {
+    value.Fail("names the body '" + name + "', but the scenario has none; add dynamics and bodies");
+  }
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < scenario.world->bodies.size(); ++i) {
+    if (scenario.world->bodies[i].name == name) return static_cast<int>(i);
+    known.push_back(scenario.world->bodies[i].name);
+  }
+  value.Fail("names the unknown body '" + name + "'; " + Suggest(name, known, "bodies"));
+}
+
+}  // namespace tcs

@@ -1,0 +1,26 @@
+// The sections of a scenario file. Internal to LoadScenario: mistakes are thrown as
+// ScenarioMistake.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/scenario/yaml_reader.h"
+
+namespace tcs {
+
+// `dynamics` and `bodies`, into scenario->world.
+void LoadWorld(const YamlMap& top, Scenario* scenario);
+
+// `robots`. Reads the seed and the world's bodies from `scenario`; `folder` is the file's,
+// absolute.
+void LoadRobots(const YamlMap& top, const std::string& folder, Scenario* scenario);
+
+// `channels`. Reads the world's bodies from `scenario`.
+void LoadChannels(const YamlMap& top, Scenario* scenario);
+
+// The index of the body that `value` names.
+int FindBody(const YamlValue& value, const Scenario& scenario);
+
+}  // namespace tcs

@@ -1,0 +1,47 @@
+#include "coordinator/scenario/substitute.h"
+
+#include <cstdlib>
+#include <string_view>
+
+namespace tcs {
+namespace {
+
+std::string Lookup(const YamlValue& value, const std::string& name, std::uint64_t seed) {
+  constexpr std::string_view kAllowed =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+  if (name.empty() || name.find_first_not_of(kAllowed) != std::string::npos) {
+    value.Fail("contains '${" + name + "}', which names no variable; write $${ for a literal ${");
+  }
+  if (name == "seed") return std::to_string(seed);
+  const char* found = std::getenv(name.c_str());
+  if (found == nullptr) {
+    value.Fail("uses ${" + name + "}, which is not set; set that environment variable, or write " +
+               "$${ for a literal ${");
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string Substitute(const YamlValue& value, std::uint64_t seed) {
+  const std::string text = value.AsText();
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text.compare(i, 3, "$${") == 0) {
+      result += "${";
+      i += 3;
+    } else if (text.compare(i, 2, "${") == 0) {
+      const std::size_t end = text.find('}', i);
+      if (end == std::string::npos) {
+        value.Fail("contains '${' without '}'; close it, or write $${ for a literal ${");
+      }
+      result += Lookup(value, text.substr(i + 2, end - i - 2), seed);
+      i = end + 1;
+    } else {
+      result += text[i++];
+    }
+  }
+  return result;
+}
+
+}  // namespace tcs

@@ -1,0 +1,238 @@
+#include "coordinator/scenario/yaml_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "coordinator/scenario/duration.h"
+#include "coordinator/scenario/nearest.h"
+
+namespace tcs {
+namespace {
+
+std::string At(const std::string& file, int line) {
+  return file + ":" + std::to_string(line) + ": ";
+}
+
+std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+template <class Number>
+std::optional<Number> ParseWhole(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+// yaml-cpp leaves some nodes without a mark, the empty ones above all.
+int LineOf(const YAML::Node& node, int otherwise) {
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? otherwise : mark.line + 1;
+}
+
+// A text may stand on a later line than its key; of everything else the key's line is the place.
+int LineOfValue(const YAML::Node& node, int key_line) {
+  return node.IsScalar() ? LineOf(node, key_line) : key_line;
+}
+
+}  // namespace
+
+YamlValue::YamlValue(std::string file, std::string name, int line, YAML::Node node)
+    : file_(std::move(file)), name_(std::move(name)), line_(line), node_(std::move(node)) {}
+
+void YamlValue::Fail(std::string_view sentence) const {
+  FailPlainly(Described() + " " + std::string(sentence));
+}
+
+void YamlValue::FailPlainly(std::string_view sentence) const {
+  throw ScenarioMistake{At(file_, line_) + std::string(sentence)};
+}
+
+std::string YamlValue::Scalar(std::string_view expected) const {
+  if (node_.IsNull()) Fail("has no value; give " + std::string(expected));
+  if (!node_.IsScalar()) {
+    Fail(std::string(node_.IsMap() ? "is a map" : "is a list") + "; give " + std::string(expected));
+  }
+  return node_.Scalar();
+}
+
+std::string YamlValue::AsText() const {
+  std::string text = Scalar("a text, in quotes if it is empty");
+  if (text.find('\0') != std::string::npos) Fail("contains a NUL character; remove it");
+  return text;
+}
+
+double YamlValue::AsNumber() const {
+  const std::string text = Scalar("a number");
+  const auto number = ParseWhole<double>(text);
+  if (!number || !std::isfinite(*number)) {
+    Fail("is " + Quote(text) + "; it must be a finite number");
+  }
+  return *number;
+}
+
+double YamlValue::AsPositiveNumber(std::string_view unit) const {
+  const double number = AsNumber();
+  if (!(number > 0)) Fail("is " + node_.Scalar() + "; it must be positive" + std::string(unit));
+  return number;
+}
+
+double YamlValue::AsNonNegativeNumber(std::string_view unit) const {
+  const double number = AsNumber();
+  if (!(number >= 0)) {
+    Fail("is " + node_.Scalar() + "; it must not be negative" + std::string(unit));
+  }
+  return number;
+}
+
+std::int64_t YamlValue::AsInteger(std::int64_t least, std::int64_t most) const {
+  const std::string text = Scalar("a whole number");
+  const auto number = ParseWhole<std::int64_t>(text);
+  if (!number || *number < least || *number > most) {
+    Fail("is " + Quote(text) + "; it must be a whole number from " + std::to_string(least) +
+         " to " + std::to_string(most));
+  }
+  return *number;
+}
+
+std::uint64_t YamlValue::AsUnsigned64() const {
+  const std::string text = Scalar("a whole number");
+  const auto number = ParseWhole<std::uint64_t>(text);
+  if (!number) Fail("is " + Quote(text) + "; it must be a whole number from 0 to 2^64 - 1");
+  return *number;
+}
+
+VirtualDuration YamlValue::AsDuration() const {
+  const auto result = ParseDuration(Scalar("a duration like 20s or 10ms"));
+  if (const auto* error = std::get_if<LoadError>(&result)) {
+    FailPlainly(Described() + ": " + error->message);
+  }
+  return std::get<VirtualDuration>(result);
+}
+
+VirtualDuration YamlValue::AsPositiveDuration() const {
+  const VirtualDuration duration = AsDuration();
+  if (duration <= VirtualDuration{}) Fail("is " + node_.Scalar() + "; it must be longer than 0");
+  return duration;
+}
+
+std::vector<YamlValue> YamlValue::AsList(std::string_view example) const {
+  if (!node_.IsSequence() || node_.size() == 0) {
+    Fail(std::string(node_.IsSequence() ? "is an empty list" : "is not a list") +
+         "; write it like " + std::string(example));
+  }
+  std::vector<YamlValue> list;
+  for (std::size_t i = 0; i < node_.size(); ++i) {
+    const YAML::Node element = node_[i];
+    list.emplace_back(file_, name_ + "[" + std::to_string(i) + "]", LineOf(element, line_),
+                      element);
+  }
+  return list;
+}
+
+std::vector<double> YamlValue::AsNumbers(std::size_t size, std::string_view example) const {
+  const std::vector<YamlValue> list = AsList(example);
+  if (list.size() != size) {
+    Fail("has " + std::to_string(list.size()) + " numbers; write " + std::to_string(size) +
+         ", like " + std::string(example));
+  }
+  std::vector<double> numbers;
+  for (const YamlValue& element : list) numbers.push_back(element.AsNumber());
+  return numbers;
+}
+
+std::array<double, 3> YamlValue::AsVector3() const {
+  const std::vector<double> numbers = AsNumbers(3, "[0, 0, 0]");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+YamlMap YamlValue::AsMap() const {
+  if (!node_.IsMap()) {
+    Fail(std::string(node_.IsNull() ? "has no value" : "is not a map") +
+         "; give it keys with values, or {} for none");
+  }
+  std::vector<YamlMap::Entry> entries;
+  int previous_line = line_;
+  for (const auto& pair : node_) {
+    const int key_line = LineOf(pair.first, previous_line);
+    previous_line = key_line;
+    if (!pair.first.IsScalar()) {
+      YamlValue(file_, name_, key_line, pair.first).Fail("has a key that is not a text; write one");
+    }
+    const std::string key = pair.first.Scalar();
+    std::string name = name_.empty() ? key : name_ + "." + key;
+    for (const YamlMap::Entry& earlier : entries) {
+      if (earlier.key != key) continue;
+      YamlValue(file_, name, key_line, pair.second)
+          .Fail("is given twice, first on line " + std::to_string(earlier.key_line) +
+                "; rename or remove one");
+    }
+    entries.push_back(
+        {key, key_line,
+         YamlValue(file_, std::move(name), LineOfValue(pair.second, key_line), pair.second)});
+  }
+  return YamlMap(*this, std::move(entries));
+}
+
+YamlMap::YamlMap(YamlValue place, std::vector<Entry> entries)
+    : place_(std::move(place)), entries_(std::move(entries)) {}
+
+void YamlMap::AllowOnly(const std::vector<std::string>& known) const {
+  for (const Entry& entry : entries_) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    entry.value.AtLine(entry.key_line)
+        .FailPlainly("unknown key " + Quote(entry.key) +
+                     (place_.name().empty() ? "" : " in " + place_.name()) + "; " +
+                     Suggest(entry.key, known, "keys"));
+  }
+}
+
+const YamlValue* YamlMap::Find(std::string_view key) const {
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) return &entry.value;
+  }
+  return nullptr;
+}
+
+const YamlValue& YamlMap::Require(std::string_view key, std::string_view example) const {
+  if (const YamlValue* value = Find(key)) return *value;
+  place_.Fail("lacks the key " + Quote(key) + "; add it, like " + std::string(example));
+}
+
+YamlValue ParseYaml(const std::string& file, const std::string& text) {
+  const int last_line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& error) {
+    const int line = error.mark.is_null() ? last_line : error.mark.line + 1;
+    throw ScenarioMistake{At(file, line) + "this is not valid YAML (" + error.msg +
+                          "); indent with spaces, and quote a text that holds : # { } [ or ]"};
+  }
+  if (documents.empty() || documents[0].IsNull()) {
+    throw ScenarioMistake{At(file, 1) +
+                          "the scenario is empty; write at least duration and robots"};
+  }
+  if (documents.size() > 1) {
+    throw ScenarioMistake{At(file, LineOf(documents[1], last_line)) +
+                          "a second YAML document begins here; keep one scenario to a file"};
+  }
+  return YamlValue(file, "", LineOf(documents[0], 1), documents[0]);
+}
+
+void CheckName(const YamlMap::Entry& entry) {
+  constexpr std::string_view kAllowed =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  const std::string& name = entry.key;
+  const bool fine = !name.empty() && name.size() <= 64 && name[0] != '.' && name[0] != '-' &&
+                    name.find_first_not_of(kAllowed) == std::string::npos;
+  if (!fine) {
+    entry.value.AtLine(entry.key_line)
+        .FailPlainly(Quote(name) +
+                     " is not a name; use up to 64 letters, digits, '_', '-' and '.'");
+  }
+}
+
+}  // namespace tcs

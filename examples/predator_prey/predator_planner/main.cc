@@ -1,0 +1,74 @@
+// The predator's planner: waits for a request, plans, answers; one line on stderr for each plan.
+
+#include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
+
+#include <cstdint>
+#include <cstdio>
+
+#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/common/program.h"
+#include "examples/predator_prey/common/udp_socket.h"
+#include "examples/predator_prey/predator_planner/pursuit_planner.h"
+
+namespace predator_prey {
+namespace {
+
+struct Options {
+  std::uint16_t port = 0;
+  std::uint32_t seed = 1;
+  PlannerOptions planner;
+};
+
+void Log(const PlanReply& reply) {
+  std::fprintf(stderr, "predator_planner: plan %llu: %.3f s, %llu states, %s, %.2f s long\n",
+               static_cast<unsigned long long>(reply.id), reply.planning_time_s,
+               static_cast<unsigned long long>(reply.states_explored),
+               reply.steps.empty()  ? "no plan"
+               : reply.reaches_goal ? "catches the prey"
+                                    : "comes nearer",
+               reply.plan_duration_s);
+}
+
+void Run(const Options& options) {
+  UdpSocket socket = UdpSocket::BoundTo(options.port);
+  ompl::msg::noOutputHandler();
+  ompl::RNG::setSeed(options.seed);
+  PursuitPlanner planner(options.planner);
+
+  for (;;) {
+    WaitForAny({socket.fd()});
+    const auto datagram = socket.ReceiveNewest();
+    if (!datagram) continue;
+    const auto request = DecodePlanRequest(*datagram);
+    if (!request) continue;
+    const PlanReply reply = planner.Plan(*request);
+    socket.Send(Encode(reply));
+    Log(reply);
+    planner.Forget();
+  }
+}
+
+}  // namespace
+}  // namespace predator_prey
+
+int main(int argc, char** argv) {
+  using namespace predator_prey;
+  Options options;
+  CLI::App app("Plans how the predator catches the prey.", "predator_planner");
+  AddPort(app, "--port", options.port, "UDP port to receive plan requests on");
+  app.add_option("--seed", options.seed, "seed of the planner's random numbers, 1 or more")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--budget", options.planner.budget_s, "how long to plan [s]")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--reply-duration", options.planner.reply_s, "how much of a plan to send back [s]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 1.0));
+  app.add_option("--flee-distance", options.planner.model.flee_distance_m,
+                 "the prey is taken to flee when the predator is nearer [m]")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  return RunProgram(app, argc, argv, [&] { Run(options); });
+}

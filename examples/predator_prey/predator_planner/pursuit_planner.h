@@ -1,0 +1,53 @@
+// Plans the predator's pursuit with OMPL's SST, which improves its plan until the time is over.
+//
+// For one thread; starts none. Reads the system clock for the budget and CLOCK_MONOTONIC for the
+// statistics. Call ompl::RNG::setSeed before the first one is made to have the same random numbers
+// every time.
+#pragma once
+
+#include <ompl/control/SpaceInformation.h>
+#include <ompl/control/planners/sst/SST.h>
+
+#include <memory>
+
+#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/predator_planner/pursuit_goal.h"
+#include "examples/predator_prey/predator_planner/pursuit_propagator.h"
+#include "examples/predator_prey/predator_planner/pursuit_space.h"
+
+namespace predator_prey {
+
+struct PlannerOptions {
+  double budget_s = 1.0;
+  double reply_s = 0.2;  // how much of the plan is given away; a datagram must hold it
+  double step_s = 0.01;  // of propagation
+  unsigned min_control_steps = 10;
+  unsigned max_control_steps = 30;
+  double goal_bias = 0.2;
+  double selection_radius = 0.5;
+  double pruning_radius = 0.3;
+  SpaceOptions space;
+  ModelOptions model;
+  GoalOptions goal;
+};
+
+class PursuitPlanner {
+ public:
+  explicit PursuitPlanner(const PlannerOptions& options);
+
+  // Plans for the whole budget.
+  PlanReply Plan(const PlanRequest& request);
+
+  // Frees what the last plan needed. The next plan would do it, at its own expense of time.
+  void Forget();
+
+ private:
+  ompl::base::ProblemDefinitionPtr MakeProblem(const PlanRequest& request) const;
+  std::vector<PlanStep> Beginning(ompl::control::PathControl path) const;
+
+  PlannerOptions options_;
+  ompl::control::SpaceInformationPtr si_;
+  std::unique_ptr<ompl::control::SST> sst_;
+};
+
+}  // namespace predator_prey

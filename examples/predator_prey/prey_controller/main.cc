@@ -1,0 +1,65 @@
+// The prey's controller: reads where both bodies are, flees or wanders, and commands a force, 100
+// times a second.
+
+#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/common/periodic_timer.h"
+#include "examples/predator_prey/common/program.h"
+#include "examples/predator_prey/common/udp_socket.h"
+#include "examples/predator_prey/prey_controller/flee_or_wander.h"
+
+namespace predator_prey {
+namespace {
+
+constexpr double kPeriodS = 0.01;
+
+struct Options {
+  std::uint16_t sensors_port = 0;
+  std::uint16_t commands_port = 0;
+  PreyOptions prey;
+};
+
+void Run(const Options& options) {
+  UdpSocket sensors = UdpSocket::BoundTo(options.sensors_port);
+  UdpSocket commands = UdpSocket::ConnectedTo(options.commands_port);
+  PeriodicTimer timer(kPeriodS);
+  FleeOrWander behaviour(options.prey);
+  std::optional<SensorReading> seen;
+
+  for (;;) {
+    WaitForAny({timer.fd(), sensors.fd()});
+    if (const auto datagram = sensors.ReceiveNewest()) {
+      if (auto reading = DecodeSensorReading(*datagram)) seen = reading;
+    }
+    const std::uint64_t ticks = timer.TakeTicks();
+    if (ticks == 0 || !seen) continue;
+    const double elapsed_s = kPeriodS * static_cast<double>(ticks);
+    commands.Send(
+        EncodeCommand({.force_n = behaviour.Step(elapsed_s, seen->prey, seen->predator)}));
+  }
+}
+
+}  // namespace
+}  // namespace predator_prey
+
+int main(int argc, char** argv) {
+  using namespace predator_prey;
+  Options options;
+  PreyOptions& prey = options.prey;
+  CLI::App app("Controls the prey: flees from the predator or wanders.", "prey_controller");
+  AddPort(app, "--sensors-port", options.sensors_port, "UDP port to receive sensor readings on");
+  AddPort(app, "--commands-port", options.commands_port, "UDP port to send force commands to");
+  app.add_option("--seed", prey.seed, "seed of the random walk")->capture_default_str();
+  app.add_option("--flee-distance", prey.flee_distance_m, "flee when the predator is nearer [m]")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--flee-force", prey.flee_force_n, "[N]")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wander-force", prey.wander_force_n, "root mean square [N]")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wander-hold", prey.wander_hold_s, "how long each random force is held [s]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 1e6));
+  return RunProgram(app, argc, argv, [&] { Run(options); });
+}

@@ -1,0 +1,12 @@
+// How a process or thread gets its slot from the coordinator.
+#pragma once
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// Fills `thread` and returns once the thread has been dispatched for the first time. Ends the process where there
+// is no coordinator or it refuses. Async-signal-safe.
+void Attach(GuestThread& thread);
+
+}  // namespace tcs::preload

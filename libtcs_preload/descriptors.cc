@@ -1,0 +1,78 @@
+// Closing and copying descriptors: the shim's own stay open, and its timers follow their descriptors.
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <stdarg.h>
+#include <unistd.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/timer_fds.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+void ForgetTimer(int fd) {
+  const std::int64_t id = ForgetTimerFd(fd);
+  if (id == 0) return;
+  if (GuestThread* t = Current(); t != nullptr) {
+    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kTimerDelete, .args = {id}});
+  }
+}
+
+long CloseRange(unsigned first, unsigned last, unsigned flags) {
+  if (first > last) return -EINVAL;
+  if ((flags & CLOSE_RANGE_CLOEXEC) == 0) {
+    for (unsigned fd = first; fd <= last && fd < 1024; ++fd) ForgetTimer(static_cast<int>(fd));
+  }
+  const long own = g_notify_fd;
+  if (own < 0 || own < static_cast<long>(first) || own > static_cast<long>(last)) {
+    return RawSyscall(SYS_close_range, first, last, static_cast<int>(flags));
+  }
+  long result = 0;
+  if (static_cast<long>(first) < own) result = RawSyscall(SYS_close_range, first, own - 1, static_cast<int>(flags));
+  if (result == 0 && own < static_cast<long>(last)) {
+    result = RawSyscall(SYS_close_range, own + 1, last, static_cast<int>(flags));
+  }
+  return result;
+}
+
+}  // namespace
+
+TCS_EXPORT int close(int fd) {
+  if (IsOwnDescriptor(fd)) return Fail(EBADF);
+  ForgetTimer(fd);
+  return static_cast<int>(ToErrno(RawSyscall(SYS_close, fd)));
+}
+
+TCS_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
+  return static_cast<int>(ToErrno(CloseRange(first, last, static_cast<unsigned>(flags))));
+}
+
+TCS_EXPORT void closefrom(int first) noexcept {
+  CloseRange(first < 0 ? 0u : static_cast<unsigned>(first), ~0u, 0);
+}
+
+TCS_EXPORT int dup(int fd) noexcept {
+  const long copy = RawSyscall(SYS_dup, fd);
+  if (copy >= 0) CopyTimerFd(fd, static_cast<int>(copy));
+  return static_cast<int>(ToErrno(copy));
+}
+
+TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
+  if (IsOwnDescriptor(to)) return Fail(EBUSY);
+  const long copy = RawSyscall(SYS_dup3, from, to, flags);
+  if (copy >= 0) {
+    ForgetTimer(to);
+    CopyTimerFd(from, to);
+  }
+  return static_cast<int>(ToErrno(copy));
+}
+
+TCS_EXPORT int dup2(int from, int to) noexcept {
+  if (from != to) return dup3(from, to, 0);
+  return RawSyscall(SYS_fcntl, from, F_GETFD) < 0 ? Fail(EBADF) : to;
+}

@@ -1,0 +1,24 @@
+// What the shim keeps of the environment, and how it passes it on: a program that runs its children with an
+// environment of its own making still runs them in virtual time.
+#pragma once
+
+#include <cstddef>
+
+namespace tcs::preload {
+
+// Copies LD_PRELOAD and TCS_SOCKET out of `envp`. Called once, before the program runs.
+void RememberEnvironment(char** envp);
+bool EnvironmentRemembered();
+
+// The coordinator's socket (shm/attach_protocol.h), or null where there is none.
+const char* SocketName();
+
+// An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them, in `storage`.
+// Async-signal-safe. Entries beyond kMaxEntries are dropped.
+struct EnvironmentCopy {
+  static constexpr std::size_t kMaxEntries = 2048;
+  char* entries[kMaxEntries + 3];
+};
+char* const* WithShim(char* const* envp, EnvironmentCopy& storage);
+
+}  // namespace tcs::preload

@@ -1,0 +1,149 @@
+#include "libtcs_preload/exchange.h"
+
+#include <errno.h>
+#include <linux/futex.h>
+#include <poll.h>
+#include <string.h>
+#include <time.h>
+
+#include "libtcs_preload/raw_syscall.h"
+#include "shm/attach_protocol.h"
+#include "shm/clock_page.h"
+
+namespace tcs::preload {
+
+namespace {
+
+using shm::NotificationKind;
+using shm::WakeReason;
+
+// The gate is waited for in turns of this length, to notice a coordinator that was killed. With a timeout the kernel
+// also never restarts the wait behind our back after a signal handler.
+constexpr timespec kGateTurn{1, 0};
+
+void DieIfCoordinatorIsGone() {
+  pollfd pipe{g_notify_fd, 0, 0};
+  const timespec now{};
+  if (RawSyscall(SYS_ppoll, Arg(&pipe), 1, Arg(&now), 0, 0) == 1 &&
+      (pipe.revents & (POLLERR | POLLNVAL)) != 0) {
+    DieWithoutCoordinator("that tcsim has ended");
+  }
+}
+
+void FillRecord(shm::ThreadSlot& slot, const Request& request) {
+  shm::Notification& note = slot.note;
+  const shm::ClockReading reading = shm::ReadClock(slot.clock);
+  note.kind = request.kind;
+  note.time_ns = shm::ShownTime(slot.clock, reading);
+  note.deadline_ns = request.deadline_ns;
+  memcpy(note.args, request.args, sizeof note.args);
+  note.fd_count = request.fd_count;
+  if (request.fd_count > 0) memcpy(note.fds, request.fds, request.fd_count * sizeof(shm::WaitFd));
+  if (request.text != nullptr) {
+    strncpy(note.text, request.text, sizeof note.text - 1);
+    note.text[sizeof note.text - 1] = '\0';
+  }
+}
+
+void Notify(const GuestThread& thread) {
+  const shm::PipeMessage message{thread.index};
+  for (;;) {
+    const long n = RawSyscall(SYS_write, g_notify_fd, Arg(&message), sizeof message);
+    if (n == static_cast<long>(sizeof message)) return;
+    if (n == -EINTR) continue;
+    DieWithoutCoordinator(n == -EBADF ? "it has closed the connection to it"
+                                      : "that tcsim has ended");
+  }
+}
+
+// False if a signal handler has run and the gate is still shut.
+bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
+  for (;;) {
+    std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
+    if (gate == shm::kGateOpen || IsShutDown()) return true;
+    if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
+      continue;
+    }
+    const long result = RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting,
+                                   Arg(&kGateTurn));
+    if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
+    if (result == -EINTR && interruptible &&
+        slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {
+      return false;
+    }
+  }
+}
+
+// Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
+bool EndWait(GuestThread& thread) {
+  shm::ThreadSlot& slot = *thread.slot;
+  slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
+  FillRecord(slot, Request{.kind = NotificationKind::kInterrupted});
+  Notify(thread);
+  WaitAtGate(slot, false);
+  return slot.reply[0] != 0;
+}
+
+Reply ExchangeOnce(GuestThread& thread, const Request& request) {
+  shm::ThreadSlot& slot = *thread.slot;
+  slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
+  FillRecord(slot, request);
+  Notify(thread);
+  if (!WaitAtGate(slot, request.interruptible)) {
+    EndWait(thread);
+    return Reply{WakeReason::kSignal, {0, 0}};
+  }
+  return Reply{slot.wake_reason.load(std::memory_order_relaxed), {slot.reply[0], slot.reply[1]}};
+}
+
+// What a handler finds of the exchange it interrupted, and must leave as it was.
+struct Interrupted {
+  shm::Notification note;
+  std::uint32_t gate;
+  WakeReason reason;
+  std::int64_t reply[2];
+
+  explicit Interrupted(GuestThread& thread) {
+    shm::ThreadSlot& slot = *thread.slot;
+    note = slot.note;
+    gate = slot.gate.load();
+    if (gate != shm::kGateOpen && EndWait(thread)) {
+      gate = shm::kGateOpen;
+      reason = WakeReason::kSignal;
+      reply[0] = reply[1] = 0;
+      return;
+    }
+    if (gate == shm::kGateWaiting) gate = shm::kGateClosed;
+    reason = slot.wake_reason.load();
+    reply[0] = slot.reply[0];
+    reply[1] = slot.reply[1];
+  }
+
+  void PutBack(shm::ThreadSlot& slot) const {
+    slot.note = note;
+    slot.reply[0] = reply[0];
+    slot.reply[1] = reply[1];
+    slot.wake_reason.store(reason);
+    slot.gate.store(gate);
+  }
+};
+
+}  // namespace
+
+Reply Exchange(GuestThread& thread, const Request& request) {
+  if (IsShutDown()) return Reply{WakeReason::kGo, {0, 0}};
+  Reply reply;
+  if (thread.depth++ == 0) {
+    reply = ExchangeOnce(thread, request);
+  } else {
+    const Interrupted outer(thread);
+    reply = ExchangeOnce(thread, request);
+    outer.PutBack(*thread.slot);
+  }
+  --thread.depth;
+  return reply;
+}
+
+void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false); }
+
+}  // namespace tcs::preload

@@ -1,0 +1,33 @@
+// One exchange with the coordinator: fill the slot's record, write its index into the pipe, stop at the gate.
+#pragma once
+
+#include <cstdint>
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+struct Request {
+  shm::NotificationKind kind;
+  std::int64_t deadline_ns = shm::kNeverNs;
+  std::int64_t args[4] = {};
+  const shm::WaitFd* fds = nullptr;
+  std::uint32_t fd_count = 0;
+  const char* text = nullptr;
+  // A signal handler that runs meanwhile ends the exchange with WakeReason::kSignal.
+  bool interruptible = false;
+};
+
+struct Reply {
+  shm::WakeReason reason;
+  std::int64_t values[2];
+};
+
+// Returns when the coordinator dispatches the thread again. Async-signal-safe, and may be called from a handler that
+// interrupted another exchange of the same thread: the outer one then ends as interrupted.
+Reply Exchange(GuestThread& thread, const Request& request);
+
+// The gate without a notification: the attach itself was one.
+void AwaitFirstDispatch(GuestThread& thread);
+
+}  // namespace tcs::preload

@@ -1,0 +1,146 @@
+#include "libtcs_preload/fd_wait.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+
+namespace tcs::preload {
+
+namespace {
+
+using shm::NotificationKind;
+using shm::WakeReason;
+
+// poll and epoll use the same bits for what can be asked for.
+static_assert(POLLIN == EPOLLIN && POLLOUT == EPOLLOUT && POLLPRI == EPOLLPRI &&
+              POLLRDHUP == EPOLLRDHUP);
+
+// More descriptors than a record holds become one: an epoll set.
+int GatherInEpoll(const pollfd* fds, unsigned long count) {
+  const int set = static_cast<int>(RawSyscall(SYS_epoll_create1, EPOLL_CLOEXEC));
+  if (set < 0) return set;
+  for (unsigned long i = 0; i < count; ++i) {
+    if (fds[i].fd < 0) continue;
+    epoll_event event{};
+    event.events = static_cast<std::uint32_t>(static_cast<unsigned short>(fds[i].events));
+    RawSyscall(SYS_epoll_ctl, set, EPOLL_CTL_ADD, fds[i].fd, Arg(&event));
+  }
+  return set;
+}
+
+bool PollNow(int fd, short events) {
+  pollfd probe{fd, events, 0};
+  const timespec now{};
+  return RawSyscall(SYS_ppoll, Arg(&probe), 1, Arg(&now), 0, 0) != 0;
+}
+
+WaitResult ToResult(WakeReason reason) {
+  switch (reason) {
+    case WakeReason::kDeadline:
+      return WaitResult::kTimedOut;
+    case WakeReason::kSignal:
+      return WaitResult::kInterrupted;
+    case WakeReason::kGo:
+      break;
+  }
+  return WaitResult::kRetry;
+}
+
+}  // namespace
+
+WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
+                      std::int64_t deadline_ns) {
+  if (IsShutDown()) {
+    const timespec turn{0, 10'000'000};
+    const long n = RawSyscall(SYS_ppoll, Arg(const_cast<pollfd*>(fds)), static_cast<long>(count),
+                              Arg(&turn), 0, 0);
+    return n == -EINTR ? WaitResult::kInterrupted : WaitResult::kRetry;
+  }
+  shm::WaitFd waited[shm::kMaxWaitFds];
+  std::uint32_t n = 0;
+  int gathered = -1;
+  for (unsigned long i = 0; i < count; ++i) {
+    if (fds[i].fd < 0) continue;
+    if (n == shm::kMaxWaitFds) {
+      gathered = GatherInEpoll(fds, count);
+      waited[0] = shm::WaitFd{gathered, EPOLLIN};
+      n = 1;
+      break;
+    }
+    waited[n++] = shm::WaitFd{
+        fds[i].fd, static_cast<std::uint32_t>(static_cast<unsigned short>(fds[i].events))};
+  }
+  const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kWaitFds,
+                                               .deadline_ns = deadline_ns,
+                                               .fds = waited,
+                                               .fd_count = n,
+                                               .interruptible = true});
+  if (gathered >= 0) RawSyscall(SYS_close, gathered);
+  return ToResult(reply.reason);
+}
+
+bool AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
+  const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
+  if (flags < 0 || (flags & O_NONBLOCK) != 0) return true;
+  for (;;) {
+    if (PollNow(fd, events)) return true;
+    const pollfd waited{fd, events, 0};
+    switch (WaitForFds(thread, &waited, 1, deadline_ns)) {
+      case WaitResult::kRetry:
+        break;
+      case WaitResult::kTimedOut:
+        if (PollNow(fd, events)) return true;
+        Fail(EAGAIN);
+        return false;
+      case WaitResult::kInterrupted:
+        if (!RestartsAfterSignal()) {
+          Fail(EINTR);
+          return false;
+        }
+        break;
+    }
+  }
+}
+
+bool CanWait(int fd) {
+  struct stat status;
+  if (RawSyscall(SYS_fstat, fd, Arg(&status)) != 0) return false;
+  return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
+}
+
+std::int64_t SocketDeadline(GuestThread& thread, int fd, int option) {
+  timeval timeout{};
+  socklen_t size = sizeof timeout;
+  if (RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, option, Arg(&timeout), Arg(&size)) != 0 ||
+      ToNs(timeout) == 0) {
+    return shm::kNeverNs;
+  }
+  return AddSaturated(NowNs(thread), ToNs(timeout));
+}
+
+bool RestartsAfterSignal() {
+  struct KernelSigaction {
+    void (*handler)(int);
+    unsigned long flags;
+    void (*restorer)();
+    unsigned long mask;
+  };
+  for (int signal = 1; signal < 65; ++signal) {
+    KernelSigaction action{};
+    if (RawSyscall(SYS_rt_sigaction, signal, 0, Arg(&action), sizeof action.mask) != 0) continue;
+    if (action.handler == SIG_DFL || action.handler == SIG_IGN) continue;
+    if ((action.flags & SA_RESTART) == 0) return false;
+  }
+  return true;
+}
+
+}  // namespace tcs::preload

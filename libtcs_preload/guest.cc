@@ -1,0 +1,85 @@
+#include "libtcs_preload/guest.h"
+
+#include <errno.h>
+#include <sys/mman.h>
+
+#include "libtcs_preload/attach.h"
+#include "libtcs_preload/environment.h"
+#include "libtcs_preload/random.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "shm/clock_page.h"
+
+namespace tcs::preload {
+
+namespace {
+
+// Stands in until the constructor has run, and where the page cannot be had.
+ProcessState g_unprotected_state{ProcessState::kFresh};
+
+void ProtectProcessState() {
+  const long page = RawSyscall(SYS_mmap, 0, 4096, PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (page < 0 && page > -4096) return;
+  if (RawSyscall(SYS_madvise, page, 4096, MADV_WIPEONFORK) != 0) return;
+  g_process = reinterpret_cast<ProcessState*>(page);
+}
+
+// Runs before the constructors of every other library (-z initfirst).
+__attribute__((constructor)) void Start(int, char**, char** envp) {
+  RememberEnvironment(envp);
+  ProtectProcessState();
+  Current();
+}
+
+}  // namespace
+
+ProcessState* g_process = &g_unprotected_state;
+__thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
+shm::SegmentHeader* g_header = nullptr;
+int g_notify_fd = -1;
+
+GuestThread* CurrentSlow() {
+  if (g_process->mode == ProcessState::kPassThrough || t_thread.attaching) return nullptr;
+  if (SocketName() == nullptr) {
+    if (EnvironmentRemembered()) g_process->mode = ProcessState::kPassThrough;
+    return nullptr;
+  }
+  t_thread = GuestThread{};
+  t_thread.attaching = true;
+  Attach(t_thread);
+  t_thread.attaching = false;
+  g_process->mode = ProcessState::kAttached;
+  SeedProcess(*t_thread.slot);
+  return &t_thread;
+}
+
+GuestThread* Enter() {
+  GuestThread* t = Current();
+  if (t == nullptr) return nullptr;
+  shm::ClockPage& page = t->slot->clock;
+  if (page.call_cost_ns != 0) {
+    std::uint64_t word = page.executed_adjust.load(std::memory_order_relaxed);
+    while (!page.executed_adjust.compare_exchange_weak(
+        word, shm::PackAdjust(word, shm::AdjustValue(word) + page.call_cost_ns))) {
+    }
+  }
+  return t;
+}
+
+bool IsShutDown() { return g_header->shutdown.load(std::memory_order_relaxed) != 0; }
+
+void DieWithoutCoordinator(const char* what) {
+  static const char kPrefix[] = "tcs: this program runs under tcsim, but ";
+  static const char kSuffix[] = "; it ends here\n";
+  auto put = [](const char* text) {
+    long n = 0;
+    while (text[n] != '\0') ++n;
+    RawSyscall(SYS_write, 2, Arg(text), n);
+  };
+  put(kPrefix);
+  put(what);
+  put(kSuffix);
+  for (;;) RawSyscall(SYS_exit_group, kNoCoordinatorExit);
+}
+
+}  // namespace tcs::preload

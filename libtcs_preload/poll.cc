@@ -1,0 +1,215 @@
+// poll, select and epoll.
+#include <poll.h>
+
+#include <errno.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/select.h>
+#include <sys/time.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/signal_mask.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+constexpr timespec kNow{};
+
+// The shape of all of them: probe with a timeout of zero; nothing there: wait; probe again. `probe` returns what the
+// kernel returns, 0 for "nothing". `wait(deadline)` returns a WaitResult. A signal always ends these calls.
+template <class Probe, class Wait>
+int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, Probe probe,
+                 Wait wait) {
+  const std::int64_t deadline = DeadlineAfter(t, timeout_ns);
+  const MaskDuringWait masked(mask);
+  HoldForRead(t);
+  for (;;) {
+    const long found = probe();
+    if (found != 0) return static_cast<int>(ToErrno(found));
+    if (timeout_ns == 0) return 0;
+    switch (wait(deadline)) {
+      case WaitResult::kRetry:
+        break;
+      case WaitResult::kTimedOut:
+        return static_cast<int>(ToErrno(probe()));
+      case WaitResult::kInterrupted:
+        return Fail(EINTR);
+    }
+  }
+}
+
+int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
+           const sigset_t* mask) {
+  return ProbeAndWait(
+      t, timeout_ns, mask,
+      [&] { return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0); },
+      [&](std::int64_t deadline) { return WaitForFds(t, fds, count, deadline); });
+}
+
+struct SelectSets {
+  fd_set* user[3];
+  fd_set wanted[3];
+  int count;
+
+  SelectSets(int n, fd_set* r, fd_set* w, fd_set* e) : user{r, w, e}, count(n) {
+    for (int i = 0; i < 3; ++i) {
+      if (user[i] != nullptr) memcpy(&wanted[i], user[i], Bytes());
+    }
+  }
+  // Programs may hold sets larger than FD_SETSIZE; only what fits is copied.
+  std::size_t Bytes() const {
+    const std::size_t words = (static_cast<std::size_t>(count) + 63) / 64;
+    return words * 8 < sizeof(fd_set) ? words * 8 : sizeof(fd_set);
+  }
+  void Restore() {
+    for (int i = 0; i < 3; ++i) {
+      if (user[i] != nullptr) memcpy(user[i], &wanted[i], Bytes());
+    }
+  }
+  bool Wants(int set, int fd) const { return user[set] != nullptr && FD_ISSET(fd, &wanted[set]); }
+};
+
+int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_t timeout_ns,
+             const sigset_t* mask) {
+  if (n < 0 || n > FD_SETSIZE) return Fail(EINVAL);
+  SelectSets sets(n, r, w, e);
+  auto probe = [&] {
+    sets.Restore();
+    return RawSyscall(SYS_pselect6, n, Arg(r), Arg(w), Arg(e), Arg(&kNow), 0);
+  };
+  auto wait = [&](std::int64_t deadline) {
+    pollfd fds[FD_SETSIZE];
+    nfds_t count = 0;
+    for (int fd = 0; fd < n; ++fd) {
+      short events = 0;
+      if (sets.Wants(0, fd)) events |= POLLIN;
+      if (sets.Wants(1, fd)) events |= POLLOUT;
+      if (sets.Wants(2, fd)) events |= POLLPRI;
+      if (events != 0) fds[count++] = pollfd{fd, events, 0};
+    }
+    return WaitForFds(t, fds, count, deadline);
+  };
+  return ProbeAndWait(t, timeout_ns, mask, probe, wait);
+}
+
+int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t timeout_ns,
+            const sigset_t* mask) {
+  return ProbeAndWait(
+      t, timeout_ns, mask,
+      [&] { return RawSyscall(SYS_epoll_pwait, epfd, Arg(events), max, 0, 0, 8); },
+      [&](std::int64_t deadline) {
+        const pollfd set{epfd, POLLIN, 0};
+        return WaitForFds(t, &set, 1, deadline);
+      });
+}
+
+std::int64_t MillisecondsToNs(int ms) { return ms < 0 ? -1 : std::int64_t{ms} * 1'000'000; }
+
+// Null means for ever.
+bool TimeoutToNs(const timespec* timeout, std::int64_t* ns) {
+  *ns = -1;
+  if (timeout == nullptr) return true;
+  *ns = ToNs(*timeout);
+  return IsValid(*timeout);
+}
+
+}  // namespace
+
+TCS_EXPORT int poll(pollfd* fds, nfds_t count, int timeout_ms) {
+  GuestThread* t = Enter();
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_poll, Arg(fds), count, timeout_ms)));
+  return PollNs(*t, fds, count, MillisecondsToNs(timeout_ms), nullptr);
+}
+
+TCS_EXPORT int __poll_chk(pollfd* fds, nfds_t count, int timeout_ms, std::size_t size) {
+  if (size / sizeof *fds < count) __builtin_trap();
+  return poll(fds, count, timeout_ms);
+}
+
+TCS_EXPORT int ppoll(pollfd* fds, nfds_t count, const timespec* timeout, const sigset_t* mask) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    timespec left = timeout != nullptr ? *timeout : timespec{};
+    return static_cast<int>(ToErrno(RawSyscall(
+        SYS_ppoll, Arg(fds), count, timeout != nullptr ? Arg(&left) : 0, Arg(mask), 8)));
+  }
+  std::int64_t timeout_ns;
+  if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
+  return PollNs(*t, fds, count, timeout_ns, mask);
+}
+
+TCS_EXPORT int __ppoll_chk(pollfd* fds, nfds_t count, const timespec* timeout, const sigset_t* mask,
+                           std::size_t size) {
+  if (size / sizeof *fds < count) __builtin_trap();
+  return ppoll(fds, count, timeout, mask);
+}
+
+TCS_EXPORT int select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(timeout))));
+  }
+  if (timeout == nullptr) return SelectNs(*t, n, r, w, e, -1, nullptr);
+  if (timeout->tv_sec < 0 || timeout->tv_usec < 0) return Fail(EINVAL);
+  const std::int64_t timeout_ns = ToNs(*timeout);
+  const std::int64_t start = NowNs(*t);
+  const int found = SelectNs(*t, n, r, w, e, timeout_ns, nullptr);
+  // Linux leaves in it what has not been waited.
+  const std::int64_t left = timeout_ns - (NowNs(*t) - start);
+  *timeout = ToTimeval(left > 0 ? left : 0);
+  return found;
+}
+
+TCS_EXPORT int __select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout) {
+  return select(n, r, w, e, timeout);
+}
+
+TCS_EXPORT int pselect(int n, fd_set* r, fd_set* w, fd_set* e, const timespec* timeout,
+                       const sigset_t* mask) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    timespec left = timeout != nullptr ? *timeout : timespec{};
+    const struct {
+      const sigset_t* set;
+      std::size_t size;
+    } argument{mask, 8};
+    return static_cast<int>(ToErrno(RawSyscall(SYS_pselect6, n, Arg(r), Arg(w), Arg(e),
+                                               timeout != nullptr ? Arg(&left) : 0,
+                                               Arg(&argument))));
+  }
+  std::int64_t timeout_ns;
+  if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
+  return SelectNs(*t, n, r, w, e, timeout_ns, mask);
+}
+
+TCS_EXPORT int epoll_pwait(int epfd, epoll_event* events, int max, int timeout_ms,
+                           const sigset_t* mask) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_epoll_pwait, epfd, Arg(events), max, timeout_ms, Arg(mask), 8)));
+  }
+  return EpollNs(*t, epfd, events, max, MillisecondsToNs(timeout_ms), mask);
+}
+
+TCS_EXPORT int epoll_wait(int epfd, epoll_event* events, int max, int timeout_ms) {
+  return epoll_pwait(epfd, events, max, timeout_ms, nullptr);
+}
+
+TCS_EXPORT int epoll_pwait2(int epfd, epoll_event* events, int max, const timespec* timeout,
+                            const sigset_t* mask) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return static_cast<int>(ToErrno(
+        RawSyscall(SYS_epoll_pwait2, epfd, Arg(events), max, Arg(timeout), Arg(mask), 8)));
+  }
+  std::int64_t timeout_ns;
+  if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
+  return EpollNs(*t, epfd, events, max, timeout_ns, mask);
+}

@@ -1,0 +1,156 @@
+// New processes and the ends of old ones. Children register themselves: the shim is in their environment.
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "libtcs_preload/environment.h"
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/real.h"
+#include "libtcs_preload/spawn.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+using tcs::shm::NotificationKind;
+
+extern char** environ;
+
+namespace tcs::preload {
+
+void TellSpawned(GuestThread& t, pid_t pid) {
+  if (pid > 0) Exchange(t, Request{.kind = NotificationKind::kSpawned, .args = {pid}});
+}
+
+}  // namespace tcs::preload
+
+namespace {
+
+// Makes `probe` (a wait call with WNOHANG) until it has something. It returns 0 for "no child has changed yet".
+template <class Probe>
+long WaitForChild(GuestThread& t, pid_t which, Probe probe) {
+  HoldForRead(t);
+  for (;;) {
+    const long found = probe();
+    if (found != 0) return found;
+    if (IsShutDown()) return -ECHILD;
+    const Reply reply = Exchange(t, Request{.kind = NotificationKind::kWaitChild,
+                                            .args = {which > 0 ? which : 0},
+                                            .interruptible = true});
+    if (reply.reason == tcs::shm::WakeReason::kSignal) {
+      const long now = probe();
+      if (now != 0) return now;
+      if (!RestartsAfterSignal()) return -EINTR;
+    }
+  }
+}
+
+}  // namespace
+
+TCS_EXPORT pid_t fork(void) noexcept {
+  GuestThread* t = Enter();
+  const pid_t pid = TCS_REAL(fork)();
+  if (pid == 0) {
+    Current();  // the child comes to its own slot, and stops until it is dispatched
+  } else if (t != nullptr) {
+    TellSpawned(*t, pid);
+  }
+  return pid;
+}
+
+// A child that shares its parent's memory would share its clock, too. POSIX lets vfork be fork.
+TCS_EXPORT pid_t vfork(void) noexcept { return fork(); }
+
+TCS_EXPORT pid_t wait4(pid_t pid, int* status, int options, rusage* usage) {
+  GuestThread* t = Enter();
+  if (t == nullptr || (options & WNOHANG) != 0) {
+    if (t != nullptr) HoldForRead(*t);
+    return static_cast<pid_t>(ToErrno(RawSyscall(SYS_wait4, pid, Arg(status), options, Arg(usage))));
+  }
+  return static_cast<pid_t>(ToErrno(WaitForChild(*t, pid, [&] {
+    return RawSyscall(SYS_wait4, pid, Arg(status), options | WNOHANG, Arg(usage));
+  })));
+}
+
+TCS_EXPORT pid_t wait3(int* status, int options, rusage* usage) {
+  return wait4(-1, status, options, usage);
+}
+
+TCS_EXPORT pid_t waitpid(pid_t pid, int* status, int options) {
+  return wait4(pid, status, options, nullptr);
+}
+
+TCS_EXPORT pid_t wait(int* status) { return wait4(-1, status, 0, nullptr); }
+
+TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
+  GuestThread* t = Enter();
+  if (t == nullptr || (options & WNOHANG) != 0) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_waitid, type, id, Arg(info), options, 0)));
+  }
+  siginfo_t found{};
+  const long result = WaitForChild(*t, type == P_PID ? static_cast<pid_t>(id) : 0, [&]() -> long {
+    found.si_pid = 0;
+    const long error = RawSyscall(SYS_waitid, type, id, Arg(&found), options | WNOHANG, 0);
+    return error != 0 ? error : found.si_pid;
+  });
+  if (result < 0) return static_cast<int>(ToErrno(result));
+  if (info != nullptr) *info = found;
+  return 0;
+}
+
+TCS_EXPORT int execve(const char* path, char* const argv[], char* const envp[]) noexcept {
+  EnvironmentCopy storage;
+  return static_cast<int>(
+      ToErrno(RawSyscall(SYS_execve, Arg(path), Arg(argv), Arg(WithShim(envp, storage)))));
+}
+
+TCS_EXPORT int execv(const char* path, char* const argv[]) noexcept {
+  return execve(path, argv, environ);
+}
+
+TCS_EXPORT int execvpe(const char* file, char* const argv[], char* const envp[]) noexcept {
+  EnvironmentCopy storage;
+  return TCS_REAL(execvpe)(file, argv, WithShim(envp, storage));
+}
+
+TCS_EXPORT int execvp(const char* file, char* const argv[]) noexcept {
+  return execvpe(file, argv, environ);
+}
+
+TCS_EXPORT int fexecve(int fd, char* const argv[], char* const envp[]) noexcept {
+  EnvironmentCopy storage;
+  return TCS_REAL(fexecve)(fd, argv, WithShim(envp, storage));
+}
+
+TCS_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
+                           const posix_spawnattr_t* attributes, char* const argv[],
+                           char* const envp[]) noexcept {
+  GuestThread* t = Enter();
+  EnvironmentCopy storage;
+  pid_t child = 0;
+  const int error =
+      TCS_REAL(posix_spawn)(&child, path, actions, attributes, argv, WithShim(envp, storage));
+  if (pid != nullptr && error == 0) *pid = child;
+  if (t != nullptr && error == 0) TellSpawned(*t, child);
+  return error;
+}
+
+TCS_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
+                            const posix_spawnattr_t* attributes, char* const argv[],
+                            char* const envp[]) noexcept {
+  GuestThread* t = Enter();
+  EnvironmentCopy storage;
+  pid_t child = 0;
+  const int error =
+      TCS_REAL(posix_spawnp)(&child, file, actions, attributes, argv, WithShim(envp, storage));
+  if (pid != nullptr && error == 0) *pid = child;
+  if (t != nullptr && error == 0) TellSpawned(*t, child);
+  return error;
+}

@@ -1,0 +1,194 @@
+// Reading and setting clocks.
+#include <errno.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <sys/timeb.h>
+#include <sys/times.h>
+#include <sys/timex.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+// Bits of the kernel's dynamic clock ids (posix-timers.h): ~pid in the upper bits, then whose and which clock.
+constexpr clockid_t kPerThreadBit = 4;
+constexpr clockid_t kClockFdBits = 3;
+
+bool IsCpuClockId(clockid_t id) { return id < 0 && (id & kClockFdBits) != kClockFdBits; }
+int CpuClockOwner(clockid_t id) { return static_cast<int>(~(id >> 3)); }
+
+// Virtual ns of the clock, or -1 for an id that the kernel has to judge.
+std::int64_t ReadClockId(GuestThread& t, clockid_t id) {
+  switch (id) {
+    case CLOCK_REALTIME:
+    case CLOCK_REALTIME_COARSE:
+    case CLOCK_REALTIME_ALARM:
+    case CLOCK_TAI:
+      return NowNs(t) + OffsetNs(Clock::kRealtime);
+    case CLOCK_MONOTONIC:
+    case CLOCK_MONOTONIC_RAW:
+    case CLOCK_MONOTONIC_COARSE:
+    case CLOCK_BOOTTIME:
+    case CLOCK_BOOTTIME_ALARM:
+      return NowNs(t) + OffsetNs(Clock::kMonotonic);
+    case CLOCK_PROCESS_CPUTIME_ID:
+      return ProcessCpuNs(t);
+    case CLOCK_THREAD_CPUTIME_ID:
+      return ThreadCpuNs(t);
+    default:
+      break;
+  }
+  if (!IsCpuClockId(id)) return -1;
+  const int owner = CpuClockOwner(id);
+  if ((id & kPerThreadBit) != 0) {
+    if (owner == 0 || owner == t.slot->tid) return ThreadCpuNs(t);
+  } else if (owner == 0 || owner == t.slot->pid) {
+    return ProcessCpuNs(t);
+  }
+  return -1;
+}
+
+rusage* ChargeInsteadOfMeasure(rusage* usage, std::int64_t charged_ns) {
+  // The kernel's split into user and system time is kept as a proportion.
+  const std::int64_t user = ToNs(usage->ru_utime), system = ToNs(usage->ru_stime);
+  const double user_part =
+      user + system == 0 ? 1.0 : static_cast<double>(user) / static_cast<double>(user + system);
+  const auto charged_user = static_cast<std::int64_t>(static_cast<double>(charged_ns) * user_part);
+  usage->ru_utime = ToTimeval(charged_user);
+  usage->ru_stime = ToTimeval(charged_ns - charged_user);
+  return usage;
+}
+
+int SetClockRefused(GuestThread* t) { return t == nullptr ? 0 : Fail(EPERM); }
+
+}  // namespace
+
+TCS_EXPORT int clock_gettime(clockid_t id, timespec* ts) {
+  GuestThread* t = Enter();
+  if (t != nullptr) {
+    const std::int64_t ns = ReadClockId(*t, id);
+    if (ns >= 0) {
+      *ts = ToTimespec(ns);
+      return 0;
+    }
+  }
+  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_gettime, id, Arg(ts))));
+}
+
+TCS_EXPORT int __clock_gettime(clockid_t id, timespec* ts) { return clock_gettime(id, ts); }
+
+TCS_EXPORT int gettimeofday(timeval* __restrict tv, void* __restrict zone) {
+  GuestThread* t = Enter();
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone))));
+  if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
+  if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
+  return 0;
+}
+
+TCS_EXPORT int __gettimeofday(timeval* __restrict tv, void* __restrict zone) {
+  return gettimeofday(tv, zone);
+}
+
+TCS_EXPORT time_t time(time_t* out) {
+  timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  if (out != nullptr) *out = now.tv_sec;
+  return now.tv_sec;
+}
+
+TCS_EXPORT int ftime(timeb* out) {
+  timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  *out = timeb{now.tv_sec, static_cast<unsigned short>(now.tv_nsec / 1'000'000), 0, 0};
+  return 0;
+}
+
+TCS_EXPORT int timespec_get(timespec* ts, int base) {
+  return base == TIME_UTC && clock_gettime(CLOCK_REALTIME, ts) == 0 ? base : 0;
+}
+
+TCS_EXPORT clock_t clock(void) {
+  timespec cpu;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return ToNs(cpu) / 1000;
+}
+
+TCS_EXPORT clock_t times(tms* out) {
+  GuestThread* t = Enter();
+  if (t == nullptr) return ToErrno(RawSyscall(SYS_times, Arg(out)));
+  const std::int64_t tick = kNsPerSecond / sysconf(_SC_CLK_TCK);
+  if (out != nullptr) {
+    *out = tms{ProcessCpuNs(*t) / tick, 0, ChildrenCpuNs(*t) / tick, 0};
+  }
+  return (NowNs(*t) + OffsetNs(Clock::kMonotonic)) / tick;
+}
+
+TCS_EXPORT int getrusage(__rusage_who_t who, rusage* usage) noexcept {
+  const long result = RawSyscall(SYS_getrusage, who, Arg(usage));
+  GuestThread* t = Enter();
+  if (t == nullptr || result != 0) return static_cast<int>(ToErrno(result));
+  const std::int64_t charged = who == RUSAGE_SELF       ? ProcessCpuNs(*t)
+                               : who == RUSAGE_CHILDREN ? ChildrenCpuNs(*t)
+                                                        : ThreadCpuNs(*t);
+  ChargeInsteadOfMeasure(usage, charged);
+  return 0;
+}
+
+TCS_EXPORT int clock_getres(clockid_t id, timespec* resolution) {
+  if (Enter() != nullptr && (IsCpuClockId(id) || (id >= 0 && id <= CLOCK_TAI && id != 10))) {
+    if (resolution != nullptr) *resolution = timespec{0, 1};
+    return 0;
+  }
+  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_getres, id, Arg(resolution))));
+}
+
+TCS_EXPORT int __clock_getres(clockid_t id, timespec* resolution) {
+  return clock_getres(id, resolution);
+}
+
+TCS_EXPORT int clock_settime(clockid_t id, const timespec* ts) {
+  if (SetClockRefused(Enter()) != 0) return -1;
+  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_settime, id, Arg(ts))));
+}
+
+TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
+  if (SetClockRefused(Enter()) != 0) return -1;
+  return static_cast<int>(ToErrno(RawSyscall(SYS_settimeofday, Arg(tv), Arg(zone))));
+}
+
+// Reading the adjustment is allowed, with the virtual time in it; changing it is not.
+TCS_EXPORT int adjtimex(timex* tx) {
+  GuestThread* t = Enter();
+  if (t != nullptr && tx->modes != 0) return Fail(EPERM);
+  const long state = RawSyscall(SYS_adjtimex, Arg(tx));
+  if (t != nullptr && state >= 0) {
+    const timespec now = ToTimespec(NowNs(*t) + OffsetNs(Clock::kRealtime));
+    tx->time = timeval{now.tv_sec, (tx->status & STA_NANO) != 0 ? now.tv_nsec : now.tv_nsec / 1000};
+    tx->freq = tx->offset = 0;
+  }
+  return static_cast<int>(ToErrno(state));
+}
+
+TCS_EXPORT int ntp_adjtime(timex* tx) { return adjtimex(tx); }
+
+TCS_EXPORT int clock_adjtime(clockid_t id, timex* tx) {
+  if (id == CLOCK_REALTIME) return adjtimex(tx);
+  if (Enter() != nullptr && tx->modes != 0) return Fail(EPERM);
+  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_adjtime, id, Arg(tx))));
+}
+
+TCS_EXPORT int adjtime(const timeval* delta, timeval* old) {
+  if (Enter() != nullptr) {
+    if (delta != nullptr) return Fail(EPERM);
+    if (old != nullptr) *old = timeval{0, 0};
+    return 0;
+  }
+  return Fail(ENOSYS);
+}

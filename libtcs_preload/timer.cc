@@ -1,0 +1,154 @@
+// setitimer, alarm and timerfd. The coordinator keeps the timers; it sends real signals, and makes real descriptors
+// readable: a timerfd is an eventfd underneath, which has the same reads, into which it writes the expirations.
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/eventfd.h>
+#include <sys/time.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/timer_fds.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+using tcs::shm::NotificationKind;
+
+namespace {
+
+struct TimerValue {
+  std::int64_t next_ns;  // 0: not armed
+  std::int64_t interval_ns;
+};
+
+TimerValue Ask(GuestThread& t, NotificationKind kind, std::int64_t id, std::int64_t first,
+               std::int64_t interval) {
+  const Reply reply = Exchange(t, Request{.kind = kind, .args = {id, first, interval}});
+  return TimerValue{reply.values[0], reply.values[1]};
+}
+
+// `now` is the clock that the timer runs on: virtual time, or charged processor time.
+template <class Spec, class ToUnit>
+Spec ToSpec(const TimerValue& value, std::int64_t now, ToUnit to_unit) {
+  std::int64_t left = 0;
+  if (value.next_ns != 0) left = value.next_ns > now ? value.next_ns - now : 1;
+  return Spec{to_unit(value.interval_ns), to_unit(left)};
+}
+
+timeval RoundUpToTimeval(std::int64_t ns) { return ToTimeval(ns + 999); }
+
+bool IsValidInterval(const timeval& t) {
+  return t.tv_sec >= 0 && t.tv_usec >= 0 && t.tv_usec < 1'000'000;
+}
+
+std::int64_t ItimerNow(GuestThread& t, int which) {
+  return which == ITIMER_REAL ? NowNs(t) : ProcessCpuNs(t);
+}
+
+int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old) {
+  if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
+  itimerval given{};
+  if (value != nullptr) given = *value;
+  if (!IsValidInterval(given.it_value) || !IsValidInterval(given.it_interval)) return Fail(EINVAL);
+  const std::int64_t now = ItimerNow(t, which);
+  const std::int64_t delay = ToNs(given.it_value);
+  const TimerValue before =
+      Ask(t, NotificationKind::kTimerSet, which, delay == 0 ? 0 : AddSaturated(now, delay),
+          ToNs(given.it_interval));
+  if (old != nullptr) *old = ToSpec<itimerval>(before, now, RoundUpToTimeval);
+  return 0;
+}
+
+}  // namespace
+
+TCS_EXPORT int setitimer(__itimer_which_t which, const itimerval* __restrict value,
+                         itimerval* __restrict old) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_setitimer, which, Arg(value), Arg(old))));
+  return SetItimer(*t, which, value, old);
+}
+
+TCS_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_getitimer, which, Arg(value))));
+  if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
+  const TimerValue now_set = Ask(*t, NotificationKind::kTimerGet, which, 0, 0);
+  *value = ToSpec<itimerval>(now_set, ItimerNow(*t, which), RoundUpToTimeval);
+  return 0;
+}
+
+TCS_EXPORT unsigned alarm(unsigned seconds) {
+  itimerval value{{0, 0}, {seconds, 0}}, old{};
+  setitimer(ITIMER_REAL, &value, &old);
+  // As the kernel rounds it: never 0 while it was armed.
+  const bool round_up = old.it_value.tv_usec >= 500'000 ||
+                        (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
+  return static_cast<unsigned>(old.it_value.tv_sec + (round_up ? 1 : 0));
+}
+
+TCS_EXPORT useconds_t ualarm(useconds_t first, useconds_t interval) {
+  itimerval value{{interval / 1'000'000, interval % 1'000'000}, {first / 1'000'000, first % 1'000'000}};
+  itimerval old{};
+  if (setitimer(ITIMER_REAL, &value, &old) != 0) return static_cast<useconds_t>(-1);
+  return static_cast<useconds_t>(old.it_value.tv_sec * 1'000'000 + old.it_value.tv_usec);
+}
+
+TCS_EXPORT int timerfd_create(int clock, int flags) {
+  GuestThread* t = Enter();
+  if (t == nullptr || IsShutDown()) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_create, clock, flags)));
+  }
+  if ((flags & ~(TFD_CLOEXEC | TFD_NONBLOCK)) != 0) return Fail(EINVAL);
+  static_assert(int{TFD_CLOEXEC} == int{EFD_CLOEXEC} && int{TFD_NONBLOCK} == int{EFD_NONBLOCK});
+  Clock base;
+  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM) {
+    base = Clock::kRealtime;
+  } else if (clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME || clock == CLOCK_BOOTTIME_ALARM) {
+    base = Clock::kMonotonic;
+  } else {
+    return Fail(EINVAL);
+  }
+  const long fd = RawSyscall(SYS_eventfd2, 0, flags);
+  if (fd < 0) return static_cast<int>(ToErrno(fd));
+  const TimerValue made = Ask(*t, NotificationKind::kTimerCreate, fd, 0, 0);
+  if (made.next_ns < tcs::shm::kFirstTimerFdId ||
+      !RememberTimerFd(static_cast<int>(fd), made.next_ns, base)) {
+    RawSyscall(SYS_close, fd);
+    return Fail(EMFILE);
+  }
+  return static_cast<int>(fd);
+}
+
+TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itimerspec* old) {
+  GuestThread* t = Enter();
+  const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
+  if (timer == nullptr) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old))));
+  }
+  if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
+  if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
+  const std::int64_t now = NowNs(*t);
+  const std::int64_t given = ToNs(value->it_value);
+  std::int64_t first = 0;
+  if (given != 0) {
+    first = (flags & TFD_TIMER_ABSTIME) != 0 ? given - OffsetNs(timer->clock)
+                                             : AddSaturated(now, given);
+    if (first <= 0) first = 1;  // long past, but armed
+  }
+  const TimerValue before =
+      Ask(*t, NotificationKind::kTimerSet, timer->id, first, ToNs(value->it_interval));
+  if (old != nullptr) *old = ToSpec<itimerspec>(before, now, ToTimespec);
+  return 0;
+}
+
+TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
+  GuestThread* t = Enter();
+  const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
+  if (timer == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value))));
+  *value = ToSpec<itimerspec>(Ask(*t, NotificationKind::kTimerGet, timer->id, 0, 0), NowNs(*t),
+                              ToTimespec);
+  return 0;
+}

@@ -1,0 +1,54 @@
+#include "libtcs_preload/timer_fds.h"
+
+namespace tcs::preload {
+
+namespace {
+
+constexpr int kRoom = 512;
+TimerFd g_timers[kRoom];
+int g_used = 0;  // entries ever used; most programs have none, and then every look-up is one comparison
+
+TimerFd* Find(int fd) {
+  if (fd < 0) return nullptr;
+  for (int i = 0; i < g_used; ++i) {
+    if (g_timers[i].fd == fd) return &g_timers[i];
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool RememberTimerFd(int fd, std::int64_t id, Clock clock) {
+  // An entry of this number is stale: its descriptor was closed behind our back.
+  TimerFd* entry = Find(fd);
+  for (int i = 0; entry == nullptr && i < g_used; ++i) {
+    if (g_timers[i].fd < 0) entry = &g_timers[i];
+  }
+  if (entry == nullptr) {
+    if (g_used == kRoom) return false;
+    entry = &g_timers[g_used++];
+  }
+  *entry = TimerFd{fd, clock, id};
+  return true;
+}
+
+const TimerFd* FindTimerFd(int fd) { return Find(fd); }
+
+void CopyTimerFd(int fd, int copy) {
+  if (const TimerFd* timer = Find(fd); timer != nullptr) {
+    RememberTimerFd(copy, timer->id, timer->clock);
+  }
+}
+
+std::int64_t ForgetTimerFd(int fd) {
+  TimerFd* timer = Find(fd);
+  if (timer == nullptr) return 0;
+  const std::int64_t id = timer->id;
+  timer->fd = -1;
+  for (int i = 0; i < g_used; ++i) {
+    if (g_timers[i].fd >= 0 && g_timers[i].id == id) return 0;
+  }
+  return id;
+}
+
+}  // namespace tcs::preload

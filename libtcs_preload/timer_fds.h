@@ -1,0 +1,26 @@
+// Which of the process's descriptors are virtual timers.
+#pragma once
+
+#include <cstdint>
+
+#include "libtcs_preload/virtual_clock.h"
+
+namespace tcs::preload {
+
+struct TimerFd {
+  int fd = -1;
+  Clock clock = Clock::kMonotonic;
+  std::int64_t id = 0;  // the coordinator's
+};
+
+// False if no room is left.
+bool RememberTimerFd(int fd, std::int64_t id, Clock clock);
+const TimerFd* FindTimerFd(int fd);
+
+// `copy` is now another descriptor for the same timer.
+void CopyTimerFd(int fd, int copy);
+
+// `fd` is closed. Returns the timer's id if no descriptor of this process refers to it any more, else 0.
+std::int64_t ForgetTimerFd(int fd);
+
+}  // namespace tcs::preload

@@ -1,0 +1,99 @@
+#include "libtcs_preload/virtual_clock.h"
+
+#include "libtcs_preload/raw_syscall.h"
+
+namespace tcs::preload {
+
+namespace {
+
+using shm::ClockPage;
+using shm::ClockReading;
+using shm::NotificationKind;
+
+// A consistent reading from which stolen time has been taken out, if there may be much of it.
+ClockReading ReadChecked(ClockPage& page) {
+  for (;;) {
+    const ClockReading r = shm::ReadClock(page);
+    const std::uint64_t last_check = page.last_check_tsc.load(std::memory_order_relaxed);
+    if (__builtin_expect(r.tsc - last_check <= page.check_after_ticks, 1)) return r;
+    timespec cpu;
+    RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
+    shm::RemoveStolen(page, r, ToNs(cpu));
+  }
+}
+
+// One sleep inside the horizon is one addition. False where it has to be asked for.
+bool MoveOwnClock(ClockPage& page, std::int64_t deadline_ns) {
+  for (;;) {
+    const ClockReading r = ReadChecked(page);
+    const std::int64_t now = shm::ShownTime(page, r);
+    if (now >= deadline_ns && r.time_ns >= deadline_ns) return true;
+    if (deadline_ns > page.idle_until_ns) return false;
+    std::uint64_t expected = r.waited_word;
+    const std::int64_t waited = shm::AdjustValue(r.waited_word) + (deadline_ns - r.time_ns);
+    if (page.waited_adjust.compare_exchange_strong(expected,
+                                                   shm::PackAdjust(r.waited_word, waited))) {
+      page.last_shown_ns.store(deadline_ns, std::memory_order_relaxed);
+      return true;
+    }
+  }
+}
+
+}  // namespace
+
+std::int64_t NowNs(GuestThread& thread) {
+  ClockPage& page = thread.slot->clock;
+  for (;;) {
+    const ClockReading r = ReadChecked(page);
+    if (__builtin_expect(r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown(), 1)) {
+      const std::int64_t shown = shm::ShownTime(page, r);
+      page.last_shown_ns.store(shown, std::memory_order_relaxed);
+      return shown;
+    }
+    Exchange(thread, Request{.kind = NotificationKind::kHorizon});
+  }
+}
+
+std::int64_t ThreadCpuNs(GuestThread& thread) {
+  NowNs(thread);  // a spin on the CPU clock, too, must reach its horizon
+  return ReadChecked(thread.slot->clock).cpu_ns;
+}
+
+std::int64_t ProcessCpuNs(GuestThread& thread) {
+  return ThreadCpuNs(thread) + thread.slot->clock.other_cpu_ns;
+}
+
+std::int64_t ChildrenCpuNs(const GuestThread& thread) {
+  return thread.slot->clock.children_cpu_ns;
+}
+
+bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
+  if (IsShutDown()) {
+    // The clock stands still; a program that sleeps until it is told to end must not spin.
+    const timespec turn{0, 10'000'000};
+    return RawSyscall(SYS_nanosleep, Arg(&turn), 0) == 0;
+  }
+  if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, deadline_ns)) return true;
+  const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kIdle,
+                                               .deadline_ns = deadline_ns,
+                                               .interruptible = true});
+  return reply.reason != shm::WakeReason::kSignal;
+}
+
+std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns) {
+  return timeout_ns < 0 ? shm::kNeverNs : AddSaturated(NowNs(thread), timeout_ns);
+}
+
+void HoldForRead(GuestThread& thread) {
+  const std::int64_t now = NowNs(thread);
+  if (now <= thread.slot->clock.read_safe_ns) return;
+  Exchange(thread, Request{.kind = NotificationKind::kRead});
+}
+
+void HoldForWrite(GuestThread& thread) {
+  const std::int64_t now = NowNs(thread);
+  if (now <= thread.slot->clock.write_safe_ns) return;
+  Exchange(thread, Request{.kind = NotificationKind::kWrite});
+}
+
+}  // namespace tcs::preload

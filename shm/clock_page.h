@@ -1,0 +1,92 @@
+// How a clock page is read and moved, the same on both sides of the segment.
+//
+// The thread's clock is base + executed + waited, where
+//   executed = (tsc - base_tsc) * ns_per_tick + executed_adjust
+//   waited   = waited_adjust
+// Both adjustment words carry the number of the dispatch they belong to. A reader takes both words before and after
+// the other fields: equal words mean that nothing was dispatched between. A writer moves a word by compare-and-swap:
+// had the thread been stopped and dispatched again in between, the number differs and the swap fails.
+//
+// Everything here is async-signal-safe, takes no lock and makes no system call.
+#pragma once
+
+#include <x86intrin.h>
+
+#include "shm/layout.h"
+
+namespace tcs::shm {
+
+inline constexpr int kAdjustBits = 48;
+
+constexpr std::int64_t AdjustValue(std::uint64_t word) {
+  return static_cast<std::int64_t>(word << (64 - kAdjustBits)) >> (64 - kAdjustBits);
+}
+constexpr std::uint64_t PackAdjust(std::uint64_t number_source, std::int64_t value) {
+  constexpr std::uint64_t kValueMask = (std::uint64_t{1} << kAdjustBits) - 1;
+  return (number_source & ~kValueMask) | (static_cast<std::uint64_t>(value) & kValueMask);
+}
+constexpr std::uint64_t DispatchNumber(std::uint64_t word) { return word >> kAdjustBits; }
+
+// a * q / 2^32 without overflow for any a below 2^63.
+inline std::int64_t MulQ32(std::int64_t a, std::uint64_t q) {
+  __extension__ using Wide = __int128;
+  return static_cast<std::int64_t>((static_cast<Wide>(a) * static_cast<Wide>(q)) >> 32);
+}
+
+// One consistent reading. `time_ns` is what the thread has truly reached: neither held back to the horizon nor
+// kept from going below what was shown before.
+struct ClockReading {
+  std::uint64_t tsc;
+  std::int64_t time_ns;
+  std::int64_t cpu_ns;
+  std::int64_t horizon_ns;
+  std::uint64_t executed_word;
+  std::uint64_t waited_word;
+};
+
+inline ClockReading ReadClock(const ClockPage& page) {
+  ClockReading r;
+  for (;;) {
+    r.executed_word = page.executed_adjust.load(std::memory_order_acquire);
+    r.waited_word = page.waited_adjust.load(std::memory_order_acquire);
+    r.tsc = __rdtsc();
+    const std::int64_t executed =
+        MulQ32(static_cast<std::int64_t>(r.tsc - page.base_tsc), page.ns_per_tick_q32) +
+        AdjustValue(r.executed_word);
+    r.cpu_ns = page.base_cpu_ns + executed;
+    r.time_ns = page.base_time_ns + executed + AdjustValue(r.waited_word);
+    r.horizon_ns = page.horizon_ns;
+    std::atomic_signal_fence(std::memory_order_acq_rel);
+    if (page.executed_adjust.load(std::memory_order_relaxed) == r.executed_word &&
+        page.waited_adjust.load(std::memory_order_relaxed) == r.waited_word) {
+      return r;
+    }
+  }
+}
+
+// What the clock shows for a reading: at most the horizon, at least what it showed before.
+inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
+  std::int64_t shown = r.time_ns < r.horizon_ns ? r.time_ns : r.horizon_ns;
+  const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
+  return shown < last ? last : shown;
+}
+
+// Charged processor time according to the thread's own CPU clock, which others' use of the processor does not reach.
+inline std::int64_t CpuTimeFromHostClock(const ClockPage& page, std::int64_t host_cpu_ns) {
+  return MulQ32(host_cpu_ns - page.host_cpu_origin_ns, page.ns_per_host_ns_q32);
+}
+
+// Takes out of the clock what the TSC counted and the CPU clock did not: stolen time (negative: what the TSC missed).
+// `host_cpu_ns` must have been read after `r`. False if the thread was dispatched anew since `r`: read again.
+inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t host_cpu_ns) {
+  const std::int64_t stolen = r.cpu_ns - CpuTimeFromHostClock(page, host_cpu_ns);
+  std::uint64_t expected = r.executed_word;
+  const std::uint64_t desired =
+      PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
+  if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return false;
+  page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
+  if (stolen > 0) page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
+  return true;
+}
+
+}  // namespace tcs::shm

@@ -1,0 +1,126 @@
+#include "coordinator/channel/json_codec.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+namespace tcs {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string ComplaintAbout(std::string_view datagram) {
+  const auto result = DecodeCommandDatagram(datagram);
+  const auto* error = std::get_if<DecodeError>(&result);
+  return error != nullptr ? error->message : "";
+}
+
+Wrench Decoded(std::string_view datagram) {
+  const auto result = DecodeCommandDatagram(datagram);
+  if (const auto* error = std::get_if<DecodeError>(&result)) {
+    ADD_FAILURE() << error->message;
+    return {};
+  }
+  return std::get<Wrench>(result);
+}
+
+std::string Encoded(VirtualTime time, const std::vector<NamedBodyState>& bodies) {
+  return EncodeSensorDatagram(time, bodies);
+}
+
+TEST(SensorDatagram, NamesTimeFrameAndStates) {
+  NamedBodyState predator{"predator", {}};
+  predator.state.position_m = {-5, 0.25, 1e-9};
+  predator.state.linear_velocity_mps = {1, 2, 3};
+  predator.state.angular_velocity_radps = {0, 0, 0.5};
+  EXPECT_EQ(Encoded(VirtualTime::FromNanoseconds(1'230'000'000), {predator}),
+            R"({"time":1.23,"frame_id":"world","bodies":{"predator":{"position":[-5.0,0.25,1e-09],)"
+            R"("orientation":[0.0,0.0,0.0,1.0],"linear_velocity":[1.0,2.0,3.0],)"
+            R"("angular_velocity":[0.0,0.0,0.5]}}})");
+}
+
+TEST(SensorDatagram, KeepsTheOrderOfTheBodies) {
+  const std::string datagram = Encoded(VirtualTime(), {{"zeta", {}}, {"alpha", {}}});
+  EXPECT_LT(datagram.find("zeta"), datagram.find("alpha"));
+  EXPECT_EQ(Encoded(VirtualTime(), {}), R"({"time":0.0,"frame_id":"world","bodies":{}})");
+}
+
+TEST(SensorDatagram, TimesAreTheNearestDoubles) {
+  for (std::int64_t ms = 0; ms < 100'000; ms += 10) {
+    const std::string datagram = Encoded(VirtualTime::FromNanoseconds(ms * 1'000'000), {});
+    const std::string decimal =
+        std::to_string(ms / 1000) + "." + std::to_string(1000 + ms % 1000).substr(1);
+    ASSERT_EQ(std::strtod(datagram.c_str() + 8, nullptr), std::strtod(decimal.c_str(), nullptr));
+  }
+}
+
+TEST(SensorDatagram, DoublesReadBackAsTheyWere) {
+  std::uint64_t bits = 88172645463325252u;
+  for (int i = 0; i < 20'000; ++i) {
+    bits ^= bits << 13;
+    bits ^= bits >> 7;
+    bits ^= bits << 17;
+    const double value = std::ldexp(static_cast<double>(bits), i % 400 - 200);
+    NamedBodyState body{"b", {}};
+    body.state.position_m = {value, -value, 1 / value};
+    const std::string datagram = Encoded(VirtualTime(), {body});
+    const char* at = datagram.c_str() + datagram.find("[") + 1;
+    for (const double expected : body.state.position_m) {
+      char* end = nullptr;
+      ASSERT_EQ(std::strtod(at, &end), expected) << datagram;
+      at = end + 1;
+    }
+  }
+}
+
+TEST(CommandDatagram, IsAWrench) {
+  const Wrench wrench = Decoded(R"({"force": [1, -2.5, 3e-1], "torque": [0, 0, 4]})");
+  EXPECT_THAT(wrench.force_n, ElementsAre(1, -2.5, 0.3));
+  EXPECT_THAT(wrench.torque_nm, ElementsAre(0, 0, 4));
+}
+
+TEST(CommandDatagram, WhatIsLeftOutIsZero) {
+  EXPECT_THAT(Decoded(R"({"torque":[1,2,3]})").force_n, ElementsAre(0, 0, 0));
+  EXPECT_THAT(Decoded(R"({"force":[1,2,3]})").torque_nm, ElementsAre(0, 0, 0));
+  EXPECT_THAT(Decoded("{}\n").force_n, ElementsAre(0, 0, 0));
+}
+
+TEST(CommandDatagram, ThatIsNoObjectIsExplained) {
+  EXPECT_THAT(ComplaintAbout(""), HasSubstr("is not valid JSON"));
+  EXPECT_THAT(ComplaintAbout("{\"force\":"), AllOf(HasSubstr("not valid JSON at byte 10"),
+                                                   HasSubstr("send an object like {\"force\"")));
+  EXPECT_THAT(ComplaintAbout("{} {}"), HasSubstr("is not valid JSON"));
+  EXPECT_THAT(ComplaintAbout("\xff\xfe"), HasSubstr("is not valid JSON"));
+  EXPECT_THAT(ComplaintAbout("[1,2,3]"), HasSubstr("is of the type array"));
+  EXPECT_THAT(ComplaintAbout("null"), HasSubstr("is of the type null"));
+  EXPECT_NE(ComplaintAbout(std::string(60'000, '[')), "");
+}
+
+TEST(CommandDatagram, OfTheWrongShapeIsExplained) {
+  for (const char* value : {"[1,2]", "[1,2,3,4]", "1", "null", "[1,2,\"3\"]", "[1,2,true]",
+                            "{\"x\":1}", "[[1],2,3]", "[1,2,null]"}) {
+    EXPECT_THAT(ComplaintAbout("{\"torque\":" + std::string(value) + "}"),
+                HasSubstr("has a torque that is not a list of three finite numbers"))
+        << value;
+  }
+}
+
+TEST(CommandDatagram, ThatIsNotFiniteIsRefused) {
+  EXPECT_NE(ComplaintAbout(R"({"force":[NaN,0,0]})"), "");
+  EXPECT_NE(ComplaintAbout(R"({"force":[Infinity,0,0]})"), "");
+  EXPECT_THAT(ComplaintAbout(R"({"force":[1e999,0,0]})"), HasSubstr("too large"));
+}
+
+TEST(CommandDatagram, UnknownKeysAreNamed) {
+  EXPECT_THAT(ComplaintAbout(R"({"forse":[1,2,3]})"), HasSubstr("unknown key \"forse\""));
+  EXPECT_THAT(ComplaintAbout("{\"a\\nb\u00e9\":1}"), HasSubstr("\"a\\nb\\u00e9\""));
+  EXPECT_LT(ComplaintAbout("{\"" + std::string(5000, 'x') + "\":1}").size(), 200u);
+}
+
+}  // namespace
+}  // namespace tcs

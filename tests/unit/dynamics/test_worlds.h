@@ -1,0 +1,101 @@
+// Small worlds and comparisons for the tests of Dynamics.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+inline VirtualTime At(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
+inline VirtualTime AtMs(std::int64_t ms) { return At(ms * 1'000'000); }
+
+inline WorldSpec OneBody(const IntegratorSpec& integrator = {}) {
+  WorldSpec world;
+  world.bodies.push_back(
+      {.name = "ship", .mass_kg = 2.0, .inertia_kgm2 = {0.1, 0.2, 0.25}, .initial = {}});
+  world.integrator = integrator;
+  return world;
+}
+
+// Two bodies that tumble and run into stiff walls: error control has work to do.
+inline WorldSpec BusyWorld(const IntegratorSpec& integrator) {
+  WorldSpec world;
+  world.integrator = integrator;
+  world.gravity_mps2 = {0, 0, -9.81};
+  world.has_region = true;
+  world.region = {.half_extent_m = 1.0, .stiffness_npm = 2000.0, .damping_nspm = 1.0};
+  for (const double side : {-1.0, 1.0}) {
+    BodySpec body{.name = side < 0 ? "left" : "right",
+                  .mass_kg = 1.5,
+                  .inertia_kgm2 = {0.1, 0.2, 0.25},
+                  .initial = {}};
+    body.initial.position_m = {0.5 * side, 0, 0};
+    body.initial.linear_velocity_mps = {-3 * side, 1, 0.5};
+    body.initial.angular_velocity_radps = {0.1, 6 * side, 0.2};
+    world.bodies.push_back(body);
+  }
+  return world;
+}
+
+inline constexpr std::array kAllKinds = {
+    IntegratorKind::kRungeKutta3, IntegratorKind::kRungeKuttaMerson, IntegratorKind::kVerlet,
+    IntegratorKind::kSemiExplicitEuler2, IntegratorKind::kExplicitEuler};
+
+inline std::string NameOf(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::kRungeKutta3:
+      return "RungeKutta3";
+    case IntegratorKind::kRungeKuttaMerson:
+      return "RungeKuttaMerson";
+    case IntegratorKind::kVerlet:
+      return "Verlet";
+    case IntegratorKind::kSemiExplicitEuler2:
+      return "SemiExplicitEuler2";
+    case IntegratorKind::kExplicitEuler:
+      return "ExplicitEuler";
+  }
+  return "unknown";
+}
+
+inline std::vector<IntegratorSpec> FixedAndAdaptive() {
+  std::vector<IntegratorSpec> specs;
+  for (const IntegratorKind kind : kAllKinds) {
+    specs.push_back({.kind = kind, .fixed_step = VirtualDuration::Microseconds(700)});
+    specs.push_back({.kind = kind, .fixed_step = {}, .accuracy = 1e-4});
+  }
+  return specs;
+}
+
+class EveryIntegrator : public testing::TestWithParam<IntegratorSpec> {};
+
+inline std::string NameOfParam(const testing::TestParamInfo<IntegratorSpec>& info) {
+  return NameOf(info.param.kind) +
+         (info.param.fixed_step > VirtualDuration{} ? "Fixed" : "Adaptive");
+}
+
+inline bool SameBits(const BodyState& a, const BodyState& b) {
+  static_assert(sizeof(BodyState) == 13 * sizeof(double), "BodyState has padding or a new member");
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+inline std::vector<BodyState> ReadAll(const Dynamics& dynamics, int bodies) {
+  std::vector<BodyState> states;
+  for (int i = 0; i < bodies; ++i) states.push_back(dynamics.Read(i));
+  return states;
+}
+
+inline bool SameBits(const std::vector<BodyState>& a, const std::vector<BodyState>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!SameBits(a[i], b[i])) return false;
+  }
+  return true;
+}
+
+}  // namespace tcs

@@ -1,0 +1,198 @@
+#include "coordinator/scenario/load.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <variant>
+
+#include "tests/unit/scenario/scenario_folder.h"
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+class LoadTest : public testing::Test {
+ protected:
+  Scenario Load(std::string_view text, const ScenarioOverrides& overrides = {}) {
+    auto result = LoadScenario(folder_.Write("s.yaml", text), overrides);
+    if (const auto* error = std::get_if<LoadError>(&result)) {
+      ADD_FAILURE() << error->message;
+      return {};
+    }
+    return std::get<Scenario>(std::move(result));
+  }
+
+  ScenarioFolder folder_;
+};
+
+constexpr auto Ms = VirtualDuration::Milliseconds;
+
+TEST_F(LoadTest, TheRunIsAsWritten) {
+  const Scenario scenario = Load(kGoodScenario);
+  EXPECT_EQ(scenario.name, "pursuit");
+  EXPECT_EQ(scenario.path, folder_.Path("s.yaml"));
+  EXPECT_EQ(scenario.duration, VirtualDuration::Seconds(20));
+  EXPECT_EQ(scenario.drift_bound, Ms(2));
+  EXPECT_EQ(scenario.seed, 7u);
+  EXPECT_EQ(scenario.csv_period, Ms(20));
+}
+
+TEST_F(LoadTest, TheWorldIsAsWritten) {
+  const Scenario scenario = Load(kGoodScenario);
+  ASSERT_TRUE(scenario.world);
+  EXPECT_EQ(scenario.world->integrator.kind, IntegratorKind::kVerlet);
+  EXPECT_EQ(scenario.world->integrator.accuracy, 1e-4);
+  EXPECT_EQ(scenario.world->integrator.fixed_step, VirtualDuration{});
+  EXPECT_THAT(scenario.world->gravity_mps2, ElementsAre(0, 0, -9.81));
+  EXPECT_TRUE(scenario.world->has_region);
+  EXPECT_EQ(scenario.world->region.half_extent_m, 12);
+  EXPECT_EQ(scenario.world->region.stiffness_npm, 40);
+  EXPECT_EQ(scenario.world->region.damping_nspm, 0.5);
+
+  ASSERT_EQ(scenario.world->bodies.size(), 2u);
+  const BodySpec& predator = scenario.world->bodies[0];
+  EXPECT_EQ(predator.name, "predator");
+  EXPECT_EQ(predator.mass_kg, 1.5);
+  EXPECT_THAT(predator.inertia_kgm2, ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(predator.initial.position_m, ElementsAre(-5, 0, 0));
+  EXPECT_THAT(predator.initial.orientation_xyzw, ElementsAre(0, 0, 0, 1));
+  EXPECT_EQ(scenario.world->bodies[1].name, "prey");
+  EXPECT_THAT(scenario.world->bodies[1].initial.linear_velocity_mps, ElementsAre(1, 2, 3));
+}
+
+TEST_F(LoadTest, TheRobotsAreAsWritten) {
+  const Scenario scenario = Load(kGoodScenario);
+  ASSERT_EQ(scenario.robots.size(), 1u);
+  const RobotSpec& robot = scenario.robots[0];
+  EXPECT_EQ(robot.name, "hunter");
+  EXPECT_EQ(robot.cores, 4);
+  EXPECT_EQ(robot.speed, 0.5);
+  ASSERT_EQ(robot.clients.size(), 2u);
+  const ClientSpec& controller = robot.clients[0];
+  EXPECT_EQ(controller.name, "hunter/controller");
+  EXPECT_THAT(controller.command, ElementsAre(folder_.Path("controller"), "--seed", "7"));
+  EXPECT_EQ(controller.working_directory, folder_.path());
+  EXPECT_EQ(controller.client_class, ClientClass::kPeriodic);
+  EXPECT_EQ(controller.priority, 80);
+  EXPECT_EQ(controller.body, 0);
+  EXPECT_THAT(controller.environment, ElementsAre(Pair("MODE", "fast")));
+  EXPECT_EQ(controller.fixed_call_cost, VirtualDuration::Microseconds(3));
+  const ClientSpec& planner = robot.clients[1];
+  EXPECT_EQ(planner.name, "hunter/planner");
+  EXPECT_EQ(planner.client_class, ClientClass::kBestEffort);
+  EXPECT_EQ(planner.priority, 0);
+  EXPECT_EQ(planner.body, std::nullopt);
+  EXPECT_EQ(planner.fixed_call_cost, VirtualDuration::Microseconds(1));
+}
+
+TEST_F(LoadTest, TheChannelsAreAsWritten) {
+  const Scenario scenario = Load(kGoodScenario);
+  ASSERT_EQ(scenario.sensors.size(), 1u);
+  const SensorChannelSpec& eyes = scenario.sensors[0];
+  EXPECT_EQ(eyes.name, "eyes");
+  EXPECT_THAT(eyes.bodies, ElementsAre(0, 1));
+  EXPECT_EQ(eyes.period, Ms(20));
+  EXPECT_EQ(eyes.latency, Ms(2));
+  EXPECT_EQ(eyes.to.host, "127.0.0.1");
+  EXPECT_EQ(eyes.to.port, 47010);
+  ASSERT_EQ(scenario.commands.size(), 1u);
+  const CommandChannelSpec& hands = scenario.commands[0];
+  EXPECT_EQ(hands.name, "hands");
+  EXPECT_EQ(hands.body, 1);
+  EXPECT_EQ(hands.latency, Ms(3));
+  EXPECT_EQ(hands.listen.port, 47011);
+}
+
+TEST_F(LoadTest, WhatIsLeftOutHasDefaults) {
+  const Scenario scenario = Load("duration: 1\nrobots: {r: {clients: {c: {command: [sh]}}}}\n");
+  EXPECT_EQ(scenario.name, "s");
+  EXPECT_EQ(scenario.drift_bound, Ms(1));
+  EXPECT_EQ(scenario.seed, 1u);
+  EXPECT_EQ(scenario.csv_period, Ms(10));
+  EXPECT_FALSE(scenario.world);
+  EXPECT_EQ(scenario.robots[0].cores, 1);
+  EXPECT_EQ(scenario.robots[0].speed, 1.0);
+  EXPECT_TRUE(scenario.sensors.empty());
+}
+
+TEST_F(LoadTest, DynamicsMayBeAllDefaults) {
+  const Scenario scenario = Load(
+      "duration: 1\ndynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}\n"
+      "robots: {r: {clients: {c: {command: [sh]}}}}\n");
+  ASSERT_TRUE(scenario.world);
+  EXPECT_EQ(scenario.world->integrator.kind, IntegratorKind::kRungeKutta3);
+  EXPECT_EQ(scenario.world->integrator.accuracy, 1e-3);
+  EXPECT_FALSE(scenario.world->has_region);
+}
+
+TEST_F(LoadTest, AStepMakesTheIntegratorsStepsFixed) {
+  const Scenario scenario = Load(WithReplaced("accuracy: 1e-4", "step: 0.5ms"));
+  EXPECT_EQ(scenario.world->integrator.fixed_step, VirtualDuration::Microseconds(500));
+}
+
+TEST_F(LoadTest, OrientationsAreNormalised) {
+  const Scenario scenario =
+      Load(WithReplaced("position: [-5, 0, 0]", "orientation: [0, 0, 0.7071, 0.7071]"));
+  EXPECT_THAT(scenario.world->bodies[0].initial.orientation_xyzw,
+              ElementsAre(0, 0, testing::DoubleNear(0.70710678118, 1e-10),
+                          testing::DoubleNear(0.70710678118, 1e-10)));
+}
+
+TEST_F(LoadTest, TheOrderOfTheFileIsKept) {
+  const Scenario scenario = Load(
+      "duration: 1\nrobots:\n"
+      "  zeta: {clients: {z: {command: [sh]}, a: {command: [sh]}, m: {command: [sh]}}}\n"
+      "  alpha: {clients: {c: {command: [sh]}}}\n");
+  EXPECT_EQ(scenario.robots[0].name, "zeta");
+  EXPECT_EQ(scenario.robots[1].name, "alpha");
+  EXPECT_EQ(scenario.robots[0].clients[0].name, "zeta/z");
+  EXPECT_EQ(scenario.robots[0].clients[1].name, "zeta/a");
+  EXPECT_EQ(scenario.robots[0].clients[2].name, "zeta/m");
+}
+
+TEST_F(LoadTest, RatesThatDivideNoSecondAreRoundedToTheNanosecond) {
+  EXPECT_EQ(Load(WithReplaced("rate: 50", "rate: 30")).sensors[0].period,
+            VirtualDuration::Nanoseconds(33'333'333));
+  EXPECT_EQ(Load(WithReplaced("rate: 50", "rate: 0.6")).sensors[0].period,
+            VirtualDuration::Nanoseconds(1'666'666'667));
+}
+
+TEST_F(LoadTest, TheCommandLineOverridesTheFile) {
+  const Scenario scenario =
+      Load(kGoodScenario, {.duration = Ms(5), .drift = Ms(3), .seed = 18446744073709551615u});
+  EXPECT_EQ(scenario.duration, Ms(5));
+  EXPECT_EQ(scenario.drift_bound, Ms(3));
+  EXPECT_EQ(scenario.seed, 18446744073709551615u);
+  EXPECT_EQ(scenario.robots[0].clients[0].command[2], "18446744073709551615");
+}
+
+TEST_F(LoadTest, VariablesAreReplacedInArgumentsAndEnvironment) {
+  setenv("TCS_TEST_WORD", "a b", 1);
+  std::string text = WithReplaced("\"${seed}\"", "\"<${TCS_TEST_WORD}|${seed}|$${seed}|$$|$1>\"");
+  text.replace(text.find("MODE: fast"), 10, "MODE: \"x${TCS_TEST_WORD}\", EMPTY: \"\"");
+  const ClientSpec client = Load(text).robots[0].clients[0];
+  EXPECT_EQ(client.command[2], "<a b|7|${seed}|$$|$1>");
+  EXPECT_THAT(client.environment, ElementsAre(Pair("EMPTY", ""), Pair("MODE", "xa b")));
+}
+
+TEST_F(LoadTest, ClassesMayBeWrittenWithAnUnderscore) {
+  const Scenario scenario = Load(WithReplaced("class: periodic", "class: best_effort"));
+  EXPECT_EQ(scenario.robots[0].clients[0].client_class, ClientClass::kBestEffort);
+}
+
+TEST_F(LoadTest, CommandsAreRelativeToTheFileWhereverTcsimRuns) {
+  const auto before = std::filesystem::current_path();
+  folder_.Write("s.yaml", kGoodScenario);
+  std::filesystem::current_path(folder_.path());
+  const auto result = LoadScenario("s.yaml");
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(std::holds_alternative<Scenario>(result)) << std::get<LoadError>(result).message;
+  EXPECT_EQ(std::get<Scenario>(result).robots[0].clients[0].command[0], folder_.Path("controller"));
+}
+
+}  // namespace
+}  // namespace tcs

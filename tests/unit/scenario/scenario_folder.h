@@ -1,0 +1,42 @@
+// A folder for one test, with scenarios and programs in it; gone afterwards.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tcs {
+
+class ScenarioFolder {
+ public:
+  // Holds ./controller, a dynamically linked program.
+  ScenarioFolder();
+  ~ScenarioFolder();
+  ScenarioFolder(const ScenarioFolder&) = delete;
+  ScenarioFolder& operator=(const ScenarioFolder&) = delete;
+
+  std::string Path(std::string_view name) const { return (path_ / name).string(); }
+  std::string path() const { return path_.string(); }
+
+  // Each returns the absolute path of what it made.
+  std::string Write(std::string_view name, std::string_view text) const;
+  std::string WriteExecutable(std::string_view name, std::string_view text) const;
+  std::string Copy(std::string_view program, std::string_view name) const;
+  // A copy of the dynamically linked program with bytes replaced.
+  std::string Patch(std::string_view name, std::size_t offset, std::string_view bytes) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+// A scenario without mistakes, which uses every section. Its lines are counted on by the tests.
+extern const std::string_view kGoodScenario;
+
+// kGoodScenario with `from`, which must occur once, replaced.
+std::string WithReplaced(std::string_view from, std::string_view to);
+
+// What LoadScenario says of the `text`, written to FOLDER/s.yaml, without "FOLDER/"; "" if it is
+// fine.
+std::string Complaint(const ScenarioFolder& folder, std::string_view text);
+
+}  // namespace tcs
