@@ -5,8 +5,8 @@
 
 namespace tcs::preload {
 
-// Fills `thread` and returns once the thread has been dispatched for the first time. Ends the process where there
-// is no coordinator or it refuses. Async-signal-safe.
+// Fills `thread` and returns once the thread has been dispatched for the first time. Ends the
+// process where there is no coordinator or it refuses. Async-signal-safe.
 void Attach(GuestThread& thread);
 
 }  // namespace tcs::preload

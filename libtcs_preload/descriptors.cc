@@ -1,4 +1,5 @@
-// Closing and copying descriptors: the shim's own stay open, and its timers follow their descriptors.
+// Closing and copying descriptors: the shim's own stay open, and its timers follow their
+// descriptors.
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/close_range.h>
@@ -33,7 +34,8 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
     return RawSyscall(SYS_close_range, first, last, static_cast<int>(flags));
   }
   long result = 0;
-  if (static_cast<long>(first) < own) result = RawSyscall(SYS_close_range, first, own - 1, static_cast<int>(flags));
+  if (static_cast<long>(first) < own)
+    result = RawSyscall(SYS_close_range, first, own - 1, static_cast<int>(flags));
   if (result == 0 && own < static_cast<long>(last)) {
     result = RawSyscall(SYS_close_range, own + 1, last, static_cast<int>(flags));
   }

@@ -1,5 +1,5 @@
-// What the shim keeps of the environment, and how it passes it on: a program that runs its children with an
-// environment of its own making still runs them in virtual time.
+// What the shim keeps of the environment, and how it passes it on: a program that runs its children
+// with an environment of its own making still runs them in virtual time.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ bool EnvironmentRemembered();
 // The coordinator's socket (shm/attach_protocol.h), or null where there is none.
 const char* SocketName();
 
-// An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them, in `storage`.
-// Async-signal-safe. Entries beyond kMaxEntries are dropped.
+// An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them,
+// in `storage`. Async-signal-safe. Entries beyond kMaxEntries are dropped.
 struct EnvironmentCopy {
   static constexpr std::size_t kMaxEntries = 2048;
   char* entries[kMaxEntries + 3];

@@ -17,8 +17,8 @@ namespace {
 using shm::NotificationKind;
 using shm::WakeReason;
 
-// The gate is waited for in turns of this length, to notice a coordinator that was killed. With a timeout the kernel
-// also never restarts the wait behind our back after a signal handler.
+// The gate is waited for in turns of this length, to notice a coordinator that was killed. With a
+// timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
 
 void DieIfCoordinatorIsGone() {
@@ -64,8 +64,8 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
       continue;
     }
-    const long result = RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting,
-                                   Arg(&kGateTurn));
+    const long result =
+        RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && interruptible &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {

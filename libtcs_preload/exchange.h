@@ -1,4 +1,5 @@
-// One exchange with the coordinator: fill the slot's record, write its index into the pipe, stop at the gate.
+// One exchange with the coordinator: fill the slot's record, write its index into the pipe, stop at
+// the gate.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,9 @@ struct Reply {
   std::int64_t values[2];
 };
 
-// Returns when the coordinator dispatches the thread again. Async-signal-safe, and may be called from a handler that
-// interrupted another exchange of the same thread: the outer one then ends as interrupted.
+// Returns when the coordinator dispatches the thread again. Async-signal-safe, and may be called
+// from a handler that interrupted another exchange of the same thread: the outer one then ends as
+// interrupted.
 Reply Exchange(GuestThread& thread, const Request& request);
 
 // The gate without a notification: the attach itself was one.

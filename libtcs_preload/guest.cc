@@ -17,8 +17,8 @@ namespace {
 ProcessState g_unprotected_state{ProcessState::kFresh};
 
 void ProtectProcessState() {
-  const long page = RawSyscall(SYS_mmap, 0, 4096, PROT_READ | PROT_WRITE,
-                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const long page =
+      RawSyscall(SYS_mmap, 0, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (page < 0 && page > -4096) return;
   if (RawSyscall(SYS_madvise, page, 4096, MADV_WIPEONFORK) != 0) return;
   g_process = reinterpret_cast<ProcessState*>(page);

@@ -1,13 +1,15 @@
 // The shim's state inside a client process. The rules of this folder, because we are guests:
 //
 //   * no allocation, and no lock that the program could hold when it forks or is interrupted;
-//   * the kernel is entered through RawSyscall (raw_syscall.h), the C library's own functions through real.h;
+//   * the kernel is entered through RawSyscall (raw_syscall.h), the C library's own functions
+//   through real.h;
 //   * errno changes only where POSIX says so;
 //   * everything is safe in a signal handler and in the child of a fork;
 //   * mechanism only: who runs when is the coordinator's business.
 //
-// A process finds its coordinator through the environment (shm/attach_protocol.h). Without the variable the shim lets
-// every call through. With it, but with nobody behind it, the process ends: one line on stderr, exit status 127.
+// A process finds its coordinator through the environment (shm/attach_protocol.h). Without the
+// variable the shim lets every call through. With it, but with nobody behind it, the process ends:
+// one line on stderr, exit status 127.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +25,12 @@ inline constexpr int kNoCoordinatorExit = 127;
 struct GuestThread {
   shm::ThreadSlot* slot = nullptr;
   std::uint32_t index = 0;
-  int depth = 0;           // exchanges under way; above 1 in a handler that interrupted one
+  int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
 };
 
-// Kept in a page that a fork leaves zeroed in the child, so that the child knows it has no slot yet.
+// Kept in a page that a fork leaves zeroed in the child, so that the child knows it has no slot
+// yet.
 struct ProcessState {
   enum Mode : std::uint32_t { kFresh = 0, kAttached = 1, kPassThrough = 2 };
   Mode mode;
@@ -36,7 +39,7 @@ struct ProcessState {
 extern ProcessState* g_process;
 extern __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
 extern shm::SegmentHeader* g_header;  // mapped once per process image; forks inherit the mapping
-extern int g_notify_fd;               // write end of the notification pipe, close-on-exec, at a high number
+extern int g_notify_fd;  // write end of the notification pipe, close-on-exec, at a high number
 
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();

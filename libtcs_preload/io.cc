@@ -1,7 +1,7 @@
 // Reading and writing descriptors that can make a program wait: sockets, pipes, terminals.
 //
-// Kernel-carried data is there at once for anybody who looks. So a write waits until nobody can look at an earlier
-// virtual time, and a read until nobody can write at an earlier one.
+// Kernel-carried data is there at once for anybody who looks. So a write waits until nobody can
+// look at an earlier virtual time, and a read until nobody can write at an earlier one.
 #include <errno.h>
 #include <stdarg.h>
 #include <sys/socket.h>

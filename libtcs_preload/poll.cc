@@ -1,7 +1,6 @@
 // poll, select and epoll.
-#include <poll.h>
-
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -21,8 +20,9 @@ namespace {
 
 constexpr timespec kNow{};
 
-// The shape of all of them: probe with a timeout of zero; nothing there: wait; probe again. `probe` returns what the
-// kernel returns, 0 for "nothing". `wait(deadline)` returns a WaitResult. A signal always ends these calls.
+// The shape of all of them: probe with a timeout of zero; nothing there: wait; probe again. `probe`
+// returns what the kernel returns, 0 for "nothing". `wait(deadline)` returns a WaitResult. A signal
+// always ends these calls.
 template <class Probe, class Wait>
 int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, Probe probe,
                  Wait wait) {
@@ -123,7 +123,8 @@ bool TimeoutToNs(const timespec* timeout, std::int64_t* ns) {
 
 TCS_EXPORT int poll(pollfd* fds, nfds_t count, int timeout_ms) {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_poll, Arg(fds), count, timeout_ms)));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_poll, Arg(fds), count, timeout_ms)));
   return PollNs(*t, fds, count, MillisecondsToNs(timeout_ms), nullptr);
 }
 
@@ -136,8 +137,8 @@ TCS_EXPORT int ppoll(pollfd* fds, nfds_t count, const timespec* timeout, const s
   GuestThread* t = Enter();
   if (t == nullptr) {
     timespec left = timeout != nullptr ? *timeout : timespec{};
-    return static_cast<int>(ToErrno(RawSyscall(
-        SYS_ppoll, Arg(fds), count, timeout != nullptr ? Arg(&left) : 0, Arg(mask), 8)));
+    return static_cast<int>(ToErrno(
+        RawSyscall(SYS_ppoll, Arg(fds), count, timeout != nullptr ? Arg(&left) : 0, Arg(mask), 8)));
   }
   std::int64_t timeout_ns;
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
@@ -153,7 +154,8 @@ TCS_EXPORT int __ppoll_chk(pollfd* fds, nfds_t count, const timespec* timeout, c
 TCS_EXPORT int select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout) {
   GuestThread* t = Enter();
   if (t == nullptr) {
-    return static_cast<int>(ToErrno(RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(timeout))));
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(timeout))));
   }
   if (timeout == nullptr) return SelectNs(*t, n, r, w, e, -1, nullptr);
   if (timeout->tv_sec < 0 || timeout->tv_usec < 0) return Fail(EINVAL);
@@ -179,9 +181,9 @@ TCS_EXPORT int pselect(int n, fd_set* r, fd_set* w, fd_set* e, const timespec* t
       const sigset_t* set;
       std::size_t size;
     } argument{mask, 8};
-    return static_cast<int>(ToErrno(RawSyscall(SYS_pselect6, n, Arg(r), Arg(w), Arg(e),
-                                               timeout != nullptr ? Arg(&left) : 0,
-                                               Arg(&argument))));
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_pselect6, n, Arg(r), Arg(w), Arg(e),
+                           timeout != nullptr ? Arg(&left) : 0, Arg(&argument))));
   }
   std::int64_t timeout_ns;
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
@@ -206,8 +208,8 @@ TCS_EXPORT int epoll_pwait2(int epfd, epoll_event* events, int max, const timesp
                             const sigset_t* mask) {
   GuestThread* t = Enter();
   if (t == nullptr) {
-    return static_cast<int>(ToErrno(
-        RawSyscall(SYS_epoll_pwait2, epfd, Arg(events), max, Arg(timeout), Arg(mask), 8)));
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_epoll_pwait2, epfd, Arg(events), max, Arg(timeout), Arg(mask), 8)));
   }
   std::int64_t timeout_ns;
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);

@@ -1,4 +1,5 @@
-// New processes and the ends of old ones. Children register themselves: the shim is in their environment.
+// New processes and the ends of old ones. Children register themselves: the shim is in their
+// environment.
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
@@ -33,7 +34,8 @@ void TellSpawned(GuestThread& t, pid_t pid) {
 
 namespace {
 
-// Makes `probe` (a wait call with WNOHANG) until it has something. It returns 0 for "no child has changed yet".
+// Makes `probe` (a wait call with WNOHANG) until it has something. It returns 0 for "no child has
+// changed yet".
 template <class Probe>
 long WaitForChild(GuestThread& t, pid_t which, Probe probe) {
   HoldForRead(t);
@@ -72,7 +74,8 @@ TCS_EXPORT pid_t wait4(pid_t pid, int* status, int options, rusage* usage) {
   GuestThread* t = Enter();
   if (t == nullptr || (options & WNOHANG) != 0) {
     if (t != nullptr) HoldForRead(*t);
-    return static_cast<pid_t>(ToErrno(RawSyscall(SYS_wait4, pid, Arg(status), options, Arg(usage))));
+    return static_cast<pid_t>(
+        ToErrno(RawSyscall(SYS_wait4, pid, Arg(status), options, Arg(usage))));
   }
   return static_cast<pid_t>(ToErrno(WaitForChild(*t, pid, [&] {
     return RawSyscall(SYS_wait4, pid, Arg(status), options | WNOHANG, Arg(usage));

@@ -18,10 +18,10 @@ F* LookUpReal(F*& cache, const char* name) {
 }
 
 // TCS_REAL(fork)() calls the C library's fork.
-#define TCS_REAL(name)                                                      \
-  ([] {                                                                     \
-    static __typeof__(&::name) cache;                                       \
-    return ::tcs::preload::LookUpReal<__typeof__(::name)>(cache, #name);    \
+#define TCS_REAL(name)                                                   \
+  ([] {                                                                  \
+    static __typeof__(&::name) cache;                                    \
+    return ::tcs::preload::LookUpReal<__typeof__(::name)>(cache, #name); \
   }())
 
 }  // namespace tcs::preload

@@ -1,4 +1,5 @@
-// Scheduling calls speak of the virtual computer: the robot's cores and its scheduler, never the host's.
+// Scheduling calls speak of the virtual computer: the robot's cores and its scheduler, never the
+// host's.
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
@@ -49,7 +50,8 @@ std::size_t FillAffinity(const GuestThread& t, std::size_t size, cpu_set_t* set)
 
 TCS_EXPORT int sched_setscheduler(pid_t pid, int policy, const sched_param* param) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setscheduler, pid, policy, Arg(param))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setscheduler, pid, policy, Arg(param))));
   if (!IsSelf(*t, pid)) return 0;  // others' priorities come with threads
   const int error = SetOwn(*t, policy, param->sched_priority);
   return error == 0 ? 0 : Fail(error);
@@ -63,13 +65,15 @@ TCS_EXPORT int sched_getscheduler(pid_t pid) noexcept {
 
 TCS_EXPORT int sched_setparam(pid_t pid, const sched_param* param) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setparam, pid, Arg(param))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setparam, pid, Arg(param))));
   return sched_setscheduler(pid, t->slot->policy, param);
 }
 
 TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getparam, pid, Arg(param))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getparam, pid, Arg(param))));
   param->sched_priority = IsSelf(*t, pid) ? t->slot->priority : 0;
   return 0;
 }
@@ -78,7 +82,8 @@ TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
                                      const sched_param* param) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_setschedparam)(thread, policy, param);
-  if (!pthread_equal(thread, pthread_self())) return IsValid(policy, param->sched_priority) ? 0 : EINVAL;
+  if (!pthread_equal(thread, pthread_self()))
+    return IsValid(policy, param->sched_priority) ? 0 : EINVAL;
   return SetOwn(*t, policy, param->sched_priority);
 }
 
@@ -100,7 +105,8 @@ TCS_EXPORT int pthread_setschedprio(pthread_t thread, int priority) noexcept {
 
 TCS_EXPORT int sched_setaffinity(pid_t pid, std::size_t size, const cpu_set_t* set) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setaffinity, pid, size, Arg(set))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setaffinity, pid, size, Arg(set))));
   for (std::size_t core = 0; core < t->slot->cores; ++core) {
     if (CPU_ISSET_S(core, size, set)) return 0;
   }
@@ -153,7 +159,8 @@ TCS_EXPORT int sched_getcpu(void) noexcept {
 
 TCS_EXPORT int getcpu(unsigned* cpu, unsigned* node) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0)));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0)));
   if (cpu != nullptr) *cpu = t->slot->core;
   if (node != nullptr) *node = 0;
   return 0;

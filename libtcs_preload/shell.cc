@@ -1,4 +1,5 @@
-// system and popen, on posix_spawn and waitpid: the C library's own would wait where the shim does not see it.
+// system and popen, on posix_spawn and waitpid: the C library's own would wait where the shim does
+// not see it.
 #include <errno.h>
 #include <fcntl.h>
 #include <paths.h>
@@ -46,8 +47,10 @@ int AwaitShell(pid_t pid) {
 
 TCS_EXPORT int system(const char* command) {
   if (command == nullptr) return 1;
-  // As POSIX has it: the caller ignores SIGINT and SIGQUIT and blocks SIGCHLD meanwhile; the shell does not.
-  struct sigaction ignore{}, old_int, old_quit;
+  // As POSIX has it: the caller ignores SIGINT and SIGQUIT and blocks SIGCHLD meanwhile; the shell
+  // does not.
+  struct sigaction ignore {
+  }, old_int, old_quit;
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGINT, &ignore, &old_int);
   sigaction(SIGQUIT, &ignore, &old_quit);

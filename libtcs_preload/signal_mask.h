@@ -7,8 +7,9 @@
 
 namespace tcs::preload {
 
-// Sets `mask` (null: none) for its lifetime. Not atomic with the wait, as the kernel's is: a signal that the mask lets
-// in is handled at once and ends the wait only if it comes after the wait has begun. docs/LIMITATIONS.md says so.
+// Sets `mask` (null: none) for its lifetime. Not atomic with the wait, as the kernel's is: a signal
+// that the mask lets in is handled at once and ends the wait only if it comes after the wait has
+// begun. docs/LIMITATIONS.md says so.
 class MaskDuringWait {
  public:
   explicit MaskDuringWait(const sigset_t* mask) : active_(mask != nullptr) {

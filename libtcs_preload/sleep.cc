@@ -46,8 +46,7 @@ int ClockFor(clockid_t id, Clock* clock) {
 int ClockNanosleep(clockid_t id, int flags, const timespec* request, timespec* remain) {
   GuestThread* t = Enter();
   if (t == nullptr) {
-    return static_cast<int>(
-        -RawSyscall(SYS_clock_nanosleep, id, flags, Arg(request), Arg(remain)));
+    return static_cast<int>(-RawSyscall(SYS_clock_nanosleep, id, flags, Arg(request), Arg(remain)));
   }
   Clock clock;
   if (const int error = ClockFor(id, &clock); error != 0) return error;

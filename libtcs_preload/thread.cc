@@ -1,4 +1,5 @@
-// New threads get slots of their own. Their waiting for each other is not virtual yet; the coordinator says so.
+// New threads get slots of their own. Their waiting for each other is not virtual yet; the
+// coordinator says so.
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>

@@ -17,7 +17,8 @@ using namespace tcs::preload;
 
 namespace {
 
-// Bits of the kernel's dynamic clock ids (posix-timers.h): ~pid in the upper bits, then whose and which clock.
+// Bits of the kernel's dynamic clock ids (posix-timers.h): ~pid in the upper bits, then whose and
+// which clock.
 constexpr clockid_t kPerThreadBit = 4;
 constexpr clockid_t kClockFdBits = 3;
 
@@ -86,7 +87,8 @@ TCS_EXPORT int __clock_gettime(clockid_t id, timespec* ts) { return clock_gettim
 
 TCS_EXPORT int gettimeofday(timeval* __restrict tv, void* __restrict zone) {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone))));
   if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
   if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
   return 0;

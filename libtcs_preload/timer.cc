@@ -1,5 +1,6 @@
-// setitimer, alarm and timerfd. The coordinator keeps the timers; it sends real signals, and makes real descriptors
-// readable: a timerfd is an eventfd underneath, which has the same reads, into which it writes the expirations.
+// setitimer, alarm and timerfd. The coordinator keeps the timers; it sends real signals, and makes
+// real descriptors readable: a timerfd is an eventfd underneath, which has the same reads, into
+// which it writes the expirations.
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/eventfd.h>
@@ -55,9 +56,8 @@ int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old)
   if (!IsValidInterval(given.it_value) || !IsValidInterval(given.it_interval)) return Fail(EINVAL);
   const std::int64_t now = ItimerNow(t, which);
   const std::int64_t delay = ToNs(given.it_value);
-  const TimerValue before =
-      Ask(t, NotificationKind::kTimerSet, which, delay == 0 ? 0 : AddSaturated(now, delay),
-          ToNs(given.it_interval));
+  const TimerValue before = Ask(t, NotificationKind::kTimerSet, which,
+                                delay == 0 ? 0 : AddSaturated(now, delay), ToNs(given.it_interval));
   if (old != nullptr) *old = ToSpec<itimerval>(before, now, RoundUpToTimeval);
   return 0;
 }
@@ -67,7 +67,8 @@ int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old)
 TCS_EXPORT int setitimer(__itimer_which_t which, const itimerval* __restrict value,
                          itimerval* __restrict old) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_setitimer, which, Arg(value), Arg(old))));
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_setitimer, which, Arg(value), Arg(old))));
   return SetItimer(*t, which, value, old);
 }
 
@@ -84,13 +85,14 @@ TCS_EXPORT unsigned alarm(unsigned seconds) {
   itimerval value{{0, 0}, {seconds, 0}}, old{};
   setitimer(ITIMER_REAL, &value, &old);
   // As the kernel rounds it: never 0 while it was armed.
-  const bool round_up = old.it_value.tv_usec >= 500'000 ||
-                        (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
+  const bool round_up =
+      old.it_value.tv_usec >= 500'000 || (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
   return static_cast<unsigned>(old.it_value.tv_sec + (round_up ? 1 : 0));
 }
 
 TCS_EXPORT useconds_t ualarm(useconds_t first, useconds_t interval) {
-  itimerval value{{interval / 1'000'000, interval % 1'000'000}, {first / 1'000'000, first % 1'000'000}};
+  itimerval value{{interval / 1'000'000, interval % 1'000'000},
+                  {first / 1'000'000, first % 1'000'000}};
   itimerval old{};
   if (setitimer(ITIMER_REAL, &value, &old) != 0) return static_cast<useconds_t>(-1);
   return static_cast<useconds_t>(old.it_value.tv_sec * 1'000'000 + old.it_value.tv_usec);
@@ -126,7 +128,8 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itime
   GuestThread* t = Enter();
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr) {
-    return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old))));
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old))));
   }
   if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
   if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
@@ -147,7 +150,8 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itime
 TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
   GuestThread* t = Enter();
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
-  if (timer == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value))));
+  if (timer == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value))));
   *value = ToSpec<itimerspec>(Ask(*t, NotificationKind::kTimerGet, timer->id, 0, 0), NowNs(*t),
                               ToTimespec);
   return 0;

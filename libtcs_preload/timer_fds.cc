@@ -6,7 +6,8 @@ namespace {
 
 constexpr int kRoom = 512;
 TimerFd g_timers[kRoom];
-int g_used = 0;  // entries ever used; most programs have none, and then every look-up is one comparison
+int g_used =
+    0;  // entries ever used; most programs have none, and then every look-up is one comparison
 
 TimerFd* Find(int fd) {
   if (fd < 0) return nullptr;

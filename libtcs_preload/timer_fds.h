@@ -20,7 +20,8 @@ const TimerFd* FindTimerFd(int fd);
 // `copy` is now another descriptor for the same timer.
 void CopyTimerFd(int fd, int copy);
 
-// `fd` is closed. Returns the timer's id if no descriptor of this process refers to it any more, else 0.
+// `fd` is closed. Returns the timer's id if no descriptor of this process refers to it any more,
+// else 0.
 std::int64_t ForgetTimerFd(int fd);
 
 }  // namespace tcs::preload

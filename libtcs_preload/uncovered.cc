@@ -1,5 +1,6 @@
-// Calls that read, wait for or are woken by time and that tcs does not make virtual yet. They go through to the C
-// library as they are; the first use of each is reported to the coordinator, which names it to the user.
+// Calls that read, wait for or are woken by time and that tcs does not make virtual yet. They go
+// through to the C library as they are; the first use of each is reported to the coordinator, which
+// names it to the user.
 #include <dlfcn.h>
 
 #include "libtcs_preload/exchange.h"
@@ -21,15 +22,15 @@ void ReportOnce(bool& reported, const char* name) {
 
 }  // namespace
 
-// All arguments of these functions travel in the six integer registers, whatever their types; so one shape fits all, under
-// a C++ name of its own because the headers declare the real one.
-#define TCS_UNCOVERED(name)                                                                    \
-  TCS_EXPORT long Uncovered_##name(long, long, long, long, long, long) __asm__(#name);         \
-  TCS_EXPORT long Uncovered_##name(long a, long b, long c, long d, long e, long f) {           \
-    static bool reported;                                                                      \
-    static Untyped* real;                                                                      \
-    ReportOnce(reported, #name);                                                               \
-    return LookUpReal<Untyped>(real, #name)(a, b, c, d, e, f);                                 \
+// All arguments of these functions travel in the six integer registers, whatever their types; so
+// one shape fits all, under a C++ name of its own because the headers declare the real one.
+#define TCS_UNCOVERED(name)                                                            \
+  TCS_EXPORT long Uncovered_##name(long, long, long, long, long, long) __asm__(#name); \
+  TCS_EXPORT long Uncovered_##name(long a, long b, long c, long d, long e, long f) {   \
+    static bool reported;                                                              \
+    static Untyped* real;                                                              \
+    ReportOnce(reported, #name);                                                       \
+    return LookUpReal<Untyped>(real, #name)(a, b, c, d, e, f);                         \
   }
 
 TCS_UNCOVERED(timer_create)

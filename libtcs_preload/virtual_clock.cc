@@ -63,9 +63,7 @@ std::int64_t ProcessCpuNs(GuestThread& thread) {
   return ThreadCpuNs(thread) + thread.slot->clock.other_cpu_ns;
 }
 
-std::int64_t ChildrenCpuNs(const GuestThread& thread) {
-  return thread.slot->clock.children_cpu_ns;
-}
+std::int64_t ChildrenCpuNs(const GuestThread& thread) { return thread.slot->clock.children_cpu_ns; }
 
 bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
   if (IsShutDown()) {
@@ -74,9 +72,9 @@ bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
     return RawSyscall(SYS_nanosleep, Arg(&turn), 0) == 0;
   }
   if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, deadline_ns)) return true;
-  const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kIdle,
-                                               .deadline_ns = deadline_ns,
-                                               .interruptible = true});
+  const Reply reply = Exchange(
+      thread,
+      Request{.kind = NotificationKind::kIdle, .deadline_ns = deadline_ns, .interruptible = true});
   return reply.reason != shm::WakeReason::kSignal;
 }
 

@@ -14,7 +14,8 @@ namespace tcs::preload {
 // CLOCK_MONOTONIC and CLOCK_REALTIME are fixed offsets from the run's virtual time.
 enum class Clock { kMonotonic, kRealtime };
 
-// Virtual time now, in ns since the run's start. Where the horizon is reached it stops the thread first.
+// Virtual time now, in ns since the run's start. Where the horizon is reached it stops the thread
+// first.
 std::int64_t NowNs(GuestThread& thread);
 
 // Charged processor time of the thread / of its process.
@@ -23,8 +24,7 @@ std::int64_t ProcessCpuNs(GuestThread& thread);
 std::int64_t ChildrenCpuNs(const GuestThread& thread);
 
 inline std::int64_t OffsetNs(Clock clock) {
-  return clock == Clock::kMonotonic ? g_header->monotonic_offset_ns
-                                    : g_header->realtime_offset_ns;
+  return clock == Clock::kMonotonic ? g_header->monotonic_offset_ns : g_header->realtime_offset_ns;
 }
 
 // Sleeps until `deadline_ns`; false if a signal handler ended the sleep before.
@@ -33,8 +33,8 @@ bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns);
 // `timeout_ns` from now; never for a negative one.
 std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns);
 
-// Returns once nothing can be produced before the thread's time any more; then what a probe finds is what is true at
-// that time, no more and no less.
+// Returns once nothing can be produced before the thread's time any more; then what a probe finds
+// is what is true at that time, no more and no less.
 void HoldForRead(GuestThread& thread);
 
 // Returns once nobody can read any more what is from before the thread's time.

@@ -1,7 +1,8 @@
-// How a process comes to its slot: one exchange over a SOCK_SEQPACKET socket with an abstract name, which the
-// environment variable TCS_SOCKET carries (without the leading NUL). The shim sends AttachHello; the coordinator
-// answers AttachReply, with two descriptors: the segment's memfd and the write end of the notification pipe.
-// The thread is then stopped at its gate until its first dispatch.
+// How a process comes to its slot: one exchange over a SOCK_SEQPACKET socket with an abstract name,
+// which the environment variable TCS_SOCKET carries (without the leading NUL). The shim sends
+// AttachHello; the coordinator answers AttachReply, with two descriptors: the segment's memfd and
+// the write end of the notification pipe. The thread is then stopped at its gate until its first
+// dispatch.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ static_assert(sizeof(AttachHello) == 24);
 struct AttachReply {
   std::uint64_t magic;
   std::uint32_t version;
-  std::uint32_t slot;      // index
-  std::uint32_t refused;   // 1: no slot; text says why
+  std::uint32_t slot;     // index
+  std::uint32_t refused;  // 1: no slot; text says why
   char text[108];
 };
 static_assert(sizeof(AttachReply) == 128);

@@ -3,9 +3,10 @@
 // The thread's clock is base + executed + waited, where
 //   executed = (tsc - base_tsc) * ns_per_tick + executed_adjust
 //   waited   = waited_adjust
-// Both adjustment words carry the number of the dispatch they belong to. A reader takes both words before and after
-// the other fields: equal words mean that nothing was dispatched between. A writer moves a word by compare-and-swap:
-// had the thread been stopped and dispatched again in between, the number differs and the swap fails.
+// Both adjustment words carry the number of the dispatch they belong to. A reader takes both words
+// before and after the other fields: equal words mean that nothing was dispatched between. A writer
+// moves a word by compare-and-swap: had the thread been stopped and dispatched again in between,
+// the number differs and the swap fails.
 //
 // Everything here is async-signal-safe, takes no lock and makes no system call.
 #pragma once
@@ -33,8 +34,8 @@ inline std::int64_t MulQ32(std::int64_t a, std::uint64_t q) {
   return static_cast<std::int64_t>((static_cast<Wide>(a) * static_cast<Wide>(q)) >> 32);
 }
 
-// One consistent reading. `time_ns` is what the thread has truly reached: neither held back to the horizon nor
-// kept from going below what was shown before.
+// One consistent reading. `time_ns` is what the thread has truly reached: neither held back to the
+// horizon nor kept from going below what was shown before.
 struct ClockReading {
   std::uint64_t tsc;
   std::int64_t time_ns;
@@ -71,18 +72,19 @@ inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
   return shown < last ? last : shown;
 }
 
-// Charged processor time according to the thread's own CPU clock, which others' use of the processor does not reach.
+// Charged processor time according to the thread's own CPU clock, which others' use of the
+// processor does not reach.
 inline std::int64_t CpuTimeFromHostClock(const ClockPage& page, std::int64_t host_cpu_ns) {
   return MulQ32(host_cpu_ns - page.host_cpu_origin_ns, page.ns_per_host_ns_q32);
 }
 
-// Takes out of the clock what the TSC counted and the CPU clock did not: stolen time (negative: what the TSC missed).
-// `host_cpu_ns` must have been read after `r`. False if the thread was dispatched anew since `r`: read again.
+// Takes out of the clock what the TSC counted and the CPU clock did not: stolen time (negative:
+// what the TSC missed). `host_cpu_ns` must have been read after `r`. False if the thread was
+// dispatched anew since `r`: read again.
 inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t host_cpu_ns) {
   const std::int64_t stolen = r.cpu_ns - CpuTimeFromHostClock(page, host_cpu_ns);
   std::uint64_t expected = r.executed_word;
-  const std::uint64_t desired =
-      PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
+  const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return false;
   page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
   if (stolen > 0) page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);

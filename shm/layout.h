@@ -4,16 +4,18 @@
 //   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          |
 //   +---------------+----------------------------------------------+
 //
-// One segment per run: a sealed memfd that never has a name. The coordinator creates it, the shim maps it when its
-// process attaches (attach_protocol.h). A thread slot belongs to one kernel thread from its attach to its end.
+// One segment per run: a sealed memfd that never has a name. The coordinator creates it, the shim
+// maps it when its process attaches (attach_protocol.h). A thread slot belongs to one kernel thread
+// from its attach to its end.
 //
-// Who writes what. Each group of fields names its writer. The coordinator writes a slot's clock only while the
-// slot's thread is stopped, and bumps the dispatch number in the two adjustment words each time; the thread moves
-// those words by compare-and-swap and so notices that it was stopped between (clock_page.h). The coordinator
-// trusts nothing it reads here: it copies, then checks, and keeps its own idea of every clock.
+// Who writes what. Each group of fields names its writer. The coordinator writes a slot's clock
+// only while the slot's thread is stopped, and bumps the dispatch number in the two adjustment
+// words each time; the thread moves those words by compare-and-swap and so notices that it was
+// stopped between (clock_page.h). The coordinator trusts nothing it reads here: it copies, then
+// checks, and keeps its own idea of every clock.
 //
-// Any change to a size, an offset or a meaning bumps kVersion. All times are virtual nanoseconds since the run's
-// start unless the name says otherwise.
+// Any change to a size, an offset or a meaning bumps kVersion. All times are virtual nanoseconds
+// since the run's start unless the name says otherwise.
 #pragma once
 
 #include <atomic>
@@ -26,32 +28,37 @@ inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
 inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
-// The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19 hours.
+// The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
+// hours.
 inline constexpr std::int64_t kMaxDispatchNs = std::int64_t{1} << 46;
 
-// What the shim tells the coordinator. The thread is stopped from its notification to its next dispatch.
+// What the shim tells the coordinator. The thread is stopped from its notification to its next
+// dispatch.
 enum class NotificationKind : std::uint32_t {
   kNone = 0,
-  kHorizon = 1,      // the thread's clock has reached its horizon
-  kRead = 2,         // go on once nothing can be produced before time_ns any more
-  kWrite = 3,        // go on once nobody can still read before time_ns
-  kIdle = 4,         // sleep until deadline_ns
-  kWaitFds = 5,      // sleep until one of fds is ready, or deadline_ns
-  kWaitChild = 6,    // sleep until a child process ends (args[0]: its pid, or 0 for any), or deadline_ns
+  kHorizon = 1,  // the thread's clock has reached its horizon
+  kRead = 2,     // go on once nothing can be produced before time_ns any more
+  kWrite = 3,    // go on once nobody can still read before time_ns
+  kIdle = 4,     // sleep until deadline_ns
+  kWaitFds = 5,  // sleep until one of fds is ready, or deadline_ns
+  kWaitChild =
+      6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or deadline_ns
   kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable; reply[0]: timer id
-  kTimerSet = 8,     // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply: as kTimerGet
-  kTimerGet = 9,     // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
-  kTimerDelete = 10, // args[0]: timer id
-  kSpawned = 11,     // args[0]: pid of a new child that will attach
-  kYield = 12,       // let equals run
-  kPriority = 13,    // args[0]: POSIX policy, args[1]: priority; applied to the virtual scheduler
-  kInterrupted = 14, // a signal handler wants to run while the thread waits: end the wait
-  kUncovered = 15,   // text names a call that tcs does not cover; reported once
-  kThreadExit = 16,  // the thread ends
-  kResumed = 17,     // a call unknown to the shim has returned (never sent by the shim itself)
+  kTimerSet = 8,  // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply:
+                  // as kTimerGet
+  kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
+  kTimerDelete = 10,  // args[0]: timer id
+  kSpawned = 11,      // args[0]: pid of a new child that will attach
+  kYield = 12,        // let equals run
+  kPriority = 13,     // args[0]: POSIX policy, args[1]: priority; applied to the virtual scheduler
+  kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
+  kUncovered = 15,    // text names a call that tcs does not cover; reported once
+  kThreadExit = 16,   // the thread ends
+  kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
 };
 
-// Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL, _PROF).
+// Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
+// _PROF).
 inline constexpr std::int64_t kFirstTimerFdId = 16;
 
 // Why a dispatch ended a wait.
@@ -66,15 +73,17 @@ enum class Accounting : std::uint32_t { kMeasured = 1, kFixed = 2 };
 // A thread's clock. See clock_page.h for how it is read and moved.
 struct ClockPage {
   // Written by the coordinator at each dispatch.
-  std::int64_t base_time_ns;          // the virtual CPU's progress, plus what the thread still owes
-  std::int64_t base_cpu_ns;           // charged virtual processor time of the thread
+  std::int64_t base_time_ns;  // the virtual CPU's progress, plus what the thread still owes
+  std::int64_t base_cpu_ns;   // charged virtual processor time of the thread
   std::uint64_t base_tsc;
-  std::uint64_t ns_per_tick_q32;      // virtual ns per TSC tick, times 2^32; 0 where computing costs nothing
-  std::int64_t horizon_ns;            // the clock never shows more
-  std::int64_t idle_until_ns;         // the thread may move its own clock up to here by sleeping
-  std::int64_t read_safe_ns;          // nothing is produced before this any more
-  std::int64_t write_safe_ns;         // nobody reads before this any more
-  // Written by the coordinator at a dispatch, moved by the thread: 16 bits dispatch number, 48 bits signed ns.
+  std::uint64_t
+      ns_per_tick_q32;      // virtual ns per TSC tick, times 2^32; 0 where computing costs nothing
+  std::int64_t horizon_ns;  // the clock never shows more
+  std::int64_t idle_until_ns;  // the thread may move its own clock up to here by sleeping
+  std::int64_t read_safe_ns;   // nothing is produced before this any more
+  std::int64_t write_safe_ns;  // nobody reads before this any more
+  // Written by the coordinator at a dispatch, moved by the thread: 16 bits dispatch number, 48 bits
+  // signed ns.
   std::atomic<std::uint64_t> executed_adjust;  // less what was stolen, plus set costs
   std::atomic<std::uint64_t> waited_adjust;    // slept inside the horizon
   // Written by the thread (and by the coordinator while it is stopped).
@@ -82,12 +91,12 @@ struct ClockPage {
   std::atomic<std::uint64_t> last_check_tsc;
   std::atomic<std::int64_t> stolen_ns;  // removed so far, virtual ns, host-visible statistics only
   // Constant from the thread's first dispatch on.
-  std::int64_t host_cpu_origin_ns;    // the thread's CPU clock at base_cpu_ns == 0
-  std::uint64_t ns_per_host_ns_q32;   // virtual ns per host ns, times 2^32
-  std::uint64_t check_after_ticks;    // the CPU clock is asked when this much TSC has passed
-  std::int64_t call_cost_ns;          // of each intercepted call; 0 under measured accounting
-  std::int64_t other_cpu_ns;          // charged to the process's other threads, living and dead
-  std::int64_t children_cpu_ns;       // charged to the process's ended children
+  std::int64_t host_cpu_origin_ns;   // the thread's CPU clock at base_cpu_ns == 0
+  std::uint64_t ns_per_host_ns_q32;  // virtual ns per host ns, times 2^32
+  std::uint64_t check_after_ticks;   // the CPU clock is asked when this much TSC has passed
+  std::int64_t call_cost_ns;         // of each intercepted call; 0 under measured accounting
+  std::int64_t other_cpu_ns;         // charged to the process's other threads, living and dead
+  std::int64_t children_cpu_ns;      // charged to the process's ended children
   std::uint64_t reserved[5];
 };
 static_assert(sizeof(ClockPage) == 192);
@@ -108,14 +117,15 @@ struct Notification {
   std::int64_t deadline_ns;  // kNeverNs for none
   std::int64_t args[4];
   WaitFd fds[kMaxWaitFds];
-  char text[64];             // NUL-terminated
+  char text[64];  // NUL-terminated
 };
 static_assert(sizeof(Notification) == 376);
 
 // Gate values.
-inline constexpr std::uint32_t kGateClosed = 0;   // written by the thread before it notifies
-inline constexpr std::uint32_t kGateOpen = 1;     // written by the coordinator: dispatched
-inline constexpr std::uint32_t kGateWaiting = 2;  // written by the thread: it is in futex(2), wake it
+inline constexpr std::uint32_t kGateClosed = 0;  // written by the thread before it notifies
+inline constexpr std::uint32_t kGateOpen = 1;    // written by the coordinator: dispatched
+inline constexpr std::uint32_t kGateWaiting =
+    2;  // written by the thread: it is in futex(2), wake it
 
 struct alignas(64) ThreadSlot {
   ClockPage clock;
@@ -127,10 +137,11 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach.
   std::int32_t pid;
   std::int32_t tid;
-  std::uint32_t cores;       // of the robot
-  std::uint32_t core;        // the virtual CPU the thread was last dispatched on
-  std::uint64_t seed;        // of everything the thread draws from the system in deterministic modes
-  std::int32_t policy;       // POSIX scheduling policy and priority, as the virtual scheduler applies them
+  std::uint32_t cores;  // of the robot
+  std::uint32_t core;   // the virtual CPU the thread was last dispatched on
+  std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
+  std::int32_t
+      policy;  // POSIX scheduling policy and priority, as the virtual scheduler applies them
   std::int32_t priority;
   std::uint8_t reserved[392];
 };

@@ -1,7 +1,8 @@
 // Strong types for time. Everything in tcs that is not a shared layout speaks of time in these.
 //
-// Units: int64 nanoseconds. A VirtualTime counts from the run's start; a HostTime is a reading of the host's
-// CLOCK_MONOTONIC. All functions are constexpr, allocate nothing and are async-signal-safe.
+// Units: int64 nanoseconds. A VirtualTime counts from the run's start; a HostTime is a reading of
+// the host's CLOCK_MONOTONIC. All functions are constexpr, allocate nothing and are
+// async-signal-safe.
 #pragma once
 
 #include <compare>

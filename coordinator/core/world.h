@@ -1,0 +1,55 @@
+// The dynamics leaf: physics, the sensors that read it and the commands that drive it.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/channel/udp_socket.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class World {
+ public:
+  // Binds the channels' ports. Empty on success, else one sentence.
+  std::string Open(const Scenario& scenario, const std::string& csv_path);
+
+  bool present() const { return dynamics_ != nullptr; }
+  std::int64_t progress_ns() const { return present() ? dynamics_->Now().ns() : shm_never(); }
+  // Nothing leaves the dynamics before this.
+  std::int64_t NextOutputNs() const;
+  // Advances to the earlier of `limit_ns` and the next output, which it then sends. True if
+  // something was sent.
+  bool Advance(std::int64_t limit_ns);
+
+  const std::vector<int>& command_fds() const { return command_fds_; }
+  // Applies what has arrived on command channel `index` at virtual time `now_ns`.
+  void ReceiveCommands(std::size_t index, std::int64_t now_ns);
+
+  std::int64_t host_ns() const { return host_ns_; }
+  std::int64_t commands() const { return commands_; }
+  std::int64_t samples() const { return samples_; }
+
+ private:
+  struct Sensor {
+    SensorChannelSpec spec;
+    std::int64_t next_ns = 0;
+  };
+  static std::int64_t shm_never();
+  void WriteCsv();
+
+  Scenario scenario_;
+  std::unique_ptr<Dynamics> dynamics_;
+  std::vector<Sensor> sensors_;
+  std::vector<UdpSocket> command_sockets_;
+  std::vector<int> command_fds_;
+  std::optional<UdpSocket> out_;
+  std::ofstream csv_;
+  std::int64_t next_csv_ns_ = 0;
+  std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,131 @@
+#include "coordinator/os/host.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/personality.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+#include <x86intrin.h>
+
+#include <cstdlib>
+
+namespace tcs {
+
+namespace {
+
+std::int64_t NowRawNs() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC_RAW, &t);
+  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+}
+
+}  // namespace
+
+std::uint64_t CalibrateTsc() {
+  const std::int64_t start_ns = NowRawNs();
+  const std::uint64_t start_tsc = __rdtsc();
+  std::int64_t end_ns;
+  do {
+    end_ns = NowRawNs();
+  } while (end_ns - start_ns < 20'000'000);
+  const std::uint64_t ticks = __rdtsc() - start_tsc;
+  return static_cast<std::uint64_t>(static_cast<double>(end_ns - start_ns) /
+                                    static_cast<double>(ticks) * 4294967296.0);
+}
+
+std::string EnterRealTime() {
+  cpu_set_t allowed, one;
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  int last = 0;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed)) last = cpu;
+  }
+  CPU_ZERO(&one);
+  CPU_SET(last, &one);
+  if (sched_setaffinity(0, sizeof one, &one) != 0) return "cannot bind to a CPU";
+  const sched_param param{static_cast<int>(Level::kCoordinator)};
+  if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
+    return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 13 "
+           "(ulimit -r, or rtprio in /etc/security/limits.conf); `tcsim doctor` shows the details";
+  }
+  return {};
+}
+
+void SetLevel(pid_t tid, Level level) {
+  const sched_param param{static_cast<int>(level)};
+  sched_setscheduler(tid, SCHED_FIFO, &param);
+}
+
+std::int64_t ThreadCpuClockNs(pid_t tid) {
+  // The kernel's encoding of a thread's CPU clock (posix-timers.h): CPUCLOCK_SCHED, per thread.
+  const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(tid) << 3) | 6u);
+  timespec t;
+  if (clock_gettime(id, &t) != 0) return -1;
+  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+}
+
+char ThreadState(pid_t tid) {
+  char path[64], text[512];
+  snprintf(path, sizeof path, "/proc/%d/stat", tid);
+  const int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return 'X';
+  const ssize_t n = read(fd, text, sizeof text - 1);
+  close(fd);
+  if (n <= 0) return 'X';
+  text[n] = '\0';
+  const char* end = strrchr(text, ')');
+  return end != nullptr && end + 2 < text + n ? end[2] : 'X';
+}
+
+int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
+
+int DuplicateFd(int pidfd, int fd) {
+  return static_cast<int>(syscall(SYS_pidfd_getfd, pidfd, fd, 0));
+}
+
+pid_t Spawn(const SpawnRequest& request) {
+  std::vector<char*> argv;
+  for (const std::string& word : request.command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid != 0) return pid;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  SetLevel(0, Level::kWaiting);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  signal(SIGINT, SIG_DFL);
+  signal(SIGPIPE, SIG_DFL);
+  if (request.fixed_layout) personality(ADDR_NO_RANDOMIZE);
+  for (const auto& [name, value] : request.environment) {
+    setenv(name.c_str(), value.c_str(), 1);
+  }
+  if (!request.working_directory.empty() && chdir(request.working_directory.c_str()) != 0) {
+    _exit(127);
+  }
+  auto redirect = [](const std::string& path, int to) {
+    if (path.empty()) return;
+    const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (fd >= 0) dup2(fd, to);
+    if (fd >= 0) close(fd);
+  };
+  redirect(request.log_stdout, 1);
+  redirect(request.log_stderr, 2);
+  if (!request.log_stdout.empty()) {
+    const int null = open("/dev/null", O_RDONLY);
+    dup2(null, 0);
+  }
+  execvp(argv[0], argv.data());
+  fprintf(stderr, "tcsim: %s cannot be started: %s\n", argv[0], strerror(errno));
+  _exit(errno == ENOENT ? 127 : 126);
+}
+
+}  // namespace tcs

@@ -1,0 +1,49 @@
+// What the coordinator asks of the host: its clocks, real-time priority, the birth of clients.
+//
+// Priorities on the one CPU that everything shares (paper, section 3): the coordinator preempts
+// everybody, the active thread preempts the detector, and the detector runs exactly when the active
+// thread has blocked in the kernel.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tcs {
+
+enum class Level : int { kWaiting = 10, kDetector = 11, kActive = 12, kCoordinator = 13 };
+
+// Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
+std::uint64_t CalibrateTsc();
+
+// Binds the calling process to the last CPU it may use and gives it the coordinator's level. Empty
+// on success, else one sentence.
+std::string EnterRealTime();
+
+void SetLevel(pid_t tid, Level level);
+
+// CPU time of a thread of any process; -1 if it has ended.
+std::int64_t ThreadCpuClockNs(pid_t tid);
+
+// The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
+char ThreadState(pid_t tid);
+
+int OpenPidfd(pid_t pid);
+int DuplicateFd(int pidfd, int fd);
+
+struct SpawnRequest {
+  std::vector<std::string> command;
+  std::string working_directory;  // empty: unchanged
+  std::map<std::string, std::string> environment;
+  std::string log_stdout, log_stderr;  // empty: inherited
+  bool fixed_layout = false;           // no address-space randomisation
+};
+
+// The new process, at Level::kWaiting on the coordinator's CPU, killed with the coordinator. -1:
+// errno is set.
+pid_t Spawn(const SpawnRequest& request);
+
+}  // namespace tcs
