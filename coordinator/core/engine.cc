@@ -266,6 +266,11 @@ void Engine::FireDue(VirtualCpu& cpu) {
       if (timer.event_fd >= 0) {
         wrote |= write(timer.event_fd, &count, sizeof count) == sizeof count;
       } else {
+        // A thread that the kernel holds (sigsuspend, pause) is woken by the signal itself.
+        if (task->state == TaskState::kUnseen) {
+          kill(task->process->pid, SIGALRM);
+          continue;
+        }
         task->process->alarm_pending = true;
         if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal);
       }
@@ -358,6 +363,7 @@ RunReport Engine::Run() {
   report_.error = Prepare();
   if (report_.error.empty()) report_.error = StartClients();
   const std::int64_t start = HostNs(CLOCK_MONOTONIC);
+  const std::int64_t cpu_start = HostNs(CLOCK_THREAD_CPUTIME_ID);
   end_ns_ = scenario_.duration.ns();
   while (report_.error.empty() && !stop_requested_) {
     const bool alive = std::any_of(tasks_.begin(), tasks_.end(), [](const Task& task) {
@@ -399,6 +405,8 @@ RunReport Engine::Run() {
     StepCpu(*cpu);
   }
   report_.real_ns = HostNs(CLOCK_MONOTONIC) - start;
+  report_.coordinating_ns =
+      HostNs(CLOCK_THREAD_CPUTIME_ID) - cpu_start - (world_.present() ? world_.host_ns() : 0);
   if (header_ != nullptr) Shutdown();
   Report(&report_);
   return report_;
@@ -408,7 +416,8 @@ void Engine::Shutdown() {
   header_->shutdown.store(1);
   for (Task& task : tasks_) {
     if (task.state == TaskState::kDead) continue;
-    if (task.slot >= 0) CheckCpuClock(task);
+    const std::int64_t cpu = ThreadCpuClockNs(task.tid);
+    if (cpu >= 0 && task.host_origin_ns >= 0) task.host_cpu_ns = cpu - task.host_origin_ns;
     kill(task.process->pid, SIGKILL);
   }
   // Everything that descends from this process and lost its parent is ours to end.
@@ -429,7 +438,6 @@ void Engine::Report(RunReport* report) {
   report->samples = world_.samples();
   report->commands = world_.commands();
   report->client_ns = client_host_ns_;
-  report->coordinating_ns = report->real_ns - report->client_ns - report->dynamics_ns;
   for (Task& task : tasks_) {
     if (!task.process->is_client || task.slot < 0) continue;
     ClientReport client;
@@ -437,7 +445,7 @@ void Engine::Report(RunReport* report) {
     client.charged_ns = task.charged_ns;
     client.stolen_ns = Slot(task).clock.stolen_ns.load();
     client.activations = task.activations;
-    client.host_cpu_ns = task.host_origin_ns;
+    client.host_cpu_ns = task.host_cpu_ns;
     report->clients.push_back(client);
   }
 }

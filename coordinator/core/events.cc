@@ -147,6 +147,7 @@ void Engine::ProcessEnded(std::size_t index) {
   for (auto& [id, timer] : process.timers) {
     if (timer.event_fd >= 0) close(timer.event_fd);
   }
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
   close(process.pidfd);
   for (Process& other : processes_) {
     if (other.pid == process.parent && !other.dead) other.children_cpu_ns += charged;

@@ -32,7 +32,11 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
 }
 
 void Engine::EndWatches(Task& task) {
-  for (const int fd : task.watched) close(fd);  // closing takes it out of the epoll set
+  for (const int fd : task.watched) {
+    // The client shares the open file, so closing alone would leave it in the epoll set.
+    epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+    close(fd);
+  }
   task.watched.clear();
 }
 

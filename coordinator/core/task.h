@@ -45,6 +45,7 @@ struct Task {
   std::int64_t debt_ns = 0;        // executed beyond a horizon, charged first at the next dispatch
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
+  std::int64_t host_cpu_ns = -1;  // used in the run, by the thread's own clock; -1: it ended before
   std::uint64_t dispatches = 0;
   bool parked = true;  // at its gate, rather than stopped by priority
   Level level = Level::kWaiting;
