@@ -1,10 +1,10 @@
 // tcsim: the command.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -39,11 +39,12 @@ double OverheadPercent(const tcs::RunReport& r) {
 void PrintSummary(const tcs::RunReport& r) {
   fmt::print("virtual {:.3f} s in {:.3f} s real; drift {:.3f} ms; staleness {} ns\n",
              Seconds(r.virtual_ns), Seconds(r.real_ns), Seconds(r.drift_ns) * 1e3, r.staleness_ns);
-  fmt::print("clients {:.3f} s, dynamics {:.3f} s, coordinating {:.3f} s ({:.2f} %), not on our CPU {:.3f} s, "
-             "{} dispatches\n",
-             Seconds(r.client_ns), Seconds(r.dynamics_ns), Seconds(r.coordinating_ns),
-             OverheadPercent(r),
-             Seconds(r.real_ns - r.client_ns - r.dynamics_ns - r.coordinating_ns), r.switches);
+  fmt::print(
+      "clients {:.3f} s, dynamics {:.3f} s, coordinating {:.3f} s ({:.2f} %), not on our CPU "
+      "{:.3f} s, "
+      "{} dispatches\n",
+      Seconds(r.client_ns), Seconds(r.dynamics_ns), Seconds(r.coordinating_ns), OverheadPercent(r),
+      Seconds(r.real_ns - r.client_ns - r.dynamics_ns - r.coordinating_ns), r.switches);
   for (const tcs::ClientReport& c : r.clients) {
     fmt::print("  {:<24} charged {:8.3f} s (own CPU clock {:8.3f} s)  activations {}\n", c.name,
                Seconds(c.charged_ns), Seconds(c.host_cpu_ns), c.activations);
@@ -112,7 +113,8 @@ int main(int argc, char** argv) {
       Fail(error->message);
       return 127;
     }
-    if (auto error = tcs::CheckExecutable(std::get<std::string>(found))) return Fail(error->message);
+    if (auto error = tcs::CheckExecutable(std::get<std::string>(found)))
+      return Fail(error->message);
     tcs::Scenario scenario;
     scenario.duration = tcs::VirtualDuration::Nanoseconds(tcs::shm::kNeverNs);
     tcs::ClientSpec client;
@@ -134,7 +136,8 @@ int main(int argc, char** argv) {
   if (seeded->count() > 0) overrides.seed = seed;
   auto loaded = tcs::LoadScenario(path, overrides);
   if (auto* error = std::get_if<tcs::LoadError>(&loaded)) return Fail(error->message);
-  if (mkdir(out.c_str(), 0755) != 0 && errno != EEXIST) return Fail("cannot make the folder " + out);
+  if (mkdir(out.c_str(), 0755) != 0 && errno != EEXIST)
+    return Fail("cannot make the folder " + out);
   options.output_directory = std::filesystem::absolute(out);
   const tcs::RunReport report = tcs::RunScenario(std::get<tcs::Scenario>(loaded), options);
   if (!report.error.empty()) return Fail(report.error);

@@ -25,7 +25,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   const bool fixed = options_.accounting == shm::Accounting::kFixed;
-  if (task.host_origin_ns < 0) task.host_origin_ns = ThreadCpuClockNs(task.tid);
+  if (task.host_origin_ns < 0)
+    task.host_origin_ns = ThreadCpuClockNs(task.tid, task.process->threads == 1);
   page.base_time_ns = task.cpu->progress_ns + task.debt_ns;
   page.base_cpu_ns = task.charged_ns;
   page.horizon_ns = horizon_ns;
@@ -85,10 +86,12 @@ void Engine::ArmPreemption(const Task& task) {
   if (task.slot < 0) {
     spec.it_value.tv_sec = 1;
   } else if (options_.accounting == shm::Accounting::kFixed) {
-    spec.it_value.tv_sec = 1;  // nothing to preempt for; only the watch over a thread that never calls
+    spec.it_value.tv_sec =
+        1;  // nothing to preempt for; only the watch over a thread that never calls
   } else {
-    const double left = static_cast<double>(running_horizon_ns_ - task.cpu->progress_ns -
-                                            task.debt_ns) * task.cpu->speed;
+    const double left =
+        static_cast<double>(running_horizon_ns_ - task.cpu->progress_ns - task.debt_ns) *
+        task.cpu->speed;
     const auto ns = std::max<std::int64_t>(
         5'000, static_cast<std::int64_t>(std::min(left, 1e9)) - kTimerLatenessNs);
     spec.it_value = timespec{ns / 1'000'000'000, ns % 1'000'000'000};
@@ -100,7 +103,7 @@ void Engine::CheckCpuClock(Task& task) {
   if (options_.accounting == shm::Accounting::kFixed) return;
   shm::ClockPage& page = Slot(task).clock;
   const shm::ClockReading reading = shm::ReadClock(page);
-  const std::int64_t cpu = ThreadCpuClockNs(task.tid);
+  const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
   if (cpu >= 0) shm::RemoveStolen(page, reading, cpu);
 }
 
@@ -132,8 +135,7 @@ void Engine::Settle(Task& task) {
   if (notified_) reached = std::min(reached, std::max(slot.note.time_ns, start));
   if (notified_ && slot.note.time_ns >= running_horizon_ns_) reached = reading.time_ns;
   const std::int64_t executed = std::max<std::int64_t>(0, reading.cpu_ns - task.charged_ns);
-  client_host_ns_ +=
-      static_cast<std::int64_t>(static_cast<double>(executed) * task.cpu->speed);
+  client_host_ns_ += static_cast<std::int64_t>(static_cast<double>(executed) * task.cpu->speed);
   task.charged_ns = reading.cpu_ns;
   std::int64_t progress = std::clamp(reached, start, std::max(start, running_horizon_ns_));
   // Stopped a little early for its horizon: the rest is credit.
@@ -163,8 +165,9 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     if (task.slot < 0 && preempted_) {
       preempted_ = false;
       if (++starting_turns == kStartTurnsOfOneSecond) {
-        report_.error = task.process->name +
-                        " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
+        report_.error =
+            task.process->name +
+            " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
         break;
       }
     }

@@ -257,8 +257,7 @@ void Engine::FireDue(VirtualCpu& cpu) {
       if (timer.next_ns == 0 || timer.next_ns > cpu.progress_ns) continue;
       std::uint64_t count = 1;
       if (timer.interval_ns > 0) {
-        count +=
-            static_cast<std::uint64_t>((cpu.progress_ns - timer.next_ns) / timer.interval_ns);
+        count += static_cast<std::uint64_t>((cpu.progress_ns - timer.next_ns) / timer.interval_ns);
         timer.next_ns += static_cast<std::int64_t>(count) * timer.interval_ns;
       } else {
         timer.next_ns = 0;
@@ -366,9 +365,8 @@ RunReport Engine::Run() {
   const std::int64_t cpu_start = HostNs(CLOCK_THREAD_CPUTIME_ID);
   end_ns_ = scenario_.duration.ns();
   while (report_.error.empty() && !stop_requested_) {
-    const bool alive = std::any_of(tasks_.begin(), tasks_.end(), [](const Task& task) {
-      return task.state != TaskState::kDead;
-    });
+    const bool alive = std::any_of(tasks_.begin(), tasks_.end(),
+                                   [](const Task& task) { return task.state != TaskState::kDead; });
     if (!alive) break;
     PollUnseen();
     std::int64_t least = shm::kNeverNs;
@@ -416,7 +414,7 @@ void Engine::Shutdown() {
   header_->shutdown.store(1);
   for (Task& task : tasks_) {
     if (task.state == TaskState::kDead) continue;
-    const std::int64_t cpu = ThreadCpuClockNs(task.tid);
+    const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
     if (cpu >= 0 && task.host_origin_ns >= 0) task.host_cpu_ns = cpu - task.host_origin_ns;
     kill(task.process->pid, SIGKILL);
   }

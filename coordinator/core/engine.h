@@ -1,5 +1,6 @@
-// The coordinator's state and its parts: the choice of the next leaf (engine.cc), the dispatch of a thread and its
-// charge (dispatch.cc), what clients say (notifications.cc), and what the kernel says (events.cc).
+// The coordinator's state and its parts: the choice of the next leaf (engine.cc), the dispatch of a
+// thread and its charge (dispatch.cc), what clients say (notifications.cc), and what the kernel
+// says (events.cc).
 #pragma once
 
 #include <deque>
@@ -17,7 +18,15 @@ class Engine {
 
  private:
   enum class Tag : std::uint32_t {
-    kPipe, kTimer, kListener, kConnection, kProcess, kAwaited, kCommand, kSignal, kDetector
+    kPipe,
+    kTimer,
+    kListener,
+    kConnection,
+    kProcess,
+    kAwaited,
+    kCommand,
+    kSignal,
+    kDetector
   };
 
   // Set-up and end.
@@ -66,7 +75,9 @@ class Engine {
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
   Task* NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name, int priority);
   void Warn(const std::string& text);
-  shm::ThreadSlot& Slot(const Task& task) { return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot)); }
+  shm::ThreadSlot& Slot(const Task& task) {
+    return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
+  }
 
   const Scenario scenario_;
   const RunOptions options_;

@@ -1,4 +1,5 @@
-// What the kernel says: notifications in the pipe, timers, descriptors that clients wait for, births and deaths.
+// What the kernel says: notifications in the pipe, timers, descriptors that clients wait for,
+// births and deaths.
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/epoll.h>
@@ -88,6 +89,7 @@ void Engine::Attach(int connection) {
     // Another thread of a known process.
     task = &tasks_.emplace_back();
     task->process = process;
+    ++process->threads;
     task->cpu = process->cpu;
     task->tid = hello.tid;
     task->order = static_cast<int>(tasks_.size() - 1);
@@ -263,6 +265,10 @@ bool Engine::PollEvents(int timeout_ms) {
     const char state = ThreadState(running_->tid);
     if (state == 'S' && running_->slot >= 0) {
       running_->state = TaskState::kUnseen;
+      Warn(
+          fmt::format("{} blocked in system call {}, which the shim does not see; that time is not "
+                      "charged",
+                      running_->process->name, ThreadSystemCall(running_->tid)));
       running_->parked = false;
       return true;
     }

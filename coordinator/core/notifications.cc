@@ -4,9 +4,8 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <cstring>
-
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "coordinator/core/engine.h"
@@ -15,7 +14,8 @@ namespace tcs {
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  const bool reads = task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
+  const bool reads =
+      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
   if (task.state == TaskState::kWaiting) ++task.activations;
   EndWatches(task);
   task.waits_for_fds = task.waits_for_child = false;
@@ -96,7 +96,8 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
     // Setting a timer forgets expirations that were not read; emptying must not wait.
     eventfd_t unread;
     const std::uint64_t one = 1;
-    if (write(timer.event_fd, &one, sizeof one) == sizeof one) eventfd_read(timer.event_fd, &unread);
+    if (write(timer.event_fd, &one, sizeof one) == sizeof one)
+      eventfd_read(timer.event_fd, &unread);
   }
 }
 
@@ -155,8 +156,9 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       const bool real_time = policy == SCHED_FIFO || policy == SCHED_RR;
       Slot(task).policy = policy;
       Slot(task).priority = static_cast<std::int32_t>(note.args[1]);
-      task.priority = real_time ? 100 + static_cast<int>(std::clamp<std::int64_t>(note.args[1], 1, 99))
-                                : task.process->priority;
+      task.priority = real_time
+                          ? 100 + static_cast<int>(std::clamp<std::int64_t>(note.args[1], 1, 99))
+                          : task.process->priority;
       return;
     }
     case Kind::kUncovered: {

@@ -69,6 +69,7 @@ struct Process {
   bool alarm_pending = false;
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
   bool dead = false;
+  int threads = 1;         // that ever attached
   bool is_client = false;  // named in the scenario, rather than a child of one
 };
 

@@ -14,6 +14,7 @@
 #include <x86intrin.h>
 
 #include <cstdlib>
+#include <fstream>
 
 namespace tcs {
 
@@ -62,12 +63,18 @@ void SetLevel(pid_t tid, Level level) {
   sched_setscheduler(tid, SCHED_FIFO, &param);
 }
 
-std::int64_t ThreadCpuClockNs(pid_t tid) {
-  // The kernel's encoding of a thread's CPU clock (posix-timers.h): CPUCLOCK_SCHED, per thread.
-  const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(tid) << 3) | 6u);
-  timespec t;
-  if (clock_gettime(id, &t) != 0) return -1;
-  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread) {
+  if (only_thread) {
+    // The kernel's encoding of a process's CPU clock (posix-timers.h): CPUCLOCK_SCHED.
+    const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(tid) << 3) | 2u);
+    timespec t;
+    if (clock_gettime(id, &t) != 0) return -1;
+    return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+  }
+  // A thread's own clock can be read by its own process only; this is the same number.
+  std::ifstream file("/proc/" + std::to_string(tid) + "/schedstat");
+  std::int64_t on_cpu_ns = -1;
+  return file >> on_cpu_ns ? on_cpu_ns : -1;
 }
 
 char ThreadState(pid_t tid) {
@@ -81,6 +88,12 @@ char ThreadState(pid_t tid) {
   text[n] = '\0';
   const char* end = strrchr(text, ')');
   return end != nullptr && end + 2 < text + n ? end[2] : 'X';
+}
+
+std::string ThreadSystemCall(pid_t tid) {
+  std::ifstream file("/proc/" + std::to_string(tid) + "/syscall");
+  std::string number;
+  return file >> number ? number : "unknown";
 }
 
 int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }

@@ -26,10 +26,13 @@ std::string EnterRealTime();
 void SetLevel(pid_t tid, Level level);
 
 // CPU time of a thread of any process; -1 if it has ended.
-std::int64_t ThreadCpuClockNs(pid_t tid);
+std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread);
 
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
+
+// The number of the system call that a thread is in, as text; "unknown" if it is in none.
+std::string ThreadSystemCall(pid_t tid);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);

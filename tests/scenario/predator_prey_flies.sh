@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# The example flies: drift within its bound, every client served, charges as the CPU clocks say.
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+"$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 3s --out "$out" >"$out/said"
+python3 - "$out/summary.json" <<'PY' || fail "$(cat "$out/said")"
+import json, sys
+s = json.load(open(sys.argv[1]))
+assert s["virtual_ns"] == 3_000_000_000, s
+assert 0 < s["drift_ns"] <= 1_000_000, s
+assert s["staleness_ns"] == 0, s
+assert s["commands"] >= 500, s  # two controllers at 100 Hz
+charged = sum(c["charged_ns"] for c in s["clients"].values())
+own = sum(c["host_cpu_ns"] for c in s["clients"].values())
+assert charged > 1_500_000_000 and abs(charged - own) < 0.01 * own, (charged, own)
+PY
+(($(wc -l <"$out/bodies.csv") > 600)) || fail "the body states are missing"
