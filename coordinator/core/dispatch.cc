@@ -148,6 +148,15 @@ void Engine::Settle(Task& task) {
 }
 
 void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
+  if (task.notified_early) {
+    task.notified_early = false;
+    task.parked = true;
+    task.state = TaskState::kReady;
+    task.reply[0] = task.reply[1] = 0;
+    const shm::Notification early = Slot(task).note;
+    Handle(task, early);
+    return;
+  }
   running_ = &task;
   running_horizon_ns_ = horizon_ns;
   notified_ = preempted_ = false;

@@ -202,6 +202,9 @@ bool Engine::PollEvents(int timeout_ms) {
               CheckCpuClock(task);
               const shm::Notification note = Slot(task).note;
               Handle(task, note);
+            } else if (!task.parked) {
+              // It ran on while the coordinator slept for a thread that the kernel held.
+              task.notified_early = true;
             }
           }
         }

@@ -47,7 +47,8 @@ struct Task {
   std::int64_t host_origin_ns = -1;
   std::int64_t host_cpu_ns = -1;  // used in the run, by the thread's own clock; -1: it ended before
   std::uint64_t dispatches = 0;
-  bool parked = true;  // at its gate, rather than stopped by priority
+  bool parked = true;           // at its gate, rather than stopped by priority
+  bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   Level level = Level::kWaiting;
   std::int64_t activations = 0;
 };
