@@ -108,10 +108,13 @@ pid_t Spawn(const SpawnRequest& request) {
   argv.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t pid = fork();
+  if (pid > 0) {
+    // Here, not in the child: the child first runs when it is dispatched, at another level by then.
+    SetLevel(pid, Level::kWaiting);
+  }
   if (pid != 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  SetLevel(0, Level::kWaiting);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
