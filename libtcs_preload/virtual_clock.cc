@@ -84,13 +84,23 @@ std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns) {
 
 void HoldForRead(GuestThread& thread) {
   const std::int64_t now = NowNs(thread);
-  if (now <= thread.slot->clock.read_safe_ns) return;
-  Exchange(thread, Request{.kind = NotificationKind::kRead});
+  ClockPage& page = thread.slot->clock;
+  if (now <= page.read_safe_ns) return;
+  if (g_header->sync == shm::Sync::kConsistent) {
+    Exchange(thread, Request{.kind = NotificationKind::kRead});
+    if (now <= page.read_safe_ns || IsShutDown()) return;
+  }
+  // What is read now is older than the read by this much.
+  const std::int64_t stale = now - page.read_safe_ns;
+  if (stale > page.staleness_ns.load(std::memory_order_relaxed)) {
+    page.staleness_ns.store(stale, std::memory_order_relaxed);
+  }
 }
 
 void HoldForWrite(GuestThread& thread) {
   const std::int64_t now = NowNs(thread);
   if (now <= thread.slot->clock.write_safe_ns) return;
+  if (g_header->sync != shm::Sync::kConsistent) return;
   Exchange(thread, Request{.kind = NotificationKind::kWrite});
 }
 

@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -70,6 +70,10 @@ enum class WakeReason : std::uint32_t {
 
 enum class Accounting : std::uint32_t { kMeasured = 1, kFixed = 2 };
 
+// Whether reads and writes wait until they are safe, or happen at once in a world that stands
+// still.
+enum class Sync : std::uint32_t { kConsistent = 1, kCallback = 2 };
+
 // A thread's clock. See clock_page.h for how it is read and moved.
 struct ClockPage {
   // Written by the coordinator at each dispatch.
@@ -97,9 +101,12 @@ struct ClockPage {
   std::int64_t call_cost_ns;         // of each intercepted call; 0 under measured accounting
   std::int64_t other_cpu_ns;         // charged to the process's other threads, living and dead
   std::int64_t children_cpu_ns;      // charged to the process's ended children
-  std::uint64_t reserved[5];
+  // Written by the thread: the furthest that a read went beyond what was safe.
+  std::atomic<std::int64_t> staleness_ns;
+  std::uint64_t reserved[4];
 };
 static_assert(sizeof(ClockPage) == 192);
+static_assert(offsetof(ClockPage, staleness_ns) == 152);
 static_assert(offsetof(ClockPage, executed_adjust) == 64);
 static_assert(offsetof(ClockPage, last_shown_ns) == 80);
 
@@ -162,7 +169,7 @@ struct alignas(64) SegmentHeader {
   std::int64_t monotonic_offset_ns;     // CLOCK_MONOTONIC minus virtual time; never 0
   std::int64_t realtime_offset_ns;      // CLOCK_REALTIME minus virtual time; never 0
   std::int32_t coordinator_pid;
-  std::uint32_t reserved32;
+  Sync sync;
   std::uint64_t reserved[8];
 };
 static_assert(sizeof(SegmentHeader) == 128);

@@ -1,32 +1,57 @@
 // The scheduler process: keeps every leaf's progress together, dispatches threads on the one CPU
-// they share, charges them, and answers what they notify. One object runs one scenario, on the
-// calling thread.
+// they share, charges them, and answers what they notify. One call runs one scenario, on the
+// calling thread, which must be the process's only one. All times are nanoseconds: virtual, or real
+// where the name says so.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "coordinator/core/task.h"
-#include "coordinator/core/world.h"
+#include "coordinator/scenario/scenario.h"
+#include "shm/layout.h"
 
 namespace tcs {
 
+// How a run is going, for people who watch.
+struct RunProgress {
+  struct Load {
+    std::string client;
+    std::int64_t charged_ns = 0;
+  };
+  std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0;
+  std::vector<Load> clients;
+};
+
 struct RunOptions {
   shm::Accounting accounting = shm::Accounting::kMeasured;
+  shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   std::string preload_library;
+  // Called about five times a real second, if set; what it takes is the coordinator's.
+  std::function<void(const RunProgress&)> on_progress;
 };
 
 struct ClientReport {
   std::string name;
-  std::int64_t charged_ns = 0, host_cpu_ns = 0, stolen_ns = 0, activations = 0;
+  std::int64_t charged_ns = 0;
+  std::int64_t host_cpu_ns = 0;  // by the thread's own clock; -1: it ended before
+  std::int64_t stolen_ns = 0;    // of what the TSC counted while it ran, others had this much
+  std::int64_t activations = 0, overruns = 0;
+  std::int64_t ended_at_ns = -1;  // before the run did; -1: it lived to the end
+  int wait_status = 0;            // as of waitpid, if it ended
 };
 
 struct RunReport {
   std::string error;    // one sentence; empty if the run went to its end
   int exit_status = 0;  // of the first client, as a shell would report it
-  std::int64_t virtual_ns = 0, drift_ns = 0, staleness_ns = 0;
-  std::int64_t real_ns = 0, client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;
+  bool interrupted = false;
+  std::int64_t virtual_ns = 0;
+  std::int64_t drift_ns = 0;      // largest difference of progress between two leaves
+  std::int64_t staleness_ns = 0;  // largest, over all reads
+  std::int64_t real_ns = 0;
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
   std::int64_t switches = 0, samples = 0, commands = 0;
   std::vector<ClientReport> clients;
   std::vector<std::string> warnings;

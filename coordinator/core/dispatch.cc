@@ -2,51 +2,57 @@
 #include <linux/futex.h>
 #include <signal.h>
 #include <sys/syscall.h>
-#include <sys/timerfd.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kTimerLatenessNs = 20'000;
+// A thread stopped this close before its horizon has reached it: the rest is credit.
+constexpr std::int64_t kCreditNs = 20'000;
 constexpr std::int64_t kCheckAfterNs = 100'000;
-constexpr int kStartTurnsOfOneSecond = 30;
+// Shown too early by what was stolen unnoticed, and stopped early: no more than both.
+constexpr std::int64_t kMostCreditNs = kCheckAfterNs + kCreditNs;
+constexpr std::int64_t kLeastSliceNs = 2'000;
+constexpr std::int64_t kStartTurnNs = 1'000'000'000;
+constexpr int kStartTurns = 30;
 
 }  // namespace
 
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
-  const bool fixed = options_.accounting == shm::Accounting::kFixed;
-  if (task.host_origin_ns < 0)
+  const VirtualCpu& cpu = *task.cpu;
+  const std::int64_t frozen = task.process->frozen_ns;
+  if (task.host_origin_ns < 0) {
     task.host_origin_ns = ThreadCpuClockNs(task.tid, task.process->threads == 1);
-  page.base_time_ns = task.cpu->progress_ns + task.debt_ns;
+  }
+  page.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
   page.base_cpu_ns = task.charged_ns;
-  page.horizon_ns = horizon_ns;
+  page.horizon_ns = horizon_ns + frozen;
   page.idle_until_ns = idle_until_ns;
-  page.read_safe_ns = ReadSafe(*task.cpu);
-  page.write_safe_ns = OthersNext(*task.cpu);
+  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
   page.host_cpu_origin_ns = task.host_origin_ns;
-  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / task.cpu->speed);
+  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.speed);
   page.ns_per_tick_q32 =
-      fixed ? 0
-            : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / task.cpu->speed);
+      IsFixed() ? 0 : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.speed);
   page.check_after_ticks =
-      fixed ? ~std::uint64_t{0}
-            : (static_cast<std::uint64_t>(kCheckAfterNs) << 32) / ns_per_tick_q32_;
-  page.call_cost_ns = fixed ? task.process->call_cost_ns : 0;
+      IsFixed() ? ~std::uint64_t{0}
+                : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
+  page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
   page.other_cpu_ns = task.process->ended_cpu_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
-  const std::int64_t last = page.last_shown_ns.load();
-  page.last_shown_ns.store(std::max(last, task.cpu->progress_ns));
-  slot.core = task.cpu->core;
+  const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
+  page.last_shown_ns.store(std::max(last, cpu.progress_ns + frozen), std::memory_order_relaxed);
+  slot.core = cpu.core;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);
@@ -57,9 +63,10 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   page.waited_adjust.store(number);
 }
 
+// Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
+// switch.
 void Engine::Resume(Task& task) {
-  if (last_ != nullptr && last_ != &task && last_->state != TaskState::kDead && !last_->parked &&
-      last_->level != Level::kWaiting) {
+  if (last_ != nullptr && last_ != &task && !last_->parked && last_->level != Level::kWaiting) {
     SetLevel(last_->tid, Level::kWaiting);
     last_->level = Level::kWaiting;
   }
@@ -75,42 +82,33 @@ void Engine::Resume(Task& task) {
     }
   }
   task.parked = false;
-  if (!detector_armed_) {
-    const std::uint64_t one = 1;
-    detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
-  }
+  RearmDetector();
 }
 
-void Engine::ArmPreemption(const Task& task) {
-  itimerspec spec{};
-  if (task.slot < 0) {
-    spec.it_value.tv_sec = 1;
-  } else if (options_.accounting == shm::Accounting::kFixed) {
-    spec.it_value.tv_sec =
-        1;  // nothing to preempt for; only the watch over a thread that never calls
-  } else {
-    const double left =
-        static_cast<double>(running_horizon_ns_ - task.cpu->progress_ns - task.debt_ns) *
-        task.cpu->speed;
-    const auto ns = std::max<std::int64_t>(
-        5'000, static_cast<std::int64_t>(std::min(left, 1e9)) - kTimerLatenessNs);
-    spec.it_value = timespec{ns / 1'000'000'000, ns % 1'000'000'000};
-  }
-  timerfd_settime(timer_, 0, &spec, nullptr);
+// Real time until the running thread has to be preempted, less what timers are late.
+std::int64_t Engine::HostNsToHorizon(const Task& task) {
+  if (task.slot < 0 || IsFixed()) return kStartTurnNs;
+  const std::int64_t now = shm::ReadClock(Slot(task).clock).time_ns - task.process->frozen_ns;
+  const double left = static_cast<double>(running_horizon_ns_ - now) * task.cpu->speed;
+  return std::max(kLeastSliceNs, static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_));
 }
 
 void Engine::CheckCpuClock(Task& task) {
-  if (options_.accounting == shm::Accounting::kFixed) return;
+  if (IsFixed()) return;
   shm::ClockPage& page = Slot(task).clock;
   const shm::ClockReading reading = shm::ReadClock(page);
   const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
   if (cpu >= 0) shm::RemoveStolen(page, reading, cpu);
 }
 
-std::int64_t Engine::RunningNow() {
+// The virtual time of what the running thread has just done to others: the time that its clock
+// showed when it held for the write.
+std::int64_t Engine::WrittenAt() {
   if (running_ == nullptr || running_->slot < 0) return event_ns_;
-  const shm::ClockPage& page = Slot(*running_).clock;
-  return std::max(running_->cpu->progress_ns, shm::ShownTime(page, shm::ReadClock(page)));
+  const std::int64_t start = running_->cpu->progress_ns;
+  if (IsCallback()) return start;
+  const std::int64_t shown = Slot(*running_).clock.last_shown_ns.load();
+  return std::clamp(shown, start, std::max(start, running_horizon_ns_));
 }
 
 bool Engine::ReachedHorizon(Task& task) {
@@ -118,7 +116,7 @@ bool Engine::ReachedHorizon(Task& task) {
   if (shm::ReadClock(page).tsc - page.last_check_tsc.load() > page.check_after_ticks) {
     CheckCpuClock(task);
   }
-  return shm::ReadClock(page).time_ns >= running_horizon_ns_ - kTimerLatenessNs;
+  return shm::ReadClock(page).time_ns - task.process->frozen_ns >= running_horizon_ns_ - kCreditNs;
 }
 
 void Engine::Settle(Task& task) {
@@ -129,29 +127,69 @@ void Engine::Settle(Task& task) {
     CheckCpuClock(task);
   }
   const shm::ClockReading reading = shm::ReadClock(page);
+  const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
-  std::int64_t reached = reading.time_ns;
+  std::int64_t reached = reading.time_ns - frozen;
   // What the notification itself takes is ours, not the client's.
-  if (notified_) reached = std::min(reached, std::max(slot.note.time_ns, start));
-  if (notified_ && slot.note.time_ns >= running_horizon_ns_) reached = reading.time_ns;
+  const std::int64_t noted = slot.note.time_ns - frozen;
+  if (notified_ && noted < running_horizon_ns_) reached = std::min(reached, std::max(noted, start));
   const std::int64_t executed = std::max<std::int64_t>(0, reading.cpu_ns - task.charged_ns);
   client_host_ns_ += static_cast<std::int64_t>(static_cast<double>(executed) * task.cpu->speed);
   task.charged_ns = reading.cpu_ns;
-  std::int64_t progress = std::clamp(reached, start, std::max(start, running_horizon_ns_));
-  // Stopped a little early for its horizon: the rest is credit.
-  if (preempted_ && !notified_ && running_horizon_ns_ - progress <= kTimerLatenessNs) {
+  if (IsCallback()) {
+    // The world stood still meanwhile: only the program's own clock has moved.
+    task.process->frozen_ns += std::max<std::int64_t>(0, reached - start);
+    most_frozen_ns_ = std::max(most_frozen_ns_, task.process->frozen_ns);
+    trace_.Slice(task.row, start + frozen, start + task.process->frozen_ns);
+    return;
+  }
+  // What the clock has shown has happened, even where stolen time was found in it afterwards.
+  const std::int64_t shown = page.last_shown_ns.load() - frozen;
+  std::int64_t progress =
+      std::clamp(std::max(reached, shown), start, std::max(start, running_horizon_ns_));
+  if (preempted_ && !notified_ && running_horizon_ns_ - progress <= kCreditNs) {
     progress = std::max(progress, running_horizon_ns_);
   }
   task.debt_ns = reached - progress;
-  if (task.debt_ns < -kTimerLatenessNs) task.debt_ns = 0;
+  if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
   task.cpu->progress_ns = progress;
+  const bool slept = shm::AdjustValue(reading.waited_word) != 0;
+  trace_.Slice(task.row, start, slept ? std::min(progress, start + executed) : progress);
+}
+
+// Until the running thread has notified, reached its horizon, or must make room for another one.
+void Engine::AwaitStop(Task& task) {
+  int starting_turns = 0;
+  held_turns_ = 0;
+  for (;;) {
+    const std::int64_t asked_ns = HostNsToHorizon(task);
+    const std::uint64_t asked_tsc = __rdtsc();
+    if (PollEvents(asked_ns)) return;
+    if (!preempted_) continue;
+    preempted_ = false;
+    if (task.slot < 0) {
+      if (++starting_turns < kStartTurns) continue;
+      report_.error =
+          task.process->name +
+          " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
+      return;
+    }
+    if (IsFixed()) continue;
+    const double took_ns = static_cast<double>(__rdtsc() - asked_tsc) / ticks_per_ns_;
+    const double late_ns = std::clamp(took_ns - static_cast<double>(asked_ns), 0.0, 50'000.0);
+    lateness_ns_ += (late_ns - lateness_ns_) / 16;
+    if (ReachedHorizon(task)) {
+      preempted_ = true;
+      return;
+    }
+  }
 }
 
 void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   if (task.notified_early) {
     task.notified_early = false;
     task.parked = true;
-    task.state = TaskState::kReady;
+    SetState(task, TaskState::kReady);
     task.reply[0] = task.reply[1] = 0;
     const shm::Notification early = Slot(task).note;
     Handle(task, early);
@@ -160,31 +198,19 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   running_ = &task;
   running_horizon_ns_ = horizon_ns;
   notified_ = preempted_ = false;
-  if (task.state == TaskState::kHolding) task.state = TaskState::kReady;
-  if (task.process->alarm_pending && task.slot >= 0) {
-    task.process->alarm_pending = false;
-    kill(task.process->pid, SIGALRM);
+  if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
+  if (task.slot >= 0) {
+    for (const int signal : task.process->pending_signals) kill(task.process->pid, signal);
+    task.process->pending_signals.clear();
+    WritePage(task, horizon_ns, idle_until_ns);
   }
-  if (task.slot >= 0) WritePage(task, horizon_ns, idle_until_ns);
-  ArmPreemption(task);
   Resume(task);
   ++report_.switches;
-  int starting_turns = 0;
-  while (!PollEvents(-1)) {
-    if (task.slot < 0 && preempted_) {
-      preempted_ = false;
-      if (++starting_turns == kStartTurnsOfOneSecond) {
-        report_.error =
-            task.process->name +
-            " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
-        break;
-      }
-    }
-    ArmPreemption(task);
-  }
+  AwaitStop(task);
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   event_ns_ = task.cpu->progress_ns;
+  ExpireCpuTimers(*task.process);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;
     task.reply[0] = task.reply[1] = 0;

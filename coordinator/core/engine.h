@@ -1,12 +1,16 @@
-// The coordinator's state and its parts: the choice of the next leaf (engine.cc), the dispatch of a
-// thread and its charge (dispatch.cc), what clients say (notifications.cc), and what the kernel
-// says (events.cc).
+// The coordinator's state and its parts: the loop and the choice of who acts (engine.cc), set-up
+// (setup.cc) and end (finish.cc), the dispatch of a thread and its charge (dispatch.cc), what
+// clients say (notifications.cc), their timers (timers.cc), and what the kernel says (events.cc).
 #pragma once
 
 #include <deque>
 #include <memory>
 
 #include "coordinator/core/coordinator.h"
+#include "coordinator/core/task.h"
+#include "coordinator/core/world.h"
+#include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/trace/schedule_trace.h"
 
 namespace tcs {
 
@@ -19,7 +23,6 @@ class Engine {
  private:
   enum class Tag : std::uint32_t {
     kPipe,
-    kTimer,
     kListener,
     kConnection,
     kProcess,
@@ -29,52 +32,79 @@ class Engine {
     kDetector
   };
 
-  // Set-up and end.
+  // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
+  std::string PrepareSegment();
+  std::string PrepareListener();
+  std::string PrepareDetector();
   std::string StartClients();
-  void Shutdown();
-  void Report(RunReport* report);
 
-  // The choice (engine.cc).
-  std::int64_t NextTime(const VirtualCpu& cpu) const;
-  std::int64_t OthersNext(const VirtualCpu& cpu) const;
-  std::int64_t ReadSafe(const VirtualCpu& cpu) const;
-  bool IsRunnable(const Task& task) const;
-  bool IsSafe(const Task& task) const;
-  Task* Pick(const VirtualCpu& cpu) const;
-  VirtualCpu* PickCpu();
-  void FireDue(VirtualCpu& cpu);
+  // The loop (engine.cc).
+  bool Step();
   void StepCpu(VirtualCpu& cpu);
-  void NoteDrift();
+  bool StepWorld();
+  bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until) const;
-  void WaitOutside();
+  bool IsSafe(const Task& task) const;
   void PollUnseen();
+  void WaitOutside();
+  void ShowProgress();
+
+  // States (engine.cc). Whoever changes what a virtual CPU could do next refreshes it.
+  static bool IsRunnable(const Task& task);
+  void SetState(Task& task, TaskState state);
+  void Refresh(VirtualCpu& cpu);
+  void MakeReady(Task& task, shm::WakeReason reason);
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
-  void ArmPreemption(const Task& task);
+  void AwaitStop(Task& task);
+  std::int64_t HostNsToHorizon(const Task& task);
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
   void CheckCpuClock(Task& task);
-  std::int64_t RunningNow();
+  std::int64_t WrittenAt();
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
   void WaitForFds(Task& task, const shm::Notification& note);
-  void SetTimer(Task& task, const shm::Notification& note);
-  void MakeReady(Task& task, shm::WakeReason reason);
+  void WaitForChild(Task& task);
+  void NoteSpawned(Task& task, pid_t pid);
   void EndWatches(Task& task);
 
-  // Events (events.cc). Returns true if the running thread has to be stopped.
-  bool PollEvents(int timeout_ms);
+  // Timers (timers.cc).
+  void SetTimer(Task& task, const shm::Notification& note);
+  void FireDue(VirtualCpu& cpu);
+  bool Expire(Process& process);
+  void ExpireCpuTimers(Process& process);
+  std::int64_t NextCpuExpiry(const Process& process) const;
+  std::int64_t ChargedTo(const Process& process) const;
+  static void FindNextExpiry(Process& process);
+
+  // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
+  // negative: none.
+  bool PollEvents(std::int64_t timeout_ns);
+  void NotificationArrived(Task& task);
+  bool BlockedInKernel();
+  void RearmDetector();
   void Attach(int connection);
+  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid);
+  void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);
-  void DetectorFired();
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
   Task* NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name, int priority);
+  Task* AddTask(Process& process, pid_t tid);
+  void EndTask(Task& task);
+
+  // The end (finish.cc).
+  void Shutdown();
+  void Report(RunReport* report);
+
   void Warn(const std::string& text);
+  bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
+  bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
   shm::ThreadSlot& Slot(const Task& task) {
     return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
   }
@@ -82,24 +112,42 @@ class Engine {
   const Scenario scenario_;
   const RunOptions options_;
   World world_;
+  TemporalConsistency root_;
+  ScheduleTrace trace_;
+  int world_row_ = 0;
   std::deque<VirtualCpu> cpus_;
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
+  std::vector<Task*> by_slot_;
+  std::deque<int> free_slots_;
+  int living_ = 0;             // threads that are not dead
+  int unseen_ = 0;             // threads in TaskState::kUnseen
+  int waiting_for_child_ = 0;  // and such that wait for a child
+
   shm::SegmentHeader* header_ = nullptr;
-  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, timer_ = -1, listener_ = -1, signals_ = -1;
+  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
+  int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::string socket_name_;
   std::uint64_t ns_per_tick_q32_ = 0;
-  std::int64_t end_ns_ = 0, event_ns_ = 0;
-  std::uint64_t ready_counter_ = 0;
-  int next_slot_ = 0;
+  double ticks_per_ns_ = 1.0;
+  double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
+
+  std::int64_t end_ns_ = 0;
+  std::int64_t event_ns_ = 0;  // virtual time of what is being handled
   Task* running_ = nullptr;
-  Task* last_ = nullptr;
-  bool stop_requested_ = false, notified_ = false, preempted_ = false, external_event_ = false;
   std::int64_t running_horizon_ns_ = 0;
+  Task* last_ = nullptr;  // dispatched last; keeps its level until another one is
+  bool stop_requested_ = false;
+  bool notified_ = false, preempted_ = false;  // why the running thread was stopped
+  bool external_event_ = false;
+
   RunReport report_;
   std::int64_t client_host_ns_ = 0;
+  std::int64_t most_frozen_ns_ = 0;
+  std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
+  std::uint64_t next_progress_tsc_ = 0;
 };
 
 }  // namespace tcs

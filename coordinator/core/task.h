@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "coordinator/os/host.h"
+#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/temporal_consistency.h"
 #include "shm/layout.h"
 #include "shm/virtual_time.h"
 
@@ -32,7 +34,7 @@ struct Task {
   VirtualCpu* cpu = nullptr;
   pid_t tid = 0;
   int slot = -1;
-  int order = 0;  // of registration; breaks ties
+  int order = 0;  // of registration; its number in the scheduling policies
   int priority = 0;
   TaskState state = TaskState::kStarting;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
@@ -41,21 +43,22 @@ struct Task {
   std::vector<int> watched;  // descriptors in the coordinator's epoll set
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
-  std::uint64_t ready_number = 0;  // first ready, first served among equals
-  std::int64_t debt_ns = 0;        // executed beyond a horizon, charged first at the next dispatch
+  std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
+  std::int64_t turn_ns = 0;  // had since its equals last had a turn
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
-  std::int64_t host_cpu_ns = -1;  // used in the run, by the thread's own clock; -1: it ended before
   std::uint64_t dispatches = 0;
   bool parked = true;           // at its gate, rather than stopped by priority
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   Level level = Level::kWaiting;
   std::int64_t activations = 0;
+  int row = 0;  // in the schedule trace
 };
 
+// Times are those of the process's clock, or its charged processor time for the two CPU timers.
 struct Timer {
-  std::int64_t next_ns = 0, interval_ns = 0;
-  int event_fd = -1;  // -1: ITIMER_REAL, a SIGALRM
+  std::int64_t next_ns = 0, interval_ns = 0;  // next 0: not armed
+  int event_fd = -1;                          // -1: a signal
 };
 
 struct Process {
@@ -65,13 +68,21 @@ struct Process {
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0;
-  std::map<std::int64_t, Timer> timers;
+  // What its clock is ahead of the virtual CPU's: computed while the world stood still. 0 unless
+  // --sync callback.
+  std::int64_t frozen_ns = 0;
+  std::map<std::int64_t, Timer> timers;         // ITIMER_REAL and timerfds, by id
+  std::int64_t next_expiry_ns = shm::kNeverNs;  // of `timers`
+  Timer cpu_timers[2];                          // ITIMER_VIRTUAL, ITIMER_PROF
   std::int64_t next_timer_id = shm::kFirstTimerFdId;
-  bool alarm_pending = false;
+  std::vector<int> pending_signals;  // of expired timers, sent at its next dispatch
+  std::int64_t overruns = 0;         // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
   bool dead = false;
   int threads = 1;         // that ever attached
   bool is_client = false;  // named in the scenario, rather than a child of one
+  int wait_status = 0;     // once dead, of the coordinator's own children
+  std::int64_t ended_at_ns = -1;
 };
 
 struct VirtualCpu {
@@ -80,7 +91,9 @@ struct VirtualCpu {
   int order = 0;
   double speed = 1.0;
   std::int64_t progress_ns = 0;
-  std::vector<Task*> tasks;
+  TemporalConsistency::Leaf leaf = -1;
+  FixedPriority ready;
+  std::vector<Task*> tasks;  // the living
 };
 
 }  // namespace tcs

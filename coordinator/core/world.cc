@@ -1,34 +1,43 @@
 #include "coordinator/core/world.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <time.h>
 
 #include <algorithm>
 
 #include "coordinator/channel/json_codec.h"
+#include "coordinator/os/host.h"
 #include "shm/layout.h"
 
 namespace tcs {
 
 namespace {
 
-std::int64_t OwnCpuNs() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
-}
+// Adds to `total_ns` what the coordinator spends in a scope.
+class Spent {
+ public:
+  explicit Spent(std::int64_t* total_ns)
+      : total_ns_(total_ns), start_ns_(HostClockNs(CLOCK_THREAD_CPUTIME_ID)) {}
+  ~Spent() { *total_ns_ += HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_ns_; }
+  Spent(const Spent&) = delete;
+  Spent& operator=(const Spent&) = delete;
+
+ private:
+  std::int64_t* total_ns_;
+  std::int64_t start_ns_;
+};
 
 }  // namespace
-
-std::int64_t World::shm_never() { return shm::kNeverNs; }
 
 std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeSimbodyDynamics(*scenario.world);
   for (const SensorChannelSpec& spec : scenario.sensors) {
-    sensors_.push_back({spec, spec.latency.ns()});
+    sensors_.push_back({spec, 0, {}});
   }
+  FindNextOutput();
   for (const CommandChannelSpec& spec : scenario.commands) {
     auto socket = UdpSocket::Bind(spec.listen);
     if (auto* error = std::get_if<SocketError>(&socket)) return error->message;
@@ -45,14 +54,18 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   return {};
 }
 
-std::int64_t World::NextOutputNs() const {
-  std::int64_t next = shm::kNeverNs;
-  for (const Sensor& sensor : sensors_) next = std::min(next, sensor.next_ns);
-  return next;
+void World::FindNextOutput() {
+  next_output_ns_ = shm::kNeverNs;
+  for (const Sensor& sensor : sensors_) {
+    const std::int64_t arrival = sensor.on_the_way.empty()
+                                     ? sensor.next_ns + sensor.spec.latency.ns()
+                                     : sensor.on_the_way.front().first;
+    next_output_ns_ = std::min(next_output_ns_, arrival);
+  }
 }
 
 void World::WriteCsv() {
-  const std::int64_t now = progress_ns();
+  const std::int64_t now = progress_ns_;
   if (!csv_.is_open() || now < next_csv_ns_) return;
   next_csv_ns_ += scenario_.csv_period.ns();
   for (std::size_t i = 0; i < scenario_.world->bodies.size(); ++i) {
@@ -64,32 +77,52 @@ void World::WriteCsv() {
   }
 }
 
+void World::Sample(Sensor& sensor) {
+  std::vector<NamedBodyState> states;
+  for (const int body : sensor.spec.bodies) {
+    const auto i = static_cast<std::size_t>(body);
+    states.push_back({scenario_.world->bodies[i].name, dynamics_->Read(body)});
+  }
+  sensor.on_the_way.emplace_back(progress_ns_ + sensor.spec.latency.ns(),
+                                 EncodeSensorDatagram(dynamics_->Now(), states));
+  sensor.next_ns += sensor.spec.period.ns();
+  ++samples_;
+}
+
+bool World::SendDue(Sensor& sensor) {
+  bool sent = false;
+  while (!sensor.on_the_way.empty() && sensor.on_the_way.front().first <= progress_ns_) {
+    // A full or absent receiver loses the datagram, as on a network.
+    (void)out_->SendTo(sensor.spec.to, sensor.on_the_way.front().second);
+    sensor.on_the_way.pop_front();
+    sent = true;
+  }
+  return sent;
+}
+
+std::int64_t World::NextStop(std::int64_t limit_ns) const {
+  std::int64_t stop = std::min(limit_ns, next_output_ns_);
+  for (const Sensor& sensor : sensors_) stop = std::min(stop, sensor.next_ns);
+  if (csv_.is_open() && next_csv_ns_ >= progress_ns_) stop = std::min(stop, next_csv_ns_);
+  return std::max(stop, progress_ns_);
+}
+
 bool World::Advance(std::int64_t limit_ns) {
-  const std::int64_t start = OwnCpuNs();
-  std::int64_t to = std::min(limit_ns, NextOutputNs());
-  if (csv_.is_open() && next_csv_ns_ >= progress_ns()) to = std::min(to, next_csv_ns_);
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(std::max(to, progress_ns())));
+  const Spent spent(&host_ns_);
+  progress_ns_ = NextStop(limit_ns);
+  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
   WriteCsv();
   bool sent = false;
   for (Sensor& sensor : sensors_) {
-    if (sensor.next_ns > progress_ns()) continue;
-    // With a latency the datagram is late, not the sample's contents: a known simplification.
-    std::vector<NamedBodyState> states;
-    for (const int body : sensor.spec.bodies) {
-      const auto i = static_cast<std::size_t>(body);
-      states.push_back({scenario_.world->bodies[i].name, dynamics_->Read(body)});
-    }
-    // A full or absent receiver loses the datagram, as on a network.
-    (void)out_->SendTo(sensor.spec.to, EncodeSensorDatagram(dynamics_->Now(), states));
-    sensor.next_ns += sensor.spec.period.ns();
-    ++samples_;
-    sent = true;
+    if (sensor.next_ns <= progress_ns_) Sample(sensor);
+    sent |= SendDue(sensor);
   }
-  host_ns_ += OwnCpuNs() - start;
+  FindNextOutput();
   return sent;
 }
 
 void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
+  const Spent spent(&host_ns_);
   const CommandChannelSpec& spec = scenario_.commands[index];
   for (;;) {
     auto received = command_sockets_[index].Receive();
@@ -100,7 +133,7 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
       fmt::print(stderr, "tcsim: channel {}: {}\n", spec.name, error->message);
       continue;
     }
-    const std::int64_t at = std::max(now_ns, progress_ns()) + spec.latency.ns();
+    const std::int64_t at = std::max(now_ns, progress_ns_) + spec.latency.ns();
     dynamics_->Apply(spec.body, std::get<Wrench>(wrench), VirtualTime::FromNanoseconds(at));
     ++commands_;
   }

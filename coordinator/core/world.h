@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +20,18 @@ class World {
   std::string Open(const Scenario& scenario, const std::string& csv_path);
 
   bool present() const { return dynamics_ != nullptr; }
-  std::int64_t progress_ns() const { return present() ? dynamics_->Now().ns() : shm_never(); }
+  std::int64_t progress_ns() const { return progress_ns_; }
   // Nothing leaves the dynamics before this.
-  std::int64_t NextOutputNs() const;
-  // Advances to the earlier of `limit_ns` and the next output, which it then sends. True if
-  // something was sent.
+  std::int64_t NextOutputNs() const { return next_output_ns_; }
+  // Advances to the earliest of `limit_ns`, the next sample and the next output, which it then
+  // sends. True if something was sent.
   bool Advance(std::int64_t limit_ns);
 
   const std::vector<int>& command_fds() const { return command_fds_; }
   // Applies what has arrived on command channel `index` at virtual time `now_ns`.
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
 
+  // Of the coordinator's processor time, what physics and channels took.
   std::int64_t host_ns() const { return host_ns_; }
   std::int64_t commands() const { return commands_; }
   std::int64_t samples() const { return samples_; }
@@ -36,13 +39,18 @@ class World {
  private:
   struct Sensor {
     SensorChannelSpec spec;
-    std::int64_t next_ns = 0;
+    std::int64_t next_ns = 0;                                     // sample
+    std::deque<std::pair<std::int64_t, std::string>> on_the_way;  // (arrival, datagram)
   };
-  static std::int64_t shm_never();
   void WriteCsv();
+  void Sample(Sensor& sensor);
+  bool SendDue(Sensor& sensor);
+  void FindNextOutput();
+  std::int64_t NextStop(std::int64_t limit_ns) const;
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
+  std::int64_t progress_ns_ = 0, next_output_ns_ = 0;
   std::vector<Sensor> sensors_;
   std::vector<UdpSocket> command_sockets_;
   std::vector<int> command_fds_;

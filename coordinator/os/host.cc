@@ -18,22 +18,18 @@
 
 namespace tcs {
 
-namespace {
-
-std::int64_t NowRawNs() {
+std::int64_t HostClockNs(clockid_t id) {
   timespec t;
-  clock_gettime(CLOCK_MONOTONIC_RAW, &t);
+  clock_gettime(id, &t);
   return t.tv_sec * 1'000'000'000 + t.tv_nsec;
 }
 
-}  // namespace
-
 std::uint64_t CalibrateTsc() {
-  const std::int64_t start_ns = NowRawNs();
+  const std::int64_t start_ns = HostClockNs(CLOCK_MONOTONIC_RAW);
   const std::uint64_t start_tsc = __rdtsc();
   std::int64_t end_ns;
   do {
-    end_ns = NowRawNs();
+    end_ns = HostClockNs(CLOCK_MONOTONIC_RAW);
   } while (end_ns - start_ns < 20'000'000);
   const std::uint64_t ticks = __rdtsc() - start_tsc;
   return static_cast<std::uint64_t>(static_cast<double>(end_ns - start_ns) /
@@ -63,13 +59,17 @@ void SetLevel(pid_t tid, Level level) {
   sched_setscheduler(tid, SCHED_FIFO, &param);
 }
 
+void LeaveRealTime(pid_t tid) {
+  const sched_param param{0};
+  sched_setscheduler(tid, SCHED_OTHER, &param);
+}
+
 std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread) {
   if (only_thread) {
     // The kernel's encoding of a process's CPU clock (posix-timers.h): CPUCLOCK_SCHED.
     const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(tid) << 3) | 2u);
     timespec t;
-    if (clock_gettime(id, &t) != 0) return -1;
-    return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+    return clock_gettime(id, &t) == 0 ? t.tv_sec * 1'000'000'000 + t.tv_nsec : -1;
   }
   // A thread's own clock can be read by its own process only; this is the same number.
   std::ifstream file("/proc/" + std::to_string(tid) + "/schedstat");

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <sys/types.h>
+#include <time.h>
 
 #include <cstdint>
 #include <map>
@@ -24,6 +25,12 @@ std::uint64_t CalibrateTsc();
 std::string EnterRealTime();
 
 void SetLevel(pid_t tid, Level level);
+
+// Back to ordinary scheduling.
+void LeaveRealTime(pid_t tid);
+
+// A clock of the host, in nanoseconds.
+std::int64_t HostClockNs(clockid_t id);
 
 // CPU time of a thread of any process; -1 if it has ended.
 std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread);

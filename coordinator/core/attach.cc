@@ -1,0 +1,203 @@
+// Births and deaths: threads that register themselves, and processes that end.
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+namespace {
+
+void Refuse(int connection, const char* why) {
+  shm::AttachReply reply{};
+  reply.magic = shm::kMagic;
+  reply.version = shm::kVersion;
+  reply.refused = 1;
+  strncpy(reply.text, why, sizeof reply.text - 1);
+  send(connection, &reply, sizeof reply, MSG_NOSIGNAL);
+}
+
+}  // namespace
+
+Task* Engine::AddTask(Process& process, pid_t tid) {
+  Task& task = tasks_.emplace_back();
+  ++living_;
+  task.process = &process;
+  task.cpu = process.cpu;
+  task.tid = tid;
+  task.order = static_cast<int>(tasks_.size() - 1);
+  task.priority = process.priority;
+  task.parked = false;
+  process.cpu->tasks.push_back(&task);
+  SetState(task, TaskState::kStarting);
+  Refresh(*process.cpu);
+  return &task;
+}
+
+Task* Engine::NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name,
+                      int priority) {
+  Process& process = processes_.emplace_back();
+  process.pid = pid;
+  process.parent = parent;
+  process.cpu = cpu;
+  process.name = name;
+  process.priority = priority;
+  process.pidfd = OpenPidfd(pid);
+  for (const Process& other : processes_) {
+    if (other.pid != parent || other.dead) continue;
+    process.call_cost_ns = other.call_cost_ns;
+    process.frozen_ns = other.frozen_ns;
+  }
+  if (process.pidfd >= 0) {
+    Watch(process.pidfd, EPOLLIN, Tag::kProcess, static_cast<std::uint32_t>(processes_.size() - 1));
+  }
+  Task* task = AddTask(process, pid);
+  // Children have no name of their own; their place in the order is the same in every run.
+  const bool is_child = parent != getpid();
+  task->row = trace_.AddRow(cpu->robot, is_child ? fmt::format("{} #{}", name, task->order) : name);
+  return task;
+}
+
+// The thread that registers: known already (a client, an announced child), a further thread of a
+// known process, or a process that nobody announced.
+Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
+  for (Task& known : tasks_) {
+    if (known.tid == tid && known.state != TaskState::kDead) return &known;
+  }
+  Process* parent = nullptr;
+  for (Process& known : processes_) {
+    if (known.dead) continue;
+    if (known.pid == pid) {
+      ++known.threads;
+      Task* task = AddTask(known, tid);
+      task->row = trace_.AddRow(known.cpu->robot, fmt::format("{} #{}", known.name, task->order));
+      return task;
+    }
+    if (known.pid == parent_pid) parent = &known;
+  }
+  if (parent != nullptr)
+    return NewTask(pid, parent_pid, parent->cpu, parent->name, parent->priority);
+  return NewTask(pid, parent_pid, &cpus_.front(), fmt::format("pid {}", pid), 0);
+}
+
+void Engine::Attach(int connection) {
+  shm::AttachHello hello{};
+  const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  if (n != sizeof hello || hello.magic != shm::kMagic || hello.version != shm::kVersion ||
+      hello.pid != peer.pid) {
+    Refuse(connection, "it comes from another version of tcs");
+    return;
+  }
+  Task& task = *TaskFor(hello.pid, hello.parent_pid, hello.tid);
+  if (task.slot < 0 && free_slots_.empty()) {
+    Refuse(connection, "there is no room for more threads");
+    return;
+  }
+  if (&task != running_) {
+    SetLevel(task.tid, Level::kWaiting);
+    task.level = Level::kWaiting;
+  }
+  if (task.slot < 0) {
+    task.slot = free_slots_.front();
+    free_slots_.pop_front();
+    by_slot_[static_cast<std::size_t>(task.slot)] = &task;
+    new (&Slot(task)) shm::ThreadSlot{};
+  }
+  shm::ThreadSlot& slot = Slot(task);
+  slot.pid = task.process->pid;
+  slot.tid = task.tid;
+  slot.cores = task.cpu->cores;
+  slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
+  slot.gate.store(shm::kGateClosed);
+  SetState(task, TaskState::kReady);
+  task.parked = true;
+  task.reason = shm::WakeReason::kGo;
+  Refresh(*task.cpu);
+  SendReply(connection, task);
+}
+
+void Engine::SendReply(int connection, const Task& task) {
+  shm::AttachReply reply{};
+  reply.magic = shm::kMagic;
+  reply.version = shm::kVersion;
+  reply.slot = static_cast<std::uint32_t>(task.slot);
+  iovec iov{&reply, sizeof reply};
+  alignas(cmsghdr) char control[CMSG_SPACE(2 * sizeof(int))] = {};
+  msghdr message{};
+  message.msg_iov = &iov;
+  message.msg_iovlen = 1;
+  message.msg_control = control;
+  message.msg_controllen = sizeof control;
+  cmsghdr* header = CMSG_FIRSTHDR(&message);
+  header->cmsg_level = SOL_SOCKET;
+  header->cmsg_type = SCM_RIGHTS;
+  header->cmsg_len = CMSG_LEN(2 * sizeof(int));
+  const int fds[2] = {memfd_, pipe_[1]};
+  memcpy(CMSG_DATA(header), fds, sizeof fds);
+  sendmsg(connection, &message, MSG_NOSIGNAL);
+}
+
+// The slot goes to the end of the queue: a last word of its thread may still be in the pipe.
+void Engine::EndTask(Task& task) {
+  EndWatches(task);
+  waiting_for_child_ -= task.waits_for_child;
+  task.waits_for_child = task.waits_for_fds = false;
+  SetState(task, TaskState::kDead);
+  --living_;
+  task.parked = true;
+  std::erase(task.cpu->tasks, &task);
+  if (task.slot >= 0) free_slots_.push_back(task.slot);
+  if (last_ == &task) last_ = nullptr;
+  Refresh(*task.cpu);
+}
+
+void Engine::ProcessEnded(std::size_t index) {
+  Process& process = processes_[index];
+  if (process.dead) return;
+  if (running_ != nullptr && running_->process == &process) {
+    Settle(*running_);
+    event_ns_ = running_->cpu->progress_ns;
+  }
+  process.dead = true;
+  process.ended_at_ns = event_ns_;
+  const std::int64_t charged = ChargedTo(process);
+  const std::vector<Task*> threads = process.cpu->tasks;
+  for (Task* task : threads) {
+    if (task->process == &process) EndTask(*task);
+  }
+  for (auto& [id, timer] : process.timers) {
+    if (timer.event_fd >= 0) close(timer.event_fd);
+  }
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
+  close(process.pidfd);
+  process.pidfd = -1;
+  for (Process& other : processes_) {
+    if (other.pid == process.parent && !other.dead) other.children_cpu_ns += charged;
+  }
+  for (Task& task : tasks_) {
+    if (task.waits_for_child && task.process->pid == process.parent) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+  // Our own children, and those who lost their parent, are reaped here.
+  int status = 0;
+  if (waitpid(process.pid, &status, WNOHANG) != process.pid) return;
+  process.wait_status = status;
+  if (index == 0) {
+    report_.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+}
+
+}  // namespace tcs

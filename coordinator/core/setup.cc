@@ -1,0 +1,182 @@
+// What a run needs before its first step: the segment, the pipe and socket that clients find us by,
+// the block detector, the clients themselves.
+#include <errno.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+// Deterministic runs begin on 2024-01-01T00:00:00Z.
+constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
+// A CLOCK_MONOTONIC of 0 would look like one that was never set.
+constexpr std::int64_t kMonotonicStartNs = 1'000'000'000'000;
+
+struct DetectorFds {
+  int arm, fired;
+};
+
+// Runs exactly when armed and neither the coordinator nor the active thread wants the CPU.
+void* DetectorThread(void* raw) {
+  const DetectorFds fds = *static_cast<DetectorFds*>(raw);
+  delete static_cast<DetectorFds*>(raw);
+  SetLevel(0, Level::kDetector);
+  std::uint64_t count = 0;
+  const std::uint64_t one = 1;
+  while (read(fds.arm, &count, sizeof count) == sizeof count) {
+    if (write(fds.fired, &one, sizeof one) != sizeof one) break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string Engine::Prepare() {
+  const std::string& directory = options_.output_directory;
+  const std::string csv = directory.empty() ? "" : directory + "/bodies.csv";
+  if (std::string error = world_.Open(scenario_, csv); !error.empty()) return error;
+  if (!directory.empty()) {
+    if (std::string error = trace_.Open(directory + "/trace.json"); !error.empty()) return error;
+  }
+  if (world_.present()) {
+    world_row_ = trace_.AddRow("dynamics", "world");
+    root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+  }
+  if (std::string error = EnterRealTime(); !error.empty()) return error;
+  ns_per_tick_q32_ = CalibrateTsc();
+  ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  epoll_ = epoll_create1(EPOLL_CLOEXEC);
+  if (std::string error = PrepareSegment(); !error.empty()) return error;
+  if (std::string error = PrepareListener(); !error.empty()) return error;
+  for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
+    Watch(world_.command_fds()[i], EPOLLIN, Tag::kCommand, static_cast<std::uint32_t>(i));
+  }
+  return PrepareDetector();
+}
+
+std::string Engine::PrepareSegment() {
+  memfd_ = memfd_create("tcs", MFD_CLOEXEC);
+  if (memfd_ < 0 || fchmod(memfd_, 0600) != 0 || ftruncate(memfd_, shm::kSegmentSize) != 0) {
+    return fmt::format("the shared memory cannot be made: {}", strerror(errno));
+  }
+  void* at = mmap(nullptr, shm::kSegmentSize, PROT_READ | PROT_WRITE, MAP_SHARED, memfd_, 0);
+  if (at == MAP_FAILED) return "the shared memory cannot be mapped";
+  header_ = static_cast<shm::SegmentHeader*>(at);
+  header_->magic = shm::kMagic;
+  header_->version = shm::kVersion;
+  header_->header_size = sizeof(shm::SegmentHeader);
+  header_->slot_size = sizeof(shm::ThreadSlot);
+  header_->slot_count = shm::kSlotCount;
+  header_->accounting = options_.accounting;
+  header_->sync = options_.sync;
+  header_->monotonic_offset_ns = kMonotonicStartNs;
+  header_->realtime_offset_ns = IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME);
+  header_->coordinator_pid = getpid();
+  for (int slot = 0; slot < static_cast<int>(shm::kSlotCount); ++slot) free_slots_.push_back(slot);
+  return {};
+}
+
+std::string Engine::PrepareListener() {
+  if (pipe2(pipe_, O_CLOEXEC | O_NONBLOCK) != 0) return "no pipe can be made";
+  fcntl(pipe_[1], F_SETFL, 0);
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGTERM);
+  sigaddset(&blocked, SIGHUP);
+  const bool has_terminal = options_.output_directory.empty();
+  if (!has_terminal) sigaddset(&blocked, SIGINT);
+  sigprocmask(SIG_BLOCK, &blocked, nullptr);
+  // ^C is for the program that has the terminal.
+  if (has_terminal) signal(SIGINT, SIG_IGN);
+  signal(SIGPIPE, SIG_IGN);
+  signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
+
+  listener_ = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  memcpy(address.sun_path + 1, socket_name_.data(), socket_name_.size());
+  const auto size =
+      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + socket_name_.size());
+  if (bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
+      listen(listener_, 256) != 0) {
+    return "the socket that clients register at cannot be made";
+  }
+  Watch(pipe_[0], EPOLLIN, Tag::kPipe, 0);
+  Watch(listener_, EPOLLIN, Tag::kListener, 0);
+  Watch(signals_, EPOLLIN, Tag::kSignal, 0);
+  return {};
+}
+
+std::string Engine::PrepareDetector() {
+  detector_arm_ = eventfd(0, EFD_CLOEXEC);
+  detector_fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  Watch(detector_fired_, EPOLLIN, Tag::kDetector, 0);
+  pthread_t detector;
+  if (pthread_create(&detector, nullptr, DetectorThread,
+                     new DetectorFds{detector_arm_, detector_fired_}) != 0) {
+    return "the block detector's thread cannot be made";
+  }
+  pthread_detach(detector);
+  return {};
+}
+
+std::string Engine::StartClients() {
+  for (const RobotSpec& robot : scenario_.robots) {
+    const std::size_t first = cpus_.size();
+    for (int core = 0; core < robot.cores; ++core) {
+      VirtualCpu& cpu = cpus_.emplace_back();
+      cpu.robot = robot.name;
+      cpu.core = static_cast<std::uint32_t>(core);
+      cpu.cores = static_cast<std::uint32_t>(robot.cores);
+      cpu.leaf = root_.AddLeaf();
+      cpu.speed = robot.speed;
+    }
+    for (std::size_t i = 0; i < robot.clients.size(); ++i) {
+      const ClientSpec& client = robot.clients[i];
+      SpawnRequest request;
+      request.command = client.command;
+      request.working_directory = client.working_directory;
+      request.environment = client.environment;
+      request.environment["LD_PRELOAD"] = options_.preload_library;
+      request.environment["TCS_SOCKET"] = socket_name_;
+      request.fixed_layout = IsFixed();
+      if (!options_.output_directory.empty()) {
+        std::string base = client.name;
+        std::replace(base.begin(), base.end(), '/', '-');
+        base = options_.output_directory + "/" + base;
+        request.log_stdout = base + ".out.log";
+        request.log_stderr = base + ".err.log";
+      }
+      const pid_t pid = Spawn(request);
+      if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
+      VirtualCpu* cpu = &cpus_[first + i % static_cast<std::size_t>(robot.cores)];
+      Task* task = NewTask(pid, getpid(), cpu, client.name, client.priority);
+      task->process->is_client = true;
+      task->process->call_cost_ns = client.fixed_call_cost.ns();
+    }
+  }
+  return {};
+}
+
+}  // namespace tcs

@@ -1,0 +1,83 @@
+#include "coordinator/policy/temporal_consistency.h"
+
+#include <algorithm>
+
+#include "shm/layout.h"
+
+namespace tcs {
+
+namespace {
+
+std::int64_t After(std::int64_t time_ns, std::int64_t duration_ns) {
+  return time_ns > shm::kNeverNs - duration_ns ? shm::kNeverNs : time_ns + duration_ns;
+}
+
+}  // namespace
+
+TemporalConsistency::Leaf TemporalConsistency::AddLeaf() {
+  leaves_.push_back({0, shm::kNeverNs});
+  FindLeast();
+  return static_cast<Leaf>(leaves_.size() - 1);
+}
+
+void TemporalConsistency::FindLeast() {
+  first_ = second_ = -1;
+  auto next = [this](Leaf leaf) { return leaves_[static_cast<std::size_t>(leaf)].next_ns; };
+  for (Leaf leaf = 0; leaf < static_cast<Leaf>(leaves_.size()); ++leaf) {
+    if (first_ < 0 || next(leaf) < next(first_)) {
+      second_ = first_;
+      first_ = leaf;
+    } else if (second_ < 0 || next(leaf) < next(second_)) {
+      second_ = leaf;
+    }
+  }
+}
+
+void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns) {
+  Times& times = leaves_[static_cast<std::size_t>(leaf)];
+  const bool moved = times.next_ns != next_ns;
+  const bool progressed = times.progress_ns != progress_ns;
+  times = {progress_ns, next_ns};
+  if (moved) FindLeast();
+  if (progressed) NoteDrift(progress_ns);
+}
+
+void TemporalConsistency::UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns) {
+  has_dynamics_ = true;
+  dynamics_ns_ = progress_ns;
+  output_ns_ = output_ns;
+  NoteDrift(progress_ns);
+}
+
+void TemporalConsistency::NoteDrift(std::int64_t progress_ns) {
+  std::int64_t least = Least();
+  if (has_dynamics_) least = std::min(least, dynamics_ns_);
+  if (least != shm::kNeverNs) drift_ns_ = std::max(drift_ns_, progress_ns - least);
+}
+
+std::int64_t TemporalConsistency::Least() const {
+  return first_ < 0 ? shm::kNeverNs : leaves_[static_cast<std::size_t>(first_)].next_ns;
+}
+
+TemporalConsistency::Leaf TemporalConsistency::First() const {
+  return Least() == shm::kNeverNs ? -1 : first_;
+}
+
+std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
+  const Leaf other = leaf == first_ ? second_ : first_;
+  return other < 0 ? shm::kNeverNs : leaves_[static_cast<std::size_t>(other)].next_ns;
+}
+
+std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
+  std::int64_t horizon = std::min(end_ns_, After(LeastOther(leaf), drift_bound_ns_));
+  if (has_dynamics_) horizon = std::min(horizon, After(dynamics_ns_, drift_bound_ns_));
+  return horizon;
+}
+
+std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
+  std::int64_t safe = LeastOther(leaf);
+  if (has_dynamics_ && output_ns_ != shm::kNeverNs) safe = std::min(safe, output_ns_ - 1);
+  return safe;
+}
+
+}  // namespace tcs

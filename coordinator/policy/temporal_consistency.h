@@ -1,0 +1,64 @@
+// The root of the scheduler tree: keeps the progress of all leaves together, and says what is safe.
+//
+// The leaves are the virtual CPUs, numbered in the order they were added, and the dynamics. The
+// least advanced one acts; how far it may go, and what it may read and write on the way, follows
+// from when the others can act next. Conservative, as in parallel discrete-event simulation: GVT is
+// Least(). Pure: makes no system call, reads no clock. All times are virtual nanoseconds; kNeverNs
+// for never.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tcs {
+
+class TemporalConsistency {
+ public:
+  using Leaf = int;
+
+  TemporalConsistency(std::int64_t drift_bound_ns, std::int64_t end_ns)
+      : drift_bound_ns_(drift_bound_ns), end_ns_(end_ns) {}
+
+  Leaf AddLeaf();
+
+  // The leaf has come to `progress_ns` and can neither act nor cause anything before `next_ns`:
+  // its progress if it has something to run, later if it idles, never if only others can wake it.
+  void Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns);
+  // The same for the dynamics, which can always be advanced; nothing leaves them before
+  // `output_ns`.
+  void UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns);
+
+  // The least time at which any virtual CPU can act, and the first one that can act then; -1: none
+  // can.
+  std::int64_t Least() const;
+  Leaf First() const;
+
+  // How far the leaf may run: the drift bound beyond the slowest other leaf, and the run's end.
+  std::int64_t Horizon(Leaf leaf) const;
+  // Nothing that the leaf could read is produced before this any more. What the dynamics send at an
+  // instant is there for a read at that instant.
+  std::int64_t ReadSafe(Leaf leaf) const;
+  // No other leaf can read what is from before this any more.
+  std::int64_t WriteSafe(Leaf leaf) const { return LeastOther(leaf); }
+
+  // The largest difference of progress between two leaves so far.
+  std::int64_t drift_ns() const { return drift_ns_; }
+
+ private:
+  struct Times {
+    std::int64_t progress_ns, next_ns;
+  };
+  std::int64_t LeastOther(Leaf leaf) const;
+  void FindLeast();
+  void NoteDrift(std::int64_t progress_ns);
+
+  std::int64_t drift_bound_ns_, end_ns_;
+  std::vector<Times> leaves_;
+  bool has_dynamics_ = false;
+  std::int64_t dynamics_ns_ = 0, output_ns_ = 0;
+  Leaf first_ = -1, second_ = -1;  // the two that can act soonest
+  std::int64_t drift_ns_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,91 @@
+#include "coordinator/trace/schedule_trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace tcs {
+
+namespace {
+
+// Chrome's unit is the microsecond; three decimals keep every nanosecond.
+std::string Microseconds(std::int64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
+
+std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+}  // namespace
+
+ScheduleTrace::~ScheduleTrace() {
+  if (file_ != nullptr) std::fclose(file_);
+}
+
+std::string ScheduleTrace::Open(const std::string& path) {
+  path_ = path;
+  file_ = std::fopen(path.c_str(), "we");
+  if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
+  std::fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file_);
+  return {};
+}
+
+void ScheduleTrace::Event(const std::string& json) {
+  if (!first_) std::fputs(",\n", file_);
+  first_ = false;
+  std::fputs(json.c_str(), file_);
+}
+
+int ScheduleTrace::AddRow(const std::string& group, const std::string& name) {
+  auto found = std::find(groups_.begin(), groups_.end(), group);
+  const auto pid = static_cast<int>(found - groups_.begin()) + 1;
+  const auto tid = static_cast<int>(rows_.size()) + 1;
+  if (file_ != nullptr && found == groups_.end()) {
+    Event(fmt::format(R"({{"ph":"M","name":"process_name","pid":{},"args":{{"name":{}}}}})", pid,
+                      Quoted(group)));
+  }
+  if (found == groups_.end()) groups_.push_back(group);
+  if (file_ != nullptr) {
+    Event(fmt::format(R"({{"ph":"M","name":"thread_name","pid":{},"tid":{},"args":{{"name":{}}}}})",
+                      pid, tid, Quoted(name)));
+  }
+  rows_.push_back({pid, 0, 0});
+  return tid - 1;
+}
+
+void ScheduleTrace::Write(int row) {
+  Row& r = rows_[static_cast<std::size_t>(row)];
+  if (r.start_ns == r.end_ns) return;
+  Event(fmt::format(R"({{"ph":"X","name":"run","pid":{},"tid":{},"ts":{},"dur":{}}})", r.group,
+                    row + 1, Microseconds(r.start_ns), Microseconds(r.end_ns - r.start_ns)));
+  r.start_ns = r.end_ns;
+}
+
+void ScheduleTrace::Slice(int row, std::int64_t start_ns, std::int64_t end_ns) {
+  if (file_ == nullptr || start_ns >= end_ns) return;
+  Row& r = rows_[static_cast<std::size_t>(row)];
+  if (start_ns != r.end_ns || r.start_ns == r.end_ns) {
+    Write(row);
+    r.start_ns = start_ns;
+  }
+  r.end_ns = end_ns;
+}
+
+void ScheduleTrace::Instant(int row, const char* what, std::int64_t at_ns) {
+  if (file_ == nullptr) return;
+  Event(fmt::format(R"({{"ph":"i","s":"t","name":"{}","pid":{},"tid":{},"ts":{}}})", what,
+                    rows_[static_cast<std::size_t>(row)].group, row + 1, Microseconds(at_ns)));
+}
+
+std::string ScheduleTrace::Close() {
+  if (file_ == nullptr) return {};
+  for (int row = 0; row < static_cast<int>(rows_.size()); ++row) Write(row);
+  std::fputs("\n]}\n", file_);
+  const bool bad = std::ferror(file_) != 0;
+  const bool closed = std::fclose(file_) == 0;
+  file_ = nullptr;
+  if (bad || !closed) return fmt::format("{} was not written whole: {}", path_, strerror(errno));
+  return {};
+}
+
+}  // namespace tcs

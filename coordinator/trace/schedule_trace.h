@@ -1,0 +1,51 @@
+// Who ran when, in virtual time, as Chrome trace events (JSON): ui.perfetto.dev and
+// chrome://tracing open it. One row per client under its robot, one for the dynamics.
+//
+// A thread's slices that follow each other without a gap become one, so that a planner's second is
+// one bar and not a thousand. Everything written derives from virtual time: two deterministic runs
+// write the same bytes. Not thread-safe. A file that cannot be written is reported by Close().
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace tcs {
+
+class ScheduleTrace {
+ public:
+  ScheduleTrace() = default;
+  ~ScheduleTrace();
+  ScheduleTrace(const ScheduleTrace&) = delete;
+  ScheduleTrace& operator=(const ScheduleTrace&) = delete;
+
+  // Empty on success, else one sentence. Without Open everything below does nothing.
+  [[nodiscard]] std::string Open(const std::string& path);
+
+  // A row named `name` in the group `group`, shown in the order of their making.
+  int AddRow(const std::string& group, const std::string& name);
+  // Row `row` was busy from `start_ns` to `end_ns`; later slices of a row never begin earlier.
+  void Slice(int row, std::int64_t start_ns, std::int64_t end_ns);
+  // Something happened at one instant.
+  void Instant(int row, const char* what, std::int64_t at_ns);
+
+  // Empty on success, else one sentence.
+  [[nodiscard]] std::string Close();
+
+ private:
+  struct Row {
+    int group;
+    std::int64_t start_ns, end_ns;  // of the slice not written yet; none if equal
+  };
+  void Event(const std::string& json);
+  void Write(int row);
+
+  std::FILE* file_ = nullptr;
+  std::string path_;
+  bool first_ = true;
+  std::vector<std::string> groups_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace tcs

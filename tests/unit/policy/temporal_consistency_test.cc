@@ -1,0 +1,93 @@
+#include "coordinator/policy/temporal_consistency.h"
+
+#include <gtest/gtest.h>
+
+#include "shm/layout.h"
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kDrift = 1'000'000;
+constexpr std::int64_t kEnd = 20'000'000'000;
+constexpr std::int64_t kNever = shm::kNeverNs;
+
+TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.Update(predator, 500, 500);
+  root.Update(prey, 300, 300);
+  EXPECT_EQ(root.First(), prey);
+  EXPECT_EQ(root.Least(), 300);
+}
+
+TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.Update(prey, 300, 300);
+  root.Update(predator, 300, 300);
+  EXPECT_EQ(root.First(), predator);
+}
+
+TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.Update(prey, 100, kNever);
+  root.Update(predator, 5'000'000, 5'000'000);
+  EXPECT_EQ(root.First(), predator);
+  EXPECT_EQ(root.Horizon(predator), kEnd);
+  EXPECT_EQ(root.ReadSafe(predator), kNever);
+  root.Update(predator, 5'000'000, kNever);
+  EXPECT_EQ(root.First(), -1);
+}
+
+TEST(TemporalConsistency, AnIdleLeafHoldsOthersBackOnlyFromItsWakeUpOn) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.Update(predator, 0, 0);
+  root.Update(prey, 0, 10'000'000);
+  EXPECT_EQ(root.Horizon(predator), 10'000'000 + kDrift);
+  EXPECT_EQ(root.WriteSafe(predator), 10'000'000);
+  EXPECT_EQ(root.Horizon(prey), kDrift);
+}
+
+TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf();
+  root.Update(predator, 7'000'000, 7'000'000);
+  root.UpdateDynamics(7'000'000, 10'000'000);
+  EXPECT_EQ(root.Horizon(predator), 7'000'000 + kDrift);
+}
+
+TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf();
+  root.Update(predator, 0, 0);
+  root.UpdateDynamics(0, 10'000'000);
+  EXPECT_EQ(root.ReadSafe(predator), 9'999'999);
+  root.UpdateDynamics(0, kNever);
+  EXPECT_EQ(root.ReadSafe(predator), kNever);
+}
+
+TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.Update(predator, 0, 0);
+  root.Update(prey, 0, 0);
+  root.UpdateDynamics(0, kNever);
+  root.Update(predator, 900'000, 900'000);
+  EXPECT_EQ(root.drift_ns(), 900'000);
+  root.Update(prey, 800'000, 800'000);
+  root.UpdateDynamics(800'000, kNever);
+  EXPECT_EQ(root.drift_ns(), 900'000);
+}
+
+TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
+  TemporalConsistency root(kNever, kEnd);
+  const auto predator = root.AddLeaf();
+  root.Update(predator, 1, 1);
+  root.UpdateDynamics(1, kNever);
+  EXPECT_EQ(root.Horizon(predator), kEnd);
+}
+
+}  // namespace
+}  // namespace tcs
