@@ -15,7 +15,7 @@ namespace tcs::bench {
 namespace {
 
 using std::chrono::steady_clock;
-constexpr std::chrono::seconds kLongestLife{60};
+constexpr std::chrono::seconds kLongestLife{30};
 
 [[noreturn]] void BecomeProgram(const std::vector<std::string>& command, pid_t parent, int out) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);

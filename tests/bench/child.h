@@ -11,7 +11,7 @@ struct ChildResult {
   std::string error;   // one sentence; empty if the program ended with status 0
 };
 
-// The program dies with its caller, and after 60 real seconds at the latest. What it says on stderr
+// The program dies with its caller, and after 30 real seconds at the latest. What it says on stderr
 // is passed on.
 ChildResult RunChild(const std::vector<std::string>& command);
 

@@ -11,32 +11,36 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string CallTable(const std::vector<CallRow>& rows) {
+  static constexpr char kLine[] = "{:<24}{:>9}   {:<31}{:>9}{:>8}  {:<16}{}\n";
+  auto one_digit = [](double ns) { return fmt::format("{:.1f}", ns); };
   std::string text =
-      fmt::format("{:<26}{:>10}   {:<34}{:>10}{:>8}  {:<14}{}\n", "under tcs", "ns a call",
-                  "reference", "ns a call", "ratio", "  (lowest-highest)", "  goal");
+      fmt::format(kLine, "under tcs", "ns", "reference", "ns", "ratio", "lowest-highest", "goal");
   for (const CallRow& row : rows) {
     text += fmt::format(
-        "{:<26}{:>10.1f}   {:<34}{:>10.1f}{:>8.2f}  {:<20}{}\n", row.benchmark.title, row.ns,
-        row.benchmark.reference_title, row.reference_ns, row.ratio.median,
-        fmt::format("({:.2f}-{:.2f})", row.ratio.lowest, row.ratio.highest), row.benchmark.goal);
+        kLine, row.benchmark.title, one_digit(row.ns), row.benchmark.reference_title,
+        one_digit(row.reference_ns), fmt::format("{:.2f}", row.ratio.median),
+        fmt::format("{:.2f}-{:.2f}", row.ratio.lowest, row.ratio.highest), row.benchmark.goal);
   }
   return text;
 }
 
 std::string WorkTable(const std::vector<WorkRow>& rows) {
-  std::string text = fmt::format("{:<26}{:>10}", "fixed work, own clock", "idle");
-  for (const int count : kSpinnerCounts)
-    text += fmt::format("   {:<24}", fmt::format("beside {} spinners", count));
-  text += "\n";
+  std::string text = fmt::format("{:<24}{:>9}", "fixed work, own clock", "idle");
+  for (std::size_t load = 1; load < kSpinnerCounts.size(); ++load) {
+    text += fmt::format("   {:<22}", fmt::format("beside {} spinners", kSpinnerCounts[load]));
+  }
+  text += "goal\n";
   for (const WorkRow& row : rows) {
-    text += fmt::format("{:<26}{:>8.3f} s", row.title, row.idle_seconds);
-    for (const Spread& relative : row.relative) {
-      text += fmt::format("   {:<24}", fmt::format("{:.3f} ({:.3f}-{:.3f})", relative.median,
+    text += fmt::format("{:<24}{:>7.3f} s", row.title, row.idle_seconds);
+    // Beside no spinners it is the idle value itself.
+    for (std::size_t load = 1; load < kSpinnerCounts.size(); ++load) {
+      const Spread& relative = row.relative[load];
+      text += fmt::format("   {:<22}", fmt::format("{:.3f} ({:.3f}-{:.3f})", relative.median,
                                                    relative.lowest, relative.highest));
     }
-    text += "\n";
+    text += row.world == World::kTcs ? "0.97 to 1.03\n" : "\n";
   }
-  return text + "  goal under tcs: 0.97 to 1.03 beside any number of spinners\n";
+  return text;
 }
 
 Json ToJson(const Spread& spread) {
@@ -50,7 +54,8 @@ std::string ToTables(const Results& results) {
   if (!results.calls.empty()) text += CallTable(results.calls);
   if (!results.calls.empty() && !results.work.empty()) text += "\n";
   if (!results.work.empty()) text += WorkTable(results.work);
-  return text + fmt::format("\nMedians of {} rounds, on one processor.\n", results.rounds);
+  return text + fmt::format("\nMedians of {} round{}, on one processor.\n", results.rounds,
+                            results.rounds == 1 ? "" : "s");
 }
 
 std::string ToJson(const Results& results) {
