@@ -1,9 +1,11 @@
 #include "tests/bench/child.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
+#include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,6 +28,7 @@ constexpr std::chrono::seconds kLongestLife{30};
   for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   execvp(argv[0], argv.data());
+  fmt::print(stderr, "tcs_bench: {} cannot be started: {}\n", command[0], strerror(errno));
   _exit(127);
 }
 

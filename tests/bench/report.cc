@@ -51,6 +51,7 @@ Json ToJson(const Spread& spread) {
 
 std::string ToTables(const Results& results) {
   std::string text;
+  if (results.calls.empty() && results.work.empty()) return text;
   if (!results.calls.empty()) text += CallTable(results.calls);
   if (!results.calls.empty() && !results.work.empty()) text += "\n";
   if (!results.work.empty()) text += WorkTable(results.work);

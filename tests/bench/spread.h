@@ -1,4 +1,4 @@
-// What several rounds of one measurement come to.
+// What several values of one measurement come to.
 #pragma once
 
 #include <algorithm>

@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/bench/spread.h"
+
 namespace tcs::bench {
 
 struct BatchSize {
   int batches;
   int calls;  // in each batch
 };
-
-double Median(std::vector<double> values);
 
 // TSC ticks per call: real time, under tcs too. The median over the batches, so that batches in
 // which the host took the processor away do not count.
@@ -25,7 +25,7 @@ double TicksPerCall(BatchSize size, Call call) {
     for (int i = 0; i < size.calls; ++i) call();
     per_call.push_back(static_cast<double>(__rdtsc() - start) / size.calls);
   }
-  return Median(per_call);
+  return SpreadOf(per_call).median;
 }
 
 }  // namespace tcs::bench
