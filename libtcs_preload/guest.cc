@@ -53,20 +53,12 @@ GuestThread* CurrentSlow() {
   return &t_thread;
 }
 
-GuestThread* Enter() {
-  GuestThread* t = Current();
-  if (t == nullptr) return nullptr;
-  shm::ClockPage& page = t->slot->clock;
-  if (page.call_cost_ns != 0) {
-    std::uint64_t word = page.executed_adjust.load(std::memory_order_relaxed);
-    while (!page.executed_adjust.compare_exchange_weak(
-        word, shm::PackAdjust(word, shm::AdjustValue(word) + page.call_cost_ns))) {
-    }
+void ChargeCall(shm::ClockPage& page) {
+  std::uint64_t word = page.executed_adjust.load(std::memory_order_relaxed);
+  while (!page.executed_adjust.compare_exchange_weak(
+      word, shm::PackAdjust(word, shm::AdjustValue(word) + page.call_cost_ns))) {
   }
-  return t;
 }
-
-bool IsShutDown() { return g_header->shutdown.load(std::memory_order_relaxed) != 0; }
 
 void DieWithoutCoordinator(const char* what) {
   static const char kPrefix[] = "tcs: this program runs under tcsim, but ";

@@ -52,11 +52,20 @@ inline GuestThread* Current() {
   return CurrentSlow();
 }
 
+// Charges the set cost of a call.
+void ChargeCall(shm::ClockPage& page);
+
 // The same for an interposed call: under fixed accounting it also charges the call.
-GuestThread* Enter();
+inline GuestThread* Enter() {
+  GuestThread* t = Current();
+  if (t != nullptr && __builtin_expect(t->slot->clock.call_cost_ns != 0, 0)) {
+    ChargeCall(t->slot->clock);
+  }
+  return t;
+}
 
 // True once the run is over: waits are no longer the coordinator's.
-bool IsShutDown();
+inline bool IsShutDown() { return g_header->shutdown.load(std::memory_order_relaxed) != 0; }
 
 // Ends the process because its coordinator is gone.
 [[noreturn]] void DieWithoutCoordinator(const char* what);

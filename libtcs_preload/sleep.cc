@@ -15,8 +15,9 @@ namespace {
 
 // Sleeps for `duration_ns`. Returns 0, or EINTR with what remained in *remaining_ns.
 int SleepFor(GuestThread& t, std::int64_t duration_ns, std::int64_t* remaining_ns) {
-  const std::int64_t deadline = AddSaturated(NowNs(t), duration_ns);
-  if (SleepUntil(t, deadline)) return 0;
+  const Now now = ReadNow(t);
+  const std::int64_t deadline = AddSaturated(now.shown_ns, duration_ns);
+  if (SleepUntil(t, now.reading, deadline)) return 0;
   const std::int64_t rest = deadline - NowNs(t);
   *remaining_ns = rest > 0 ? rest : 0;
   return EINTR;

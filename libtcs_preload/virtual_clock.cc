@@ -14,8 +14,7 @@ using shm::NotificationKind;
 ClockReading ReadChecked(ClockPage& page) {
   for (;;) {
     const ClockReading r = shm::ReadClock(page);
-    const std::uint64_t last_check = page.last_check_tsc.load(std::memory_order_relaxed);
-    if (__builtin_expect(r.tsc - last_check <= page.check_after_ticks, 1)) return r;
+    if (__builtin_expect(!shm::IsCheckDue(page, r), 1)) return r;
     timespec cpu;
     RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
     shm::RemoveStolen(page, r, ToNs(cpu));
@@ -23,9 +22,8 @@ ClockReading ReadChecked(ClockPage& page) {
 }
 
 // One sleep inside the horizon is one addition. False where it has to be asked for.
-bool MoveOwnClock(ClockPage& page, std::int64_t deadline_ns) {
-  for (;;) {
-    const ClockReading r = ReadChecked(page);
+inline bool MoveOwnClock(ClockPage& page, ClockReading r, std::int64_t deadline_ns) {
+  for (;; r = ReadChecked(page)) {
     const std::int64_t now = shm::ShownTime(page, r);
     if (now >= deadline_ns && r.time_ns >= deadline_ns) return true;
     if (deadline_ns > page.idle_until_ns) return false;
@@ -41,15 +39,11 @@ bool MoveOwnClock(ClockPage& page, std::int64_t deadline_ns) {
 
 }  // namespace
 
-std::int64_t NowNs(GuestThread& thread) {
+Now ReadNowSlowly(GuestThread& thread) {
   ClockPage& page = thread.slot->clock;
   for (;;) {
     const ClockReading r = ReadChecked(page);
-    if (__builtin_expect(r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown(), 1)) {
-      const std::int64_t shown = shm::ShownTime(page, r);
-      page.last_shown_ns.store(shown, std::memory_order_relaxed);
-      return shown;
-    }
+    if (r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown()) return Show(page, r);
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});
   }
 }
@@ -66,12 +60,16 @@ std::int64_t ProcessCpuNs(GuestThread& thread) {
 std::int64_t ChildrenCpuNs(const GuestThread& thread) { return thread.slot->clock.children_cpu_ns; }
 
 bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns) {
+  return SleepUntil(thread, ReadChecked(thread.slot->clock), deadline_ns);
+}
+
+bool SleepUntil(GuestThread& thread, const ClockReading& now, std::int64_t deadline_ns) {
   if (IsShutDown()) {
     // The clock stands still; a program that sleeps until it is told to end must not spin.
     const timespec turn{0, 10'000'000};
     return RawSyscall(SYS_nanosleep, Arg(&turn), 0) == 0;
   }
-  if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, deadline_ns)) return true;
+  if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, now, deadline_ns)) return true;
   const Reply reply = Exchange(
       thread,
       Request{.kind = NotificationKind::kIdle, .deadline_ns = deadline_ns, .interruptible = true});

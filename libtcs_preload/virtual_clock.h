@@ -14,9 +14,37 @@ namespace tcs::preload {
 // CLOCK_MONOTONIC and CLOCK_REALTIME are fixed offsets from the run's virtual time.
 enum class Clock { kMonotonic, kRealtime };
 
+// A reading, and the virtual time that the clock showed for it, in ns since the run's start.
+struct Now {
+  shm::ClockReading reading;
+  std::int64_t shown_ns;
+};
+
+// Remembers what the clock shows for a reading.
+inline Now Show(shm::ClockPage& page, const shm::ClockReading& reading) {
+  const std::int64_t shown = shm::ShownTime(page, reading);
+  page.last_shown_ns.store(shown, std::memory_order_relaxed);
+  return Now{reading, shown};
+}
+
+// Takes stolen time out, and where the horizon is reached stops the thread, then reads again.
+Now ReadNowSlowly(GuestThread& thread);
+
+// Inlined into the calls that read clocks: a call and a reading passed through memory cost as much
+// again as the reading itself.
+inline Now ReadNow(GuestThread& thread) {
+  shm::ClockPage& page = thread.slot->clock;
+  const shm::ClockReading reading = shm::ReadClock(page);
+  if (__builtin_expect(reading.time_ns < reading.horizon_ns && !shm::IsCheckDue(page, reading),
+                       1)) {
+    return Show(page, reading);
+  }
+  return ReadNowSlowly(thread);
+}
+
 // Virtual time now, in ns since the run's start. Where the horizon is reached it stops the thread
 // first.
-std::int64_t NowNs(GuestThread& thread);
+inline std::int64_t NowNs(GuestThread& thread) { return ReadNow(thread).shown_ns; }
 
 // Charged processor time of the thread / of its process.
 std::int64_t ThreadCpuNs(GuestThread& thread);
@@ -27,8 +55,10 @@ inline std::int64_t OffsetNs(Clock clock) {
   return clock == Clock::kMonotonic ? g_header->monotonic_offset_ns : g_header->realtime_offset_ns;
 }
 
-// Sleeps until `deadline_ns`; false if a signal handler ended the sleep before.
+// Sleeps until `deadline_ns`; false if a signal handler ended the sleep before. The second form
+// spares a reading where the caller has just made one.
 bool SleepUntil(GuestThread& thread, std::int64_t deadline_ns);
+bool SleepUntil(GuestThread& thread, const shm::ClockReading& now, std::int64_t deadline_ns);
 
 // `timeout_ns` from now; never for a negative one.
 std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns);

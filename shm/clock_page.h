@@ -65,6 +65,11 @@ inline ClockReading ReadClock(const ClockPage& page) {
   }
 }
 
+// True where so much has passed since the CPU clock was last asked that much of it may be stolen.
+inline bool IsCheckDue(const ClockPage& page, const ClockReading& r) {
+  return r.tsc - page.last_check_tsc.load(std::memory_order_relaxed) > page.check_after_ticks;
+}
+
 // What the clock shows for a reading: at most the horizon, at least what it showed before.
 inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
   std::int64_t shown = r.time_ns < r.horizon_ns ? r.time_ns : r.horizon_ns;

@@ -1,0 +1,45 @@
+#include "tests/bench/host.h"
+
+#include <sched.h>
+#include <time.h>
+#include <x86intrin.h>
+
+#include <cstdint>
+
+namespace tcs::bench {
+
+namespace {
+
+constexpr std::int64_t kCalibrationNs = 50'000'000;
+
+std::int64_t RawNowNs() {
+  timespec now;
+  clock_gettime(CLOCK_MONOTONIC_RAW, &now);
+  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
+}
+
+}  // namespace
+
+bool BindToLastCpu() {
+  cpu_set_t allowed, one;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return false;
+  int last = 0;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed)) last = cpu;
+  }
+  CPU_ZERO(&one);
+  CPU_SET(last, &one);
+  return sched_setaffinity(0, sizeof one, &one) == 0;
+}
+
+double NsPerTick() {
+  const std::int64_t start_ns = RawNowNs();
+  const std::uint64_t start_tsc = __rdtsc();
+  std::int64_t passed_ns;
+  do {
+    passed_ns = RawNowNs() - start_ns;
+  } while (passed_ns < kCalibrationNs);
+  return static_cast<double>(passed_ns) / static_cast<double>(__rdtsc() - start_tsc);
+}
+
+}  // namespace tcs::bench

@@ -1,0 +1,63 @@
+// tcs_bench: what tcs costs, as ratios. Every value is measured in turns with its reference, so
+// that a host that is slow today slows down both. It judges nothing: the exit status is 0 if
+// everything asked for was measured, else 1.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/bench/host.h"
+#include "tests/bench/report.h"
+
+namespace {
+
+constexpr char kWork[] = "work";
+
+bool Wanted(const std::vector<std::string>& only, const std::string& name) {
+  return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int rounds = 7;
+  std::vector<std::string> only;
+  bool json = false, quick = false;
+  std::vector<std::string> names{kWork};
+  for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
+
+  CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
+  app.add_option("--rounds", rounds, "whose medians are printed; 7 unless told")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--only", only, "these benchmarks alone")->check(CLI::IsMember(names));
+  app.add_flag("--json", json, "print one JSON object instead of tables");
+  app.add_flag("--quick", quick, "one round and little work: shows only that all can be measured");
+  CLI11_PARSE(app, argc, argv);
+  if (quick) rounds = 1;
+  const double work_seconds = quick ? 0.05 : 0.3;
+
+  if (!tcs::bench::BindToLastCpu()) {
+    fmt::print(stderr, "tcs_bench: cannot bind to a CPU\n");
+    return 1;
+  }
+  const double ns_per_tick = tcs::bench::NsPerTick();
+  tcs::bench::Results results;
+  results.rounds = rounds;
+  bool complete = true;
+  for (const auto& benchmark : tcs::bench::CallBenchmarks()) {
+    if (!Wanted(only, benchmark.name)) continue;
+    auto row = tcs::bench::MeasureCall(benchmark, rounds, ns_per_tick);
+    if (row) results.calls.push_back(*row);
+    complete = complete && row.has_value();
+  }
+  if (Wanted(only, kWork)) {
+    auto rows = tcs::bench::MeasureWorkUnderLoad(rounds, work_seconds);
+    if (rows) results.work = *rows;
+    complete = complete && rows.has_value();
+  }
+  fmt::print("{}", json ? ToJson(results) : ToTables(results));
+  return complete ? 0 : 1;
+}

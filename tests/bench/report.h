@@ -1,0 +1,21 @@
+// What tcs_bench prints: tables for people, or one JSON object.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/call_ratios.h"
+#include "tests/bench/work_under_load.h"
+
+namespace tcs::bench {
+
+struct Results {
+  int rounds = 0;
+  std::vector<CallRow> calls;
+  std::vector<WorkRow> work;
+};
+
+std::string ToTables(const Results& results);
+std::string ToJson(const Results& results);
+
+}  // namespace tcs::bench
