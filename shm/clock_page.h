@@ -65,6 +65,21 @@ inline ClockReading ReadClock(const ClockPage& page) {
   }
 }
 
+// What the clock was at `tsc`, for a page that nobody moves meanwhile: one whose thread is stopped.
+inline ClockReading ReadClockAt(const ClockPage& page, std::uint64_t tsc) {
+  ClockReading r;
+  r.executed_word = page.executed_adjust.load(std::memory_order_acquire);
+  r.waited_word = page.waited_adjust.load(std::memory_order_acquire);
+  r.tsc = tsc;
+  const std::int64_t executed =
+      MulQ32(static_cast<std::int64_t>(tsc - page.base_tsc), page.ns_per_tick_q32) +
+      AdjustValue(r.executed_word);
+  r.cpu_ns = page.base_cpu_ns + executed;
+  r.time_ns = page.base_time_ns + executed + AdjustValue(r.waited_word);
+  r.horizon_ns = page.horizon_ns;
+  return r;
+}
+
 // True where so much has passed since the CPU clock was last asked that much of it may be stolen.
 inline bool IsCheckDue(const ClockPage& page, const ClockReading& r) {
   return r.tsc - page.last_check_tsc.load(std::memory_order_relaxed) > page.check_after_ticks;

@@ -58,7 +58,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   slot.wake_reason.store(task.reason);
   ++task.dispatches;
   const std::uint64_t number = task.dispatches << shm::kAdjustBits;
-  page.base_tsc = __rdtsc();
+  page.base_tsc = stop_tsc_ = __rdtsc();
   page.executed_adjust.store(number);
   page.waited_adjust.store(number);
 }
@@ -88,7 +88,8 @@ void Engine::Resume(Task& task) {
 // Real time until the running thread has to be preempted, less what timers are late.
 std::int64_t Engine::HostNsToHorizon(const Task& task) {
   if (task.slot < 0 || IsFixed()) return kStartTurnNs;
-  const std::int64_t now = shm::ReadClock(Slot(task).clock).time_ns - task.process->frozen_ns;
+  const std::int64_t now =
+      shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.cpu->speed;
   return std::max(kLeastSliceNs, static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_));
 }
@@ -96,7 +97,7 @@ std::int64_t Engine::HostNsToHorizon(const Task& task) {
 void Engine::CheckCpuClock(Task& task) {
   if (IsFixed()) return;
   shm::ClockPage& page = Slot(task).clock;
-  const shm::ClockReading reading = shm::ReadClock(page);
+  const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
   if (cpu >= 0) shm::RemoveStolen(page, reading, cpu);
 }
@@ -113,20 +114,21 @@ std::int64_t Engine::WrittenAt() {
 
 bool Engine::ReachedHorizon(Task& task) {
   shm::ClockPage& page = Slot(task).clock;
-  if (shm::ReadClock(page).tsc - page.last_check_tsc.load() > page.check_after_ticks) {
+  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) {
     CheckCpuClock(task);
   }
-  return shm::ReadClock(page).time_ns - task.process->frozen_ns >= running_horizon_ns_ - kCreditNs;
+  return shm::ReadClockAt(page, stop_tsc_).time_ns - task.process->frozen_ns >=
+         running_horizon_ns_ - kCreditNs;
 }
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
-  if (shm::ReadClock(page).tsc - page.last_check_tsc.load() > page.check_after_ticks) {
+  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) {
     CheckCpuClock(task);
   }
-  const shm::ClockReading reading = shm::ReadClock(page);
+  const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
   std::int64_t reached = reading.time_ns - frozen;
@@ -163,7 +165,7 @@ void Engine::AwaitStop(Task& task) {
   held_turns_ = 0;
   for (;;) {
     const std::int64_t asked_ns = HostNsToHorizon(task);
-    const std::uint64_t asked_tsc = __rdtsc();
+    const std::uint64_t asked_tsc = stop_tsc_;
     if (PollEvents(asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
@@ -175,7 +177,7 @@ void Engine::AwaitStop(Task& task) {
       return;
     }
     if (IsFixed()) continue;
-    const double took_ns = static_cast<double>(__rdtsc() - asked_tsc) / ticks_per_ns_;
+    const double took_ns = static_cast<double>(stop_tsc_ - asked_tsc) / ticks_per_ns_;
     const double late_ns = std::clamp(took_ns - static_cast<double>(asked_ns), 0.0, 50'000.0);
     lateness_ns_ += (late_ns - lateness_ns_) / 16;
     if (ReachedHorizon(task)) {

@@ -138,7 +138,8 @@ class Engine {
   std::int64_t event_ns_ = 0;  // virtual time of what is being handled
   Task* running_ = nullptr;
   std::int64_t running_horizon_ns_ = 0;
-  Task* last_ = nullptr;  // dispatched last; keeps its level until another one is
+  std::uint64_t stop_tsc_ = 0;  // when the running thread was last found stopped
+  Task* last_ = nullptr;        // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
   bool external_event_ = false;
