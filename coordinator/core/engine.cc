@@ -125,9 +125,9 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) cons
     idle = std::min(idle, other->deadline_ns);
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
-    if (other->waits_for_fds) {
-      limit = std::min(limit, std::max(root_.ReadSafe(cpu.leaf), cpu.progress_ns + kGrainNs));
-    }
+    if (!other->waits_for_fds) continue;
+    const std::int64_t input = root_.NextInput(cpu.leaf);
+    limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }
   if (cpu.ready.HasEqual(task.order)) {
     limit = std::min(limit, cpu.progress_ns + kQuantumNs - task.turn_ns);

@@ -80,4 +80,8 @@ std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
   return safe;
 }
 
+std::int64_t TemporalConsistency::NextInput(Leaf leaf) const {
+  return has_dynamics_ ? std::min(LeastOther(leaf), output_ns_) : LeastOther(leaf);
+}
+
 }  // namespace tcs

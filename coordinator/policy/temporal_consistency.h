@@ -39,6 +39,8 @@ class TemporalConsistency {
   // Nothing that the leaf could read is produced before this any more. What the dynamics send at an
   // instant is there for a read at that instant.
   std::int64_t ReadSafe(Leaf leaf) const;
+  // When something from outside could next wake a thread of the leaf.
+  std::int64_t NextInput(Leaf leaf) const;
   // No other leaf can read what is from before this any more.
   std::int64_t WriteSafe(Leaf leaf) const { return LeastOther(leaf); }
 

@@ -68,6 +68,15 @@ TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   EXPECT_EQ(root.ReadSafe(predator), kNever);
 }
 
+TEST(TemporalConsistency, TheNextInputIsTheDynamicsOutputOrWhatAnotherLeafMaySend) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  root.UpdateDynamics(0, 10'000'000);
+  EXPECT_EQ(root.NextInput(predator), 10'000'000);
+  root.Update(prey, 300, 300);
+  EXPECT_EQ(root.NextInput(predator), 300);
+}
+
 TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(), prey = root.AddLeaf();
