@@ -58,9 +58,18 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   slot.wake_reason.store(task.reason);
   ++task.dispatches;
   const std::uint64_t number = task.dispatches << shm::kAdjustBits;
-  page.base_tsc = stop_tsc_ = __rdtsc();
   page.executed_adjust.store(number);
   page.waited_adjust.store(number);
+}
+
+// From here on the TSC is the thread's. The last thing before the coordinator blocks, which is when
+// the thread starts: they share one CPU.
+void Engine::StartClock(Task& task) {
+  stop_tsc_ = __rdtsc();
+  if (task.slot < 0) return;
+  shm::ClockPage& page = Slot(task).clock;
+  page.base_tsc = stop_tsc_;
+  page.last_check_tsc.store(stop_tsc_, std::memory_order_relaxed);
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -83,6 +92,20 @@ void Engine::Resume(Task& task) {
   }
   task.parked = false;
   RearmDetector();
+}
+
+// What the coordinator did while the thread was only interrupted is not the thread's.
+void Engine::ContinueClock(Task& task) {
+  const std::uint64_t stopped_tsc = stop_tsc_;
+  stop_tsc_ = __rdtsc();
+  if (task.slot < 0) return;
+  shm::ClockPage& page = Slot(task).clock;
+  page.base_tsc += stop_tsc_ - stopped_tsc;
+  // A new number, so that the thread repeats a reading that it was interrupted in.
+  const std::uint64_t number = ++task.dispatches << shm::kAdjustBits;
+  page.executed_adjust.store(
+      shm::PackAdjust(number, shm::AdjustValue(page.executed_adjust.load())));
+  page.waited_adjust.store(shm::PackAdjust(number, shm::AdjustValue(page.waited_adjust.load())));
 }
 
 // Real time until the running thread has to be preempted, less what timers are late.
@@ -113,21 +136,17 @@ std::int64_t Engine::WrittenAt() {
 }
 
 bool Engine::ReachedHorizon(Task& task) {
-  shm::ClockPage& page = Slot(task).clock;
-  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) {
-    CheckCpuClock(task);
-  }
-  return shm::ReadClockAt(page, stop_tsc_).time_ns - task.process->frozen_ns >=
-         running_horizon_ns_ - kCreditNs;
+  CheckCpuClock(task);
+  const std::int64_t now = shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+  return now - task.process->frozen_ns >= running_horizon_ns_ - kCreditNs;
 }
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
-  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) {
-    CheckCpuClock(task);
-  }
+  // Always, so that what the TSC counted of the two context switches stays out of the next slice.
+  if (!preempted_) CheckCpuClock(task);
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
@@ -163,7 +182,8 @@ void Engine::Settle(Task& task) {
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0;
   held_turns_ = 0;
-  for (;;) {
+  for (bool first = true;; first = false) {
+    if (!first) ContinueClock(task);
     const std::int64_t asked_ns = HostNsToHorizon(task);
     const std::uint64_t asked_tsc = stop_tsc_;
     if (PollEvents(asked_ns)) return;
@@ -208,6 +228,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   Resume(task);
   ++report_.switches;
+  StartClock(task);
   AwaitStop(task);
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;

@@ -79,7 +79,10 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   const bool alone = cpu.ready.size() == 0 && (running_ == nullptr || running_->cpu != &cpu);
   const bool reads =
       task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
-  if (task.state == TaskState::kWaiting) ++task.activations;
+  if (task.state == TaskState::kWaiting) {
+    ++task.activations;
+    task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
+  }
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
   task.waits_for_fds = task.waits_for_child = false;

@@ -60,6 +60,8 @@ class Engine {
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
+  void StartClock(Task& task);
+  void ContinueClock(Task& task);
   void AwaitStop(Task& task);
   std::int64_t HostNsToHorizon(const Task& task);
   bool ReachedHorizon(Task& task);
