@@ -12,4 +12,8 @@ grep -q '"ph":"X"' "$out/first/trace.json" || fail "the trace is empty"
 cmp "$out/first/bodies.csv" "$out/second/bodies.csv" || fail "the body states differ"
 cmp "$out/first/trace.json" "$out/second/trace.json" || fail "the schedules differ"
 # The bytes agree because nothing was measured, not because nothing happened.
-grep -q 'planner .* activations [1-9]' "$out/first.said" || fail "the planner never planned"
+python3 - "$out/first/summary.json" <<'PY' || fail "$(cat "$out/first.said")"
+import json, sys
+planner = json.load(open(sys.argv[1]))["clients"]["predator/planner"]
+assert planner["activations"] >= 2 and planner["charged_ns"] > 2_000_000_000, planner
+PY

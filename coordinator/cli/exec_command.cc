@@ -1,0 +1,32 @@
+#include "coordinator/cli/exec_command.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/scenario/executable.h"
+
+namespace tcs {
+
+int ExecCommand(const std::vector<std::string>& command, double speed, const RunOptions& options) {
+  std::error_code gone;
+  const std::string folder = std::filesystem::current_path(gone);
+  if (gone) return Fail("the current folder is gone; change to one that exists");
+  auto found = FindExecutable(command[0], folder);
+  if (const auto* error = std::get_if<LoadError>(&found))
+    return Fail(error->message, kNoSuchProgram);
+  if (auto error = CheckExecutable(std::get<std::string>(found))) return Fail(error->message);
+
+  Scenario scenario;
+  scenario.duration = VirtualDuration::Nanoseconds(shm::kNeverNs);
+  ClientSpec client;
+  client.name = command[0];
+  client.command = command;
+  scenario.robots.push_back({"computer", 1, speed, {client}});
+  const RunReport report = RunScenario(scenario, options);
+  for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
+  if (!report.error.empty()) return Fail(report.error);
+  return report.interrupted ? kInterrupted : report.exit_status;
+}
+
+}  // namespace tcs

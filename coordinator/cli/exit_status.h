@@ -1,0 +1,23 @@
+// What tcsim itself exits with; `exec` otherwise passes on its program's own status.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+namespace tcs {
+
+inline constexpr int kSucceeded = 0;
+inline constexpr int kClientFailed = 1;     // the run went to its end, but a client of it failed
+inline constexpr int kCannotRun = 2;        // nothing was run, or not to its end
+inline constexpr int kNoSuchProgram = 127;  // as a shell says it
+inline constexpr int kInterrupted = 130;    // by ^C, SIGTERM or SIGHUP
+
+// The one clear sentence of a failure.
+inline int Fail(const std::string& sentence, int status = kCannotRun) {
+  fmt::print(stderr, "tcsim: {}\n", sentence);
+  return status;
+}
+
+}  // namespace tcs

@@ -1,0 +1,33 @@
+// One line on the terminal that says how a run is going, rewritten in place.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "coordinator/core/coordinator.h"
+
+namespace tcs {
+
+class LiveLine {
+ public:
+  explicit LiveLine(std::int64_t duration_ns) : duration_ns_(duration_ns) {}
+
+  // True where somebody can see it: stderr is a terminal.
+  static bool HasTerminal();
+
+  // What to show for `progress`; loads are since the last call. Fits into `columns`.
+  std::string Text(const RunProgress& progress, std::size_t columns);
+
+  void Show(const RunProgress& progress);
+  // Takes the line away again, if one was shown.
+  void Clear();
+
+ private:
+  std::int64_t duration_ns_;
+  std::int64_t last_virtual_ns_ = 0;
+  std::map<std::string, std::int64_t> last_charged_ns_;
+  bool shown_ = false;
+};
+
+}  // namespace tcs

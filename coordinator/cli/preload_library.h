@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace tcs {
+
+// The shim that belongs to this tcsim: ../lib/libtcs_preload.so beside its own folder.
+std::string PreloadLibrary();
+
+}  // namespace tcs

@@ -1,0 +1,104 @@
+#include "coordinator/cli/summary.h"
+
+#include <fmt/format.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace tcs {
+
+namespace {
+
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+double Milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
+// "exit status 1", "signal 11 (Segmentation fault)".
+std::string HowItEnded(int wait_status) {
+  if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
+  return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
+}
+
+std::int64_t NotOnOurCpu(const RunReport& r) {
+  return r.real_ns - r.client_ns - r.dynamics_ns - r.coordinating_ns;
+}
+
+}  // namespace
+
+double OverheadPercent(const RunReport& r) {
+  return r.real_ns == 0 ? 0.0 : 100.0 * Seconds(r.coordinating_ns) / Seconds(r.real_ns);
+}
+
+bool HasFailedClient(const RunReport& report) {
+  return std::any_of(report.clients.begin(), report.clients.end(), [](const ClientReport& client) {
+    return client.ended_at_ns >= 0 && client.wait_status != 0;
+  });
+}
+
+void PrintSummary(const Scenario& scenario, const RunReport& r, const std::string& directory) {
+  fmt::print("{}{:.3f} s of virtual time in {:.3f} s: {:.2f} x real time\n",
+             r.interrupted ? "interrupted; " : "", Seconds(r.virtual_ns), Seconds(r.real_ns),
+             Seconds(r.virtual_ns) / std::max(1e-9, Seconds(r.real_ns)));
+  fmt::print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns\n", Milliseconds(r.drift_ns),
+             Milliseconds(scenario.drift_bound.ns()), r.staleness_ns);
+  fmt::print(
+      "coordinating {:.3f} s = {:.2f} % overhead, clients {:.3f} s, dynamics {:.3f} s, "
+      "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
+      Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
+      Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
+  std::size_t width = 6;
+  for (const ClientReport& c : r.clients) width = std::max(width, c.name.size());
+  fmt::print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
+             "its CPU clock", "stolen", "activations", "overruns");
+  for (const ClientReport& c : r.clients) {
+    const std::string own =
+        c.host_cpu_ns < 0 ? "-" : fmt::format("{:.3f} s", Seconds(c.host_cpu_ns));
+    fmt::print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
+               Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
+  }
+  fmt::print("written to {}: summary.json, bodies.csv, trace.json (for ui.perfetto.dev), *.log\n",
+             directory);
+  for (const ClientReport& c : r.clients) {
+    if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
+    std::string base = c.name;
+    std::replace(base.begin(), base.end(), '/', '-');
+    fmt::print(stderr, "tcsim: {} ended at {:.3f} s with {}; its last words are in {}/{}.err.log\n",
+               c.name, Seconds(c.ended_at_ns), HowItEnded(c.wait_status), directory, base);
+  }
+  for (const std::string& w : r.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
+}
+
+std::string WriteSummary(const Scenario& scenario, const RunReport& r, const std::string& path) {
+  nlohmann::ordered_json json{{"scenario", scenario.name},
+                              {"seed", scenario.seed},
+                              {"interrupted", r.interrupted},
+                              {"virtual_ns", r.virtual_ns},
+                              {"real_ns", r.real_ns},
+                              {"drift_ns", r.drift_ns},
+                              {"drift_bound_ns", scenario.drift_bound.ns()},
+                              {"staleness_ns", r.staleness_ns},
+                              {"clients_ns", r.client_ns},
+                              {"dynamics_ns", r.dynamics_ns},
+                              {"coordinating_ns", r.coordinating_ns},
+                              {"overhead_percent", OverheadPercent(r)},
+                              {"dispatches", r.switches},
+                              {"samples", r.samples},
+                              {"commands", r.commands},
+                              {"warnings", r.warnings}};
+  for (const ClientReport& c : r.clients) {
+    json["clients"][c.name] = {
+        {"charged_ns", c.charged_ns},   {"host_cpu_ns", c.host_cpu_ns},
+        {"stolen_ns", c.stolen_ns},     {"activations", c.activations},
+        {"overruns", c.overruns},       {"ended_at_ns", c.ended_at_ns},
+        {"wait_status", c.wait_status},
+    };
+  }
+  std::ofstream file(path);
+  file << json.dump(2) << '\n';
+  file.close();
+  return file.fail() ? fmt::format("{} cannot be written: {}", path, strerror(errno)) : "";
+}
+
+}  // namespace tcs

@@ -1,0 +1,23 @@
+// What a run ends with: a few lines for people, and summary.json for programs.
+#pragma once
+
+#include <string>
+
+#include "coordinator/core/coordinator.h"
+
+namespace tcs {
+
+// Coordinating time in percent of the run's real time.
+double OverheadPercent(const RunReport& report);
+
+// True if a client ended before the run with anything but exit status 0.
+bool HasFailedClient(const RunReport& report);
+
+// To stdout; what went wrong in clients, and the warnings, to stderr.
+void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
+
+// Empty on success, else one sentence. Times are nanoseconds.
+[[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunReport& report,
+                                       const std::string& path);
+
+}  // namespace tcs
