@@ -37,12 +37,6 @@ int GatherInEpoll(const pollfd* fds, unsigned long count) {
   return set;
 }
 
-bool PollNow(int fd, short events) {
-  pollfd probe{fd, events, 0};
-  const timespec now{};
-  return RawSyscall(SYS_ppoll, Arg(&probe), 1, Arg(&now), 0, 0) != 0;
-}
-
 WaitResult ToResult(WakeReason reason) {
   switch (reason) {
     case WakeReason::kDeadline:
@@ -88,27 +82,44 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
   return ToResult(reply.reason);
 }
 
-bool AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
+bool PollNow(int fd, short events) {
+  pollfd probe{fd, events, 0};
+  const timespec now{};
+  return RawSyscall(SYS_ppoll, Arg(&probe), 1, Arg(&now), 0, 0) != 0;
+}
+
+FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
   const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
-  if (flags < 0 || (flags & O_NONBLOCK) != 0) return true;
-  for (;;) {
-    if (PollNow(fd, events)) return true;
+  if (flags < 0 || (flags & O_NONBLOCK) != 0) return FdState::kReady;
+  for (FdState state = FdState::kReady;; state = FdState::kWaited) {
+    if (PollNow(fd, events)) return state;
     const pollfd waited{fd, events, 0};
     switch (WaitForFds(thread, &waited, 1, deadline_ns)) {
       case WaitResult::kRetry:
         break;
       case WaitResult::kTimedOut:
-        if (PollNow(fd, events)) return true;
+        if (PollNow(fd, events)) return FdState::kWaited;
         Fail(EAGAIN);
-        return false;
+        return FdState::kFailed;
       case WaitResult::kInterrupted:
         if (!RestartsAfterSignal()) {
           Fail(EINTR);
-          return false;
+          return FdState::kFailed;
         }
         break;
     }
   }
+}
+
+void HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
+  if (NowNs(thread) <= thread.slot->clock.read_safe_ns) return;
+  int type = 0;
+  socklen_t size = sizeof type;
+  if (socket && RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) == 0 &&
+      type == SOCK_DGRAM && PollNow(fd, POLLIN)) {
+    return;
+  }
+  HoldForRead(thread);
 }
 
 bool CanWait(int fd) {

@@ -12,14 +12,23 @@ namespace tcs::preload {
 enum class WaitResult { kRetry, kTimedOut, kInterrupted };
 
 // Stops the thread until one of `fds` (negative ones are passed over) may be ready or `deadline_ns`
-// is reached. kRetry: probe again. The probe that said "not ready" came before, under HoldForRead.
+// is reached. kRetry: probe again: everything sent until then is there. What was sent up to the
+// call but was not there yet ends the wait at the time of the call, so nobody needs to hold before.
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
                       std::int64_t deadline_ns);
 
-// Waits until `fd` shows one of `events`, unless it is non-blocking. True: make the call now; the
-// caller has no need to hold for reading or writing again. False: errno is set (EAGAIN past
-// `deadline_ns`, EINTR).
-bool AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns);
+// Waits until `fd` shows one of `events`, unless it is non-blocking. kReady: it did at once, or
+// waiting is not wanted: hold, then make the call. kWaited: make the call now. kFailed: errno is
+// set (EAGAIN past `deadline_ns`, EINTR).
+enum class FdState { kReady, kWaited, kFailed };
+FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns);
+
+// True if `fd` shows one of `events` now.
+bool PollNow(int fd, short events);
+
+// HoldForRead, unless the call is going to take a datagram that is there already: it is from the
+// past, and comes first whatever else is still sent.
+void HoldForReadFrom(GuestThread& thread, int fd, bool socket);
 
 // True if calls on `fd` can wait for somebody else: sockets, pipes, terminals, event descriptors.
 bool CanWait(int fd);

@@ -22,11 +22,13 @@ template <class Call>
 ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   GuestThread* t = Enter();
   if (t == nullptr || !CanWait(fd)) return ToErrno(call());
-  HoldForRead(*t);
+  FdState state = FdState::kReady;
   if (!dont_wait) {
     const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
-    if (!AwaitFd(*t, fd, POLLIN, deadline)) return -1;
+    state = AwaitFd(*t, fd, POLLIN, deadline);
   }
+  if (state == FdState::kFailed) return -1;
+  if (state == FdState::kReady) HoldForReadFrom(*t, fd, socket);
   return ToErrno(call());
 }
 
@@ -37,7 +39,7 @@ ssize_t WriteLike(int fd, bool dont_wait, bool socket, Call call) {
   HoldForWrite(*t);
   if (!dont_wait) {
     const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_SNDTIMEO) : tcs::shm::kNeverNs;
-    if (!AwaitFd(*t, fd, POLLOUT, deadline)) return -1;
+    if (AwaitFd(*t, fd, POLLOUT, deadline) == FdState::kFailed) return -1;
   }
   return ToErrno(call());
 }
@@ -93,12 +95,15 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags, Arg(timeout))));
   }
-  HoldForRead(*t);
+  FdState state = FdState::kReady;
   if (!DontWait(flags)) {
     std::int64_t deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
     if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(*timeout));
-    if (!AwaitFd(*t, fd, POLLIN, deadline)) return -1;
+    state = AwaitFd(*t, fd, POLLIN, deadline);
   }
+  if (state == FdState::kFailed) return -1;
+  // All that are there come along, so all that are from before must be there.
+  if (state == FdState::kReady) HoldForRead(*t);
   return static_cast<int>(
       ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0)));
 }

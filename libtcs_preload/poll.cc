@@ -20,21 +20,24 @@ namespace {
 
 constexpr timespec kNow{};
 
-// The shape of all of them: probe with a timeout of zero; nothing there: wait; probe again. `probe`
-// returns what the kernel returns, 0 for "nothing". `wait(deadline)` returns a WaitResult. A signal
-// always ends these calls.
-template <class Probe, class Wait>
-int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, Probe probe,
-                 Wait wait) {
+// The shape of all of them: nothing there: wait, and probe again. Something there, or no wait
+// wanted: hold, so that the probe finds all that was sent until now. `is_ready` takes nothing away,
+// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `wait(deadline)`
+// returns a WaitResult. A signal always ends these calls.
+template <class IsReady, class Probe, class Wait>
+int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, IsReady is_ready,
+                 Probe probe, Wait wait) {
   const std::int64_t deadline = DeadlineAfter(t, timeout_ns);
   const MaskDuringWait masked(mask);
-  HoldForRead(t);
-  for (;;) {
+  if (timeout_ns == 0 || is_ready() != 0) {
+    HoldForRead(t);
     const long found = probe();
-    if (found != 0) return static_cast<int>(ToErrno(found));
-    if (timeout_ns == 0) return 0;
+    if (found != 0 || timeout_ns == 0) return static_cast<int>(ToErrno(found));
+  }
+  for (;;) {
     switch (wait(deadline)) {
       case WaitResult::kRetry:
+        if (const long found = probe(); found != 0) return static_cast<int>(ToErrno(found));
         break;
       case WaitResult::kTimedOut:
         return static_cast<int>(ToErrno(probe()));
@@ -46,10 +49,11 @@ int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, 
 
 int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
            const sigset_t* mask) {
-  return ProbeAndWait(
-      t, timeout_ns, mask,
-      [&] { return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0); },
-      [&](std::int64_t deadline) { return WaitForFds(t, fds, count, deadline); });
+  auto probe = [&] {
+    return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
+  };
+  return ProbeAndWait(t, timeout_ns, mask, probe, probe,
+                      [&](std::int64_t deadline) { return WaitForFds(t, fds, count, deadline); });
 }
 
 struct SelectSets {
@@ -95,13 +99,13 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
     }
     return WaitForFds(t, fds, count, deadline);
   };
-  return ProbeAndWait(t, timeout_ns, mask, probe, wait);
+  return ProbeAndWait(t, timeout_ns, mask, probe, probe, wait);
 }
 
 int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t timeout_ns,
             const sigset_t* mask) {
   return ProbeAndWait(
-      t, timeout_ns, mask,
+      t, timeout_ns, mask, [&] { return PollNow(epfd, POLLIN) ? 1L : 0L; },
       [&] { return RawSyscall(SYS_epoll_pwait, epfd, Arg(events), max, 0, 0, 8); },
       [&](std::int64_t deadline) {
         const pollfd set{epfd, POLLIN, 0};

@@ -97,6 +97,9 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitFds:
       WaitForFds(task, note);
+      Refresh(cpu);
+      // What is there already ends the wait here and now.
+      PollEvents(0);
       break;
     case Kind::kWaitChild:
       WaitForChild(task);
