@@ -69,7 +69,7 @@ void Engine::StartClock(Task& task) {
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
   page.base_tsc = stop_tsc_;
-  page.last_check_tsc.store(stop_tsc_, std::memory_order_relaxed);
+  page.last_check_tsc.store(stop_tsc_ - task.unchecked_ticks, std::memory_order_relaxed);
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -136,8 +136,9 @@ std::int64_t Engine::WrittenAt() {
 }
 
 bool Engine::ReachedHorizon(Task& task) {
-  CheckCpuClock(task);
-  const std::int64_t now = shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+  const shm::ClockPage& page = Slot(task).clock;
+  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
+  const std::int64_t now = shm::ReadClockAt(page, stop_tsc_).time_ns;
   return now - task.process->frozen_ns >= running_horizon_ns_ - kCreditNs;
 }
 
@@ -145,8 +146,8 @@ void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
-  // Always, so that what the TSC counted of the two context switches stays out of the next slice.
-  if (!preempted_) CheckCpuClock(task);
+  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
+  task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;

@@ -44,7 +44,8 @@ struct Task {
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
-  std::int64_t turn_ns = 0;  // had since its equals last had a turn
+  std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
+  std::int64_t turn_ns = 0;           // had since its equals last had a turn
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
   std::uint64_t dispatches = 0;
