@@ -20,6 +20,7 @@ constexpr std::int64_t kCreditNs = 20'000;
 constexpr std::int64_t kCheckAfterNs = 100'000;
 // Shown too early by what was stolen unnoticed, and stopped early: no more than both.
 constexpr std::int64_t kMostCreditNs = kCheckAfterNs + kCreditNs;
+constexpr double kMostSwitchNs = 20'000.0;
 constexpr std::int64_t kLeastSliceNs = 2'000;
 constexpr std::int64_t kStartTurnNs = 1'000'000'000;
 constexpr int kStartTurns = 30;
@@ -68,8 +69,10 @@ void Engine::StartClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = stop_tsc_;
-  page.last_check_tsc.store(stop_tsc_ - task.unchecked_ticks, std::memory_order_relaxed);
+  page.base_tsc = stop_tsc_ + static_cast<std::uint64_t>(switch_ns_ * ticks_per_ns_);
+  task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
+  page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
+  ++task.unchecked_slices;
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -122,7 +125,18 @@ void Engine::CheckCpuClock(Task& task) {
   shm::ClockPage& page = Slot(task).clock;
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
-  if (cpu >= 0) shm::RemoveStolen(page, reading, cpu);
+  if (cpu < 0) return;
+  // What is stolen at every dispatch is the context switch itself. Only slices that the thread has
+  // not checked in between say something about it.
+  const std::uint64_t checked = page.last_check_tsc.load(std::memory_order_relaxed);
+  if (task.unchecked_slices > 0 && checked == task.checked_tsc) {
+    const auto stolen = static_cast<double>(reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu)) *
+                        task.cpu->speed;
+    const double more = std::clamp(stolen / task.unchecked_slices, -kMostSwitchNs, kMostSwitchNs);
+    switch_ns_ = std::clamp(switch_ns_ + more / 16, 0.0, kMostSwitchNs);
+  }
+  task.unchecked_slices = 0;
+  shm::RemoveStolen(page, reading, cpu);
 }
 
 // The virtual time of what the running thread has just done to others: the time that its clock

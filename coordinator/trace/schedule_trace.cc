@@ -49,23 +49,24 @@ int ScheduleTrace::AddRow(const std::string& group, const std::string& name) {
     Event(fmt::format(R"({{"ph":"M","name":"thread_name","pid":{},"tid":{},"args":{{"name":{}}}}})",
                       pid, tid, Quoted(name)));
   }
-  rows_.push_back({pid, 0, 0});
+  rows_.push_back({pid});
   return tid - 1;
 }
 
 void ScheduleTrace::Write(int row) {
   Row& r = rows_[static_cast<std::size_t>(row)];
-  if (r.start_ns == r.end_ns) return;
+  if (!r.has_slice) return;
   Event(fmt::format(R"({{"ph":"X","name":"run","pid":{},"tid":{},"ts":{},"dur":{}}})", r.group,
                     row + 1, Microseconds(r.start_ns), Microseconds(r.end_ns - r.start_ns)));
-  r.start_ns = r.end_ns;
+  r.has_slice = false;
 }
 
 void ScheduleTrace::Slice(int row, std::int64_t start_ns, std::int64_t end_ns) {
-  if (file_ == nullptr || start_ns >= end_ns) return;
+  if (file_ == nullptr || start_ns > end_ns) return;
   Row& r = rows_[static_cast<std::size_t>(row)];
-  if (start_ns != r.end_ns || r.start_ns == r.end_ns) {
+  if (!r.has_slice || start_ns != r.end_ns) {
     Write(row);
+    r.has_slice = true;
     r.start_ns = start_ns;
   }
   r.end_ns = end_ns;

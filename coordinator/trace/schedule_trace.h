@@ -25,7 +25,8 @@ class ScheduleTrace {
 
   // A row named `name` in the group `group`, shown in the order of their making.
   int AddRow(const std::string& group, const std::string& name);
-  // Row `row` was busy from `start_ns` to `end_ns`; later slices of a row never begin earlier.
+  // Row `row` was busy from `start_ns` to `end_ns`, which may be the same; later slices of a row
+  // never begin earlier.
   void Slice(int row, std::int64_t start_ns, std::int64_t end_ns);
   // Something happened at one instant.
   void Instant(int row, const char* what, std::int64_t at_ns);
@@ -36,7 +37,8 @@ class ScheduleTrace {
  private:
   struct Row {
     int group;
-    std::int64_t start_ns, end_ns;  // of the slice not written yet; none if equal
+    bool has_slice = false;  // not written yet, for more may follow without a gap
+    std::int64_t start_ns = 0, end_ns = 0;
   };
   void Event(const std::string& json);
   void Write(int row);

@@ -46,6 +46,13 @@ TEST_F(ScheduleTraceTest, SlicesWithoutAGapBecomeOne) {
   EXPECT_DOUBLE_EQ(slices[1].at("ts"), 3000.0);
 }
 
+TEST_F(ScheduleTraceTest, ASliceThatTookNoTimeIsStillSeen) {
+  const int controller = trace_.AddRow("predator", "controller");
+  trace_.Slice(controller, 10'000'000, 10'000'000);
+  trace_.Slice(controller, 20'000'000, 20'000'000);
+  EXPECT_EQ(Events("X").size(), 2u);
+}
+
 TEST_F(ScheduleTraceTest, RowsOfOneGroupShareItsProcess) {
   trace_.AddRow("predator", "controller");
   trace_.AddRow("predator", "a \"quoted\" planner");
