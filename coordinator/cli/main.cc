@@ -9,6 +9,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/os/guardian.h"
 
 namespace {
 
@@ -71,7 +72,9 @@ int main(int argc, char** argv) {
   if (access(options.preload_library.c_str(), R_OK) != 0) {
     return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
   }
-  if (exec->parsed()) return tcs::ExecCommand(command, speed, options);
   if (seeded->count() > 0) arguments.seed = seed;
-  return tcs::RunCommand(arguments, options);
+  return tcs::RunGuarded([&] {
+    return exec->parsed() ? tcs::ExecCommand(command, speed, options)
+                          : tcs::RunCommand(arguments, options);
+  });
 }

@@ -4,7 +4,6 @@
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -23,11 +22,6 @@ constexpr int kEventsAtOnce = 64;
 constexpr std::int64_t kHeldTurnNs = 100'000;
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
-
-// Past the C library: its wrappers are cancellation points, which cost in a process with threads.
-int WaitEvents(int epoll, epoll_event* events, int room, const timespec* timeout) {
-  return static_cast<int>(syscall(SYS_epoll_pwait2, epoll, events, room, timeout, nullptr, 0));
-}
 
 }  // namespace
 
@@ -86,7 +80,8 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
   if (held && timeout_ns > kHeldTurnNs) timeout_ns = kHeldTurnNs;
   epoll_event events[kEventsAtOnce];
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
-  const int n = WaitEvents(epoll_, events, kEventsAtOnce, timeout_ns < 0 ? nullptr : &timeout);
+  const int n =
+      epoll_pwait2(epoll_, events, kEventsAtOnce, timeout_ns < 0 ? nullptr : &timeout, nullptr);
   stop_tsc_ = __rdtsc();
   if (n == 0 && running_ != nullptr) {
     if (held) {
@@ -104,7 +99,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     switch (tag) {
       case Tag::kPipe: {
         shm::PipeMessage messages[64];
-        const ssize_t bytes = syscall(SYS_read, pipe_[0], messages, sizeof messages);
+        const ssize_t bytes = read(pipe_[0], messages, sizeof messages);
         for (ssize_t m = 0; m * static_cast<ssize_t>(sizeof messages[0]) < bytes; ++m) {
           if (messages[m].slot >= shm::kSlotCount) continue;
           Task* task = by_slot_[messages[m].slot];

@@ -3,21 +3,19 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr int kGraceMs = 300;    // between SIGTERM and SIGKILL
-constexpr int kReapTurns = 200;  // of 5 ms
-constexpr useconds_t kReapTurnUs = 5'000;
+constexpr int kGraceMs = 300;  // between SIGTERM and SIGKILL
 
 }  // namespace
 
@@ -45,16 +43,8 @@ void Engine::Shutdown() {
     poll(ends.data(), ends.size(), kGraceMs / 10);
     std::erase_if(ends, [](const pollfd& end) { return end.revents != 0; });
   }
-  for (Process& process : processes_) {
-    if (!process.dead) kill(process.pid, SIGKILL);
-  }
-  // Everything that descends from this process and lost its parent is ours to end.
-  for (int turn = 0; turn < kReapTurns; ++turn) {
-    int status = 0;
-    const pid_t pid = waitpid(-1, &status, WNOHANG);
-    if (pid < 0) break;
-    if (pid == 0) usleep(kReapTurnUs);
-  }
+  // Everything that descends from this process and lost its parent is ours to end, too.
+  KillDescendants();
 }
 
 void Engine::Report(RunReport* report) {

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <pthread.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
@@ -31,21 +30,22 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 // A CLOCK_MONOTONIC of 0 would look like one that was never set.
 constexpr std::int64_t kMonotonicStartNs = 1'000'000'000'000;
 
-struct DetectorFds {
-  int arm, fired;
-};
-
-// Runs exactly when armed and neither the coordinator nor the active thread wants the CPU.
-void* DetectorThread(void* raw) {
-  const DetectorFds fds = *static_cast<DetectorFds*>(raw);
-  delete static_cast<DetectorFds*>(raw);
+// Runs exactly when armed and neither the coordinator nor the active thread wants the CPU. A
+// process of its own and not a thread: a killed coordinator must not have to wait for somebody who
+// may never get the processor again before its death is known.
+[[noreturn]] void Detect(int arm, int fired) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   SetLevel(0, Level::kDetector);
-  std::uint64_t count = 0;
-  const std::uint64_t one = 1;
-  while (read(fds.arm, &count, sizeof count) == sizeof count) {
-    if (write(fds.fired, &one, sizeof one) != sizeof one) break;
+  constexpr int kArm = 0, kFired = 1;
+  if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
+    close_range(2, ~0u, 0);
+    std::uint64_t count = 0;
+    const std::uint64_t one = 1;
+    while (read(kArm, &count, sizeof count) == sizeof count) {
+      if (write(kFired, &one, sizeof one) != sizeof one) break;
+    }
   }
-  return nullptr;
+  _exit(0);
 }
 
 }  // namespace
@@ -132,12 +132,13 @@ std::string Engine::PrepareDetector() {
   detector_arm_ = eventfd(0, EFD_CLOEXEC);
   detector_fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   Watch(detector_fired_, EPOLLIN, Tag::kDetector, 0);
-  pthread_t detector;
-  if (pthread_create(&detector, nullptr, DetectorThread,
-                     new DetectorFds{detector_arm_, detector_fired_}) != 0) {
-    return "the block detector's thread cannot be made";
+  const pid_t coordinator = getpid();
+  const pid_t detector = fork();
+  if (detector < 0) return "the block detector's process cannot be made";
+  if (detector == 0) {
+    if (getppid() != coordinator) _exit(0);
+    Detect(detector_arm_, detector_fired_);
   }
-  pthread_detach(detector);
   return {};
 }
 

@@ -1,14 +1,35 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# A coordinator killed in the middle takes its clients with it.
-"$tcsim" exec -- sh -c 'while :; do :; done' &
-pid=$!
-sleep 1
-kill -9 "$pid"
-wait "$pid" 2>/dev/null || true
-for _ in $(seq 50); do
-  pgrep -f 'sh -c while :; do :; done' >/dev/null || exit 0
-  sleep 0.1
+# Whoever is killed, and however: no process of the run is left, nor anything in /dev/shm. The client
+# and its own child both spin at real-time priority.
+mark="tcs_mark_$$"
+program="sh -c 'while :; do :; done # $mark' & while :; do :; done # $mark"
+trap 'pkill -9 -f "$mark" || true' EXIT
+shared_before=$(ls /dev/shm | wc -l)
+
+tcsim_pid() { echo "$tcsim_pid"; }
+coordinator_pid() { pgrep -P "$tcsim_pid"; }
+client_pid() { pgrep -P "$(coordinator_pid)" -f "^sh -c"; }
+
+for victim in tcsim_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
+  "$tcsim" exec -- sh -c "$program" 2>/dev/null &
+  tcsim_pid=$!
+  for _ in $(seq 100); do
+    (($(pgrep -fc "while :; do :; done # $mark") >= 4)) && break
+    sleep 0.1
+  done
+  kill "-${victim#*:}" "$(${victim%:*})"
+  # Its killed parent does not end a child: that one is still a client, and ends with the run.
+  if [[ $victim == client_pid:* ]]; then
+    sleep 0.3
+    kill -TERM "$tcsim_pid" || fail "the death of a client ended its child's run"
+  fi
+  left=""
+  for _ in $(seq 100); do
+    left=$(pgrep -af "$mark" | grep -v "^$$ " || true)
+    [[ -z $left ]] && break
+    sleep 0.1
+  done
+  [[ -z $left ]] || fail "after $victim there is still: $left"
 done
-pkill -9 -f 'sh -c while :; do :; done'
-fail "a client outlived its coordinator"
+(($(ls /dev/shm | wc -l) == shared_before)) || fail "something is left in /dev/shm"

@@ -1,0 +1,23 @@
+// A process around the coordinator that ends whatever it leaves behind.
+//
+// Clients die with the coordinator (PDEATHSIG), but a client's own children do not, and one of
+// those may spin at real-time priority. So tcsim is two processes: the guardian, which the user
+// started, and the coordinator, its child. Both are subreapers: orphans come to the coordinator
+// while it lives, then to the guardian. Neither outlives the other: the guardian's end is a SIGTERM
+// to the coordinator, the coordinator's end makes the guardian kill and reap all that is left.
+#pragma once
+
+#include <functional>
+
+namespace tcs {
+
+// Runs `coordinate` in a child process and returns its exit status once nothing that descends from
+// it lives any more. Dies of the signal that the child died of. SIGTERM and SIGHUP are passed on,
+// ^C and ^\ reach the child by the terminal, a stop stops both. Call it before there are threads.
+int RunGuarded(const std::function<int()>& coordinate);
+
+// Kills and reaps the children of this process, and the orphans that come to it, until none is
+// left; gives up after two seconds (a process in the disk's hands does not die).
+void KillDescendants();
+
+}  // namespace tcs
