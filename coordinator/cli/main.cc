@@ -9,6 +9,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
 
 namespace {
@@ -57,6 +58,10 @@ int main(int argc, char** argv) {
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
+  bool as_json = false;
+  CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
+  doctor->add_flag("--json", as_json, "for programs");
+
   std::string accounting = "measured";
   for (CLI::App* sub : {run, exec}) {
     sub->add_option("--accounting", accounting,
@@ -69,6 +74,12 @@ int main(int argc, char** argv) {
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
+  if (doctor->parsed()) {
+    const auto findings = tcs::Examine(options.preload_library);
+    const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
+    fmt::print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
+    return tcs::CanRun(findings) ? 0 : 1;
+  }
   if (access(options.preload_library.c_str(), R_OK) != 0) {
     return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
   }

@@ -1,0 +1,154 @@
+#include "coordinator/doctor/doctor.h"
+
+#include <errno.h>
+#include <fmt/format.h>
+#include <gnu/libc-version.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "coordinator/doctor/interpret.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+std::string ReadFile(const char* path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// In a child, so that this process keeps its own priority.
+int TryRealTime() {
+  const pid_t child = fork();
+  if (child == 0) {
+    const sched_param param{static_cast<int>(Level::kCoordinator)};
+    _exit(sched_setscheduler(0, SCHED_FIFO, &param) == 0 ? 0 : errno);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) != child) return errno;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : EPERM;
+}
+
+int TryDescriptors() {
+  const pid_t child = fork();
+  if (child < 0) return errno;
+  if (child == 0) {
+    alarm(5);
+    for (;;) pause();
+  }
+  const int pidfd = OpenPidfd(child);
+  const int fd = pidfd < 0 ? -1 : DuplicateFd(pidfd, 0);
+  const int error = fd < 0 ? errno : 0;
+  if (fd >= 0) close(fd);
+  if (pidfd >= 0) close(pidfd);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  return error;
+}
+
+Finding TryShim(const std::string& path) {
+  int said[2];
+  if (pipe(said) != 0) return JudgeShim(path, -1, "no pipe can be made");
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(said[1], STDERR_FILENO);
+    setenv("LD_PRELOAD", path.c_str(), 1);
+    unsetenv("TCS_SOCKET");
+    alarm(5);
+    execlp("true", "true", nullptr);
+    _exit(127);
+  }
+  close(said[1]);
+  char text[512];
+  const ssize_t n = child < 0 ? 0 : read(said[0], text, sizeof text);
+  close(said[0]);
+  int status = -1;
+  if (child > 0) waitpid(child, &status, 0);
+  return JudgeShim(path, status,
+                   std::string(text, static_cast<std::size_t>(std::max<ssize_t>(0, n))));
+}
+
+Finding LookAtCpu() {
+  cpu_set_t allowed;
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  return JudgeCpu(LastAllowedCpu(), CPU_COUNT(&allowed),
+                  ReadFile("/sys/devices/system/cpu/isolated"));
+}
+
+const char* Word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kOk:
+      return "ok";
+    case Verdict::kWarning:
+      return "warning";
+    case Verdict::kMissing:
+      break;
+  }
+  return "missing";
+}
+
+const char* Colour(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kOk:
+      return "\033[32m";
+    case Verdict::kWarning:
+      return "\033[33m";
+    case Verdict::kMissing:
+      break;
+  }
+  return "\033[31m";
+}
+
+}  // namespace
+
+std::vector<Finding> Examine(const std::string& preload_library) {
+  return {
+      JudgeRealTime(TryRealTime()),
+      JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
+                      ReadFile("/proc/sys/kernel/sched_rt_period_us")),
+      JudgeTsc(ReadFile("/proc/cpuinfo"),
+               ReadFile("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
+      LookAtCpu(),
+      JudgeDescriptors(TryDescriptors()),
+      JudgeLibc(gnu_get_libc_version()),
+      TryShim(preload_library),
+      JudgeSteal(ReadFile("/proc/stat")),
+  };
+}
+
+std::string ToText(const std::vector<Finding>& findings, bool colour) {
+  std::string text;
+  for (const Finding& f : findings) {
+    const std::string word = fmt::format("{:<7}", Word(f.verdict));
+    text += fmt::format("{}  {:<22}  {}\n", colour ? Colour(f.verdict) + word + "\033[0m" : word,
+                        f.name, f.found);
+    if (!f.mend.empty()) text += fmt::format("{:33}{}\n", "", f.mend);
+  }
+  return text;
+}
+
+std::string ToJson(const std::vector<Finding>& findings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Finding& f : findings) {
+    json.push_back(
+        {{"name", f.name}, {"verdict", Word(f.verdict)}, {"found", f.found}, {"mend", f.mend}});
+  }
+  return json.dump(2) + "\n";
+}
+
+bool CanRun(const std::vector<Finding>& findings) {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& f) { return f.verdict == Verdict::kMissing; });
+}
+
+}  // namespace tcs

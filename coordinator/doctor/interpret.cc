@@ -1,0 +1,136 @@
+#include "coordinator/doctor/interpret.h"
+
+#include <errno.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstring>
+#include <sstream>
+
+namespace tcs {
+
+namespace {
+
+long ToLong(const std::string& text, long otherwise) {
+  long value = otherwise;
+  return std::sscanf(text.c_str(), "%ld", &value) == 1 ? value : otherwise;
+}
+
+// True if `number` is in a kernel list such as "0,4-7".
+bool Contains(const std::string& list, int number) {
+  std::stringstream ranges(list);
+  for (std::string range; std::getline(ranges, range, ',');) {
+    int first = 0, last = 0;
+    const int n = std::sscanf(range.c_str(), "%d-%d", &first, &last);
+    if (n == 1) last = first;
+    if (n >= 1 && first <= number && number <= last) return true;
+  }
+  return false;
+}
+
+bool HasWord(const std::string& text, const std::string& word) {
+  std::stringstream words(text);
+  for (std::string w; words >> w;) {
+    if (w == word) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Finding JudgeRealTime(int error) {
+  if (error == 0) return {"real-time priority", Verdict::kOk, "SCHED_FIFO 13 is permitted", ""};
+  return {
+      "real-time priority", Verdict::kMissing,
+      fmt::format("SCHED_FIFO 13 is refused: {}", strerror(error)),
+      "run tcsim as root, or put '@GROUP - rtprio 20' into /etc/security/limits.conf and log in "
+      "again (in a container: --cap-add SYS_NICE)"};
+}
+
+Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us) {
+  const long runtime = ToLong(runtime_us, -1), period = ToLong(period_us, 1'000'000);
+  if (runtime < 0 || runtime >= period) {
+    return {"real-time throttling", Verdict::kOk, "off", ""};
+  }
+  return {"real-time throttling", Verdict::kWarning,
+          fmt::format("real-time programs get {:.0f} % of each {:.1f} s",
+                      100.0 * static_cast<double>(runtime) / static_cast<double>(period),
+                      static_cast<double>(period) * 1e-6),
+          "results do not change, but runs take that much longer; `sysctl -w "
+          "kernel.sched_rt_runtime_us=-1` turns it off"};
+}
+
+Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource) {
+  const bool invariant = HasWord(cpuinfo, "constant_tsc") && HasWord(cpuinfo, "nonstop_tsc");
+  const std::string source = clocksource.substr(0, clocksource.find('\n'));
+  if (!invariant) {
+    return {"invariant TSC", Verdict::kMissing, "this processor's TSC changes its rate or stops",
+            "use a machine whose /proc/cpuinfo shows constant_tsc and nonstop_tsc; `--accounting "
+            "fixed` needs no TSC"};
+  }
+  if (source != "tsc" && source != "kvm-clock") {
+    return {"invariant TSC", Verdict::kWarning,
+            fmt::format("yes, but the kernel's own clock is '{}'", source),
+            "the kernel did not trust the TSC; look for 'tsc' in `dmesg`"};
+  }
+  return {"invariant TSC", Verdict::kOk, fmt::format("yes; the kernel's clock is '{}'", source),
+          ""};
+}
+
+Finding JudgeCpu(int cpu, int allowed, const std::string& isolated) {
+  const std::string which = fmt::format("CPU {} of {} allowed", cpu, allowed);
+  if (Contains(isolated, cpu)) return {"processor", Verdict::kOk, which + ", isolated", ""};
+  if (allowed > 1) {
+    return {"processor", Verdict::kOk, which + ", shared with ordinary programs", ""};
+  }
+  return {"processor", Verdict::kWarning, which + ": ordinary programs stand still during a run",
+          "give it a second processor, so that your terminal goes on"};
+}
+
+Finding JudgeDescriptors(int error) {
+  if (error == 0) return {"descriptors of clients", Verdict::kOk, "pidfd_getfd works", ""};
+  return {"descriptors of clients", Verdict::kMissing,
+          fmt::format("pidfd_getfd is refused: {}", strerror(error)),
+          error == ENOSYS
+              ? "use Linux 5.6 or later"
+              : "allow ptrace of own children: kernel.yama.ptrace_scope below 3, and no "
+                "seccomp profile in the way (docker: --cap-add SYS_PTRACE)"};
+}
+
+Finding JudgeLibc(const std::string& version) {
+  int major = 0, minor = 0;
+  std::sscanf(version.c_str(), "%d.%d", &major, &minor);
+  if (major > 2 || (major == 2 && minor >= 36)) {
+    return {"C library", Verdict::kOk, "glibc " + version, ""};
+  }
+  return {"C library", Verdict::kWarning, "glibc " + version,
+          "tcs is made and tested with glibc 2.36 (Debian 12)"};
+}
+
+Finding JudgeShim(const std::string& path, int wait_status, const std::string& said) {
+  if (WIFEXITED(wait_status) && WEXITSTATUS(wait_status) == 0 && said.empty()) {
+    return {"shim", Verdict::kOk, path + " loads", ""};
+  }
+  const std::string first = said.substr(0, said.find('\n'));
+  return {"shim", Verdict::kMissing,
+          first.empty() ? path + " does not load" : path + " does not load: " + first,
+          "build it again with ./dev build; it belongs into ../lib beside tcsim's folder"};
+}
+
+Finding JudgeSteal(const std::string& stat) {
+  unsigned long long user = 0, nice = 0, system = 0, idle = 0, wait = 0, irq = 0, soft = 0,
+                     steal = 0;
+  std::sscanf(stat.c_str(), "cpu %llu %llu %llu %llu %llu %llu %llu %llu", &user, &nice, &system,
+              &idle, &wait, &irq, &soft, &steal);
+  const unsigned long long busy = user + nice + system + irq + soft + steal;
+  const double percent =
+      busy == 0 ? 0.0 : 100.0 * static_cast<double>(steal) / static_cast<double>(busy);
+  const std::string found = fmt::format("the hypervisor took {:.1f} % of the busy time", percent);
+  if (percent < 5.0) return {"stolen time", Verdict::kOk, found, ""};
+  return {"stolen time", Verdict::kWarning, found,
+          "it is never charged to clients, but runs take longer; use a machine with processors of "
+          "its own"};
+}
+
+}  // namespace tcs

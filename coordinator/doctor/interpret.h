@@ -1,0 +1,27 @@
+// From what the kernel says to a finding. Pure: text and numbers in, finding out.
+#pragma once
+
+#include <string>
+
+#include "coordinator/doctor/finding.h"
+
+namespace tcs {
+
+// `error`: the errno of asking for the coordinator's real-time priority; 0 if it was granted.
+Finding JudgeRealTime(int error);
+// `text`: /proc/sys/kernel/sched_rt_runtime_us and .../sched_rt_period_us.
+Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us);
+// `cpuinfo`: /proc/cpuinfo; `clocksource`: the kernel's current one.
+Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource);
+// `cpu`: the one that tcs takes; `isolated`: /sys/devices/system/cpu/isolated, such as "2-3,6".
+Finding JudgeCpu(int cpu, int allowed, const std::string& isolated);
+// `error`: the errno of taking a descriptor out of an own child (pidfd_getfd); 0 if it worked.
+Finding JudgeDescriptors(int error);
+// `version`: of the C library, such as "2.36".
+Finding JudgeLibc(const std::string& version);
+// `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.
+Finding JudgeShim(const std::string& path, int wait_status, const std::string& said);
+// `stat`: /proc/stat, since the machine's start.
+Finding JudgeSteal(const std::string& stat);
+
+}  // namespace tcs

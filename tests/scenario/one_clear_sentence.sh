@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# What cannot be run is refused with one sentence that says what and how to mend it, and exit status 2.
+out=$(mktemp -d)
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$out"' EXIT
+chmod 755 "$out"
+
+refused() {  # PATTERN COMMAND...
+  local pattern=$1 status=0
+  shift
+  timeout 20 "$@" >"$out/stdout" 2>"$out/stderr" || status=$?
+  ((status == 2)) || fail "exit status $status instead of 2: $*"
+  [[ $(wc -l <"$out/stderr") == 1 ]] || fail "not one line: $(cat "$out/stderr")"
+  grep -Eq "^tcsim: .*$pattern" "$out/stderr" || fail "$(cat "$out/stderr")"
+}
+
+cat >"$out/scenario.yaml" <<'YAML'
+duration: 1s
+dynamics: {}
+bodies: {ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}}
+robots: {r: {clients: {idle: {command: [sleep, "1"]}}}}
+channels: {thrust: {type: udp_json, commands: {body: ship, listen: "127.0.0.1:47431"}}}
+YAML
+python3 -c '
+import socket, time
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(("127.0.0.1", 47431))
+print("bound", flush=True); time.sleep(60)' >"$out/holder" &
+for _ in $(seq 50); do grep -q bound "$out/holder" && break; sleep 0.1; done
+refused 'port 47431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/run"
+
+touch "$out/file"
+refused "'$out/file'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/file"
+refused '\{measured,fixed\}' "$tcsim" exec --accounting guessed -- true
+refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
+refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
+
+# The rest needs somebody without rights.
+((EUID == 0)) || exit 0
+install -D -m 755 "$tcsim" "$out/bin/tcsim"
+install -D -m 755 "$build/lib/libtcs_preload.so" "$out/lib/libtcs_preload.so"
+unprivileged=(setpriv --reuid 65534 --regid 65534 --clear-groups --bounding-set -all)
+refused 'SCHED_FIFO.*tcsim doctor' prlimit --rtprio=0 "${unprivileged[@]}" "$out/bin/tcsim" exec -- true

@@ -1,0 +1,88 @@
+#include "coordinator/doctor/interpret.h"
+
+#include <errno.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "coordinator/doctor/doctor.h"
+
+namespace tcs {
+namespace {
+
+TEST(Doctor, WithoutRealTimePriorityTcsCannotRun) {
+  EXPECT_EQ(JudgeRealTime(0).verdict, Verdict::kOk);
+  const Finding refused = JudgeRealTime(EPERM);
+  EXPECT_EQ(refused.verdict, Verdict::kMissing);
+  EXPECT_NE(refused.mend.find("limits.conf"), std::string::npos);
+  EXPECT_FALSE(CanRun({JudgeRealTime(0), refused}));
+}
+
+TEST(Doctor, ThrottlingIsAWarningUnlessItIsOff) {
+  EXPECT_EQ(JudgeThrottling("-1\n", "1000000\n").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeThrottling("1000000\n", "1000000\n").verdict, Verdict::kOk);
+  const Finding on = JudgeThrottling("950000\n", "1000000\n");
+  EXPECT_EQ(on.verdict, Verdict::kWarning);
+  EXPECT_NE(on.found.find("95 %"), std::string::npos);
+  EXPECT_TRUE(CanRun({on}));
+}
+
+TEST(Doctor, TheTscMustBeInvariant) {
+  EXPECT_EQ(JudgeTsc("flags : fpu constant_tsc nonstop_tsc", "tsc\n").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeTsc("flags : fpu constant_tsc", "tsc\n").verdict, Verdict::kMissing);
+  EXPECT_EQ(JudgeTsc("flags : constant_tsc nonstop_tsc_s3", "tsc\n").verdict, Verdict::kMissing);
+  EXPECT_EQ(JudgeTsc("constant_tsc nonstop_tsc", "hpet\n").verdict, Verdict::kWarning);
+}
+
+TEST(Doctor, AnIsolatedProcessorIsFoundInTheKernelsList) {
+  EXPECT_NE(JudgeCpu(3, 4, "1,2-3\n").found.find("isolated"), std::string::npos);
+  EXPECT_EQ(JudgeCpu(3, 4, "1-2,13\n").found.find("isolated"), std::string::npos);
+  EXPECT_EQ(JudgeCpu(0, 1, "\n").verdict, Verdict::kWarning);
+}
+
+TEST(Doctor, RefusedDescriptorsSayWhoRefusesThem) {
+  EXPECT_EQ(JudgeDescriptors(0).verdict, Verdict::kOk);
+  EXPECT_NE(JudgeDescriptors(EPERM).mend.find("ptrace"), std::string::npos);
+  EXPECT_NE(JudgeDescriptors(ENOSYS).mend.find("5.6"), std::string::npos);
+}
+
+TEST(Doctor, AnOldCLibraryIsAWarning) {
+  EXPECT_EQ(JudgeLibc("2.36").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeLibc("3.0").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeLibc("2.31").verdict, Verdict::kWarning);
+}
+
+TEST(Doctor, AShimThatSaysSomethingDoesNotLoad) {
+  EXPECT_EQ(JudgeShim("/x.so", 0, "").verdict, Verdict::kOk);
+  // The dynamic loader only warns, and runs the program without the shim.
+  EXPECT_EQ(JudgeShim("/x.so", 0, "ERROR: ld.so: object cannot be preloaded\n").verdict,
+            Verdict::kMissing);
+  EXPECT_EQ(JudgeShim("/x.so", 11, "").verdict, Verdict::kMissing);
+}
+
+TEST(Doctor, StolenTimeIsAShareOfTheBusyTime) {
+  EXPECT_EQ(JudgeSteal("cpu  900 0 90 5000 0 0 0 10 0 0\n").verdict, Verdict::kOk);
+  const Finding stolen = JudgeSteal("cpu  800 0 100 5000 0 0 0 100 0 0\n");
+  EXPECT_EQ(stolen.verdict, Verdict::kWarning);
+  EXPECT_NE(stolen.found.find("10.0 %"), std::string::npos);
+}
+
+TEST(Doctor, AMissingShimIsFoundByTryingIt) {
+  for (const Finding& finding : Examine("/nonexistent/libtcs_preload.so")) {
+    if (finding.name != "shim") continue;
+    EXPECT_EQ(finding.verdict, Verdict::kMissing);
+    return;
+  }
+  FAIL() << "the shim was not tried";
+}
+
+TEST(Doctor, TextHasOneLineForWhatIsWellAndTwoForWhatIsNot) {
+  EXPECT_EQ(ToText({{"a", Verdict::kOk, "fine", ""}}, false),
+            "ok       a                       fine\n");
+  const std::string text = ToText({{"b", Verdict::kMissing, "gone", "get it"}}, false);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tcs
