@@ -24,6 +24,7 @@ constexpr double kMostSwitchNs = 20'000.0;
 constexpr std::int64_t kLeastSliceNs = 2'000;
 constexpr std::int64_t kStartTurnNs = 1'000'000'000;
 constexpr int kStartTurns = 30;
+constexpr int kSilentTurns = 60;
 
 }  // namespace
 
@@ -195,7 +196,7 @@ void Engine::Settle(Task& task) {
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
-  int starting_turns = 0;
+  int starting_turns = 0, silent_turns = 0;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     if (!first) ContinueClock(task);
@@ -211,7 +212,13 @@ void Engine::AwaitStop(Task& task) {
           " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
       return;
     }
-    if (IsFixed()) continue;
+    if (IsFixed()) {
+      if (++silent_turns < kSilentTurns) continue;
+      report_.error = task.process->name +
+                      " has computed for a minute without a single call, and under --accounting "
+                      "fixed only calls take time; run it with --accounting measured";
+      return;
+    }
     const double took_ns = static_cast<double>(stop_tsc_ - asked_tsc) / ticks_per_ns_;
     const double late_ns = std::clamp(took_ns - static_cast<double>(asked_ns), 0.0, 50'000.0);
     lateness_ns_ += (late_ns - lateness_ns_) / 16;
