@@ -1,0 +1,111 @@
+#include "shm/clock_page.h"
+
+#include <gtest/gtest.h>
+
+namespace tcs::shm {
+namespace {
+
+constexpr std::uint64_t kOnePerTick = std::uint64_t{1} << 32;
+
+// A page as at the first dispatch: one virtual nanosecond per tick, running since `tsc`.
+struct Page : ClockPage {
+  explicit Page(std::uint64_t tsc) : ClockPage{} {
+    base_time_ns = 1'000;
+    base_tsc = tsc;
+    ns_per_tick_q32 = kOnePerTick;
+    ns_per_host_ns_q32 = kOnePerTick;
+    horizon_ns = 5'000;
+    executed_adjust = PackAdjust(std::uint64_t{1} << kAdjustBits, 0);
+    waited_adjust = PackAdjust(std::uint64_t{1} << kAdjustBits, 0);
+  }
+};
+
+TEST(ClockPage, TimeIsTheBaseAndWhatWasExecutedSince) {
+  const Page page(100);
+  const ClockReading r = ReadClockAt(page, 350);
+  EXPECT_EQ(r.time_ns, 1'250);
+  EXPECT_EQ(r.cpu_ns, 250);
+}
+
+TEST(ClockPage, WaitingMovesTheTimeButIsNotCharged) {
+  Page page(100);
+  page.waited_adjust = PackAdjust(page.waited_adjust, 700);
+  const ClockReading r = ReadClockAt(page, 100);
+  EXPECT_EQ(r.time_ns, 1'700);
+  EXPECT_EQ(r.cpu_ns, 0);
+}
+
+TEST(ClockPage, AProcessorHalfAsFastTakesTwiceAsLong) {
+  Page page(0);
+  page.ns_per_tick_q32 = 2 * kOnePerTick;
+  EXPECT_EQ(ReadClockAt(page, 300).cpu_ns, 600);
+}
+
+TEST(ClockPage, ShowsNeitherMoreThanTheHorizonNorLessThanBefore) {
+  Page page(0);
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 2'000);
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000'000)), 5'000);
+  page.last_shown_ns = 3'000;
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 3'000);
+}
+
+TEST(ClockPage, AClockThatHasNotStartedYetShowsItsBeginning) {
+  Page page(1'000);  // the dispatch put its start a context switch into the future
+  page.last_shown_ns = page.base_time_ns;
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 900)), 1'000);
+}
+
+TEST(ClockPage, StolenTimeIsTakenOutAndCounted) {
+  Page page(0);
+  const ClockReading r = ReadClockAt(page, 1'000);
+  ASSERT_TRUE(RemoveStolen(page, r, 600));  // the CPU clock saw 600 ns of the 1,000
+  EXPECT_EQ(ReadClockAt(page, 1'000).cpu_ns, 600);
+  EXPECT_EQ(page.stolen_ns, 400);
+  EXPECT_FALSE(IsCheckDue(page, ReadClockAt(page, 1'000)));
+}
+
+TEST(ClockPage, WhatTheTscMissedIsAdded) {
+  Page page(0);
+  ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 1'000), 1'300));
+  EXPECT_EQ(ReadClockAt(page, 1'000).cpu_ns, 1'300);
+  EXPECT_EQ(page.stolen_ns, 0);
+}
+
+TEST(ClockPage, ADispatchInBetweenMakesACorrectionFail) {
+  Page page(0);
+  const ClockReading before = ReadClockAt(page, 1'000);
+  page.executed_adjust = PackAdjust(std::uint64_t{2} << kAdjustBits, 0);
+  EXPECT_FALSE(RemoveStolen(page, before, 600));
+  EXPECT_EQ(ReadClockAt(page, 1'000).cpu_ns, 1'000);
+}
+
+TEST(ClockPage, AdjustmentsKeepTheirSignAndTheirNumber) {
+  constexpr std::int64_t kMost = (std::int64_t{1} << (kAdjustBits - 1)) - 1;
+  for (const std::int64_t value :
+       {std::int64_t{0}, std::int64_t{1}, std::int64_t{-1}, kMost, -kMost}) {
+    const std::uint64_t word = PackAdjust(std::uint64_t{0xffff} << kAdjustBits, value);
+    EXPECT_EQ(AdjustValue(word), value);
+    EXPECT_EQ(DispatchNumber(word), 0xffffu);
+  }
+  EXPECT_GE(kMost, kMaxDispatchNs) << "the furthest horizon must fit";
+}
+
+TEST(ClockPage, LongTimesAreMultipliedWithoutOverflow) {
+  EXPECT_EQ(MulQ32(kMaxDispatchNs, kOnePerTick), kMaxDispatchNs);
+  EXPECT_EQ(MulQ32(-1'000, 3 * kOnePerTick), -3'000);
+  EXPECT_EQ(MulQ32(INT64_MAX, kOnePerTick / 2), INT64_MAX / 2);
+}
+
+TEST(ClockPage, AReadingOfTheRunningClockIsConsistent) {
+  const Page page(__rdtsc());
+  std::int64_t last = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    const ClockReading r = ReadClock(page);
+    EXPECT_GE(r.time_ns, last);
+    EXPECT_EQ(r.time_ns - page.base_time_ns, r.cpu_ns);
+    last = r.time_ns;
+  }
+}
+
+}  // namespace
+}  // namespace tcs::shm
