@@ -1,0 +1,152 @@
+// A reader blocks until a child, which sleeps first, writes: woken at the writer's time, not
+// before.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+constexpr std::int64_t kDelay = 50 * kMs;
+
+// `child` runs in a child process after the delay; `parent` blocks meanwhile.
+template <class Child, class Parent>
+void WakesAtTheWritersTime(const char* what, Child child, Parent parent) {
+  const std::int64_t start = Now();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    usleep(kDelay / 1000);
+    child();
+    _exit(0);
+  }
+  parent();
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= kDelay, "%s woke after %lld ns", what, (long long)passed);
+  if (g_mode != Mode::kNative) {
+    EXPECT(passed < kDelay + 10 * kMs, "%s woke after %lld ns", what, (long long)passed);
+  }
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);
+}
+
+void ReadOne(int fd) {
+  char c = 0;
+  EXPECT(read(fd, &c, 1) == 1 && c == 'z', "read: %s", strerror(errno));
+}
+void WriteOne(int fd) { EXPECT(write(fd, "z", 1) == 1, "write: %s", strerror(errno)); }
+
+sockaddr_in Loopback() {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+template <class Address>
+int Bound(int type, Address* address) {
+  const int fd = socket(address->sin_family, type, 0);
+  socklen_t size = sizeof *address;
+  EXPECT(bind(fd, reinterpret_cast<sockaddr*>(address), size) == 0, "bind: %s", strerror(errno));
+  getsockname(fd, reinterpret_cast<sockaddr*>(address), &size);
+  return fd;
+}
+
+void Pairs() {
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  WakesAtTheWritersTime(
+      "a pipe", [&] { WriteOne(fds[1]); }, [&] { ReadOne(fds[0]); });
+  for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET}) {
+    EXPECT(socketpair(AF_UNIX, type, 0, fds) == 0, "socketpair");
+    WakesAtTheWritersTime(
+        "a socketpair", [&] { WriteOne(fds[1]); }, [&] { ReadOne(fds[0]); });
+  }
+}
+
+void Udp() {
+  sockaddr_in address = Loopback();
+  const int receiver = Bound(SOCK_DGRAM, &address);
+  WakesAtTheWritersTime(
+      "UDP",
+      [&] {
+        const int sender = socket(AF_INET, SOCK_DGRAM, 0);
+        EXPECT(
+            sendto(sender, "z", 1, 0, reinterpret_cast<sockaddr*>(&address), sizeof address) == 1,
+            "sendto");
+      },
+      [&] {
+        char text[8];
+        sockaddr_in from{};
+        socklen_t size = sizeof from;
+        EXPECT(recvfrom(receiver, text, sizeof text, 0, reinterpret_cast<sockaddr*>(&from),
+                        &size) == 1,
+               "recvfrom: %s", strerror(errno));
+      });
+}
+
+void Tcp() {
+  sockaddr_in address = Loopback();
+  const int listener = Bound(SOCK_STREAM, &address);
+  EXPECT(listen(listener, 1) == 0, "listen");
+  int connection = -1;
+  WakesAtTheWritersTime(
+      "accept",
+      [&] {
+        const int fd = socket(AF_INET, SOCK_STREAM, 0);
+        EXPECT(connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0, "connect");
+        WriteOne(fd);
+        char c;
+        EXPECT(read(fd, &c, 1) == 1, "read");
+      },
+      [&] {
+        connection = accept(listener, nullptr, nullptr);
+        EXPECT(connection >= 0, "accept: %s", strerror(errno));
+        ReadOne(connection);
+        WriteOne(connection);
+      });
+}
+
+void Terminal() {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY);
+  EXPECT(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0, "posix_openpt");
+  const int slave = open(ptsname(master), O_RDWR | O_NOCTTY);
+  EXPECT(slave >= 0, "open: %s", strerror(errno));
+  WakesAtTheWritersTime(
+      "a terminal", [&] { EXPECT(write(master, "z\n", 2) == 2, "write"); },
+      [&] { ReadOne(slave); });
+}
+
+void EndOfFile() {
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  const std::int64_t start = Now();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    close(fds[0]);
+    usleep(kDelay / 1000);
+    _exit(0);  // closes the last writing end
+  }
+  close(fds[1]);
+  char c;
+  EXPECT(read(fds[0], &c, 1) == 0, "no end of file");
+  EXPECT(Now() - start >= kDelay, "the end of file came early");
+  waitpid(pid, nullptr, 0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  Pairs();
+  Udp();
+  Tcp();
+  Terminal();
+  EndOfFile();
+}

@@ -1,0 +1,66 @@
+// A signal handler ends a sleep; what was left is told.
+#include <signal.h>
+#include <sys/time.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+volatile sig_atomic_t g_handled = 0;
+void Count(int) { g_handled = g_handled + 1; }
+
+void AlarmIn(std::int64_t ns) {
+  itimerval timer{};
+  timer.it_value.tv_usec = ns / 1000;
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  for (const int flags : {0, SA_RESTART}) {  // sleeps end either way
+    struct sigaction action {};
+    action.sa_handler = Count;
+    action.sa_flags = flags;
+    sigaction(SIGALRM, &action, nullptr);
+    const int before = g_handled;
+
+    std::int64_t start = Now();
+    AlarmIn(100 * kMs);
+    const timespec wanted = ToTimespec(300 * kMs);
+    timespec left{};
+    EXPECT(nanosleep(&wanted, &left) == -1 && errno == EINTR, "nanosleep was not interrupted");
+    const std::int64_t passed = Now() - start;
+    EXPECT(g_handled == before + 1, "%d handlers ran", int(g_handled - before));
+    EXPECT(passed >= 100 * kMs && passed < 290 * kMs, "after %lld ns", (long long)passed);
+    EXPECT(ToNs(left) > 0 && ToNs(left) <= 200 * kMs + kMs, "left: %lld ns", (long long)ToNs(left));
+    EXPECT(ToNs(left) + passed >= 300 * kMs - kMs, "left %lld ns after %lld ns",
+           (long long)ToNs(left), (long long)passed);
+
+    start = Now();
+    AlarmIn(100 * kMs);
+    left = {};
+    EXPECT(clock_nanosleep(CLOCK_MONOTONIC, 0, &wanted, &left) == EINTR, "clock_nanosleep");
+    EXPECT(ToNs(left) > 0 && ToNs(left) <= 201 * kMs, "left: %lld ns", (long long)ToNs(left));
+
+    AlarmIn(100 * kMs);
+    start = Now();
+    const unsigned unslept = sleep(5);
+    EXPECT(unslept >= 4 && unslept <= 5, "sleep says %u s are left", unslept);
+
+    AlarmIn(100 * kMs);
+    EXPECT(usleep(900'000) == -1 && errno == EINTR, "usleep was not interrupted");
+    EXPECT(g_handled == before + 4, "%d handlers ran", int(g_handled - before));
+  }
+
+  // An ignored signal ends nothing.
+  signal(SIGALRM, SIG_IGN);
+  const std::int64_t start = Now();
+  AlarmIn(10 * kMs);
+  const timespec wanted = ToTimespec(50 * kMs);
+  EXPECT(nanosleep(&wanted, nullptr) == 0, "an ignored signal ended a sleep: %s", strerror(errno));
+  EXPECT(Now() - start >= 50 * kMs, "an ignored signal shortened a sleep");
+}

@@ -1,0 +1,60 @@
+// pause and sigsuspend end with the handler of a signal.
+#include <signal.h>
+#include <sys/time.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+volatile sig_atomic_t g_count = 0;
+void Count(int) { g_count = g_count + 1; }
+
+void AlarmIn(std::int64_t ns) {
+  itimerval timer{};
+  timer.it_value.tv_usec = ns / 1000;
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+void ExpectAbout(std::int64_t start, std::int64_t wanted, const char* what) {
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= wanted, "%s ended after %lld ns", what, (long long)passed);
+  if (g_mode != Mode::kNative)
+    EXPECT(passed < wanted + kMs, "%s: %lld ns", what, (long long)passed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  signal(SIGALRM, Count);
+  std::int64_t start = Now();
+  AlarmIn(80 * kMs);
+  EXPECT(pause() == -1 && errno == EINTR, "pause");
+  ExpectAbout(start, 80 * kMs, "pause");
+  EXPECT(g_count == 1, "%d handlers ran", int(g_count));
+
+  sigset_t blocked, before;
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGALRM);
+  sigprocmask(SIG_BLOCK, &blocked, &before);
+  start = Now();
+  AlarmIn(60 * kMs);
+  usleep(20'000);
+  EXPECT(g_count == 1, "a blocked signal was handled");
+  EXPECT(sigsuspend(&before) == -1 && errno == EINTR, "sigsuspend");
+  ExpectAbout(start, 60 * kMs, "sigsuspend");
+  EXPECT(g_count == 2, "%d handlers ran", int(g_count));
+
+  // One that is pending already ends it at once.
+  AlarmIn(10 * kMs);
+  usleep(50'000);
+  start = Now();
+  EXPECT(sigsuspend(&before) == -1 && errno == EINTR, "sigsuspend");
+  ExpectAbout(start, 0, "sigsuspend with a pending signal");
+  EXPECT(g_count == 3, "%d handlers ran", int(g_count));
+  sigset_t now;
+  sigprocmask(SIG_SETMASK, nullptr, &now);
+  EXPECT(sigismember(&now, SIGALRM) == 1, "sigsuspend did not put the mask back");
+}

@@ -1,0 +1,113 @@
+// Children in all the ways they are made, and waiting for their end.
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+extern char** environ;
+
+namespace {
+
+constexpr std::int64_t kLife = 100 * kMs;
+
+void ExpectLived(std::int64_t start, const char* what) {
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= kLife, "%s took %lld ns", what, (long long)passed);
+}
+
+pid_t Sleeper(int status) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    usleep(kLife / 1000);
+    _exit(status);
+  }
+  EXPECT(pid > 0, "fork: %s", strerror(errno));
+  return pid;
+}
+
+void Waits() {
+  int status = 0;
+  std::int64_t start = Now();
+  pid_t pid = Sleeper(3);
+  EXPECT(waitpid(pid, &status, WNOHANG) == 0, "a child that sleeps has ended");
+  EXPECT(waitpid(pid, &status, 0) == pid && WEXITSTATUS(status) == 3, "waitpid: %x", status);
+  ExpectLived(start, "waitpid");
+
+  start = Now();
+  pid = Sleeper(4);
+  EXPECT(wait(&status) == pid && WEXITSTATUS(status) == 4, "wait: %x", status);
+  ExpectLived(start, "wait");
+
+  start = Now();
+  pid = Sleeper(5);
+  rusage usage{};
+  EXPECT(wait4(-1, &status, 0, &usage) == pid && WEXITSTATUS(status) == 5, "wait4: %x", status);
+  ExpectLived(start, "wait4");
+
+  start = Now();
+  pid = Sleeper(6);
+  siginfo_t info{};
+  EXPECT(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED) == 0 && info.si_status == 6,
+         "waitid");
+  ExpectLived(start, "waitid");
+  EXPECT(waitpid(-1, &status, 0) == -1 && errno == ECHILD, "there are no children left");
+}
+
+void ClocksGoOnInAChild() {
+  const std::int64_t before = Now();
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const std::int64_t now = Now();
+    _exit(write(fds[1], &now, sizeof now) == sizeof now ? 0 : 1);
+  }
+  std::int64_t childs = 0;
+  EXPECT(read(fds[0], &childs, sizeof childs) == sizeof childs, "read");
+  EXPECT(before <= childs && childs <= Now(), "a child's clock: %lld", (long long)childs);
+  waitpid(pid, nullptr, 0);
+}
+
+void Programs() {
+  int status = 0;
+  std::int64_t start = Now();
+  pid_t pid = vfork();
+  if (pid == 0) {
+    execlp("sleep", "sleep", "0.1", nullptr);
+    _exit(127);
+  }
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "vfork, exec: %x", status);
+  ExpectLived(start, "vfork and exec");
+
+  char name[] = "sleep", seconds[] = "0.1";
+  char* arguments[] = {name, seconds, nullptr};
+  start = Now();
+  EXPECT(posix_spawnp(&pid, "sleep", nullptr, nullptr, arguments, environ) == 0, "posix_spawnp");
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "posix_spawnp: %x", status);
+  ExpectLived(start, "posix_spawnp");
+
+  start = Now();
+  EXPECT(system("sleep 0.1; exit 7") == 7 << 8, "system");
+  ExpectLived(start, "system");
+
+  start = Now();
+  FILE* out = popen("sleep 0.1; echo done", "r");
+  EXPECT(out != nullptr, "popen");
+  char line[16] = "";
+  EXPECT(fgets(line, sizeof line, out) != nullptr && strcmp(line, "done\n") == 0, "popen: %s",
+         line);
+  EXPECT(pclose(out) == 0, "pclose");
+  ExpectLived(start, "popen");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  Waits();
+  ClocksGoOnInAChild();
+  Programs();
+}
