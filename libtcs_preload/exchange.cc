@@ -89,6 +89,12 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   FillRecord(slot, request);
   Notify(thread);
+  if (request.suspend_mask != nullptr) {
+    RawSyscall(SYS_rt_sigsuspend, Arg(request.suspend_mask), 8);
+    // Dispatched before the signal was sent, unless it came from somebody else.
+    if (slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) EndWait(thread);
+    return Reply{WakeReason::kSignal, {0, 0}};
+  }
   if (!WaitAtGate(slot, request.interruptible)) {
     EndWait(thread);
     return Reply{WakeReason::kSignal, {0, 0}};

@@ -17,6 +17,8 @@ struct Request {
   const char* text = nullptr;
   // A signal handler that runs meanwhile ends the exchange with WakeReason::kSignal.
   bool interruptible = false;
+  // The kernel's signal mask to wait with for a handler, instead of at the gate; null: the gate.
+  const unsigned long* suspend_mask = nullptr;
 };
 
 struct Reply {

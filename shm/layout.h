@@ -39,7 +39,7 @@ enum class NotificationKind : std::uint32_t {
   kHorizon = 1,  // the thread's clock has reached its horizon
   kRead = 2,     // go on once nothing can be produced before time_ns any more
   kWrite = 3,    // go on once nobody can still read before time_ns
-  kIdle = 4,     // sleep until deadline_ns
+  kIdle = 4,     // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1]
   kWaitFds = 5,  // sleep until one of fds is ready, or deadline_ns
   kWaitChild =
       6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or deadline_ns

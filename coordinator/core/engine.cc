@@ -85,7 +85,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   }
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
-  task.waits_for_fds = task.waits_for_child = false;
+  task.waits_for_fds = task.waits_for_child = task.has_wait_mask = false;
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;

@@ -80,6 +80,7 @@ class Engine {
   void SetTimer(Task& task, const shm::Notification& note);
   void FireDue(VirtualCpu& cpu);
   bool Expire(Process& process);
+  void SendTimerSignals(Task& task);
   void ExpireCpuTimers(Process& process);
   std::int64_t NextCpuExpiry(const Process& process) const;
   std::int64_t ChargedTo(const Process& process) const;

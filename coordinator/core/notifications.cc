@@ -94,6 +94,8 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kIdle:
       SetState(task, TaskState::kWaiting);
+      task.has_wait_mask = note.args[0] == 1;
+      task.wait_mask = static_cast<std::uint64_t>(note.args[1]);
       break;
     case Kind::kWaitFds:
       WaitForFds(task, note);

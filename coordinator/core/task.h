@@ -40,7 +40,9 @@ struct Task {
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
   bool waits_for_fds = false, waits_for_child = false;
-  std::vector<int> watched;  // descriptors in the coordinator's epoll set
+  bool has_wait_mask = false;   // it waits with a signal mask of its own (sigsuspend):
+  std::uint64_t wait_mask = 0;  // this one; bit 0 is signal 1
+  std::vector<int> watched;     // descriptors in the coordinator's epoll set
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch

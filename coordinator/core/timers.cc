@@ -118,6 +118,27 @@ void Engine::ExpireCpuTimers(Process& process) {
   }
 }
 
+// A thread that waits, and is to run a handler, is dispatched first: the handler is its work.
+// Otherwise the signal goes at once: it stays pending, is ignored, ends the process, or ends what
+// the kernel holds the thread in. One that is ready gets it at its dispatch.
+void Engine::SendTimerSignals(Task& task) {
+  Process& process = *task.process;
+  if (task.state != TaskState::kWaiting && task.state != TaskState::kUnseen) return;
+  const SignalSets sets = ReadSignalSets(task.tid);
+  const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
+  const auto is_handled = [&](int signal) {
+    return (sets.caught & ~blocked & (std::uint64_t{1} << (signal - 1))) != 0;
+  };
+  const bool handled =
+      std::any_of(process.pending_signals.begin(), process.pending_signals.end(), is_handled);
+  if (task.state == TaskState::kWaiting && handled) {
+    MakeReady(task, shm::WakeReason::kSignal);
+    return;
+  }
+  for (const int signal : process.pending_signals) kill(process.pid, signal);
+  process.pending_signals.clear();
+}
+
 void Engine::FireDue(VirtualCpu& cpu) {
   event_ns_ = cpu.progress_ns;
   bool wrote = false;
@@ -127,14 +148,7 @@ void Engine::FireDue(VirtualCpu& cpu) {
     }
     Process& process = *task->process;
     if (process.next_expiry_ns - process.frozen_ns <= cpu.progress_ns) wrote |= Expire(process);
-    if (process.pending_signals.empty()) continue;
-    if (task->state == TaskState::kWaiting) {
-      MakeReady(*task, shm::WakeReason::kSignal);
-    } else if (task->state == TaskState::kUnseen) {
-      // A thread that the kernel holds is woken by the signal itself.
-      for (const int signal : process.pending_signals) kill(process.pid, signal);
-      process.pending_signals.clear();
-    }
+    if (!process.pending_signals.empty()) SendTimerSignals(*task);
   }
   if (wrote) PollEvents(0);
 }

@@ -95,6 +95,16 @@ char ThreadState(pid_t tid) {
   return end != nullptr && end + 2 < text + n ? end[2] : 'X';
 }
 
+SignalSets ReadSignalSets(pid_t tid) {
+  std::ifstream file("/proc/" + std::to_string(tid) + "/status");
+  SignalSets sets;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("SigBlk:", 0) == 0) sets.blocked = std::stoull(line.substr(7), nullptr, 16);
+    if (line.rfind("SigCgt:", 0) == 0) sets.caught = std::stoull(line.substr(7), nullptr, 16);
+  }
+  return sets;
+}
+
 std::string ThreadSystemCall(pid_t tid) {
   std::ifstream file("/proc/" + std::to_string(tid) + "/syscall");
   std::string number;

@@ -41,6 +41,12 @@ std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
+// The signals that a thread's process catches, and that the thread blocks; bit 0 is signal 1.
+struct SignalSets {
+  std::uint64_t caught = 0, blocked = 0;
+};
+SignalSets ReadSignalSets(pid_t tid);
+
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 

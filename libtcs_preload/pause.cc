@@ -1,0 +1,52 @@
+// Waiting for a signal handler and nothing else.
+#include <errno.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
+
+// `mask` is in place while the thread waits, atomically, for the kernel does that part.
+int SuspendWith(GuestThread& t, const unsigned long* mask) {
+  unsigned long pending = 0;
+  RawSyscall(SYS_rt_sigpending, Arg(&pending), kSetSize);
+  if ((pending & ~*mask) != 0 || IsShutDown()) {
+    RawSyscall(SYS_rt_sigsuspend, Arg(mask), kSetSize);  // handled at once
+  } else {
+    // Until the kernel puts the mask in place no handler may run: it would not end the wait.
+    const unsigned long all = ~0ul;
+    unsigned long before = 0;
+    RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), kSetSize);
+    Exchange(t, Request{.kind = tcs::shm::NotificationKind::kIdle,
+                        .args = {1, static_cast<std::int64_t>(*mask)},
+                        .suspend_mask = mask});
+    RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&before), 0, kSetSize);
+  }
+  return Fail(EINTR);
+}
+
+}  // namespace
+
+TCS_EXPORT int pause(void) {
+  GuestThread* t = Enter();
+  unsigned long mask = 0;
+  RawSyscall(SYS_rt_sigprocmask, SIG_BLOCK, 0, Arg(&mask), kSetSize);
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_rt_sigsuspend, Arg(&mask), kSetSize)));
+  return SuspendWith(*t, &mask);
+}
+
+TCS_EXPORT int sigsuspend(const sigset_t* mask) {
+  GuestThread* t = Enter();
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_rt_sigsuspend, Arg(mask), kSetSize)));
+  return SuspendWith(*t, reinterpret_cast<const unsigned long*>(mask));
+}
