@@ -11,6 +11,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/virtual_clock.h"
 
 namespace tcs::preload {
@@ -113,6 +114,7 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
 
 void HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
   if (NowNs(thread) <= thread.slot->clock.read_safe_ns) return;
+  if (!socket && FindTimerFd(fd) != nullptr) return;
   int type = 0;
   socklen_t size = sizeof type;
   if (socket && RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) == 0 &&

@@ -26,8 +26,9 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
 // True if `fd` shows one of `events` now.
 bool PollNow(int fd, short events);
 
-// HoldForRead, unless the call is going to take a datagram that is there already: it is from the
-// past, and comes first whatever else is still sent.
+// HoldForRead, unless others cannot change what the call finds. It takes a datagram that is there
+// already: that is from the past, and comes first whatever else is still sent. Or it reads a timer,
+// which expires at no time that the thread's horizon does not stop at.
 void HoldForReadFrom(GuestThread& thread, int fd, bool socket);
 
 // True if calls on `fd` can wait for somebody else: sockets, pipes, terminals, event descriptors.
