@@ -1,5 +1,5 @@
-// New threads get slots of their own. Their waiting for each other is not virtual yet; the
-// coordinator says so.
+// New threads get slots of their own. Their waiting for each other ends in futex calls, which the
+// kernel hands to the coordinator.
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -60,16 +60,17 @@ TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
                               void* (*routine)(void*), void* argument) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_create)(thread, attributes, routine, argument);
-  static bool warned;
-  if (!__atomic_exchange_n(&warned, true, __ATOMIC_RELAXED)) {
-    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kUncovered, .text = "pthread_create"});
-  }
   // The one allocation of the shim: pthread_create itself allocates, so this place may.
   auto* start = static_cast<Start*>(malloc(sizeof(Start)));
   if (start == nullptr) return EAGAIN;
   *start = Start{routine, argument};
   const InheritedScheduling inherited(const_cast<pthread_attr_t*>(attributes));
   const int error = TCS_REAL(pthread_create)(thread, attributes, RunThread, start);
-  if (error != 0) free(start);
-  return error;
+  if (error != 0) {
+    free(start);
+    return error;
+  }
+  // From now on the coordinator knows of it, and does not let time pass it by.
+  Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSpawned});
+  return 0;
 }

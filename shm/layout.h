@@ -48,7 +48,7 @@ enum class NotificationKind : std::uint32_t {
                   // as kTimerGet
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
-  kSpawned = 11,      // args[0]: pid of a new child that will attach
+  kSpawned = 11,      // args[0]: pid of a new child that will attach; 0: a thread of the process
   kYield = 12,        // let equals run
   kPriority = 13,     // args[0]: POSIX policy, args[1]: priority; applied to the virtual scheduler
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
@@ -127,6 +127,10 @@ struct Notification {
   char text[64];  // NUL-terminated
 };
 static_assert(sizeof(Notification) == 376);
+
+// The last argument of the shim's futex calls at its gate, which the call itself ignores: they are
+// the kernel's, all others the coordinator's.
+inline constexpr std::uint32_t kGateFutexMark = 0x7c57a7e1;
 
 // Gate values.
 inline constexpr std::uint32_t kGateClosed = 0;  // written by the thread before it notifies

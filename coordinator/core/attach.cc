@@ -67,21 +67,28 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::strin
   return task;
 }
 
-// The thread that registers: known already (a client, an announced child), a further thread of a
-// known process, or a process that nobody announced.
-Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
+Task* Engine::AddThread(Process& process, pid_t tid) {
+  ++process.threads;
+  Task* task = AddTask(process, tid);
+  task->row = trace_.AddRow(process.cpu->robot, fmt::format("{} #{}", process.name, task->order));
+  return task;
+}
+
+Task* Engine::KnownTask(pid_t tid) {
   for (Task& known : tasks_) {
     if (known.tid == tid && known.state != TaskState::kDead) return &known;
   }
+  return nullptr;
+}
+
+// The thread that registers: known already (a client, an announced child), a further thread of a
+// known process, or a process that nobody announced.
+Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
+  if (Task* known = KnownTask(tid); known != nullptr) return known;
   Process* parent = nullptr;
   for (Process& known : processes_) {
     if (known.dead) continue;
-    if (known.pid == pid) {
-      ++known.threads;
-      Task* task = AddTask(known, tid);
-      task->row = trace_.AddRow(known.cpu->robot, fmt::format("{} #{}", known.name, task->order));
-      return task;
-    }
+    if (known.pid == pid) return AddThread(known, tid);
     if (known.pid == parent_pid) parent = &known;
   }
   if (parent != nullptr)
@@ -153,7 +160,7 @@ void Engine::SendReply(int connection, const Task& task) {
 void Engine::EndTask(Task& task) {
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
-  task.waits_for_child = task.waits_for_fds = false;
+  task.waits_for_child = task.waits_for_fds = task.waits_for_futex = false;
   SetState(task, TaskState::kDead);
   --living_;
   task.parked = true;

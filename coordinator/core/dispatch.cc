@@ -88,7 +88,11 @@ void Engine::Resume(Task& task) {
     task.level = Level::kActive;
   }
   last_ = &task;
-  if (task.slot >= 0 && task.parked) {
+  if (task.trap_id != 0) {
+    // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
+    AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    task.trap_id = 0;
+  } else if (task.slot >= 0 && task.parked) {
     std::atomic<std::uint32_t>& gate = Slot(task).gate;
     if (gate.exchange(shm::kGateOpen) == shm::kGateWaiting) {
       syscall(SYS_futex, &gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
@@ -163,6 +167,12 @@ void Engine::Settle(Task& task) {
   shm::ClockPage& page = slot.clock;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
+  if (trapped_.has_value() && IsFixed()) {
+    // The shim charges the calls that it sees.
+    const std::uint64_t word = page.executed_adjust.load();
+    page.executed_adjust.store(
+        shm::PackAdjust(word, shm::AdjustValue(word) + task.process->call_cost_ns));
+  }
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
@@ -239,7 +249,16 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     Handle(task, early);
     return;
   }
+  if (task.early_trap.has_value()) {
+    const TrappedCall early = *task.early_trap;
+    task.early_trap.reset();
+    task.parked = true;
+    SetState(task, TaskState::kReady);
+    HandleTrapped(task, early);
+    return;
+  }
   running_ = &task;
+  trapped_.reset();
   running_horizon_ns_ = horizon_ns;
   notified_ = preempted_ = false;
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
@@ -261,6 +280,9 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.reply[0] = task.reply[1] = 0;
     const shm::Notification note = Slot(task).note;
     Handle(task, note);
+  } else if (trapped_.has_value() && task.state != TaskState::kDead) {
+    task.parked = true;
+    HandleTrapped(task, *trapped_);
   }
 }
 

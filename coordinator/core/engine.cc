@@ -1,6 +1,7 @@
 // The loop: advance the dynamics, choose the least advanced virtual CPU, let it act.
 #include "coordinator/core/engine.h"
 
+#include <errno.h>
 #include <time.h>
 #include <unistd.h>
 #include <x86intrin.h>
@@ -90,6 +91,12 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;
   task.deadline_ns = shm::kNeverNs;
+  if (task.waits_for_futex) {
+    task.waits_for_futex = false;
+    task.trap_result = reason == shm::WakeReason::kDeadline ? -ETIMEDOUT
+                       : reason == shm::WakeReason::kSignal ? -EINTR
+                                                            : 0;
+  }
   task.reason = reason;
   if (alone) cpu.progress_ns = std::max(cpu.progress_ns, event_ns_);
   Refresh(cpu);

@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
@@ -27,6 +28,7 @@ class Engine {
     kConnection,
     kProcess,
     kAwaited,
+    kTrap,
     kCommand,
     kSignal,
     kDetector
@@ -76,6 +78,17 @@ class Engine {
   void NoteSpawned(Task& task, pid_t pid);
   void EndWatches(Task& task);
 
+  // Trapped futex calls (futex.cc). Results as the kernel's: negative for an errno.
+  void TrapArrived(int listener);
+  void HandleTrapped(Task& task, const TrappedCall& call);
+  bool FutexDeadline(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
+  std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexWakeOp(const Task& task, const TrappedCall& call);
+  bool IsEnding(const Task& joiner, pid_t tid) const;
+  void WakeJoiners(const Task& ended);
+
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
   void FireDue(VirtualCpu& cpu);
@@ -99,6 +112,8 @@ class Engine {
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
   Task* NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name, int priority);
   Task* AddTask(Process& process, pid_t tid);
+  Task* AddThread(Process& process, pid_t tid);
+  Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
 
   // The end (finish.cc).
@@ -129,6 +144,8 @@ class Engine {
 
   shm::SegmentHeader* header_ = nullptr;
   int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
+  std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
+  std::uint64_t futex_counter_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel

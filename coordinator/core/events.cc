@@ -134,6 +134,17 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         }
         stop = true;
         break;
+      case Tag::kTrap:
+        if ((events[i].events & EPOLLIN) == 0) {
+          // Nobody is left whose calls could arrive here.
+          epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
+          close(static_cast<int>(index));
+          break;
+        }
+        TrapArrived(static_cast<int>(index));
+        stop = true;
+        external_event_ = true;
+        break;
       case Tag::kCommand:
         world_.ReceiveCommands(index, event_ns_);
         break;

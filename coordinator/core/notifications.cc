@@ -68,6 +68,14 @@ void Engine::WaitForChild(Task& task) {
 }
 
 void Engine::NoteSpawned(Task& task, pid_t pid) {
+  if (pid == 0) {
+    for (const pid_t tid : ThreadsOf(task.process->pid)) {
+      if (KnownTask(tid) != nullptr) continue;
+      SetLevel(tid, Level::kWaiting);
+      AddThread(*task.process, tid);
+    }
+    return;
+  }
   for (const Process& known : processes_) {
     if (known.pid == pid && !known.dead) return;
   }
@@ -138,6 +146,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       task.process->ended_cpu_ns += task.charged_ns;
       Slot(task).gate.store(shm::kGateOpen);
       EndTask(task);
+      WakeJoiners(task);
       break;
     case Kind::kNone:
     case Kind::kHorizon:

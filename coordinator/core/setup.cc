@@ -169,8 +169,15 @@ std::string Engine::StartClients() {
         request.log_stdout = base + ".out.log";
         request.log_stderr = base + ".err.log";
       }
-      const pid_t pid = Spawn(request);
+      const Spawned spawned = Spawn(request);
+      const pid_t pid = spawned.pid;
       if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
+      if (spawned.trap >= 0) {
+        Watch(spawned.trap, EPOLLIN, Tag::kTrap, static_cast<std::uint32_t>(spawned.trap));
+      } else {
+        Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
+             "): threads wait for each other in real time");
+      }
       VirtualCpu* cpu = &cpus_[first + i % static_cast<std::size_t>(robot.cores)];
       Task* task = NewTask(pid, getpid(), cpu, client.name, client.priority);
       task->process->is_client = true;

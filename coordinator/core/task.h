@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "coordinator/os/futex_trap.h"
 #include "coordinator/os/host.h"
 #include "coordinator/policy/fixed_priority.h"
 #include "coordinator/policy/temporal_consistency.h"
@@ -43,6 +45,15 @@ struct Task {
   bool has_wait_mask = false;   // it waits with a signal mask of its own (sigsuspend):
   std::uint64_t wait_mask = 0;  // this one; bit 0 is signal 1
   std::vector<int> watched;     // descriptors in the coordinator's epoll set
+  int trap_listener = -1;
+  std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;           // what that call is to return
+  std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
+  bool waits_for_futex = false;
+  FutexKey futex;
+  std::uint64_t futex_order = 0;  // of waiting
+  std::uint32_t futex_bits = 0;
+  pid_t joins = 0;  // the thread whose end it waits for, if that is what the futex is
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch

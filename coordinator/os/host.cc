@@ -13,8 +13,13 @@
 #include <unistd.h>
 #include <x86intrin.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
+
+#include "coordinator/os/futex_trap.h"
 
 namespace tcs {
 
@@ -111,25 +116,78 @@ std::string ThreadSystemCall(pid_t tid) {
   return file >> number ? number : "unknown";
 }
 
+std::vector<pid_t> ThreadsOf(pid_t pid) {
+  std::vector<pid_t> tids;
+  std::error_code gone;
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/task", gone)) {
+    tids.push_back(std::stoi(entry.path().filename()));
+  }
+  std::sort(tids.begin(), tids.end());
+  return tids;
+}
+
 int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 int DuplicateFd(int pidfd, int fd) {
   return static_cast<int>(syscall(SYS_pidfd_getfd, pidfd, fd, 0));
 }
 
-pid_t Spawn(const SpawnRequest& request) {
+namespace {
+
+// The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
+// parent has taken it.
+void HandOverTrap(int to_parent, int from_parent) {
+  const int listener = InstallFutexTrap();
+  if (write(to_parent, &listener, sizeof listener) != sizeof listener) _exit(127);
+  char taken;
+  while (read(from_parent, &taken, 1) < 0 && errno == EINTR) {
+  }
+  if (listener >= 0) close(listener);
+}
+
+int TakeOverTrap(pid_t child, int from_child) {
+  int listener = -1;
+  if (read(from_child, &listener, sizeof listener) != sizeof listener || listener < 0) return -1;
+  const int pidfd = OpenPidfd(child);
+  const int taken = pidfd < 0 ? -1 : DuplicateFd(pidfd, listener);
+  if (pidfd >= 0) close(pidfd);
+  return taken;
+}
+
+}  // namespace
+
+Spawned Spawn(const SpawnRequest& request) {
   std::vector<char*> argv;
   for (const std::string& word : request.command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
+  int up[2], down[2];
+  if (pipe2(up, O_CLOEXEC) != 0) return {};
+  if (pipe2(down, O_CLOEXEC) != 0) {
+    close(up[0]), close(up[1]);
+    return {};
+  }
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid > 0) {
-    // Here, not in the child: the child first runs when it is dispatched, at another level by then.
-    SetLevel(pid, Level::kWaiting);
+  if (pid != 0) {
+    close(up[1]);
+    close(down[0]);
+    Spawned spawned{pid, -1};
+    if (pid > 0) {
+      // The child comes this far at our own level; for the rest it waits for its dispatch. The
+      // level is set here, not in the child, which next runs when it has been given another one.
+      spawned.trap = TakeOverTrap(pid, up[0]);
+      SetLevel(pid, Level::kWaiting);
+    }
+    close(up[0]);
+    close(down[1]);
+    return spawned;
   }
-  if (pid != 0) return pid;
+  close(up[0]);
+  close(down[1]);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
+  HandOverTrap(up[1], down[0]);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

@@ -50,6 +50,8 @@ SignalSets ReadSignalSets(pid_t tid);
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 
+std::vector<pid_t> ThreadsOf(pid_t pid);
+
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
 
@@ -61,8 +63,12 @@ struct SpawnRequest {
   bool fixed_layout = false;           // no address-space randomisation
 };
 
-// The new process, at Level::kWaiting on the coordinator's CPU, killed with the coordinator. -1:
-// errno is set.
-pid_t Spawn(const SpawnRequest& request);
+struct Spawned {
+  pid_t pid = -1;  // -1: errno is set
+  int trap = -1;   // where its futex calls arrive, and those of all that it starts; -1: nowhere
+};
+
+// The new process, at Level::kWaiting on the coordinator's CPU, killed with the coordinator.
+Spawned Spawn(const SpawnRequest& request);
 
 }  // namespace tcs

@@ -1,0 +1,203 @@
+// The futex calls that the kernel hands over: all waiting of a process's threads for each other
+// ends there. A waiter sleeps to its virtual deadline, and is woken at its waker's virtual time;
+// wakes go to the most urgent waiter, among equals to the one that waits longest.
+#include <errno.h>
+#include <linux/futex.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/futex_trap.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
+// How long a joiner gives the kernel to be through with a thread that has ended.
+constexpr int kEndTurns = 200;
+constexpr useconds_t kEndTurnUs = 50;
+
+FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address) {
+  return KeyOf(task.process->pid, address, (call.args[1] & FUTEX_PRIVATE_FLAG) != 0);
+}
+
+}  // namespace
+
+// From an absolute or relative timeout in the caller's memory to a deadline on its virtual CPU.
+bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
+  task.deadline_ns = shm::kNeverNs;
+  if (call.args[3] == 0) return true;
+  timespec timeout{};
+  if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return false;
+  constexpr std::int64_t kMostSeconds = shm::kNeverNs / 1'000'000'000 / 4;
+  if (timeout.tv_sec > kMostSeconds) return true;
+  const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_nsec;
+  const std::int64_t now = task.cpu->progress_ns;
+  if (command == FUTEX_WAIT) {
+    task.deadline_ns = now + std::max<std::int64_t>(0, ns);
+    return true;
+  }
+  const bool realtime = (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
+  const std::int64_t offset = realtime ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
+  task.deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
+  return true;
+}
+
+std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command) {
+  std::uint32_t value = 0;
+  if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+  // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
+  if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
+  if (!FutexDeadline(task, call, command)) return -EFAULT;
+  if (const pid_t joined = static_cast<pid_t>(value & FUTEX_TID_MASK); IsEnding(task, joined)) {
+    // A join: the kernel clears the word when the thread has gone, which it is about to be.
+    for (int turn = 0; turn < kEndTurns && value == static_cast<std::uint32_t>(call.args[2]);
+         ++turn) {
+      usleep(kEndTurnUs);
+      if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+    }
+    return -EAGAIN;
+  }
+  task.futex = KeyFor(task, call, call.args[0]);
+  task.waits_for_futex = true;
+  task.joins = static_cast<pid_t>(value & FUTEX_TID_MASK);
+  task.futex_bits = command == FUTEX_WAIT ? kAnyBit : static_cast<std::uint32_t>(call.args[5]);
+  task.futex_order = ++futex_counter_;
+  SetState(task, TaskState::kWaiting);
+  return 0;
+}
+
+std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits) {
+  std::int64_t woken = 0;
+  while (woken < most) {
+    Task* best = nullptr;
+    for (Task& task : tasks_) {
+      if (!task.waits_for_futex || task.futex != key || (task.futex_bits & bits) == 0) continue;
+      if (best == nullptr || task.priority > best->priority ||
+          (task.priority == best->priority && task.futex_order < best->futex_order)) {
+        best = &task;
+      }
+    }
+    if (best == nullptr) break;
+    MakeReady(*best, shm::WakeReason::kGo);
+    ++woken;
+  }
+  return woken;
+}
+
+std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int command) {
+  if (command == FUTEX_CMP_REQUEUE) {
+    std::uint32_t value = 0;
+    if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+    if (value != static_cast<std::uint32_t>(call.args[5])) return -EAGAIN;
+  }
+  const FutexKey from = KeyFor(task, call, call.args[0]), to = KeyFor(task, call, call.args[4]);
+  std::int64_t moved = FutexWake(from, static_cast<int>(call.args[2]), kAnyBit);
+  auto most = static_cast<int>(call.args[3]);
+  for (Task& waiter : tasks_) {
+    if (most <= 0) break;
+    if (!waiter.waits_for_futex || waiter.futex != from) continue;
+    waiter.futex = to;
+    ++moved;
+    --most;
+  }
+  return moved;
+}
+
+std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
+  const auto operation = static_cast<std::uint32_t>(call.args[5]);
+  const std::uint32_t kind = operation >> 28 & 7u, compare = operation >> 24 & 15u;
+  auto operand = static_cast<std::int32_t>(operation << 8) >> 20;
+  const std::int32_t against = static_cast<std::int32_t>(operation << 20) >> 20;
+  if ((operation >> 31) != 0) operand = static_cast<std::int32_t>(1u << (operand & 31));
+  if (kind > FUTEX_OP_XOR || compare > FUTEX_OP_CMP_GE) return -ENOSYS;
+  const pid_t pid = task.process->pid;
+  std::int32_t old = 0;
+  if (!ReadMemory(pid, call.args[4], &old, sizeof old)) return -EFAULT;
+  const auto sum = static_cast<std::int32_t>(static_cast<std::uint32_t>(old) +
+                                             static_cast<std::uint32_t>(operand));
+  const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
+  if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
+  std::int64_t woken =
+      FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+  const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
+                        old >= against};
+  if (holds[compare]) {
+    woken += FutexWake(KeyFor(task, call, call.args[4]), static_cast<int>(call.args[3]), kAnyBit);
+  }
+  return woken;
+}
+
+// The thread has said that it ends, but the kernel may not be through with it yet.
+bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
+  return std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
+    return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
+  });
+}
+
+// Whoever waits for the thread to end goes on: the kernel's own wake does not reach them.
+void Engine::WakeJoiners(const Task& ended) {
+  for (Task& task : tasks_) {
+    if (task.waits_for_futex && task.joins == ended.tid && task.process == ended.process) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+}
+
+void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
+  const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
+  event_ns_ = task.cpu->progress_ns;
+  task.trap_id = call.id;
+  task.trap_listener = call.listener;
+  task.trap_result = 0;
+  switch (command) {
+    case FUTEX_WAIT:
+    case FUTEX_WAIT_BITSET:
+      task.trap_result = FutexWait(task, call, command);
+      break;
+    case FUTEX_WAKE:
+      task.trap_result =
+          FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+      break;
+    case FUTEX_WAKE_BITSET:
+      task.trap_result = FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]),
+                                   static_cast<std::uint32_t>(call.args[5]));
+      break;
+    case FUTEX_REQUEUE:
+    case FUTEX_CMP_REQUEUE:
+      task.trap_result = FutexRequeue(task, call, command);
+      break;
+    case FUTEX_WAKE_OP:
+      task.trap_result = FutexWakeOp(task, call);
+      break;
+    default:
+      task.trap_result = -ENOSYS;
+  }
+  Refresh(*task.cpu);
+}
+
+// A futex call has arrived. That of the running thread stops it like a notification.
+void Engine::TrapArrived(int listener) {
+  const auto call = ReceiveTrapped(listener);
+  if (!call.has_value()) return;
+  if (running_ != nullptr && running_->tid == call->tid && running_->slot >= 0) {
+    trapped_ = *call;
+    return;
+  }
+  for (Task& task : tasks_) {
+    if (task.tid != call->tid || task.state == TaskState::kDead || task.slot < 0) continue;
+    // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
+    // again, or it came back from a call that nobody saw.
+    if (task.state == TaskState::kUnseen) MakeReady(task, shm::WakeReason::kGo);
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    task.early_trap = *call;
+    task.trap_id = 0;
+    return;
+  }
+  ContinueTrapped(listener, call->id);
+}
+
+}  // namespace tcs

@@ -1,0 +1,47 @@
+// The kernel hands the futex calls of clients to the coordinator instead of carrying them out: a
+// seccomp filter with user notification, inherited by whatever a client starts. The thread sleeps
+// in the kernel until it is answered, and no handler runs in it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace tcs {
+
+struct TrappedCall {
+  int listener = -1;     // where it arrived,
+  std::uint64_t id = 0;  // and what it is answered by there
+  pid_t tid = 0;
+  int number = 0;
+  std::uint64_t args[6] = {};
+};
+
+// Installs the filter in the calling process, which must be about to exec. The descriptor at which
+// its calls arrive; -1: errno is set.
+int InstallFutexTrap();
+
+// The next call that waits at `listener`; none if its thread has gone meanwhile.
+std::optional<TrappedCall> ReceiveTrapped(int listener);
+
+// Ends the call with `result`, negative for an errno. False if the thread no longer waits there: a
+// signal has ended the call.
+bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
+// Lets the kernel carry it out.
+bool ContinueTrapped(int listener, std::uint64_t id);
+
+// What makes two futex addresses the same: the process and the address, or for memory that
+// processes share, the file and the offset.
+struct FutexKey {
+  pid_t pid = 0;  // 0: shared
+  std::uint64_t file = 0, address = 0;
+  bool operator==(const FutexKey&) const = default;
+};
+FutexKey KeyOf(pid_t pid, std::uint64_t address, bool is_private);
+
+// Copies from another process's memory. False if it is not there.
+bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
+bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size);
+
+}  // namespace tcs
