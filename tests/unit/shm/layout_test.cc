@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionTwoHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 2u);
+TEST(Layout, VersionThreeHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 3u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
