@@ -80,6 +80,10 @@ int main(int argc, char** argv) {
     fmt::print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
     return tcs::CanRun(findings) ? 0 : 1;
   }
+  if (getenv("TCS_SOCKET") != nullptr) {
+    return tcs::Fail(
+        "this is running inside another tcsim already; a run cannot contain another one");
+  }
   if (access(options.preload_library.c_str(), R_OK) != 0) {
     return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
   }

@@ -32,7 +32,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], listener_, signals_}) {
+  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], listener_, signals_, claim_.fd}) {
     if (fd >= 0) close(fd);
   }
 }

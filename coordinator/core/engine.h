@@ -10,6 +10,7 @@
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/schedule_trace.h"
 
@@ -142,6 +143,7 @@ class Engine {
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
 
+  CpuClaim claim_;
   shm::SegmentHeader* header_ = nullptr;
   int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it

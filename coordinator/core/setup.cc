@@ -19,6 +19,7 @@
 #include <cstring>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -61,7 +62,8 @@ std::string Engine::Prepare() {
     world_row_ = trace_.AddRow("dynamics", "world");
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
-  if (std::string error = EnterRealTime(); !error.empty()) return error;
+  claim_ = ClaimCpu();
+  if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);

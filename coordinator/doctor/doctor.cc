@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "coordinator/doctor/interpret.h"
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {

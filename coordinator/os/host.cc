@@ -41,20 +41,10 @@ std::uint64_t CalibrateTsc() {
                                     static_cast<double>(ticks) * 4294967296.0);
 }
 
-int LastAllowedCpu() {
-  cpu_set_t allowed;
-  sched_getaffinity(0, sizeof allowed, &allowed);
-  int last = 0;
-  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
-    if (CPU_ISSET(cpu, &allowed)) last = cpu;
-  }
-  return last;
-}
-
-std::string EnterRealTime() {
+std::string EnterRealTime(int cpu) {
   cpu_set_t one;
   CPU_ZERO(&one);
-  CPU_SET(LastAllowedCpu(), &one);
+  CPU_SET(static_cast<std::size_t>(cpu), &one);
   if (sched_setaffinity(0, sizeof one, &one) != 0) return "cannot bind to a CPU";
   const sched_param param{static_cast<int>(Level::kCoordinator)};
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {

@@ -20,12 +20,9 @@ enum class Level : int { kWaiting = 10, kDetector = 11, kActive = 12, kCoordinat
 // Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
 std::uint64_t CalibrateTsc();
 
-// The CPU that tcs takes: the last one that the calling process may use.
-int LastAllowedCpu();
-
-// Binds the calling process to the last CPU it may use and gives it the coordinator's level. Empty
-// on success, else one sentence.
-std::string EnterRealTime();
+// Binds the calling process to the CPU and gives it the coordinator's level. Empty on success, else
+// one sentence.
+std::string EnterRealTime(int cpu);
 
 void SetLevel(pid_t tid, Level level);
 

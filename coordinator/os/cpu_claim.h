@@ -1,0 +1,23 @@
+// Which host CPU a run takes. Two coordinators on one CPU would stop each other's threads, so each
+// claims its CPU for as long as it lives.
+#pragma once
+
+#include <string>
+
+namespace tcs {
+
+struct CpuClaim {
+  int cpu = -1;
+  int fd = -1;  // holds the claim; it ends with the last copy of this descriptor
+};
+
+// The last CPU that the calling process may use and no other tcsim has claimed; the first one only
+// if there is no other, so that the rest of the machine keeps a CPU. Where all are claimed, waits
+// for one, and says so on stderr. Claims are locks on the CPU's folder in /sys: nothing is left
+// behind. Where that cannot be opened, the CPU is taken unclaimed.
+CpuClaim ClaimCpu();
+
+// The CPU that ClaimCpu tries first.
+int LastAllowedCpu();
+
+}  // namespace tcs
