@@ -8,7 +8,8 @@
 
 namespace tcs {
 
-int ExecCommand(const std::vector<std::string>& command, double speed, const RunOptions& options) {
+int ExecCommand(const std::vector<std::string>& command, double speed, int cores,
+                const RunOptions& options) {
   std::error_code gone;
   const std::string folder = std::filesystem::current_path(gone);
   if (gone) return Fail("the current folder is gone; change to one that exists");
@@ -22,7 +23,7 @@ int ExecCommand(const std::vector<std::string>& command, double speed, const Run
   ClientSpec client;
   client.name = command[0];
   client.command = command;
-  scenario.robots.push_back({"computer", 1, speed, {client}});
+  scenario.robots.push_back({"computer", cores, speed, {client}});
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
   if (!report.error.empty()) return Fail(report.error);

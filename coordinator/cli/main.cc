@@ -50,10 +50,14 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"consistent", "callback"}));
 
   double speed = 1.0;
+  int cores = 1;
   std::vector<std::string> command;
   CLI::App* exec = app.add_subcommand("exec", "run any program in virtual time, without dynamics");
   exec->add_option("--speed", speed, "of its processor, relative to the host's")
       ->check(CLI::Range(1e-3, 1e3))
+      ->capture_default_str();
+  exec->add_option("--cores", cores, "how many processors it has")
+      ->check(CLI::Range(1, 64))
       ->capture_default_str();
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
@@ -89,7 +93,7 @@ int main(int argc, char** argv) {
   }
   if (seeded->count() > 0) arguments.seed = seed;
   return tcs::RunGuarded([&] {
-    return exec->parsed() ? tcs::ExecCommand(command, speed, options)
+    return exec->parsed() ? tcs::ExecCommand(command, speed, cores, options)
                           : tcs::RunCommand(arguments, options);
   });
 }

@@ -32,23 +32,23 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
   Task& task = tasks_.emplace_back();
   ++living_;
   task.process = &process;
-  task.cpu = process.cpu;
   task.tid = tid;
   task.order = static_cast<int>(tasks_.size() - 1);
   task.priority = process.priority;
   task.parked = false;
-  process.cpu->tasks.push_back(&task);
+  task.reached_ns = event_ns_;
+  process.robot->tasks.push_back(&task);
   SetState(task, TaskState::kStarting);
-  Refresh(*process.cpu);
+  Refresh(*process.robot);
   return &task;
 }
 
-Task* Engine::NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name,
+Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name,
                       int priority) {
   Process& process = processes_.emplace_back();
   process.pid = pid;
   process.parent = parent;
-  process.cpu = cpu;
+  process.robot = robot;
   process.name = name;
   process.priority = priority;
   process.pidfd = OpenPidfd(pid);
@@ -63,14 +63,15 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::strin
   Task* task = AddTask(process, pid);
   // Children have no name of their own; their place in the order is the same in every run.
   const bool is_child = parent != getpid();
-  task->row = trace_.AddRow(cpu->robot, is_child ? fmt::format("{} #{}", name, task->order) : name);
+  task->row =
+      trace_.AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
   return task;
 }
 
 Task* Engine::AddThread(Process& process, pid_t tid) {
   ++process.threads;
   Task* task = AddTask(process, tid);
-  task->row = trace_.AddRow(process.cpu->robot, fmt::format("{} #{}", process.name, task->order));
+  task->row = trace_.AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
   return task;
 }
 
@@ -92,8 +93,8 @@ Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
     if (known.pid == parent_pid) parent = &known;
   }
   if (parent != nullptr)
-    return NewTask(pid, parent_pid, parent->cpu, parent->name, parent->priority);
-  return NewTask(pid, parent_pid, &cpus_.front(), fmt::format("pid {}", pid), 0);
+    return NewTask(pid, parent_pid, parent->robot, parent->name, parent->priority);
+  return NewTask(pid, parent_pid, &robots_.front(), fmt::format("pid {}", pid), 0);
 }
 
 void Engine::Attach(int connection) {
@@ -125,13 +126,13 @@ void Engine::Attach(int connection) {
   shm::ThreadSlot& slot = Slot(task);
   slot.pid = task.process->pid;
   slot.tid = task.tid;
-  slot.cores = task.cpu->cores;
+  slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.gate.store(shm::kGateClosed);
   SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;
-  Refresh(*task.cpu);
+  Refresh(*task.process->robot);
   SendReply(connection, task);
 }
 
@@ -164,10 +165,10 @@ void Engine::EndTask(Task& task) {
   SetState(task, TaskState::kDead);
   --living_;
   task.parked = true;
-  std::erase(task.cpu->tasks, &task);
+  std::erase(task.process->robot->tasks, &task);
   if (task.slot >= 0) free_slots_.push_back(task.slot);
   if (last_ == &task) last_ = nullptr;
-  Refresh(*task.cpu);
+  Refresh(*task.process->robot);
 }
 
 void Engine::ProcessEnded(std::size_t index) {
@@ -175,12 +176,12 @@ void Engine::ProcessEnded(std::size_t index) {
   if (process.dead) return;
   if (running_ != nullptr && running_->process == &process) {
     Settle(*running_);
-    event_ns_ = running_->cpu->progress_ns;
+    event_ns_ = running_->reached_ns;
   }
   process.dead = true;
   process.ended_at_ns = event_ns_;
   const std::int64_t charged = ChargedTo(process);
-  const std::vector<Task*> threads = process.cpu->tasks;
+  const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process == &process) EndTask(*task);
   }

@@ -43,9 +43,11 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   page.write_safe_ns = root_.WriteSafe(cpu.leaf);
   page.host_cpu_origin_ns = task.host_origin_ns;
-  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.speed);
+  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
   page.ns_per_tick_q32 =
-      IsFixed() ? 0 : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.speed);
+      IsFixed()
+          ? 0
+          : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.robot->speed);
   page.check_after_ticks =
       IsFixed() ? ~std::uint64_t{0}
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
@@ -121,7 +123,7 @@ std::int64_t Engine::HostNsToHorizon(const Task& task) {
   if (task.slot < 0 || IsFixed()) return kStartTurnNs;
   const std::int64_t now =
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
-  const double left = static_cast<double>(running_horizon_ns_ - now) * task.cpu->speed;
+  const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
   return std::max(kLeastSliceNs, static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_));
 }
 
@@ -136,7 +138,7 @@ void Engine::CheckCpuClock(Task& task) {
   const std::uint64_t checked = page.last_check_tsc.load(std::memory_order_relaxed);
   if (task.unchecked_slices > 0 && checked == task.checked_tsc) {
     const auto stolen = static_cast<double>(reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu)) *
-                        task.cpu->speed;
+                        task.process->robot->speed;
     const double more = std::clamp(stolen / task.unchecked_slices, -kMostSwitchNs, kMostSwitchNs);
     switch_ns_ = std::clamp(switch_ns_ + more / 16, 0.0, kMostSwitchNs);
   }
@@ -181,7 +183,8 @@ void Engine::Settle(Task& task) {
   const std::int64_t noted = slot.note.time_ns - frozen;
   if (notified_ && noted < running_horizon_ns_) reached = std::min(reached, std::max(noted, start));
   const std::int64_t executed = std::max<std::int64_t>(0, reading.cpu_ns - task.charged_ns);
-  client_host_ns_ += static_cast<std::int64_t>(static_cast<double>(executed) * task.cpu->speed);
+  client_host_ns_ +=
+      static_cast<std::int64_t>(static_cast<double>(executed) * task.process->robot->speed);
   task.charged_ns = reading.cpu_ns;
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
@@ -200,6 +203,8 @@ void Engine::Settle(Task& task) {
   task.debt_ns = reached - progress;
   if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
   task.cpu->progress_ns = progress;
+  task.reached_ns = progress;
+  if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   trace_.Slice(task.row, start, slept ? std::min(progress, start + executed) : progress);
 }

@@ -51,33 +51,46 @@ bool Engine::IsRunnable(const Task& task) {
 void Engine::SetState(Task& task, TaskState state) {
   unseen_ += (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
   task.state = state;
+  Requeue(task);
+}
+
+void Engine::Requeue(Task& task) {
+  FixedPriority& ready = task.process->robot->ready;
   if (IsRunnable(task)) {
-    task.cpu->ready.Add(task.order, task.priority);
+    ready.Add({task.order, task.priority, task.reached_ns, task.allowed_cores});
   } else {
-    task.cpu->ready.Remove(task.order);
+    ready.Remove(task.order);
   }
 }
 
-void Engine::Refresh(VirtualCpu& cpu) {
-  std::int64_t next = shm::kNeverNs;
-  if (cpu.ready.size() > 0) {
-    next = cpu.progress_ns;
-  } else {
-    for (const Task* task : cpu.tasks) {
-      if (task->state == TaskState::kWaiting) next = std::min(next, task->deadline_ns);
+// A core without a turn acts when somebody's wait ends by itself: one core is enough for that.
+void Engine::Refresh(Robot& robot) {
+  progress_.clear();
+  for (const VirtualCpu* cpu : robot.cpus) progress_.push_back(cpu->progress_ns);
+  robot.ready.Assign(progress_);
+  const VirtualCpu* idle = nullptr;
+  for (const VirtualCpu* cpu : robot.cpus) {
+    if (robot.ready.Next(cpu->core).thread != FixedPriority::kNobody) continue;
+    if (idle == nullptr || cpu->progress_ns < idle->progress_ns) idle = cpu;
+  }
+  std::int64_t due = shm::kNeverNs;
+  if (idle != nullptr) {
+    for (const Task* task : robot.tasks) {
+      if (task->state == TaskState::kWaiting) due = std::min(due, task->deadline_ns);
       if (task->process->next_expiry_ns != shm::kNeverNs) {
-        next = std::min(next, task->process->next_expiry_ns - task->process->frozen_ns);
+        due = std::min(due, task->process->next_expiry_ns - task->process->frozen_ns);
       }
     }
-    if (next != shm::kNeverNs) next = std::max(next, cpu.progress_ns);
+    if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
   }
-  root_.Update(cpu.leaf, cpu.progress_ns, next);
+  for (const VirtualCpu* cpu : robot.cpus) {
+    const std::int64_t turn = robot.ready.Next(cpu->core).start_ns;
+    root_.Update(cpu->leaf, cpu->progress_ns, cpu == idle ? due : turn);
+  }
 }
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  VirtualCpu& cpu = *task.cpu;
-  const bool alone = cpu.ready.size() == 0 && (running_ == nullptr || running_->cpu != &cpu);
   const bool reads =
       task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
   if (task.state == TaskState::kWaiting) {
@@ -87,6 +100,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
   task.waits_for_fds = task.waits_for_child = task.has_wait_mask = false;
+  task.reached_ns = std::max(task.reached_ns, event_ns_);
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;
@@ -98,8 +112,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
                                                             : 0;
   }
   task.reason = reason;
-  if (alone) cpu.progress_ns = std::max(cpu.progress_ns, event_ns_);
-  Refresh(cpu);
+  Refresh(*task.process->robot);
 }
 
 bool Engine::IsSafe(const Task& task) const {
@@ -110,8 +123,9 @@ bool Engine::IsSafe(const Task& task) const {
 }
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
-std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) const {
+std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const VirtualCpu& cpu = *task.cpu;
+  const Robot& robot = *cpu.robot;
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
   if (IsCallback()) return furthest;
@@ -121,7 +135,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) cons
         limit, cpu.progress_ns + std::max<std::int64_t>(0, cpu_timer - ChargedTo(*task.process)));
   }
   std::int64_t idle = limit;
-  for (const Task* other : cpu.tasks) {
+  for (const Task* other : robot.tasks) {
     const std::int64_t expiry = other->process->next_expiry_ns;
     if (other->process == task.process || other->priority > task.priority) {
       limit = std::min(limit, expiry);
@@ -135,11 +149,12 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) cons
     idle = std::min(idle, other->deadline_ns);
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
-    if (!other->waits_for_fds) continue;
+    if (!other->waits_for_fds && !(other->waits_for_futex && robot.cpus.size() > 1)) continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }
-  if (cpu.ready.HasEqual(task.order)) {
+  limit = std::min(limit, robot.ready.NextMoreUrgent(cpu.core));
+  if (robot.ready.HasWaitingEqual(cpu.core)) {
     limit = std::min(limit, cpu.progress_ns + kQuantumNs - task.turn_ns);
   }
   *idle_until = std::min(idle, limit);
@@ -147,13 +162,18 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) cons
 }
 
 void Engine::StepCpu(VirtualCpu& cpu) {
+  Robot& robot = *cpu.robot;
   cpu.progress_ns = std::max(cpu.progress_ns, root_.Least());
-  FireDue(cpu);
-  Refresh(cpu);
-  const auto first = cpu.ready.First();
-  if (!first.has_value()) return;
-  Task& task = tasks_[static_cast<std::size_t>(*first)];
-  if (root_.First() != cpu.leaf) return;  // what was due has woken somebody less advanced
+  FireDue(robot, cpu.progress_ns);
+  Refresh(robot);
+  const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
+  // What was due may have woken somebody who acts on another virtual CPU first.
+  if (turn.thread == FixedPriority::kNobody || root_.First() != cpu.leaf) return;
+  cpu.progress_ns = std::max(cpu.progress_ns, turn.start_ns);
+  Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
+  task.cpu = &cpu;
+  task.reached_ns = cpu.progress_ns;
+  robot.ready.Ran(cpu.core, task.order);
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns;
@@ -161,15 +181,17 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     task.debt_ns -= horizon - start;
     cpu.progress_ns = std::max(start, horizon);
+    task.reached_ns = cpu.progress_ns;
   } else {
     Dispatch(task, horizon, idle_until);
   }
   task.turn_ns += cpu.progress_ns - start;
   if (task.turn_ns >= kQuantumNs) {
     task.turn_ns = 0;
-    cpu.ready.Rotate(task.order);
+    robot.ready.Rotate(task.order);
   }
-  Refresh(cpu);
+  Requeue(task);
+  Refresh(robot);
 }
 
 // Advances the dynamics to where the virtual CPUs are. False if they are there.
@@ -195,7 +217,7 @@ void Engine::PollUnseen() {
   if (unseen_ == 0) return;
   for (Task& task : tasks_) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
-    event_ns_ = std::max(event_ns_, task.cpu->progress_ns);
+    event_ns_ = std::max(event_ns_, task.reached_ns);
     MakeReady(task, shm::WakeReason::kGo);
     task.parked = false;
   }
@@ -241,7 +263,8 @@ bool Engine::Step() {
   }
   if (least >= end_ns_) return false;
   VirtualCpu& cpu = cpus_[static_cast<std::size_t>(root_.First())];
-  if (cpu.ready.size() == 0 && !HasJumpedOver()) return true;
+  const bool idle = cpu.robot->ready.Next(cpu.core).thread == FixedPriority::kNobody;
+  if (idle && !HasJumpedOver()) return true;
   // What was there may have made another one the least.
   if (root_.First() == cpu.leaf) StepCpu(cpu);
   return true;

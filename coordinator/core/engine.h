@@ -47,16 +47,17 @@ class Engine {
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   bool HasJumpedOver();
-  std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until) const;
+  std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   bool IsSafe(const Task& task) const;
   void PollUnseen();
   void WaitOutside();
   void ShowProgress();
 
-  // States (engine.cc). Whoever changes what a virtual CPU could do next refreshes it.
+  // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   void SetState(Task& task, TaskState state);
-  void Refresh(VirtualCpu& cpu);
+  void Requeue(Task& task);
+  void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason);
 
   // The dispatch (dispatch.cc).
@@ -92,8 +93,8 @@ class Engine {
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
-  void FireDue(VirtualCpu& cpu);
-  bool Expire(Process& process);
+  void FireDue(Robot& robot, std::int64_t now_ns);
+  bool Expire(Process& process, std::int64_t now_ns);
   void SendTimerSignals(Task& task);
   void ExpireCpuTimers(Process& process);
   std::int64_t NextCpuExpiry(const Process& process) const;
@@ -111,7 +112,7 @@ class Engine {
   void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
-  Task* NewTask(pid_t pid, pid_t parent, VirtualCpu* cpu, const std::string& name, int priority);
+  Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority);
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
   Task* KnownTask(pid_t tid);
@@ -134,9 +135,11 @@ class Engine {
   TemporalConsistency root_;
   ScheduleTrace trace_;
   int world_row_ = 0;
-  std::deque<VirtualCpu> cpus_;
+  std::deque<Robot> robots_;
+  std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
+  std::vector<std::int64_t> progress_;  // Refresh's own
   std::vector<Task*> by_slot_;
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead

@@ -35,7 +35,7 @@ bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
   constexpr std::int64_t kMostSeconds = shm::kNeverNs / 1'000'000'000 / 4;
   if (timeout.tv_sec > kMostSeconds) return true;
   const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_nsec;
-  const std::int64_t now = task.cpu->progress_ns;
+  const std::int64_t now = task.reached_ns;
   if (command == FUTEX_WAIT) {
     task.deadline_ns = now + std::max<std::int64_t>(0, ns);
     return true;
@@ -149,7 +149,7 @@ void Engine::WakeJoiners(const Task& ended) {
 
 void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
-  event_ns_ = task.cpu->progress_ns;
+  event_ns_ = task.reached_ns;
   task.trap_id = call.id;
   task.trap_listener = call.listener;
   task.trap_result = 0;
@@ -176,7 +176,7 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
     default:
       task.trap_result = -ENOSYS;
   }
-  Refresh(*task.cpu);
+  Refresh(*task.process->robot);
 }
 
 // A futex call has arrived. That of the running thread stops it like a notification.

@@ -81,18 +81,18 @@ void Engine::NoteSpawned(Task& task, pid_t pid) {
   }
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   SetLevel(pid, Level::kWaiting);
-  NewTask(pid, task.process->pid, task.cpu, task.process->name, task.priority);
+  NewTask(pid, task.process->pid, task.process->robot, task.process->name, task.priority);
 }
 
 void Engine::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
-  VirtualCpu& cpu = *task.cpu;
-  event_ns_ = cpu.progress_ns;
+  Robot& robot = *task.process->robot;
+  event_ns_ = task.reached_ns;
   task.reason = shm::WakeReason::kGo;
-  // From the program's clock to the virtual CPU's.
+  // From the program's clock to the robot's.
   task.deadline_ns = shm::kNeverNs;
   if (note.deadline_ns != shm::kNeverNs) {
-    task.deadline_ns = std::max(note.deadline_ns - task.process->frozen_ns, cpu.progress_ns);
+    task.deadline_ns = std::max(note.deadline_ns - task.process->frozen_ns, task.reached_ns);
   }
   switch (note.kind) {
     case Kind::kRead:
@@ -107,7 +107,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitFds:
       WaitForFds(task, note);
-      Refresh(cpu);
+      Refresh(robot);
       // What is there already ends the wait here and now.
       PollEvents(0);
       break;
@@ -124,7 +124,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       NoteSpawned(task, static_cast<pid_t>(note.args[0]));
       break;
     case Kind::kYield:
-      cpu.ready.Rotate(task.order);
+      robot.ready.Rotate(task.order);
       break;
     case Kind::kPriority: {
       const auto policy = static_cast<std::int32_t>(note.args[0]);
@@ -135,7 +135,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
           real_time
               ? kRealTimeBand + static_cast<int>(std::clamp<std::int64_t>(note.args[1], 1, 99))
               : task.process->priority;
-      cpu.ready.SetPriority(task.order, task.priority);
+      robot.ready.SetPriority(task.order, task.priority);
       break;
     }
     case Kind::kUncovered:
@@ -154,7 +154,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kResumed:
       break;
   }
-  Refresh(cpu);
+  Refresh(robot);
 }
 
 }  // namespace tcs

@@ -146,17 +146,16 @@ std::string Engine::PrepareDetector() {
 
 std::string Engine::StartClients() {
   for (const RobotSpec& robot : scenario_.robots) {
-    const std::size_t first = cpus_.size();
-    for (int core = 0; core < robot.cores; ++core) {
+    const auto cores = static_cast<std::uint32_t>(robot.cores);
+    Robot& computer = robots_.emplace_back(robot.name, cores, robot.speed);
+    for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = cpus_.emplace_back();
-      cpu.robot = robot.name;
-      cpu.core = static_cast<std::uint32_t>(core);
-      cpu.cores = static_cast<std::uint32_t>(robot.cores);
+      cpu.robot = &computer;
+      cpu.core = core;
       cpu.leaf = root_.AddLeaf();
-      cpu.speed = robot.speed;
+      computer.cpus.push_back(&cpu);
     }
-    for (std::size_t i = 0; i < robot.clients.size(); ++i) {
-      const ClientSpec& client = robot.clients[i];
+    for (const ClientSpec& client : robot.clients) {
       SpawnRequest request;
       request.command = client.command;
       request.working_directory = client.working_directory;
@@ -180,8 +179,7 @@ std::string Engine::StartClients() {
         Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
              "): threads wait for each other in real time");
       }
-      VirtualCpu* cpu = &cpus_[first + i % static_cast<std::size_t>(robot.cores)];
-      Task* task = NewTask(pid, getpid(), cpu, client.name, client.priority);
+      Task* task = NewTask(pid, getpid(), &computer, client.name, client.priority);
       task->process->is_client = true;
       task->process->call_cost_ns = client.fixed_call_cost.ns();
     }

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/os/futex_trap.h"
@@ -29,16 +30,20 @@ enum class TaskState {
 };
 
 struct Process;
+struct Robot;
 struct VirtualCpu;
 
 struct Task {
   Process* process = nullptr;
-  VirtualCpu* cpu = nullptr;
+  VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   pid_t tid = 0;
   int slot = -1;
   int order = 0;  // of registration; its number in the scheduling policies
   int priority = 0;
+  std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
   TaskState state = TaskState::kStarting;
+  // The virtual time that it has come to: of its last stop, or of what has made it ready since.
+  std::int64_t reached_ns = 0;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
   bool waits_for_fds = false, waits_for_child = false;
@@ -80,7 +85,7 @@ struct Timer {
 struct Process {
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
-  VirtualCpu* cpu = nullptr;
+  Robot* robot = nullptr;
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0;
@@ -102,14 +107,21 @@ struct Process {
 };
 
 struct VirtualCpu {
-  std::string robot;
-  std::uint32_t core = 0, cores = 1;
-  int order = 0;
-  double speed = 1.0;
+  Robot* robot = nullptr;
+  std::uint32_t core = 0;
   std::int64_t progress_ns = 0;
   TemporalConsistency::Leaf leaf = -1;
+};
+
+struct Robot {
+  Robot(std::string its_name, std::size_t cores, double its_speed)
+      : name(std::move(its_name)), speed(its_speed), ready(cores) {}
+
+  std::string name;
+  double speed;
   FixedPriority ready;
-  std::vector<Task*> tasks;  // the living
+  std::vector<VirtualCpu*> cpus;  // by core
+  std::vector<Task*> tasks;       // the living
 };
 
 }  // namespace tcs

@@ -13,7 +13,7 @@ namespace tcs {
 
 std::int64_t Engine::ChargedTo(const Process& process) const {
   std::int64_t charged = process.ended_cpu_ns;
-  for (const Task* task : process.cpu->tasks) {
+  for (const Task* task : process.robot->tasks) {
     if (task->process == &process) charged += task->charged_ns;
   }
   return charged;
@@ -73,8 +73,8 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
 }
 
 // Fires what has run out for one process; true if a descriptor was written to.
-bool Engine::Expire(Process& process) {
-  const std::int64_t now = process.cpu->progress_ns + process.frozen_ns;
+bool Engine::Expire(Process& process, std::int64_t now_ns) {
+  const std::int64_t now = now_ns + process.frozen_ns;
   bool wrote = false;
   for (auto& [id, timer] : process.timers) {
     if (timer.next_ns == 0 || timer.next_ns > now) continue;
@@ -82,8 +82,8 @@ bool Engine::Expire(Process& process) {
     if (timer.interval_ns > 0) {
       count += static_cast<std::uint64_t>((now - timer.next_ns) / timer.interval_ns);
       timer.next_ns += static_cast<std::int64_t>(count) * timer.interval_ns;
-      const bool awaited =
-          std::any_of(process.cpu->tasks.begin(), process.cpu->tasks.end(), [&](const Task* task) {
+      const bool awaited = std::any_of(
+          process.robot->tasks.begin(), process.robot->tasks.end(), [&](const Task* task) {
             return task->process == &process &&
                    (task->state == TaskState::kWaiting || task->state == TaskState::kUnseen);
           });
@@ -139,15 +139,15 @@ void Engine::SendTimerSignals(Task& task) {
   process.pending_signals.clear();
 }
 
-void Engine::FireDue(VirtualCpu& cpu) {
-  event_ns_ = cpu.progress_ns;
+void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
+  event_ns_ = now_ns;
   bool wrote = false;
-  for (Task* task : cpu.tasks) {
-    if (task->state == TaskState::kWaiting && task->deadline_ns <= cpu.progress_ns) {
+  for (Task* task : robot.tasks) {
+    if (task->state == TaskState::kWaiting && task->deadline_ns <= now_ns) {
       MakeReady(*task, shm::WakeReason::kDeadline);
     }
     Process& process = *task->process;
-    if (process.next_expiry_ns - process.frozen_ns <= cpu.progress_ns) wrote |= Expire(process);
+    if (process.next_expiry_ns - process.frozen_ns <= now_ns) wrote |= Expire(process, now_ns);
     if (!process.pending_signals.empty()) SendTimerSignals(*task);
   }
   if (wrote) PollEvents(0);

@@ -1,24 +1,33 @@
 #include "coordinator/policy/fixed_priority.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tcs {
 
-std::vector<FixedPriority::Entry>::const_iterator FixedPriority::Find(Thread thread) const {
+std::vector<FixedPriority::Ready>::const_iterator FixedPriority::Find(Thread thread) const {
   return std::find_if(ready_.begin(), ready_.end(),
-                      [thread](const Entry& entry) { return entry.thread == thread; });
+                      [thread](const Ready& ready) { return ready.thread == thread; });
 }
 
-void FixedPriority::Add(Thread thread, int priority) {
-  if (IsReady(thread)) return;
-  const auto behind = std::find_if(ready_.begin(), ready_.end(), [priority](const Entry& entry) {
-    return entry.priority < priority;
+bool FixedPriority::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
+
+void FixedPriority::Add(const Ready& added) {
+  if (const auto found = Find(added.thread); found != ready_.end()) {
+    Ready& known = ready_[static_cast<std::size_t>(found - ready_.begin())];
+    known.from_ns = added.from_ns;
+    known.allowed = added.allowed;
+    return;
+  }
+  const auto behind = std::find_if(ready_.begin(), ready_.end(), [&](const Ready& ready) {
+    return ready.priority < added.priority;
   });
-  ready_.insert(behind, Entry{thread, priority});
+  ready_.insert(behind, added);
 }
 
 void FixedPriority::Remove(Thread thread) {
   if (const auto found = Find(thread); found != ready_.end()) ready_.erase(found);
+  std::replace(on_.begin(), on_.end(), thread, kNobody);
 }
 
 void FixedPriority::Rotate(Thread thread) {
@@ -27,24 +36,68 @@ void FixedPriority::Rotate(Thread thread) {
 }
 
 void FixedPriority::SetPriority(Thread thread, int priority) {
-  if (!IsReady(thread)) return;
-  Remove(thread);
-  Add(thread, priority);
-}
-
-std::optional<FixedPriority::Thread> FixedPriority::First() const {
-  if (ready_.empty()) return std::nullopt;
-  return ready_.front().thread;
-}
-
-bool FixedPriority::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
-
-bool FixedPriority::HasEqual(Thread thread) const {
   const auto found = Find(thread);
-  if (found == ready_.end()) return false;
-  return std::any_of(ready_.begin(), ready_.end(), [&](const Entry& entry) {
-    return entry.thread != thread && entry.priority == found->priority;
+  if (found == ready_.end()) return;
+  Ready moved = *found;
+  moved.priority = priority;
+  ready_.erase(found);
+  Add(moved);
+}
+
+bool FixedPriority::HasTurn(Thread thread) const {
+  return std::any_of(turns_.begin(), turns_.end(),
+                     [thread](const Turn& turn) { return turn.thread == thread; });
+}
+
+bool FixedPriority::StaysElsewhere(Thread thread, std::size_t core) const {
+  const auto found = std::find(on_.begin(), on_.end(), thread);
+  if (found == on_.end()) return false;
+  const auto home = static_cast<std::size_t>(found - on_.begin());
+  return home != core && turns_[home].thread == kNobody;
+}
+
+void FixedPriority::Choose(std::size_t core, std::int64_t progress_ns, bool keep_places) {
+  Turn& turn = turns_[core];
+  for (const Ready& ready : ready_) {
+    if ((ready.allowed >> (core & 63) & 1) == 0 || HasTurn(ready.thread)) continue;
+    if (keep_places && StaysElsewhere(ready.thread, core)) continue;
+    const std::int64_t start = std::max(progress_ns, ready.from_ns);
+    if (start < turn.start_ns) turn = Turn{ready.thread, start};
+  }
+}
+
+void FixedPriority::Assign(const std::vector<std::int64_t>& progress_ns) {
+  std::fill(turns_.begin(), turns_.end(), Turn{});
+  if (turns_.size() == 1) return Choose(0, progress_ns[0], false);
+  std::vector<std::size_t> cores(turns_.size());
+  std::iota(cores.begin(), cores.end(), std::size_t{0});
+  std::stable_sort(cores.begin(), cores.end(),
+                   [&](std::size_t a, std::size_t b) { return progress_ns[a] < progress_ns[b]; });
+  for (const bool keep_places : {true, false}) {
+    for (const std::size_t core : cores) {
+      if (turns_[core].thread == kNobody) Choose(core, progress_ns[core], keep_places);
+    }
+  }
+}
+
+bool FixedPriority::HasWaitingEqual(std::size_t core) const {
+  const auto own = Find(turns_[core].thread);
+  if (own == ready_.end()) return false;
+  return std::any_of(ready_.begin(), ready_.end(), [&](const Ready& ready) {
+    return ready.priority == own->priority && (ready.allowed >> (core & 63) & 1) != 0 &&
+           !HasTurn(ready.thread);
   });
+}
+
+std::int64_t FixedPriority::NextMoreUrgent(std::size_t core) const {
+  std::int64_t next = INT64_MAX;
+  const auto own = Find(turns_[core].thread);
+  if (own == ready_.end()) return next;
+  for (const Ready& ready : ready_) {
+    if (ready.priority <= own->priority || HasTurn(ready.thread)) continue;
+    if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from_ns);
+  }
+  return next;
 }
 
 }  // namespace tcs

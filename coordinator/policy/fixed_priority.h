@@ -1,10 +1,15 @@
-// Who runs on one virtual CPU: the most urgent ready thread; among equals the one that became ready
-// first, until it waits or is rotated behind them (SCHED_FIFO, and SCHED_RR at a quantum's end).
-// Pure: knows threads by number, makes no system call, reads no clock.
+// Who runs on the virtual CPUs (cores) of one robot: the most urgent ready threads, wherever there
+// is a core for them; among equals the one that became ready first, until it waits or is rotated
+// behind them (SCHED_FIFO, and SCHED_RR at a quantum's end).
+//
+// The cores advance one after the other, so one may be ahead of another, and a ready thread may
+// have come further than a core: it runs no earlier than that. A thread stays on the core that it
+// runs on while that core has nothing more urgent. Pure: knows threads by number, makes no system
+// call, reads no clock. All times are virtual nanoseconds.
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <cstdint>
 #include <vector>
 
 namespace tcs {
@@ -12,30 +17,55 @@ namespace tcs {
 class FixedPriority {
  public:
   using Thread = int;
+  static constexpr Thread kNobody = -1;
+  static constexpr std::uint64_t kEveryCore = ~std::uint64_t{0};
+
+  struct Ready {
+    Thread thread;
+    int priority;
+    std::int64_t from_ns;                // runs no earlier
+    std::uint64_t allowed = kEveryCore;  // cores; bit 0 is core 0
+  };
+
+  struct Turn {
+    Thread thread = kNobody;
+    std::int64_t start_ns = INT64_MAX;
+  };
+
+  explicit FixedPriority(std::size_t cores) : on_(cores, kNobody), turns_(cores) {}
 
   // Ready, behind its equals. A thread that is ready already keeps its place.
-  void Add(Thread thread, int priority);
+  void Add(const Ready& ready);
   // No longer ready. Nothing happens if it was not.
   void Remove(Thread thread);
   // Behind its equals, as after a yield or a quantum.
   void Rotate(Thread thread);
   // A ready thread moves behind its new equals; for one that is not ready nothing happens.
   void SetPriority(Thread thread, int priority);
+  // The thread has had a turn on the core, and stays there.
+  void Ran(std::size_t core, Thread thread) { on_[core] = thread; }
 
-  std::optional<Thread> First() const;
+  // Gives each core its next turn, from the progress of each. Needed after every change above.
+  void Assign(const std::vector<std::int64_t>& progress_ns);
+  // As last assigned.
+  const Turn& Next(std::size_t core) const { return turns_[core]; }
+  // Whether an equal of the core's thread waits for a core.
+  bool HasWaitingEqual(std::size_t core) const;
+  // From when on somebody more urgent than the core's thread wants a core; INT64_MAX: nobody.
+  std::int64_t NextMoreUrgent(std::size_t core) const;
+
   bool IsReady(Thread thread) const;
-  // True if another ready thread has the same priority.
-  bool HasEqual(Thread thread) const;
   std::size_t size() const { return ready_.size(); }
 
  private:
-  struct Entry {
-    Thread thread;
-    int priority;
-  };
-  std::vector<Entry>::const_iterator Find(Thread thread) const;
+  std::vector<Ready>::const_iterator Find(Thread thread) const;
+  bool HasTurn(Thread thread) const;
+  bool StaysElsewhere(Thread thread, std::size_t core) const;
+  void Choose(std::size_t core, std::int64_t progress_ns, bool keep_places);
 
-  std::vector<Entry> ready_;  // most urgent first, equals in the order of their turns
+  std::vector<Ready> ready_;  // most urgent first, equals in the order of their turns
+  std::vector<Thread> on_;    // who ran last on each core and has not waited since
+  std::vector<Turn> turns_;   // per core
 };
 
 }  // namespace tcs

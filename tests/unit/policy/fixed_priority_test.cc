@@ -6,65 +6,153 @@ namespace tcs {
 namespace {
 
 constexpr int kPlanner = 1, kController = 2, kLogger = 3;
+constexpr int kNobody = FixedPriority::kNobody;
+constexpr std::int64_t kNever = INT64_MAX;
+
+FixedPriority::Thread FirstOfOneCore(FixedPriority& robot) {
+  robot.Assign({0});
+  return robot.Next(0).thread;
+}
 
 TEST(FixedPriority, NobodyRunsWhereNobodyIsReady) {
-  EXPECT_FALSE(FixedPriority().First().has_value());
+  FixedPriority robot(1);
+  EXPECT_EQ(FirstOfOneCore(robot), kNobody);
+  EXPECT_EQ(robot.Next(0).start_ns, kNever);
 }
 
 TEST(FixedPriority, TheMostUrgentRunsWheneverItBecameReady) {
-  FixedPriority cpu;
-  cpu.Add(kPlanner, 10);
-  cpu.Add(kController, 80);
-  EXPECT_EQ(cpu.First(), kController);
-  cpu.Remove(kController);
-  EXPECT_EQ(cpu.First(), kPlanner);
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Add({kController, 80, 0});
+  EXPECT_EQ(FirstOfOneCore(robot), kController);
+  robot.Remove(kController);
+  EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
 }
 
 TEST(FixedPriority, AmongEqualsTheFirstReadyKeepsRunning) {
-  FixedPriority cpu;
-  cpu.Add(kPlanner, 10);
-  cpu.Add(kLogger, 10);
-  EXPECT_EQ(cpu.First(), kPlanner);
-  EXPECT_TRUE(cpu.HasEqual(kPlanner));
-  cpu.Add(kPlanner, 10);
-  EXPECT_EQ(cpu.First(), kPlanner) << "being ready twice must not cost its turn";
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Add({kLogger, 10, 0});
+  EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
+  EXPECT_TRUE(robot.HasWaitingEqual(0));
+  robot.Add({kPlanner, 10, 0});
+  EXPECT_EQ(FirstOfOneCore(robot), kPlanner) << "being ready twice must not cost its turn";
 }
 
 TEST(FixedPriority, EqualsTakeTurnsWhenRotated) {
-  FixedPriority cpu;
-  for (const int thread : {kPlanner, kLogger, kController}) cpu.Add(thread, 10);
+  FixedPriority robot(1);
+  for (const int thread : {kPlanner, kLogger, kController}) robot.Add({thread, 10, 0});
   for (const int turn : {kPlanner, kLogger, kController, kPlanner, kLogger}) {
-    EXPECT_EQ(cpu.First(), turn);
-    cpu.Rotate(turn);
+    EXPECT_EQ(FirstOfOneCore(robot), turn);
+    robot.Rotate(turn);
   }
 }
 
 TEST(FixedPriority, RotatingDoesNotPassLessUrgentOnes) {
-  FixedPriority cpu;
-  cpu.Add(kController, 80);
-  cpu.Add(kPlanner, 10);
-  cpu.Rotate(kController);
-  EXPECT_EQ(cpu.First(), kController);
-  EXPECT_FALSE(cpu.HasEqual(kController));
+  FixedPriority robot(1);
+  robot.Add({kController, 80, 0});
+  robot.Add({kPlanner, 10, 0});
+  robot.Rotate(kController);
+  EXPECT_EQ(FirstOfOneCore(robot), kController);
+  EXPECT_FALSE(robot.HasWaitingEqual(0));
 }
 
 TEST(FixedPriority, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
-  FixedPriority cpu;
-  cpu.Add(kController, 80);
-  cpu.Add(kPlanner, 10);
-  cpu.SetPriority(kPlanner, 80);
-  EXPECT_EQ(cpu.First(), kController);
-  cpu.SetPriority(kController, 5);
-  EXPECT_EQ(cpu.First(), kPlanner);
-  cpu.SetPriority(kLogger, 99);
-  EXPECT_FALSE(cpu.IsReady(kLogger)) << "a priority makes nobody ready";
+  FixedPriority robot(1);
+  robot.Add({kController, 80, 0});
+  robot.Add({kPlanner, 10, 0});
+  robot.SetPriority(kPlanner, 80);
+  EXPECT_EQ(FirstOfOneCore(robot), kController);
+  robot.SetPriority(kController, 5);
+  EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
+  robot.SetPriority(kLogger, 99);
+  EXPECT_FALSE(robot.IsReady(kLogger)) << "a priority makes nobody ready";
 }
 
 TEST(FixedPriority, RemovingOneThatIsNotReadyChangesNothing) {
-  FixedPriority cpu;
-  cpu.Add(kPlanner, 10);
-  cpu.Remove(kLogger);
-  EXPECT_EQ(cpu.size(), 1u);
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Remove(kLogger);
+  EXPECT_EQ(robot.size(), 1u);
+}
+
+TEST(FixedPriority, AThreadRunsNoEarlierThanItHasCome) {
+  FixedPriority robot(1);
+  robot.Add({kController, 80, 600});
+  robot.Add({kPlanner, 10, 500});
+  robot.Assign({500});
+  EXPECT_EQ(robot.Next(0).thread, kPlanner) << "the controller wakes only at 600";
+  EXPECT_EQ(robot.Next(0).start_ns, 500);
+  EXPECT_EQ(robot.NextMoreUrgent(0), 600);
+  robot.Remove(kPlanner);
+  robot.Assign({500});
+  EXPECT_EQ(robot.Next(0).thread, kController);
+  EXPECT_EQ(robot.Next(0).start_ns, 600);
+  EXPECT_EQ(robot.NextMoreUrgent(0), kNever);
+}
+
+TEST(FixedPriority, EachCoreRunsAThreadOfItsOwn) {
+  FixedPriority robot(2);
+  for (const int thread : {kPlanner, kController, kLogger}) robot.Add({thread, 10, 0});
+  robot.Assign({0, 0});
+  EXPECT_EQ(robot.Next(0).thread, kPlanner);
+  EXPECT_EQ(robot.Next(1).thread, kController);
+  EXPECT_TRUE(robot.HasWaitingEqual(0));
+  robot.Remove(kPlanner);
+  robot.Assign({0, 0});
+  EXPECT_FALSE(robot.HasWaitingEqual(0));
+}
+
+TEST(FixedPriority, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
+  FixedPriority robot(2);
+  robot.Add({kPlanner, 10, 500});
+  robot.Ran(1, kPlanner);
+  robot.Assign({300, 500});
+  EXPECT_EQ(robot.Next(1).thread, kPlanner);
+  EXPECT_EQ(robot.Next(0).thread, kNobody);
+}
+
+TEST(FixedPriority, WhoWakesTakesTheIdleCore) {
+  FixedPriority robot(2);
+  robot.Add({kPlanner, 10, 500});
+  robot.Ran(0, kPlanner);
+  robot.Add({kController, 80, 500});
+  robot.Assign({500, 300});
+  EXPECT_EQ(robot.Next(0).thread, kPlanner);
+  EXPECT_EQ(robot.Next(1).thread, kController);
+  EXPECT_EQ(robot.Next(1).start_ns, 500);
+}
+
+TEST(FixedPriority, WhoIsDisplacedMovesToAFreeCore) {
+  FixedPriority robot(2);
+  robot.Add({kPlanner, 10, 500});
+  robot.Ran(0, kPlanner);
+  robot.Add({kController, 80, 500, 1});  // only core 0
+  robot.Assign({500, 500});
+  EXPECT_EQ(robot.Next(0).thread, kController);
+  EXPECT_EQ(robot.Next(1).thread, kPlanner);
+}
+
+TEST(FixedPriority, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
+  FixedPriority robot(2);
+  robot.Add({kPlanner, 10, 500});
+  robot.Add({kLogger, 5, 500});
+  robot.Ran(0, kPlanner);
+  robot.Ran(1, kLogger);
+  robot.Add({kController, 80, 500});
+  robot.Assign({500, 500});
+  EXPECT_EQ(robot.Next(0).thread, kController);
+  EXPECT_EQ(robot.Next(1).thread, kPlanner) << "and not the logger";
+}
+
+TEST(FixedPriority, AffinityIsKept) {
+  FixedPriority robot(2);
+  robot.Add({kPlanner, 10, 0, 2});
+  robot.Add({kLogger, 10, 0, 2});
+  robot.Assign({0, 0});
+  EXPECT_EQ(robot.Next(0).thread, kNobody);
+  EXPECT_EQ(robot.Next(1).thread, kPlanner);
+  EXPECT_TRUE(robot.HasWaitingEqual(1));
 }
 
 }  // namespace
