@@ -1,17 +1,15 @@
-// Scheduling calls speak of the virtual computer: the robot's cores and its scheduler, never the
-// host's.
+// Policies, priorities and affinities act on the robot's virtual scheduler, never on the host's.
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
-#include <stdarg.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/sysinfo.h>
 #include <unistd.h>
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 
@@ -20,31 +18,52 @@ using tcs::shm::NotificationKind;
 
 namespace {
 
-bool IsSelf(const GuestThread& t, pid_t pid) {
-  return pid == 0 || pid == t.slot->tid || pid == t.slot->pid;
+constexpr timespec kRoundRobinQuantum{0, 100'000'000};  // the virtual scheduler's, and Linux's
+
+struct Scheduling {
+  int policy;
+  int priority;
+};
+
+// 0, or an error number.
+int Set(GuestThread& t, pid_t tid, int policy, int priority) {
+  const Reply reply = Exchange(t, Request{.kind = NotificationKind::kPriority,
+                                          .args = {tid, policy & ~SCHED_RESET_ON_FORK, priority}});
+  return static_cast<int>(-reply.values[0]);
 }
 
-bool IsRealTime(int policy) { return policy == SCHED_FIFO || policy == SCHED_RR; }
-
-bool IsValid(int policy, int priority) {
-  if (IsRealTime(policy)) return priority >= 1 && priority <= 99;
-  return (policy == SCHED_OTHER || policy == SCHED_BATCH || policy == SCHED_IDLE) && priority == 0;
-}
-
-int SetOwn(GuestThread& t, int policy, int priority) {
-  policy &= ~SCHED_RESET_ON_FORK;
-  if (!IsValid(policy, priority)) return EINVAL;
-  Exchange(t, Request{.kind = NotificationKind::kPriority, .args = {policy, priority}});
+int Get(GuestThread& t, pid_t tid, Scheduling* scheduling) {
+  const Reply reply = Exchange(t, Request{.kind = NotificationKind::kPriorityGet, .args = {tid}});
+  if (reply.values[0] < 0) return static_cast<int>(-reply.values[0]);
+  *scheduling = {static_cast<int>(reply.values[0]), static_cast<int>(reply.values[1])};
   return 0;
 }
 
-std::size_t FillAffinity(const GuestThread& t, std::size_t size, cpu_set_t* set) {
-  memset(set, 0, size);
-  for (std::size_t core = 0; core < t.slot->cores && core < size * 8; ++core) {
-    CPU_SET_S(core, size, set);
-  }
-  return size < 8 ? size : 8;
+// Sets the robot's cores that the thread may use, unless 0, and asks for them.
+int Affinity(GuestThread& t, pid_t tid, unsigned long wanted, unsigned long* cores) {
+  const Reply reply = Exchange(t, Request{.kind = NotificationKind::kAffinity,
+                                          .args = {tid, static_cast<std::int64_t>(wanted)}});
+  *cores = static_cast<unsigned long>(reply.values[1]);
+  return static_cast<int>(-reply.values[0]);
 }
+
+int SetAffinity(GuestThread& t, pid_t tid, std::size_t size, const cpu_set_t* set) {
+  if (set == nullptr) return EFAULT;
+  unsigned long cores = CoresIn(size, set);
+  return cores == 0 ? EINVAL : Affinity(t, tid, cores, &cores);
+}
+
+int GetAffinity(GuestThread& t, pid_t tid, std::size_t size, cpu_set_t* set) {
+  if (set == nullptr) return EFAULT;
+  if (size < sizeof(unsigned long) || size % sizeof(unsigned long) != 0) return EINVAL;
+  unsigned long cores = 0;
+  if (const int error = Affinity(t, tid, 0, &cores); error != 0) return error;
+  memset(set, 0, size);
+  memcpy(set, &cores, sizeof cores);
+  return 0;
+}
+
+int AsErrno(int error) { return error == 0 ? 0 : Fail(error); }
 
 }  // namespace
 
@@ -52,65 +71,85 @@ TCS_EXPORT int sched_setscheduler(pid_t pid, int policy, const sched_param* para
   GuestThread* t = Enter();
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setscheduler, pid, policy, Arg(param))));
-  if (!IsSelf(*t, pid)) return 0;  // others' priorities come with threads
-  const int error = SetOwn(*t, policy, param->sched_priority);
-  return error == 0 ? 0 : Fail(error);
+  if (pid < 0 || param == nullptr) return Fail(EINVAL);
+  return AsErrno(Set(*t, pid, policy, param->sched_priority));
 }
 
 TCS_EXPORT int sched_getscheduler(pid_t pid) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getscheduler, pid)));
-  return IsSelf(*t, pid) ? t->slot->policy : SCHED_OTHER;
+  if (pid < 0) return Fail(EINVAL);
+  Scheduling found{};
+  const int error = Get(*t, pid, &found);
+  return error == 0 ? found.policy : Fail(error);
 }
 
 TCS_EXPORT int sched_setparam(pid_t pid, const sched_param* param) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setparam, pid, Arg(param))));
-  return sched_setscheduler(pid, t->slot->policy, param);
+  if (pid < 0 || param == nullptr) return Fail(EINVAL);
+  Scheduling found{};
+  const int error = Get(*t, pid, &found);
+  return AsErrno(error != 0 ? error : Set(*t, pid, found.policy, param->sched_priority));
 }
 
 TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getparam, pid, Arg(param))));
-  param->sched_priority = IsSelf(*t, pid) ? t->slot->priority : 0;
-  return 0;
+  if (pid < 0 || param == nullptr) return Fail(EINVAL);
+  Scheduling found{};
+  const int error = Get(*t, pid, &found);
+  if (error == 0) param->sched_priority = found.priority;
+  return AsErrno(error);
+}
+
+TCS_EXPORT int sched_rr_get_interval(pid_t pid, timespec* interval) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr)
+    return static_cast<int>(ToErrno(RawSyscall(SYS_sched_rr_get_interval, pid, Arg(interval))));
+  if (pid < 0) return Fail(EINVAL);
+  Scheduling found{};
+  const int error = Get(*t, pid, &found);
+  if (error == 0) *interval = found.policy == SCHED_RR ? kRoundRobinQuantum : timespec{};
+  return AsErrno(error);
 }
 
 TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
                                      const sched_param* param) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_setschedparam)(thread, policy, param);
-  if (!pthread_equal(thread, pthread_self()))
-    return IsValid(policy, param->sched_priority) ? 0 : EINVAL;
-  return SetOwn(*t, policy, param->sched_priority);
+  const pid_t tid = TidOf(thread);
+  return tid < 0 ? ESRCH : Set(*t, tid, policy, param->sched_priority);
 }
 
 TCS_EXPORT int pthread_getschedparam(pthread_t thread, int* policy, sched_param* param) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_getschedparam)(thread, policy, param);
-  const bool self = pthread_equal(thread, pthread_self()) != 0;
-  *policy = self ? t->slot->policy : SCHED_OTHER;
-  param->sched_priority = self ? t->slot->priority : 0;
+  Scheduling found{};
+  const pid_t tid = TidOf(thread);
+  const int error = tid < 0 ? ESRCH : Get(*t, tid, &found);
+  if (error != 0) return error;
+  *policy = found.policy;
+  param->sched_priority = found.priority;
   return 0;
 }
 
 TCS_EXPORT int pthread_setschedprio(pthread_t thread, int priority) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_setschedprio)(thread, priority);
-  const sched_param param{priority};
-  return pthread_setschedparam(thread, t->slot->policy, &param);
+  Scheduling found{};
+  const pid_t tid = TidOf(thread);
+  const int error = tid < 0 ? ESRCH : Get(*t, tid, &found);
+  return error != 0 ? error : Set(*t, tid, found.policy, priority);
 }
 
 TCS_EXPORT int sched_setaffinity(pid_t pid, std::size_t size, const cpu_set_t* set) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setaffinity, pid, size, Arg(set))));
-  for (std::size_t core = 0; core < t->slot->cores; ++core) {
-    if (CPU_ISSET_S(core, size, set)) return 0;
-  }
-  return Fail(EINVAL);  // none of the robot's cores
+  return AsErrno(SetAffinity(*t, pid, size, set));
 }
 
 TCS_EXPORT int sched_getaffinity(pid_t pid, std::size_t size, cpu_set_t* set) noexcept {
@@ -120,16 +159,22 @@ TCS_EXPORT int sched_getaffinity(pid_t pid, std::size_t size, cpu_set_t* set) no
     if (n > 0) memset(reinterpret_cast<char*>(set) + n, 0, size - static_cast<std::size_t>(n));
     return n < 0 ? -1 : 0;
   }
-  FillAffinity(*t, size, set);
-  return 0;
+  return AsErrno(GetAffinity(*t, pid, size, set));
 }
 
-TCS_EXPORT int pthread_setaffinity_np(pthread_t, std::size_t size, const cpu_set_t* set) noexcept {
-  return sched_setaffinity(0, size, set) == 0 ? 0 : errno;
+TCS_EXPORT int pthread_setaffinity_np(pthread_t thread, std::size_t size,
+                                      const cpu_set_t* set) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(pthread_setaffinity_np)(thread, size, set);
+  const pid_t tid = TidOf(thread);
+  return tid < 0 ? ESRCH : SetAffinity(*t, tid, size, set);
 }
 
-TCS_EXPORT int pthread_getaffinity_np(pthread_t, std::size_t size, cpu_set_t* set) noexcept {
-  return sched_getaffinity(0, size, set) == 0 ? 0 : errno;
+TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_set_t* set) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(pthread_getaffinity_np)(thread, size, set);
+  const pid_t tid = TidOf(thread);
+  return tid < 0 ? ESRCH : GetAffinity(*t, tid, size, set);
 }
 
 TCS_EXPORT int setpriority(__priority_which_t which, id_t who, int value) noexcept {
@@ -147,39 +192,4 @@ TCS_EXPORT int sched_yield(void) noexcept {
   if (t == nullptr) return static_cast<int>(RawSyscall(SYS_sched_yield));
   Exchange(*t, Request{.kind = NotificationKind::kYield});
   return 0;
-}
-
-TCS_EXPORT int sched_getcpu(void) noexcept {
-  GuestThread* t = Enter();
-  if (t != nullptr) return static_cast<int>(t->slot->core);
-  unsigned cpu = 0;
-  RawSyscall(SYS_getcpu, Arg(&cpu), 0, 0);
-  return static_cast<int>(cpu);
-}
-
-TCS_EXPORT int getcpu(unsigned* cpu, unsigned* node) noexcept {
-  GuestThread* t = Enter();
-  if (t == nullptr)
-    return static_cast<int>(ToErrno(RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0)));
-  if (cpu != nullptr) *cpu = t->slot->core;
-  if (node != nullptr) *node = 0;
-  return 0;
-}
-
-TCS_EXPORT int get_nprocs(void) noexcept {
-  GuestThread* t = Enter();
-  return t != nullptr ? static_cast<int>(t->slot->cores) : TCS_REAL(get_nprocs)();
-}
-
-TCS_EXPORT int get_nprocs_conf(void) noexcept {
-  GuestThread* t = Enter();
-  return t != nullptr ? static_cast<int>(t->slot->cores) : TCS_REAL(get_nprocs_conf)();
-}
-
-TCS_EXPORT long sysconf(int name) noexcept {
-  if (name == _SC_NPROCESSORS_ONLN || name == _SC_NPROCESSORS_CONF) {
-    GuestThread* t = Enter();
-    if (t != nullptr) return static_cast<long>(t->slot->cores);
-  }
-  return TCS_REAL(sysconf)(name);
 }

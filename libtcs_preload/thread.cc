@@ -3,9 +3,11 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/real.h"
 
 using namespace tcs::preload;
@@ -35,23 +37,50 @@ void* RunThread(void* raw) {
   return result;
 }
 
-// A thread must never get the host's real-time priority that it asks of its robot.
-class InheritedScheduling {
+// What the attributes ask of the scheduler is meant for the robot's. The host's must not hear of
+// it: it is taken out of them while the thread is made.
+class SchedulingAsked {
  public:
-  explicit InheritedScheduling(pthread_attr_t* attributes) : attributes_(attributes) {
+  explicit SchedulingAsked(pthread_attr_t* attributes) : attributes_(attributes) {
     if (attributes_ == nullptr) return;
-    pthread_attr_getinheritsched(attributes_, &saved_);
+    pthread_attr_getinheritsched(attributes_, &inherit_);
+    if (inherit_ == PTHREAD_EXPLICIT_SCHED) {
+      sched_param param{};
+      pthread_attr_getschedpolicy(attributes_, &policy_);
+      pthread_attr_getschedparam(attributes_, &param);
+      priority_ = param.sched_priority;
+    }
     pthread_attr_setinheritsched(attributes_, PTHREAD_INHERIT_SCHED);
+    cpu_set_t every;
+    memset(&every, 0xff, sizeof every);
+    // Without a set of its own it says that all are allowed.
+    if (pthread_attr_getaffinity_np(attributes_, sizeof cores_, &cores_) == 0 &&
+        memcmp(&cores_, &every, sizeof every) != 0) {
+      has_cores_ = true;
+      pthread_attr_setaffinity_np(attributes_, 0, &cores_);  // of size 0: none
+    }
   }
-  ~InheritedScheduling() {
-    if (attributes_ != nullptr) pthread_attr_setinheritsched(attributes_, saved_);
+  ~SchedulingAsked() {
+    if (attributes_ == nullptr) return;
+    pthread_attr_setinheritsched(attributes_, inherit_);
+    if (has_cores_) pthread_attr_setaffinity_np(attributes_, sizeof cores_, &cores_);
   }
-  InheritedScheduling(const InheritedScheduling&) = delete;
-  InheritedScheduling& operator=(const InheritedScheduling&) = delete;
+  SchedulingAsked(const SchedulingAsked&) = delete;
+  SchedulingAsked& operator=(const SchedulingAsked&) = delete;
+
+  Request Announcement() const {
+    const auto cores = static_cast<std::int64_t>(CoresIn(sizeof cores_, &cores_));
+    return Request{.kind = tcs::shm::NotificationKind::kSpawned,
+                   .args = {0, policy_, priority_, has_cores_ ? cores : 0}};
+  }
 
  private:
   pthread_attr_t* attributes_;
-  int saved_ = PTHREAD_INHERIT_SCHED;
+  int inherit_ = PTHREAD_INHERIT_SCHED;
+  int policy_ = -1;
+  int priority_ = 0;
+  bool has_cores_ = false;
+  cpu_set_t cores_;
 };
 
 }  // namespace
@@ -64,13 +93,13 @@ TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
   auto* start = static_cast<Start*>(malloc(sizeof(Start)));
   if (start == nullptr) return EAGAIN;
   *start = Start{routine, argument};
-  const InheritedScheduling inherited(const_cast<pthread_attr_t*>(attributes));
+  const SchedulingAsked asked(const_cast<pthread_attr_t*>(attributes));
   const int error = TCS_REAL(pthread_create)(thread, attributes, RunThread, start);
   if (error != 0) {
     free(start);
     return error;
   }
   // From now on the coordinator knows of it, and does not let time pass it by.
-  Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSpawned});
+  Exchange(*t, asked.Announcement());
   return 0;
 }

@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -48,13 +48,20 @@ enum class NotificationKind : std::uint32_t {
                   // as kTimerGet
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
   kTimerDelete = 10,  // args[0]: timer id
-  kSpawned = 11,      // args[0]: pid of a new child that will attach; 0: a thread of the process
+  kSpawned = 11,      // args[0]: pid of a new child that will attach; 0: a thread of the process,
+                      // with args[1..2] as kPriority's if args[1] >= 0, args[3] as kAffinity's
   kYield = 12,        // let equals run
-  kPriority = 13,     // args[0]: POSIX policy, args[1]: priority; applied to the virtual scheduler
+  kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
+                      // the virtual scheduler; reply[0]: 0, or negative for an errno
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
   kUncovered = 15,    // text names a call that tcs does not cover; reported once
   kThreadExit = 16,   // the thread ends
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
+  kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
+                      // reply[1]: priority
+  kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0
+                   // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
+                   // then set
 };
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
@@ -151,10 +158,7 @@ struct alignas(64) ThreadSlot {
   std::uint32_t cores;  // of the robot
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
-  std::int32_t
-      policy;  // POSIX scheduling policy and priority, as the virtual scheduler applies them
-  std::int32_t priority;
-  std::uint8_t reserved[392];
+  std::uint8_t reserved[400];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);

@@ -162,6 +162,7 @@ void Engine::EndTask(Task& task) {
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
   task.waits_for_child = task.waits_for_fds = task.waits_for_futex = false;
+  LeaveLock(task);
   SetState(task, TaskState::kDead);
   --living_;
   task.parked = true;
@@ -183,7 +184,9 @@ void Engine::ProcessEnded(std::size_t index) {
   const std::int64_t charged = ChargedTo(process);
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
-    if (task->process == &process) EndTask(*task);
+    if (task->process != &process) continue;
+    EndTask(*task);
+    WakeThoseWaitingFor(*task);
   }
   for (auto& [id, timer] : process.timers) {
     if (timer.event_fd >= 0) close(timer.event_fd);

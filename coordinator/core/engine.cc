@@ -2,6 +2,7 @@
 #include "coordinator/core/engine.h"
 
 #include <errno.h>
+#include <sched.h>
 #include <time.h>
 #include <unistd.h>
 #include <x86intrin.h>
@@ -17,10 +18,16 @@ namespace {
 
 // How far a virtual CPU may run past what others could send to a more urgent thread on it.
 constexpr std::int64_t kGrainNs = 100'000;
-constexpr std::int64_t kQuantumNs = 1'000'000;  // of equals on one virtual CPU
+// Of equals on one virtual CPU; Linux's for SCHED_RR. SCHED_FIFO has none.
+constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kShowEveryNs = 200'000'000;
+
+std::int64_t QuantumOf(const Task& task) {
+  if (task.policy == SCHED_FIFO) return shm::kNeverNs;
+  return task.policy == SCHED_RR ? kRoundRobinQuantumNs : kQuantumNs;
+}
 
 }  // namespace
 
@@ -107,6 +114,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   task.deadline_ns = shm::kNeverNs;
   if (task.waits_for_futex) {
     task.waits_for_futex = false;
+    LeaveLock(task);
     task.trap_result = reason == shm::WakeReason::kDeadline ? -ETIMEDOUT
                        : reason == shm::WakeReason::kSignal ? -EINTR
                                                             : 0;
@@ -154,8 +162,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }
   limit = std::min(limit, robot.ready.NextMoreUrgent(cpu.core));
-  if (robot.ready.HasWaitingEqual(cpu.core)) {
-    limit = std::min(limit, cpu.progress_ns + kQuantumNs - task.turn_ns);
+  if (task.policy != SCHED_FIFO && robot.ready.HasWaitingEqual(cpu.core)) {
+    limit = std::min(limit, cpu.progress_ns + QuantumOf(task) - task.turn_ns);
   }
   *idle_until = std::min(idle, limit);
   return limit;
@@ -186,7 +194,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     Dispatch(task, horizon, idle_until);
   }
   task.turn_ns += cpu.progress_ns - start;
-  if (task.turn_ns >= kQuantumNs) {
+  if (task.turn_ns >= QuantumOf(task)) {
     task.turn_ns = 0;
     robot.ready.Rotate(task.order);
   }

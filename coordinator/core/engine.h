@@ -77,8 +77,17 @@ class Engine {
   void Handle(Task& task, const shm::Notification& note);
   void WaitForFds(Task& task, const shm::Notification& note);
   void WaitForChild(Task& task);
-  void NoteSpawned(Task& task, pid_t pid);
+  void NoteSpawnedThread(Task& creator, const shm::Notification& note);
+  void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
+
+  // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
+  void HandleScheduling(Task& asking, const shm::Notification& note);
+  std::int64_t SetPriority(Task& task, std::int64_t policy, std::int64_t priority);
+  std::int64_t SetAffinity(Task& task, std::uint64_t cores);
+  void InheritScheduling(Task& task, const Task& creator);
+  void FindPriority(Task& task);
+  void LeaveLock(Task& task);
 
   // Trapped futex calls (futex.cc). Results as the kernel's: negative for an errno.
   void TrapArrived(int listener);
@@ -89,7 +98,15 @@ class Engine {
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWakeOp(const Task& task, const TrappedCall& call);
   bool IsEnding(const Task& joiner, pid_t tid) const;
-  void WakeJoiners(const Task& ended);
+  FutexKey FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
+  void StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits);
+  Task* MostUrgentWaiter(const FutexKey& key, std::uint32_t bits);
+
+  // Those that are locks with an owner (lock_futex.cc).
+  std::int64_t FutexLock(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexUnlock(Task& task, const TrappedCall& call);
+  bool HandLockOn(const FutexKey& key, std::uint32_t flags);
+  void WakeThoseWaitingFor(Task& ended);
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);

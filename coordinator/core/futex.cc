@@ -20,11 +20,11 @@ constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
 constexpr int kEndTurns = 200;
 constexpr useconds_t kEndTurnUs = 50;
 
-FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address) {
+}  // namespace
+
+FutexKey Engine::FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address) {
   return KeyOf(task.process->pid, address, (call.args[1] & FUTEX_PRIVATE_FLAG) != 0);
 }
-
-}  // namespace
 
 // From an absolute or relative timeout in the caller's memory to a deadline on its virtual CPU.
 bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
@@ -40,7 +40,7 @@ bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
     task.deadline_ns = now + std::max<std::int64_t>(0, ns);
     return true;
   }
-  const bool realtime = (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
+  const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
   const std::int64_t offset = realtime ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
   task.deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
   return true;
@@ -61,26 +61,24 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
     }
     return -EAGAIN;
   }
-  task.futex = KeyFor(task, call, call.args[0]);
+  task.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK);
+  StartFutexWait(task, FutexKeyFor(task, call, call.args[0]),
+                 command == FUTEX_WAIT ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
+  return 0;
+}
+
+void Engine::StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits) {
+  task.futex = key;
   task.waits_for_futex = true;
-  task.joins = static_cast<pid_t>(value & FUTEX_TID_MASK);
-  task.futex_bits = command == FUTEX_WAIT ? kAnyBit : static_cast<std::uint32_t>(call.args[5]);
+  task.futex_bits = bits;
   task.futex_order = ++futex_counter_;
   SetState(task, TaskState::kWaiting);
-  return 0;
 }
 
 std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits) {
   std::int64_t woken = 0;
   while (woken < most) {
-    Task* best = nullptr;
-    for (Task& task : tasks_) {
-      if (!task.waits_for_futex || task.futex != key || (task.futex_bits & bits) == 0) continue;
-      if (best == nullptr || task.priority > best->priority ||
-          (task.priority == best->priority && task.futex_order < best->futex_order)) {
-        best = &task;
-      }
-    }
+    Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
     MakeReady(*best, shm::WakeReason::kGo);
     ++woken;
@@ -94,7 +92,8 @@ std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int
     if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
     if (value != static_cast<std::uint32_t>(call.args[5])) return -EAGAIN;
   }
-  const FutexKey from = KeyFor(task, call, call.args[0]), to = KeyFor(task, call, call.args[4]);
+  const FutexKey from = FutexKeyFor(task, call, call.args[0]),
+                 to = FutexKeyFor(task, call, call.args[4]);
   std::int64_t moved = FutexWake(from, static_cast<int>(call.args[2]), kAnyBit);
   auto most = static_cast<int>(call.args[3]);
   for (Task& waiter : tasks_) {
@@ -122,11 +121,12 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
   std::int64_t woken =
-      FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+      FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
-    woken += FutexWake(KeyFor(task, call, call.args[4]), static_cast<int>(call.args[3]), kAnyBit);
+    woken +=
+        FutexWake(FutexKeyFor(task, call, call.args[4]), static_cast<int>(call.args[3]), kAnyBit);
   }
   return woken;
 }
@@ -136,15 +136,6 @@ bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
   return std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
     return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
   });
-}
-
-// Whoever waits for the thread to end goes on: the kernel's own wake does not reach them.
-void Engine::WakeJoiners(const Task& ended) {
-  for (Task& task : tasks_) {
-    if (task.waits_for_futex && task.joins == ended.tid && task.process == ended.process) {
-      MakeReady(task, shm::WakeReason::kGo);
-    }
-  }
 }
 
 void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
@@ -160,11 +151,12 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
       break;
     case FUTEX_WAKE:
       task.trap_result =
-          FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+          FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
       break;
     case FUTEX_WAKE_BITSET:
-      task.trap_result = FutexWake(KeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]),
-                                   static_cast<std::uint32_t>(call.args[5]));
+      task.trap_result =
+          FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]),
+                    static_cast<std::uint32_t>(call.args[5]));
       break;
     case FUTEX_REQUEUE:
     case FUTEX_CMP_REQUEUE:
@@ -172,6 +164,14 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
       break;
     case FUTEX_WAKE_OP:
       task.trap_result = FutexWakeOp(task, call);
+      break;
+    case FUTEX_LOCK_PI:
+    case FUTEX_LOCK_PI2:
+    case FUTEX_TRYLOCK_PI:
+      task.trap_result = FutexLock(task, call, command);
+      break;
+    case FUTEX_UNLOCK_PI:
+      task.trap_result = FutexUnlock(task, call);
       break;
     default:
       task.trap_result = -ENOSYS;

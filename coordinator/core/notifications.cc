@@ -1,5 +1,4 @@
 // What clients say. Everything in a notification is untrusted: it is a copy, and it is checked.
-#include <sched.h>
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -13,8 +12,6 @@
 namespace tcs {
 
 namespace {
-
-constexpr int kRealTimeBand = 100;  // what asks for SCHED_FIFO or SCHED_RR precedes all others
 
 std::string Printable(const char* text, std::size_t size) {
   std::string printable(text, strnlen(text, size));
@@ -67,21 +64,25 @@ void Engine::WaitForChild(Task& task) {
   }
 }
 
-void Engine::NoteSpawned(Task& task, pid_t pid) {
-  if (pid == 0) {
-    for (const pid_t tid : ThreadsOf(task.process->pid)) {
-      if (KnownTask(tid) != nullptr) continue;
-      SetLevel(tid, Level::kWaiting);
-      AddThread(*task.process, tid);
-    }
-    return;
+void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
+  for (const pid_t tid : ThreadsOf(creator.process->pid)) {
+    if (KnownTask(tid) != nullptr) continue;
+    SetLevel(tid, Level::kWaiting);
+    Task& thread = *AddThread(*creator.process, tid);
+    InheritScheduling(thread, creator);
+    if (note.args[1] >= 0) SetPriority(thread, note.args[1], note.args[2]);
+    if (note.args[3] != 0) SetAffinity(thread, static_cast<std::uint64_t>(note.args[3]));
   }
+}
+
+void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   for (const Process& known : processes_) {
     if (known.pid == pid && !known.dead) return;
   }
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   SetLevel(pid, Level::kWaiting);
-  NewTask(pid, task.process->pid, task.process->robot, task.process->name, task.priority);
+  Process& of = *parent.process;
+  InheritScheduling(*NewTask(pid, of.pid, of.robot, of.name, of.priority), parent);
 }
 
 void Engine::Handle(Task& task, const shm::Notification& note) {
@@ -121,23 +122,20 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       SetTimer(task, note);
       break;
     case Kind::kSpawned:
-      NoteSpawned(task, static_cast<pid_t>(note.args[0]));
+      if (note.args[0] == 0) {
+        NoteSpawnedThread(task, note);
+      } else {
+        NoteSpawnedProcess(task, static_cast<pid_t>(note.args[0]));
+      }
       break;
     case Kind::kYield:
       robot.ready.Rotate(task.order);
       break;
-    case Kind::kPriority: {
-      const auto policy = static_cast<std::int32_t>(note.args[0]);
-      const bool real_time = policy == SCHED_FIFO || policy == SCHED_RR;
-      Slot(task).policy = policy;
-      Slot(task).priority = static_cast<std::int32_t>(note.args[1]);
-      task.priority =
-          real_time
-              ? kRealTimeBand + static_cast<int>(std::clamp<std::int64_t>(note.args[1], 1, 99))
-              : task.process->priority;
-      robot.ready.SetPriority(task.order, task.priority);
+    case Kind::kPriority:
+    case Kind::kPriorityGet:
+    case Kind::kAffinity:
+      HandleScheduling(task, note);
       break;
-    }
     case Kind::kUncovered:
       Warn(task.process->name + " uses " + Printable(note.text, sizeof note.text) +
            ", which does not live in virtual time yet: its waits take real time");
@@ -146,7 +144,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       task.process->ended_cpu_ns += task.charged_ns;
       Slot(task).gate.store(shm::kGateOpen);
       EndTask(task);
-      WakeJoiners(task);
+      WakeThoseWaitingFor(task);
       break;
     case Kind::kNone:
     case Kind::kHorizon:

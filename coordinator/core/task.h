@@ -38,8 +38,10 @@ struct Task {
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   pid_t tid = 0;
   int slot = -1;
-  int order = 0;  // of registration; its number in the scheduling policies
-  int priority = 0;
+  int order = 0;     // of registration; its number in the scheduling policies
+  int priority = 0;  // on its robot; higher is more urgent
+  int policy = 0;    // POSIX: SCHED_OTHER …
+  int posix_priority = 0;
   std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
   TaskState state = TaskState::kStarting;
   // The virtual time that it has come to: of its last stop, or of what has made it ready since.
@@ -58,7 +60,10 @@ struct Task {
   FutexKey futex;
   std::uint64_t futex_order = 0;  // of waiting
   std::uint32_t futex_bits = 0;
-  pid_t joins = 0;  // the thread whose end it waits for, if that is what the futex is
+  Task* lock_owner = nullptr;      // of the priority-inheriting lock that it waits for,
+  std::uint64_t lock_address = 0;  // which is here in its memory
+  // What the futex's word says: the thread that it waits for in a join, or a lock's owner.
+  pid_t names_tid = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch

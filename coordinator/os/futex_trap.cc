@@ -32,22 +32,14 @@ constexpr std::uint32_t Low(int arg) {
 int InstallFutexTrap() {
   constexpr std::uint32_t kLoad = BPF_LD | BPF_W | BPF_ABS, kEqual = BPF_JMP | BPF_JEQ | BPF_K,
                           kReturn = BPF_RET | BPF_K;
-  // Priority-inheritance futexes are left to the kernel: they need its own locks.
   const sock_filter program[] = {
       BPF_STMT(kLoad, offsetof(seccomp_data, arch)),
-      BPF_JUMP(kEqual, AUDIT_ARCH_X86_64, 0, 13),
+      BPF_JUMP(kEqual, AUDIT_ARCH_X86_64, 0, 6),
       BPF_STMT(kLoad, offsetof(seccomp_data, nr)),
-      BPF_JUMP(kEqual, SYS_futex, 0, 11),
+      BPF_JUMP(kEqual, SYS_futex, 0, 4),
+      // The shim's own waits at its gate carry a mark where FUTEX_WAIT ignores its argument.
       BPF_STMT(kLoad, Low(1)),
-      BPF_STMT(BPF_ALU | BPF_AND | BPF_K, static_cast<std::uint32_t>(FUTEX_CMD_MASK)),
-      BPF_JUMP(kEqual, FUTEX_WAKE, 9, 0),
-      BPF_JUMP(kEqual, FUTEX_WAIT_BITSET, 8, 0),
-      BPF_JUMP(kEqual, FUTEX_WAKE_BITSET, 7, 0),
-      BPF_JUMP(kEqual, FUTEX_REQUEUE, 6, 0),
-      BPF_JUMP(kEqual, FUTEX_CMP_REQUEUE, 5, 0),
-      BPF_JUMP(kEqual, FUTEX_WAKE_OP, 4, 0),
-      BPF_JUMP(kEqual, FUTEX_WAIT, 0, 2),
-      // The shim's own waits at its gate carry a mark where that operation ignores its argument.
+      BPF_JUMP(kEqual, FUTEX_WAIT, 0, 3),
       BPF_STMT(kLoad, Low(5)),
       BPF_JUMP(kEqual, shm::kGateFutexMark, 0, 1),
       BPF_STMT(kReturn, SECCOMP_RET_ALLOW),

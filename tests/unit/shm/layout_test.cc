@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionThreeHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 3u);
+TEST(Layout, VersionFourHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 4u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);

@@ -1,0 +1,98 @@
+// Priority-inheritance futexes (FUTEX_LOCK_PI and its kin): the word holds the owner's thread id;
+// who waits lends the owner its priority, and an unlock hands the lock on.
+#include <errno.h>
+#include <linux/futex.h>
+
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint32_t kOwner = FUTEX_TID_MASK, kDied = FUTEX_OWNER_DIED, kWaiters = FUTEX_WAITERS;
+
+}  // namespace
+
+Task* Engine::MostUrgentWaiter(const FutexKey& key, std::uint32_t bits) {
+  Task* best = nullptr;
+  for (Task& task : tasks_) {
+    if (!task.waits_for_futex || task.futex != key || (task.futex_bits & bits) == 0) continue;
+    if (best == nullptr || task.priority > best->priority ||
+        (task.priority == best->priority && task.futex_order < best->futex_order)) {
+      best = &task;
+    }
+  }
+  return best;
+}
+
+std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command) {
+  const pid_t pid = task.process->pid;
+  std::uint32_t value = 0;
+  if (!ReadMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
+  const auto owner_tid = static_cast<pid_t>(value & kOwner);
+  if (owner_tid == task.tid) return -EDEADLK;
+  const FutexKey key = FutexKeyFor(task, call, call.args[0]);
+  if (owner_tid == 0) {
+    const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
+    value = (value & kDied) | static_cast<std::uint32_t>(task.tid) | (others ? kWaiters : 0);
+    return WriteMemory(pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
+  }
+  if (command == FUTEX_TRYLOCK_PI) return -EAGAIN;
+  Task* owner = KnownTask(owner_tid);
+  if (owner == nullptr) return -ESRCH;
+  if (!FutexDeadline(task, call, command)) return -EFAULT;
+  value |= kWaiters;
+  if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
+  task.lock_owner = owner;
+  task.lock_address = call.args[0];
+  StartFutexWait(task, key, FUTEX_BITSET_MATCH_ANY);
+  FindPriority(*owner);
+  return 0;
+}
+
+// The lock goes to the most urgent waiter; `flags` goes with it.
+bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
+  Task* next = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY);
+  if (next == nullptr) return false;
+  Task* before = next->lock_owner;
+  next->lock_owner = nullptr;
+  next->waits_for_futex = false;
+  const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
+  const std::uint32_t value =
+      static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
+  WriteMemory(next->process->pid, next->lock_address, &value, sizeof value);
+  next->waits_for_futex = true;
+  for (Task& waiter : tasks_) {
+    if (waiter.waits_for_futex && waiter.futex == key && &waiter != next) waiter.lock_owner = next;
+  }
+  MakeReady(*next, shm::WakeReason::kGo);
+  if (before != nullptr) FindPriority(*before);
+  FindPriority(*next);
+  return true;
+}
+
+std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
+  std::uint32_t value = 0;
+  if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+  if (static_cast<pid_t>(value & kOwner) != task.tid) return -EPERM;
+  if (HandLockOn(FutexKeyFor(task, call, call.args[0]), 0)) return 0;
+  value = 0;
+  return WriteMemory(task.process->pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
+}
+
+// Whoever waits for the thread to end, or for a lock that it held, goes on: the kernel's own wake
+// does not reach them.
+void Engine::WakeThoseWaitingFor(Task& ended) {
+  for (Task& task : tasks_) {
+    if (!task.waits_for_futex) continue;
+    if (task.lock_owner == &ended) {
+      HandLockOn(FutexKey(task.futex), kDied);
+    } else if (task.names_tid == ended.tid) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+}
+
+}  // namespace tcs
