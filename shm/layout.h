@@ -55,6 +55,7 @@ enum class NotificationKind : std::uint32_t {
   kUncovered = 15,    // text names a call that tcs does not cover; reported once
   kThreadExit = 16,   // the thread ends
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
+  kSignalled = 18,    // the thread has sent a signal to process args[0]; 0: to any
 };
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,

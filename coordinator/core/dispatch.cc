@@ -201,6 +201,7 @@ void Engine::Settle(Task& task) {
   if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
   task.cpu->progress_ns = progress;
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
+  if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
   trace_.Slice(task.row, start, slept ? std::min(progress, start + executed) : progress);
 }
 

@@ -82,6 +82,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
       task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
+    task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   EndWatches(task);

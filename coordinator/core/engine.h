@@ -90,6 +90,10 @@ class Engine {
   bool IsEnding(const Task& joiner, pid_t tid) const;
   void WakeJoiners(const Task& ended);
 
+  // Signals that clients send (signals.cc).
+  void WakeSignalled(pid_t receiver);
+  void WakeForSignals(Process& process);
+
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
   void FireDue(VirtualCpu& cpu);
