@@ -202,6 +202,9 @@ void Engine::ProcessEnded(std::size_t index) {
       MakeReady(task, shm::WakeReason::kGo);
     }
   }
+  for (Process& other : processes_) {
+    if (other.pid == process.parent && !other.dead) WakeForSignals(other);
+  }
   // Our own children, and those who lost their parent, are reaped here.
   int status = 0;
   if (waitpid(process.pid, &status, WNOHANG) != process.pid) return;

@@ -206,6 +206,7 @@ void Engine::Settle(Task& task) {
   task.reached_ns = progress;
   if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
+  if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
   trace_.Slice(task.row, start, slept ? std::min(progress, start + executed) : progress);
 }
 

@@ -22,6 +22,7 @@ constexpr std::int64_t kGrainNs = 100'000;
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
+constexpr int kRestart = 512;  // the kernel's ERESTARTSYS, which it never shows to programs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
 
 std::int64_t QuantumOf(const Task& task) {
@@ -102,6 +103,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
       task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
+    task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   EndWatches(task);
@@ -111,14 +113,16 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;
-  task.deadline_ns = shm::kNeverNs;
   if (task.waits_for_futex) {
     task.waits_for_futex = false;
     LeaveLock(task);
+    // As the kernel has it: after a handler it makes the call again if that wants it.
+    const int interrupted = task.deadline_ns == shm::kNeverNs ? kRestart : EINTR;
     task.trap_result = reason == shm::WakeReason::kDeadline ? -ETIMEDOUT
-                       : reason == shm::WakeReason::kSignal ? -EINTR
+                       : reason == shm::WakeReason::kSignal ? -interrupted
                                                             : 0;
   }
+  task.deadline_ns = shm::kNeverNs;
   task.reason = reason;
   Refresh(*task.process->robot);
 }

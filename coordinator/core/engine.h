@@ -108,6 +108,10 @@ class Engine {
   bool HandLockOn(const FutexKey& key, std::uint32_t flags);
   void WakeThoseWaitingFor(Task& ended);
 
+  // Signals that clients send (signals.cc).
+  void WakeSignalled(pid_t receiver);
+  void WakeForSignals(Process& process);
+
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
   void FireDue(Robot& robot, std::int64_t now_ns);

@@ -61,17 +61,19 @@ void Engine::RearmDetector() {
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
   const char state = ThreadState(running_->tid);
-  if (state != 'S' || running_->slot < 0) return false;
+  const bool stopped = state == 'T';  // by a signal, until another one
+  if ((state != 'S' && !stopped) || running_->slot < 0) return false;
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
   // program because of a short system call.
   const bool alone = running_->process->threads == 1;
   const int turns = !alone ? 0 : IsFixed() ? kHeldTurnsFixed : world_.present() ? kHeldTurns : 0;
   if (held_turns_ < turns) return false;
   SetState(*running_, TaskState::kUnseen);
+  running_->parked = false;
+  if (stopped) return true;
   Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
       running_->process->name, ThreadSystemCall(running_->tid)));
-  running_->parked = false;
   return true;
 }
 

@@ -140,6 +140,9 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       Warn(task.process->name + " uses " + Printable(note.text, sizeof note.text) +
            ", which does not live in virtual time yet: its waits take real time");
       break;
+    case Kind::kSignalled:
+      WakeSignalled(static_cast<pid_t>(note.args[0]));
+      break;
     case Kind::kThreadExit:
       task.process->ended_cpu_ns += task.charged_ns;
       Slot(task).gate.store(shm::kGateOpen);

@@ -96,6 +96,9 @@ SignalSets ReadSignalSets(pid_t tid) {
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("SigBlk:", 0) == 0) sets.blocked = std::stoull(line.substr(7), nullptr, 16);
     if (line.rfind("SigCgt:", 0) == 0) sets.caught = std::stoull(line.substr(7), nullptr, 16);
+    if (line.rfind("SigPnd:", 0) == 0) sets.own_pending = std::stoull(line.substr(7), nullptr, 16);
+    if (line.rfind("ShdPnd:", 0) == 0)
+      sets.shared_pending = std::stoull(line.substr(7), nullptr, 16);
   }
   return sets;
 }

@@ -38,9 +38,10 @@ std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
-// The signals that a thread's process catches, and that the thread blocks; bit 0 is signal 1.
+// The signals that a thread's process catches, that the thread blocks, and that wait for delivery
+// to the thread or to any of its process; bit 0 is signal 1.
 struct SignalSets {
-  std::uint64_t caught = 0, blocked = 0;
+  std::uint64_t caught = 0, blocked = 0, own_pending = 0, shared_pending = 0;
 };
 SignalSets ReadSignalSets(pid_t tid);
 

@@ -1,0 +1,59 @@
+// Signals to others. The kernel carries and delivers them; that somebody who waits has to run a
+// handler now, the coordinator learns from the sender.
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/real.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+// Sending is a write: no handler may run at an earlier time. `receiver` as for kill(2); a `call`
+// that returns 0 has sent something. A signal of 0 only asks whether somebody is there.
+template <class Call>
+auto SendSignal(pid_t receiver, int signal, Call call) {
+  GuestThread* t = Enter();
+  if (t != nullptr && signal != 0) HoldForWrite(*t);
+  const auto result = call();
+  if (t != nullptr && signal != 0 && result == 0) {
+    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignalled,
+                         .args = {receiver > 0 ? receiver : 0}});
+  }
+  return result;
+}
+
+}  // namespace
+
+TCS_EXPORT int kill(pid_t pid, int signal) noexcept {
+  return static_cast<int>(
+      ToErrno(SendSignal(pid, signal, [&] { return RawSyscall(SYS_kill, pid, signal); })));
+}
+
+TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
+  if (group < 0) return Fail(EINVAL);
+  return kill(-group, signal);
+}
+
+TCS_EXPORT int tgkill(pid_t pid, pid_t tid, int signal) {
+  return static_cast<int>(
+      ToErrno(SendSignal(pid, signal, [&] { return RawSyscall(SYS_tgkill, pid, tid, signal); })));
+}
+
+TCS_EXPORT int sigqueue(pid_t pid, int signal, const sigval value) noexcept {
+  return SendSignal(pid, signal, [&] { return TCS_REAL(sigqueue)(pid, signal, value); });
+}
+
+TCS_EXPORT int pthread_kill(pthread_t thread, int signal) noexcept {
+  return SendSignal(0, signal, [&] { return TCS_REAL(pthread_kill)(thread, signal); });
+}
+
+TCS_EXPORT int pthread_sigqueue(pthread_t thread, int signal, const sigval value) noexcept {
+  return SendSignal(0, signal, [&] { return TCS_REAL(pthread_sigqueue)(thread, signal, value); });
+}

@@ -1,0 +1,206 @@
+// A signal that another process sends ends a wait, runs a handler or ends a process at the time it
+// was sent.
+#include <poll.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+
+#include <functional>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+constexpr std::int64_t kDelay = 30 * kMs;
+
+std::int64_t g_handled_ns = 0;
+int g_count = 0, g_value = 0;
+void Handle(int, siginfo_t* info, void*) {
+  g_handled_ns = Now();
+  ++g_count;
+  g_value = info->si_value.sival_int;
+}
+
+void HandleWith(int signal, int flags) {
+  struct sigaction action {};
+  action.sa_sigaction = Handle;
+  action.sa_flags = SA_SIGINFO | flags;
+  EXPECT(sigaction(signal, &action, nullptr) == 0, "sigaction");
+}
+
+// `wait` is under way when the signal is sent; it must end with an error of EINTR.
+void EndsTheWait(const char* what, const std::function<long()>& wait) {
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  const pid_t parent = getpid();
+  g_count = 0;
+  const pid_t child = fork();
+  if (child == 0) {
+    usleep(kDelay / 1000);
+    const std::int64_t sent = Now();
+    kill(parent, SIGUSR1);
+    _exit(write(fds[1], &sent, sizeof sent) == sizeof sent ? 0 : 1);
+  }
+  const std::int64_t start = Now();
+  const long result = wait();
+  const int error = errno;
+  const std::int64_t ended = Now();
+  EXPECT(result == -1 && error == EINTR, "%s: %ld, %s", what, result, strerror(error));
+  EXPECT(g_count == 1, "%s: %d handlers ran", what, g_count);
+  std::int64_t sent = 0;
+  EXPECT(read(fds[0], &sent, sizeof sent) == sizeof sent, "read");
+  EXPECT(sent <= g_handled_ns && g_handled_ns <= ended, "%s: handled %lld ns early", what,
+         (long long)(sent - g_handled_ns));
+  if (g_mode != Mode::kNative) {
+    EXPECT(ended - start < kDelay + 5 * kMs, "%s: ended after %lld ns", what,
+           (long long)(ended - start));
+  }
+  // Sent, written, waited for the end of the child's turn; the handler's look at the clock, ours.
+  if (g_mode == Mode::kFixed) {
+    EXPECT(ended - sent == 4 * kCallNs, "%s: ended after %lld ns", what, (long long)(ended - sent));
+  }
+  EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
+  close(fds[0]);
+  close(fds[1]);
+}
+
+void Waits() {
+  HandleWith(SIGUSR1, 0);
+  int fds[2];
+  EXPECT(socketpair(AF_UNIX, SOCK_STREAM, 0, fds) == 0, "socketpair");
+  sem_t semaphore;
+  sem_init(&semaphore, 0, 0);
+  char c;
+  EndsTheWait("usleep", [] { return usleep(100'000); });
+  EndsTheWait("pause", [] { return pause(); });
+  EndsTheWait("read", [&] { return read(fds[0], &c, 1); });
+  EndsTheWait("poll", [&] {
+    pollfd fd{fds[0], POLLIN, 0};
+    return poll(&fd, 1, 1000);
+  });
+  EndsTheWait("sem_wait", [&] { return sem_wait(&semaphore); });
+  EndsTheWait("sem_timedwait", [&] {
+    const timespec deadline = ToTimespec(Now(CLOCK_REALTIME) + kSecond);
+    return sem_timedwait(&semaphore, &deadline);
+  });
+}
+
+// With SA_RESTART the handler runs in the middle, and the wait goes on.
+void Restarts() {
+  HandleWith(SIGUSR1, SA_RESTART);
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  sem_t* semaphore = static_cast<sem_t*>(
+      mmap(nullptr, sizeof(sem_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  sem_init(semaphore, 1, 0);
+  const pid_t parent = getpid();
+  for (const bool reads : {true, false}) {
+    g_count = 0;
+    const std::int64_t start = Now();
+    const pid_t child = fork();
+    if (child == 0) {
+      usleep(kDelay / 1000);
+      kill(parent, SIGUSR1);
+      usleep(kDelay / 1000);
+      if (reads) _exit(write(fds[1], "x", 1) == 1 ? 0 : 1);
+      _exit(sem_post(semaphore));
+    }
+    char c;
+    EXPECT(reads ? read(fds[0], &c, 1) == 1 : sem_wait(semaphore) == 0, "restarted: %s",
+           strerror(errno));
+    const std::int64_t passed = Now() - start;
+    EXPECT(g_count == 1, "%d handlers ran", g_count);
+    EXPECT(g_handled_ns - start >= kDelay && passed >= 2 * kDelay, "handled after %lld ns of %lld",
+           (long long)(g_handled_ns - start), (long long)passed);
+    if (g_mode != Mode::kNative) {
+      EXPECT(g_handled_ns - start < kDelay + 5 * kMs && passed < 2 * kDelay + 5 * kMs,
+             "handled after %lld ns of %lld", (long long)(g_handled_ns - start), (long long)passed);
+    }
+    EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
+  }
+}
+
+void Values() {
+  HandleWith(SIGRTMIN, 0);
+  sigset_t blocked, before;
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGRTMIN);
+  sigprocmask(SIG_BLOCK, &blocked, &before);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) {
+    for (int i = 1; i <= 3; ++i) {
+      usleep(10'000);
+      sigqueue(parent, SIGRTMIN, sigval{i});
+    }
+    _exit(0);
+  }
+  const std::int64_t start = Now();
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT(sigsuspend(&before) == -1 && g_value == i, "value %d, not %d", g_value, i);
+    EXPECT(Now() - start >= i * 10 * kMs - kMs, "value %d came early", i);
+  }
+  EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+}
+
+void EndsOfProcesses() {
+  // A child that sleeps for long is ended, and its parent told, in that instant.
+  HandleWith(SIGCHLD, 0);
+  g_count = 0;
+  const std::int64_t start = Now();
+  const pid_t child = fork();
+  if (child == 0) {
+    sleep(1000);
+    _exit(0);
+  }
+  usleep(kDelay / 1000);
+  EXPECT(kill(child, SIGTERM) == 0, "kill: %s", strerror(errno));
+  EXPECT(sleep(100) > 0 && g_count == 1, "SIGCHLD did not end the sleep: %d", g_count);
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= kDelay, "%lld ns", (long long)passed);
+  if (g_mode != Mode::kNative) EXPECT(passed < kDelay + 5 * kMs, "%lld ns", (long long)passed);
+  int status = 0;
+  EXPECT(waitpid(child, &status, WNOHANG) == child && WTERMSIG(status) == SIGTERM, "%x", status);
+  signal(SIGCHLD, SIG_DFL);
+}
+
+// Stopped for 50 ms, a child does nothing, and then goes on.
+void Stops() {
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    for (;;) {
+      usleep(10'000);
+      if (write(fds[1], "x", 1) != 1) _exit(1);
+    }
+  }
+  char c;
+  EXPECT(read(fds[0], &c, 1) == 1, "read");
+  kill(child, SIGSTOP);
+  const std::int64_t start = Now();
+  usleep(50'000);
+  kill(child, SIGCONT);
+  for (int i = 0; i < 3; ++i) EXPECT(read(fds[0], &c, 1) == 1, "read");
+  EXPECT(Now() - start >= 60 * kMs, "a stopped child wrote");
+  kill(child, SIGKILL);
+  int status = 0;
+  EXPECT(waitpid(child, &status, 0) == child && WTERMSIG(status) == SIGKILL, "%x", status);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  EXPECT(kill(getpid(), 0) == 0 && kill(-1, 99) == -1 && errno == EINVAL, "kill of nothing");
+  Waits();
+  Restarts();
+  Values();
+  EndsOfProcesses();
+  Stops();
+}
