@@ -1,10 +1,17 @@
 // The other names under which the C library's functions go, in its own headers, in older programs
 // and in other libraries: they do the same.
 #include <dlfcn.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/select.h>
+#include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/timeb.h>
+#include <sys/timex.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <threads.h>
 
 #include "tests/conformance/conformance.h"
@@ -42,6 +49,98 @@ void Sleeps() {
   }
 }
 
+// Two ends of a pair, under the twins' names.
+void Descriptors() {
+  auto* const twin_read = Named<decltype(read)>("__read");
+  auto* const twin_write = Named<decltype(write)>("__write");
+  auto* const twin_send = Named<decltype(send)>("__send");
+  auto* const twin_poll = Named<decltype(poll)>("__poll");
+  auto* const twin_close = Named<decltype(close)>("__close");
+  auto* const twin_dup2 = Named<decltype(dup2)>("__dup2");
+  auto* const twin_connect = Named<decltype(connect)>("__connect");
+  int fds[2];
+  EXPECT(socketpair(AF_UNIX, SOCK_STREAM, 0, fds) == 0, "socketpair");
+  pollfd polled{fds[1], POLLIN, 0};
+  const std::int64_t start = Now();
+  EXPECT(twin_poll(&polled, 1, 20) == 0, "__poll");
+  ExpectWaited(start, 20 * kMs, 2, "__poll");
+  char text[4];
+  EXPECT(twin_write(fds[0], "ab", 2) == 2 && twin_send(fds[0], "cd", 2, 0) == 2, "__write, __send");
+  EXPECT(twin_poll(&polled, 1, -1) == 1 && twin_read(fds[1], text, 4) == 4, "__read");
+  EXPECT(twin_dup2(fds[0], 500) == 500 && twin_close(500) == 0 && twin_close(500) == -1, "__close");
+  sockaddr_un nobody{AF_UNIX, "/nonexistent"};
+  const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
+  EXPECT(twin_connect(fd, reinterpret_cast<sockaddr*>(&nobody), sizeof nobody) == -1 &&
+             errno == ENOENT,
+         "__connect");
+}
+
+void Processes() {
+  auto* const twin_wait = Named<decltype(wait)>("__wait");
+  auto* const twin_waitpid = Named<decltype(waitpid)>("__waitpid");
+  std::int64_t start = Now();
+  pid_t pid = Named<decltype(fork)>("__fork")();
+  if (pid == 0) {
+    usleep(40'000);
+    _exit(3);
+  }
+  int status = 0;
+  EXPECT(twin_waitpid(pid, &status, 0) == pid && status == 3 << 8, "__waitpid: %x", status);
+  EXPECT(Now() - start >= 40 * kMs, "a child ended early");
+  if (g_mode != Mode::kNative) {  // a true vfork cannot be called by a pointer
+    pid = Named<decltype(vfork)>("__vfork")();
+    if (pid == 0) _exit(4);
+    EXPECT(twin_wait(&status) == pid && status == 4 << 8, "__wait: %x", status);
+  }
+  start = Now();
+  FILE* out = Named<decltype(popen)>("_IO_popen")("sleep 0.1; echo done", "r");
+  char line[8] = "";
+  EXPECT(out != nullptr && fgets(line, sizeof line, out) != nullptr, "_IO_popen");
+  EXPECT(pclose(out) == 0 && Now() - start >= 100 * kMs, "pclose");
+}
+
+void Scheduling() {
+  sched_param param{};
+  EXPECT(Named<decltype(sched_getparam)>("__sched_getparam")(0, &param) == 0, "__sched_getparam");
+  const int policy = Named<decltype(sched_getscheduler)>("__sched_getscheduler")(0);
+  EXPECT(policy == sched_getscheduler(0), "__sched_getscheduler: %d", policy);
+  EXPECT(Named<decltype(sched_setscheduler)>("__sched_setscheduler")(0, policy, &param) == 0,
+         "__sched_setscheduler");
+  EXPECT(Named<decltype(sched_yield)>("__sched_yield")() == 0, "__sched_yield");
+  thrd_yield();
+  if (auto* old = Named<decltype(sched_yield)>("pthread_yield"); old != nullptr) {
+    EXPECT(old() == 0, "pthread_yield");
+  }
+  EXPECT(
+      Named<decltype(sysconf)>("__sysconf")(_SC_NPROCESSORS_ONLN) == sysconf(_SC_NPROCESSORS_ONLN),
+      "__sysconf");
+}
+
+void Threads() {
+  const std::int64_t start = Now();
+  thrd_t threads[3];
+  int result = 0;
+  for (thrd_t& thread : threads) {
+    const int error = thrd_create(
+        &thread,
+        [](void* argument) {
+          usleep(60'000);
+          if (argument != nullptr) thrd_exit(-7);
+          return -7;
+        },
+        &thread == threads ? &thread : nullptr);
+    EXPECT(error == thrd_success, "thrd_create: %d", error);
+  }
+  for (const thrd_t thread : threads) {
+    EXPECT(thrd_join(thread, &result) == thrd_success && result == -7, "thrd_join: %d", result);
+  }
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= 60 * kMs, "three threads took %lld ns", (long long)passed);
+  if (g_mode != Mode::kNative) {
+    EXPECT(passed < 61 * kMs, "three threads took %lld ns", (long long)passed);
+  }
+}
+
 volatile sig_atomic_t g_alarms = 0;
 
 void Alarms() {
@@ -55,6 +154,10 @@ void Alarms() {
   EXPECT(usleep(500'000) == -1 && errno == EINTR && g_alarms == 1, "an alarm did not come");
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= 29 * kMs && passed < 400 * kMs, "ualarm after %lld ns", (long long)passed);
+  ualarm(30'000, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  EXPECT(Named<decltype(sigsuspend)>("__sigsuspend")(&none) == -1 && g_alarms == 2, "__sigsuspend");
 }
 
 void Clocks() {
@@ -91,5 +194,9 @@ int main(int argc, char** argv) {
   Begin(argc, argv);
   Sleeps();
   Clocks();
+  Descriptors();
+  Processes();
+  Scheduling();
+  Threads();
   Alarms();
 }
