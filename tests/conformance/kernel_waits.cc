@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <mqueue.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/ipc.h>
@@ -107,6 +108,17 @@ void Signals() {
       [&] { EXPECT(sigwaitinfo(&set, nullptr) == SIGUSR1, "sigwaitinfo"); });
 }
 
+// A process made without the C library's fork.
+void Clones() {
+  static char stack[64 * 1024];
+  const std::int64_t start = Now();
+  const pid_t pid =
+      clone([](void*) { return usleep(50'000); }, stack + sizeof stack, SIGCHLD, nullptr);
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "clone: %x", status);
+  EXPECT(Now() - start >= 50 * kMs, "a cloned child ended early");
+}
+
 // A mutex with priority inheritance, and one more thread that wants it.
 void Inheritance() {
   pthread_mutexattr_t attributes;
@@ -141,6 +153,7 @@ int main(int argc, char** argv) {
   Queues();
   Signals();
   Inheritance();
+  Clones();
   unlink((g_folder + "/fifo").c_str());
   unlink((g_folder + "/file").c_str());
   rmdir(folder);
