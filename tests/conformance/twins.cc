@@ -75,6 +75,47 @@ void Descriptors() {
          "__connect");
 }
 
+// What the fortified headers call where the compiler does not know the room.
+void Fortified() {
+  auto* const checked_poll = Named<int(pollfd*, nfds_t, int, std::size_t)>("__poll_chk");
+  auto* const checked_ppoll =
+      Named<int(pollfd*, nfds_t, const timespec*, const sigset_t*, std::size_t)>("__ppoll_chk");
+  auto* const checked_read = Named<ssize_t(int, void*, std::size_t, std::size_t)>("__read_chk");
+  auto* const checked_recv =
+      Named<ssize_t(int, void*, std::size_t, std::size_t, int)>("__recv_chk");
+  auto* const checked_recvfrom =
+      Named<ssize_t(int, void*, std::size_t, std::size_t, int, sockaddr*, socklen_t*)>(
+          "__recvfrom_chk");
+  int fds[2];
+  EXPECT(socketpair(AF_UNIX, SOCK_STREAM, 0, fds) == 0, "socketpair");
+  pollfd polled{fds[1], POLLIN, 0};
+  std::int64_t start = Now();
+  EXPECT(checked_poll(&polled, 1, 20, sizeof polled) == 0, "__poll_chk");
+  ExpectWaited(start, 20 * kMs, 2, "__poll_chk");
+  start = Now();
+  const timespec timeout = ToTimespec(20 * kMs);
+  EXPECT(checked_ppoll(&polled, 1, &timeout, nullptr, sizeof polled) == 0, "__ppoll_chk");
+  ExpectWaited(start, 20 * kMs, 2, "__ppoll_chk");
+  // Each waits for what a child writes later.
+  start = Now();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    for (int i = 0; i < 3; ++i) {
+      usleep(20'000);
+      if (write(fds[0], "z", 1) != 1) _exit(1);
+    }
+    _exit(0);
+  }
+  char c[4];
+  EXPECT(checked_read(fds[1], c, 1, sizeof c) == 1, "__read_chk");
+  EXPECT(checked_recv(fds[1], c, 1, sizeof c, 0) == 1, "__recv_chk");
+  EXPECT(checked_recvfrom(fds[1], c, 1, sizeof c, 0, nullptr, nullptr) == 1, "__recvfrom_chk");
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= 60 * kMs, "three bytes came after %lld ns", (long long)passed);
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "child status %x", status);
+}
+
 void Processes() {
   auto* const twin_wait = Named<decltype(wait)>("__wait");
   auto* const twin_waitpid = Named<decltype(waitpid)>("__waitpid");
@@ -195,6 +236,7 @@ int main(int argc, char** argv) {
   Sleeps();
   Clocks();
   Descriptors();
+  Fortified();
   Processes();
   Scheduling();
   Threads();
