@@ -21,7 +21,7 @@ struct Start {
 
 void EndOfThread(void*) {
   if (t_thread.slot == nullptr) return;
-  Exchange(t_thread, Request{.kind = tcs::shm::NotificationKind::kThreadExit});
+  Announce(t_thread, Request{.kind = tcs::shm::NotificationKind::kThreadExit});
   t_thread.slot = nullptr;
   t_thread.attaching = true;  // what still runs of this thread is let through
 }

@@ -116,6 +116,10 @@ TCS_EXPORT int timespec_get(timespec* ts, int base) {
   return base == TIME_UTC && clock_gettime(CLOCK_REALTIME, ts) == 0 ? base : 0;
 }
 
+TCS_EXPORT int timespec_getres(timespec* resolution, int base) noexcept {
+  return base == TIME_UTC && clock_getres(CLOCK_REALTIME, resolution) == 0 ? base : 0;
+}
+
 TCS_EXPORT clock_t clock(void) {
   timespec cpu;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
@@ -165,6 +169,13 @@ TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
   return static_cast<int>(ToErrno(RawSyscall(SYS_settimeofday, Arg(tv), Arg(zone))));
 }
 
+// The headers have forgotten it, older programs have not.
+TCS_EXPORT int SetTime(const time_t*) __asm__("stime");
+TCS_EXPORT int SetTime(const time_t* seconds) {
+  const timespec ts{*seconds, 0};
+  return clock_settime(CLOCK_REALTIME, &ts);
+}
+
 // Reading the adjustment is allowed, with the virtual time in it; changing it is not.
 TCS_EXPORT int adjtimex(timex* tx) {
   GuestThread* t = Enter();
@@ -179,6 +190,26 @@ TCS_EXPORT int adjtimex(timex* tx) {
 }
 
 TCS_EXPORT int ntp_adjtime(timex* tx) { return adjtimex(tx); }
+
+// The headers give ntp_gettimex this name; the function of this name knew fewer fields.
+TCS_EXPORT int ntp_gettime(ntptimeval* out) noexcept {
+  timex tx{};
+  const int state = adjtimex(&tx);
+  if (state >= 0) *out = ntptimeval{tx.time, tx.maxerror, tx.esterror, tx.tai, 0, 0, 0, 0};
+  return state;
+}
+
+TCS_EXPORT int OldNtpGetTime(ntptimeval*) __asm__("ntp_gettime");
+TCS_EXPORT int OldNtpGetTime(ntptimeval* out) {
+  ntptimeval all{};
+  const int state = ntp_gettime(&all);
+  if (state >= 0) {
+    out->time = all.time;
+    out->maxerror = all.maxerror;
+    out->esterror = all.esterror;
+  }
+  return state;
+}
 
 TCS_EXPORT int clock_adjtime(clockid_t id, timex* tx) {
   if (id == CLOCK_REALTIME) return adjtimex(tx);

@@ -62,7 +62,7 @@ enum class NotificationKind : std::uint32_t {
   kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0
                    // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
                    // then set
-  kSignalled = 20,    // the thread has sent a signal to process args[0]; 0: to any
+  kSignalled = 20,  // the thread has sent a signal to process args[0]; 0: to any
 };
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,

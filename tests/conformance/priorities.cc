@@ -125,8 +125,8 @@ void Check(const Case& c, const char* what) {
 }
 
 void Run(Waker waker, bool other_process, const char* what) {
-  auto* shared = static_cast<Shared*>(mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE,
-                                           MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  auto* shared = static_cast<Shared*>(
+      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   EXPECT(shared != MAP_FAILED, "%s", strerror(errno));
   new (shared) Shared{};
   pthread_mutexattr_t of_mutex;

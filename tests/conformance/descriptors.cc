@@ -1,0 +1,65 @@
+// Closing and copying descriptors: a timer follows its copies, and a program that closes all that
+// it does not know keeps its time.
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <poll.h>
+#include <sys/timerfd.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+bool IsOpen(int fd) { return fcntl(fd, F_GETFD) >= 0; }
+
+void ExpectSleeps(const char* after) {
+  const std::int64_t start = Now();
+  EXPECT(usleep(30'000) == 0, "usleep after %s", after);
+  ExpectWaited(start, 30 * kMs, 2, after);
+}
+
+void TimerCopies() {
+  const int fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK);
+  const int copy = dup(fd);
+  EXPECT(copy >= 0, "dup");
+  EXPECT(dup2(fd, copy + 1) == copy + 1 && dup2(fd, fd) == fd, "dup2");
+  EXPECT(dup3(fd, copy + 2, O_CLOEXEC) == copy + 2, "dup3");
+  EXPECT(fcntl(copy + 2, F_GETFD) == FD_CLOEXEC, "dup3's flag");
+  EXPECT(dup3(fd, fd, 0) == -1 && errno == EINVAL, "dup3 onto itself");
+  EXPECT(close(fd) == 0 && !IsOpen(fd), "close");
+  for (int which = copy; which <= copy + 2; ++which) {
+    // Armed through one copy, read through it.
+    const itimerspec in_10_ms{{0, 0}, ToTimespec(10 * kMs)};
+    EXPECT(timerfd_settime(which, 0, &in_10_ms, nullptr) == 0, "a copy's timer: %s",
+           strerror(errno));
+    const std::int64_t start = Now();
+    pollfd polled{which, POLLIN, 0};
+    EXPECT(poll(&polled, 1, 5000) == 1, "poll of copy %d", which - copy);
+    const std::int64_t passed = Now() - start;
+    EXPECT(passed >= 9 * kMs, "copy %d after %lld ns", which - copy, (long long)passed);
+    std::uint64_t count = 0;
+    EXPECT(read(which, &count, sizeof count) == sizeof count && count == 1, "its expirations");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  TimerCopies();
+  const int low = dup(2);
+  EXPECT(dup2(low, 900) == 900, "dup2");
+  EXPECT(close_range(900, 1000, 0) == 0 && !IsOpen(900) && IsOpen(low), "close_range");
+  EXPECT(close_range(5, 4, 0) == -1 && errno == EINVAL, "close_range of nothing");
+  ExpectSleeps("close_range");
+  EXPECT(close_range(3, ~0u, CLOSE_RANGE_CLOEXEC) == 0, "close_range to the end");
+  EXPECT(fcntl(low, F_GETFD) == FD_CLOEXEC, "close_range's flag");
+  ExpectSleeps("close_range to the end");
+  closefrom(3);
+  EXPECT(!IsOpen(low), "closefrom");
+  ExpectSleeps("closefrom");
+  for (int fd = 3; fd < 1024; ++fd) close(fd);
+  EXPECT(close(500) == -1 && errno == EBADF, "close of nothing");
+  ExpectSleeps("closing one by one");
+}

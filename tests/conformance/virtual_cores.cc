@@ -1,0 +1,69 @@
+// The processors that a program sees are its robot's, of which `tcsim exec` has one, and its
+// priority is the one it asks for.
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/sysinfo.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+void Cores() {
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  EXPECT(cores >= 1 && cores == get_nprocs(), "%ld processors", cores);
+  EXPECT(sysconf(_SC_NPROCESSORS_CONF) == get_nprocs_conf(), "configured processors");
+  unsigned cpu = ~0u, node = ~0u;
+  EXPECT(getcpu(&cpu, &node) == 0 && cpu < 4096, "getcpu: %u", cpu);
+  EXPECT(sched_getcpu() >= 0, "sched_getcpu");
+  cpu_set_t set;
+  EXPECT(sched_getaffinity(0, sizeof set, &set) == 0, "sched_getaffinity");
+  EXPECT(CPU_COUNT(&set) >= 1, "no processor may be used");
+  EXPECT(sched_setaffinity(0, sizeof set, &set) == 0, "sched_setaffinity");
+  EXPECT(pthread_getaffinity_np(pthread_self(), sizeof set, &set) == 0, "pthread_getaffinity_np");
+  EXPECT(pthread_setaffinity_np(pthread_self(), sizeof set, &set) == 0, "pthread_setaffinity_np");
+  if (g_mode != Mode::kNative) {
+    EXPECT(cores == 1 && cpu == 0 && node == 0 && sched_getcpu() == 0, "%ld cores", cores);
+    EXPECT(CPU_COUNT(&set) == 1 && CPU_ISSET(0, &set), "%d cores", CPU_COUNT(&set));
+    CPU_ZERO(&set);
+    CPU_SET(5, &set);
+    EXPECT(sched_setaffinity(0, sizeof set, &set) == -1 && errno == EINVAL, "another's core");
+  }
+}
+
+// Natively these need rights that not everybody has.
+void Priorities() {
+  sched_param param{};
+  int policy = -1;
+  param.sched_priority = 20;
+  EXPECT(sched_setscheduler(0, SCHED_FIFO, &param) == 0, "sched_setscheduler: %s", strerror(errno));
+  EXPECT(sched_getscheduler(0) == SCHED_FIFO, "policy %d", sched_getscheduler(0));
+  param.sched_priority = 30;
+  EXPECT(sched_setparam(0, &param) == 0, "sched_setparam: %s", strerror(errno));
+  EXPECT(sched_getparam(0, &param) == 0 && param.sched_priority == 30, "priority %d",
+         param.sched_priority);
+  param.sched_priority = 40;
+  EXPECT(pthread_setschedparam(pthread_self(), SCHED_RR, &param) == 0, "pthread_setschedparam");
+  EXPECT(pthread_setschedprio(pthread_self(), 50) == 0, "pthread_setschedprio");
+  EXPECT(pthread_getschedparam(pthread_self(), &policy, &param) == 0, "pthread_getschedparam");
+  EXPECT(policy == SCHED_RR && param.sched_priority == 50, "policy %d, priority %d", policy,
+         param.sched_priority);
+  param.sched_priority = 100;
+  EXPECT(sched_setscheduler(0, SCHED_FIFO, &param) == -1 && errno == EINVAL, "priority 100");
+  param.sched_priority = 0;
+  EXPECT(sched_setscheduler(0, SCHED_OTHER, &param) == 0, "back to SCHED_OTHER");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  Cores();
+  if (g_mode != Mode::kNative) Priorities();
+  EXPECT(sched_yield() == 0, "sched_yield");
+  errno = 0;
+  EXPECT(nice(0) >= -20 && errno == 0, "nice");
+  EXPECT(setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0)) == 0, "setpriority");
+}
