@@ -64,10 +64,8 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
       continue;
     }
-    const long result = RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting,
-                                   Arg(&kGateTurn), 0, static_cast<long>(shm::kGateFutexMark));
-    // The mark must not stay in the register: the C library's futex calls leave it as they find it.
-    __asm__ volatile("xor %%r9d, %%r9d" ::: "r9");
+    const long result =
+        RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && interruptible &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {

@@ -85,7 +85,8 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
   SelectSets sets(n, r, w, e);
   auto probe = [&] {
     sets.Restore();
-    return RawSyscall(SYS_pselect6, n, Arg(r), Arg(w), Arg(e), Arg(&kNow), 0);
+    timeval now{};
+    return RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(&now));
   };
   auto wait = [&](std::int64_t deadline) {
     pollfd fds[FD_SETSIZE];
@@ -106,7 +107,7 @@ int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t
             const sigset_t* mask) {
   return ProbeAndWait(
       t, timeout_ns, mask, [&] { return PollNow(epfd, POLLIN) ? 1L : 0L; },
-      [&] { return RawSyscall(SYS_epoll_pwait, epfd, Arg(events), max, 0, 0, 8); },
+      [&] { return RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0); },
       [&](std::int64_t deadline) {
         const pollfd set{epfd, POLLIN, 0};
         return WaitForFds(t, &set, 1, deadline);

@@ -136,9 +136,9 @@ struct Notification {
 };
 static_assert(sizeof(Notification) == 376);
 
-// The last argument of the shim's futex calls at its gate, which the call itself ignores: they are
-// the kernel's, all others the coordinator's.
-inline constexpr std::uint32_t kGateFutexMark = 0x7c57a7e1;
+// What the shim leaves in the last argument, unused, of the system calls that it makes itself: they
+// are the kernel's. All others that wait or read time are handed to the coordinator.
+inline constexpr std::uint32_t kOwnCallMark = 0x7c57a7e1;
 
 // Gate values.
 inline constexpr std::uint32_t kGateClosed = 0;  // written by the thread before it notifies

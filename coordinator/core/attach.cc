@@ -161,7 +161,8 @@ void Engine::SendReply(int connection, const Task& task) {
 void Engine::EndTask(Task& task) {
   EndWatches(task);
   waiting_for_child_ -= task.waits_for_child;
-  task.waits_for_child = task.waits_for_fds = task.waits_for_futex = false;
+  task.waits_for_child = task.waits_for_fds = false;
+  task.trap_wait = TrapWait::kNone;
   LeaveLock(task);
   SetState(task, TaskState::kDead);
   --living_;

@@ -92,7 +92,11 @@ void Engine::Resume(Task& task) {
   last_ = &task;
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
-    AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    if (task.trap_continues) {
+      ContinueTrapped(task.trap_listener, task.trap_id);
+    } else {
+      AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    }
     task.trap_id = 0;
   } else if (task.slot >= 0 && task.parked) {
     std::atomic<std::uint32_t>& gate = Slot(task).gate;

@@ -22,7 +22,6 @@ constexpr std::int64_t kGrainNs = 100'000;
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
-constexpr int kRestart = 512;  // the kernel's ERESTARTSYS, which it never shows to programs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
 
 std::int64_t QuantumOf(const Task& task) {
@@ -113,15 +112,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;
-  if (task.waits_for_futex) {
-    task.waits_for_futex = false;
-    LeaveLock(task);
-    // As the kernel has it: after a handler it makes the call again if that wants it.
-    const int interrupted = task.deadline_ns == shm::kNeverNs ? kRestart : EINTR;
-    task.trap_result = reason == shm::WakeReason::kDeadline ? -ETIMEDOUT
-                       : reason == shm::WakeReason::kSignal ? -interrupted
-                                                            : 0;
-  }
+  if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
   task.deadline_ns = shm::kNeverNs;
   task.reason = reason;
   Refresh(*task.process->robot);
@@ -161,7 +152,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     idle = std::min(idle, other->deadline_ns);
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
-    if (!other->waits_for_fds && !(other->waits_for_futex && robot.cpus.size() > 1)) continue;
+    if (!other->waits_for_fds && !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
+      continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }

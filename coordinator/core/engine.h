@@ -75,7 +75,7 @@ class Engine {
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
-  void WaitForFds(Task& task, const shm::Notification& note);
+  void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
   void WaitForChild(Task& task);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
@@ -85,13 +85,33 @@ class Engine {
   void HandleScheduling(Task& asking, const shm::Notification& note);
   std::int64_t SetPriority(Task& task, std::int64_t policy, std::int64_t priority);
   std::int64_t SetAffinity(Task& task, std::uint64_t cores);
+  static std::uint64_t AllowedCores(const Task& task);
   void InheritScheduling(Task& task, const Task& creator);
   void FindPriority(Task& task);
   void LeaveLock(Task& task);
 
-  // Trapped futex calls (futex.cc). Results as the kernel's: negative for an errno.
+  // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
+  // errno.
   void TrapArrived(int listener);
   void HandleTrapped(Task& task, const TrappedCall& call);
+  void FinishTrappedWait(Task& task, shm::WakeReason reason);
+  void ReleaseTrapped();
+
+  // Those other than futex (raw_calls.cc).
+  void HandleRawCall(Task& task, const TrappedCall& call);
+  std::int64_t ReadRawClock(const Task& task, const TrappedCall& call);
+  std::int64_t SleepRaw(Task& task, const TrappedCall& call);
+  void TransferRaw(Task& task, const TrappedCall& call);
+  void HoldRaw(Task& task, shm::NotificationKind kind);
+  std::int64_t PollRaw(Task& task, const TrappedCall& call);
+  bool RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns);
+  std::vector<shm::WaitFd> RawWaitFds(const Task& task, const TrappedCall& call);
+  void ClearRawResult(const Task& task, const TrappedCall& call);
+  void AwaitChildRaw(Task& task, const TrappedCall& call);
+  std::int64_t ScheduleRaw(Task& task, const TrappedCall& call);
+
+  // Those that are (futex.cc).
+  void HandleFutex(Task& task, const TrappedCall& call);
   bool FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);

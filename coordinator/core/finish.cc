@@ -39,9 +39,15 @@ void Engine::Shutdown() {
     if (process.pidfd >= 0) ends.push_back({process.pidfd, POLLIN, 0});
   }
   const std::int64_t until = HostClockNs(CLOCK_MONOTONIC) + std::int64_t{kGraceMs} * 1'000'000;
-  while (!ends.empty() && HostClockNs(CLOCK_MONOTONIC) < until) {
+  // What clients do meanwhile the kernel does for them.
+  running_ = nullptr;
+  ReleaseTrapped();
+  ends.push_back({epoll_, POLLIN, 0});
+  while (ends.size() > 1 && HostClockNs(CLOCK_MONOTONIC) < until) {
     poll(ends.data(), ends.size(), kGraceMs / 10);
-    std::erase_if(ends, [](const pollfd& end) { return end.revents != 0; });
+    PollEvents(0);
+    ReleaseTrapped();
+    std::erase_if(ends, [this](const pollfd& end) { return end.fd != epoll_ && end.revents != 0; });
   }
   // Everything that descends from this process and lost its parent is ours to end, too.
   KillDescendants();

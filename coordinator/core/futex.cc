@@ -9,7 +9,7 @@
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
-#include "coordinator/os/futex_trap.h"
+#include "coordinator/os/trap.h"
 
 namespace tcs {
 
@@ -69,7 +69,7 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
 
 void Engine::StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits) {
   task.futex = key;
-  task.waits_for_futex = true;
+  task.trap_wait = TrapWait::kFutex;
   task.futex_bits = bits;
   task.futex_order = ++futex_counter_;
   SetState(task, TaskState::kWaiting);
@@ -98,7 +98,7 @@ std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int
   auto most = static_cast<int>(call.args[3]);
   for (Task& waiter : tasks_) {
     if (most <= 0) break;
-    if (!waiter.waits_for_futex || waiter.futex != from) continue;
+    if (waiter.trap_wait != TrapWait::kFutex || waiter.futex != from) continue;
     waiter.futex = to;
     ++moved;
     --most;
@@ -138,12 +138,8 @@ bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
   });
 }
 
-void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
+void Engine::HandleFutex(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
-  event_ns_ = task.reached_ns;
-  task.trap_id = call.id;
-  task.trap_listener = call.listener;
-  task.trap_result = 0;
   switch (command) {
     case FUTEX_WAIT:
     case FUTEX_WAIT_BITSET:
@@ -176,28 +172,6 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
     default:
       task.trap_result = -ENOSYS;
   }
-  Refresh(*task.process->robot);
-}
-
-// A futex call has arrived. That of the running thread stops it like a notification.
-void Engine::TrapArrived(int listener) {
-  const auto call = ReceiveTrapped(listener);
-  if (!call.has_value()) return;
-  if (running_ != nullptr && running_->tid == call->tid && running_->slot >= 0) {
-    trapped_ = *call;
-    return;
-  }
-  for (Task& task : tasks_) {
-    if (task.tid != call->tid || task.state == TaskState::kDead || task.slot < 0) continue;
-    // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
-    // again, or it came back from a call that nobody saw.
-    if (task.state == TaskState::kUnseen) MakeReady(task, shm::WakeReason::kGo);
-    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
-    task.early_trap = *call;
-    task.trap_id = 0;
-    return;
-  }
-  ContinueTrapped(listener, call->id);
 }
 
 }  // namespace tcs

@@ -18,7 +18,8 @@ constexpr std::uint32_t kOwner = FUTEX_TID_MASK, kDied = FUTEX_OWNER_DIED, kWait
 Task* Engine::MostUrgentWaiter(const FutexKey& key, std::uint32_t bits) {
   Task* best = nullptr;
   for (Task& task : tasks_) {
-    if (!task.waits_for_futex || task.futex != key || (task.futex_bits & bits) == 0) continue;
+    if (task.trap_wait != TrapWait::kFutex || task.futex != key || (task.futex_bits & bits) == 0)
+      continue;
     if (best == nullptr || task.priority > best->priority ||
         (task.priority == best->priority && task.futex_order < best->futex_order)) {
       best = &task;
@@ -58,14 +59,15 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
   if (next == nullptr) return false;
   Task* before = next->lock_owner;
   next->lock_owner = nullptr;
-  next->waits_for_futex = false;
+  next->trap_wait = TrapWait::kNone;
   const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
   const std::uint32_t value =
       static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
   WriteMemory(next->process->pid, next->lock_address, &value, sizeof value);
-  next->waits_for_futex = true;
+  next->trap_wait = TrapWait::kFutex;
   for (Task& waiter : tasks_) {
-    if (waiter.waits_for_futex && waiter.futex == key && &waiter != next) waiter.lock_owner = next;
+    if (waiter.trap_wait == TrapWait::kFutex && waiter.futex == key && &waiter != next)
+      waiter.lock_owner = next;
   }
   MakeReady(*next, shm::WakeReason::kGo);
   if (before != nullptr) FindPriority(*before);
@@ -86,7 +88,7 @@ std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
 // does not reach them.
 void Engine::WakeThoseWaitingFor(Task& ended) {
   for (Task& task : tasks_) {
-    if (!task.waits_for_futex) continue;
+    if (task.trap_wait != TrapWait::kFutex) continue;
     if (task.lock_owner == &ended) {
       HandLockOn(FutexKey(task.futex), kDied);
     } else if (task.names_tid == ended.tid) {

@@ -30,16 +30,15 @@ void Engine::EndWatches(Task& task) {
   task.watched.clear();
 }
 
-void Engine::WaitForFds(Task& task, const shm::Notification& note) {
+void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   SetState(task, TaskState::kWaiting);
   task.waits_for_fds = true;
-  const std::uint32_t count = std::min(note.fd_count, shm::kMaxWaitFds);
   const auto index = static_cast<std::uint32_t>(task.order);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const int fd = DuplicateFd(task.process->pidfd, note.fds[i].fd);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int fd = DuplicateFd(task.process->pidfd, fds[i].fd);
     if (fd < 0) continue;
     epoll_event event{};
-    event.events = note.fds[i].events | EPOLLONESHOT;
+    event.events = fds[i].events | EPOLLONESHOT;
     event.data.u64 = (static_cast<std::uint64_t>(Tag::kAwaited) << 32) | index;
     if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
       task.watched.push_back(fd);
@@ -107,7 +106,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       task.wait_mask = static_cast<std::uint64_t>(note.args[1]);
       break;
     case Kind::kWaitFds:
-      WaitForFds(task, note);
+      WatchFds(task, note.fds, std::min(note.fd_count, shm::kMaxWaitFds));
       Refresh(robot);
       // What is there already ends the wait here and now.
       PollEvents(0);

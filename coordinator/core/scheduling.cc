@@ -80,6 +80,8 @@ std::int64_t Engine::SetAffinity(Task& task, std::uint64_t cores) {
   return 0;
 }
 
+std::uint64_t Engine::AllowedCores(const Task& task) { return task.allowed_cores & CoresOf(task); }
+
 // `tid` as the program knows it.
 void Engine::HandleScheduling(Task& asking, const shm::Notification& note) {
   const auto tid = static_cast<pid_t>(note.args[0]);
@@ -100,7 +102,7 @@ void Engine::HandleScheduling(Task& asking, const shm::Notification& note) {
     default:
       asking.reply[0] =
           note.args[1] == 0 ? 0 : SetAffinity(*task, static_cast<std::uint64_t>(note.args[1]));
-      asking.reply[1] = static_cast<std::int64_t>(task->allowed_cores & CoresOf(*task));
+      asking.reply[1] = static_cast<std::int64_t>(AllowedCores(*task));
   }
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/os/futex_trap.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/trap.h"
 #include "coordinator/policy/fixed_priority.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "shm/layout.h"
@@ -28,6 +28,9 @@ enum class TaskState {
   kUnseen,  // blocked in a call the shim cannot see -> kReady once the kernel has it runnable again
   kDead,
 };
+
+// What a thread waits for in a trapped call.
+enum class TrapWait { kNone, kFutex, kSleep, kFds, kChild };
 
 struct Process;
 struct Robot;
@@ -56,7 +59,10 @@ struct Task {
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
-  bool waits_for_futex = false;
+  bool trap_continues = false;            // or the kernel carries it out
+  TrapWait trap_wait = TrapWait::kNone;
+  TrappedCall trapped_call;             // the last but futex calls
+  std::uint64_t remaining_address = 0;  // where a sleep leaves what a signal cuts off; 0: nowhere
   FutexKey futex;
   std::uint64_t futex_order = 0;  // of waiting
   std::uint32_t futex_bits = 0;

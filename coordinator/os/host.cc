@@ -19,7 +19,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "coordinator/os/futex_trap.h"
+#include "coordinator/os/trap.h"
+#include "shm/layout.h"
 
 namespace tcs {
 
@@ -131,10 +132,15 @@ namespace {
 // The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
 // parent has taken it.
 void HandOverTrap(int to_parent, int from_parent) {
-  const int listener = InstallFutexTrap();
-  if (write(to_parent, &listener, sizeof listener) != sizeof listener) _exit(127);
+  const int listener = InstallTrap();
+  // From here on calls are trapped, and nobody takes them yet.
+  const long own = shm::kOwnCallMark;
+  if (syscall(SYS_write, to_parent, &listener, sizeof listener, 0, 0, own) !=
+      static_cast<long>(sizeof listener)) {
+    _exit(127);
+  }
   char taken;
-  while (read(from_parent, &taken, 1) < 0 && errno == EINTR) {
+  while (syscall(SYS_read, from_parent, &taken, 1, 0, 0, own) < 0 && errno == EINTR) {
   }
   if (listener >= 0) close(listener);
 }

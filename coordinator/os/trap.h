@@ -1,5 +1,5 @@
-// The kernel hands the futex calls of clients to the coordinator instead of carrying them out: a
-// seccomp filter with user notification, inherited by whatever a client starts. The thread sleeps
+// The kernel hands certain system calls of clients to the coordinator instead of carrying them out:
+// a seccomp filter with user notification, inherited by whatever a client starts. The thread sleeps
 // in the kernel until it is answered, and no handler runs in it.
 #pragma once
 
@@ -18,9 +18,11 @@ struct TrappedCall {
   std::uint64_t args[6] = {};
 };
 
-// Installs the filter in the calling process, which must be about to exec. The descriptor at which
-// its calls arrive; -1: errno is set.
-int InstallFutexTrap();
+// Installs the filter in the calling process, which must be about to exec. It traps all futex
+// calls, and what else reads time, sleeps, waits or speaks of the scheduler (trap.cc has the list),
+// unless the shim made the call (shm::kOwnCallMark). The descriptor at which the calls arrive; -1:
+// errno is set.
+int InstallTrap();
 
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);

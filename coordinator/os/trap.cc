@@ -1,4 +1,4 @@
-#include "coordinator/os/futex_trap.h"
+#include "coordinator/os/trap.h"
 
 #include <errno.h>
 #include <linux/audit.h>
@@ -10,11 +10,13 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "shm/layout.h"
 
@@ -22,30 +24,78 @@ namespace tcs {
 
 namespace {
 
-constexpr std::uint32_t Low(int arg) {
-  return static_cast<std::uint32_t>(offsetof(seccomp_data, args) +
-                                    sizeof(std::uint64_t) * static_cast<unsigned>(arg));
+// Besides futex and clock_gettime, which depend on their arguments.
+constexpr std::uint32_t kTrapped[] = {
+    // Clocks and sleeps.
+    SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
+    // What waits for descriptors and for children.
+    SYS_read, SYS_readv, SYS_write, SYS_writev, SYS_poll, SYS_ppoll, SYS_select, SYS_pselect6,
+    SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid,
+    // The scheduler: the host's must not hear of it.
+    SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
+    SYS_sched_setaffinity, SYS_sched_getaffinity,
+    // Refused, so that programs take the calls that are known here.
+    SYS_io_uring_setup, SYS_futex_waitv,
+    // Let through, and named in a warning.
+    SYS_timer_create, SYS_timerfd_create, SYS_setitimer, SYS_alarm};
+
+// As a jump over the given number of instructions where the value just loaded is, or is not, `k`.
+sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
+  return {BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint8_t>(yes), static_cast<std::uint8_t>(no),
+          k};
+}
+
+sock_filter Load(std::size_t offset) {
+  return {BPF_LD | BPF_W | BPF_ABS, 0, 0, static_cast<std::uint32_t>(offset)};
+}
+
+sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
+
+// The lower half of an argument.
+sock_filter LoadArgument(std::size_t argument) {
+  return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
+}
+
+std::vector<sock_filter> Program() {
+  const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
+  constexpr std::size_t count = sizeof kTrapped / sizeof kTrapped[0];
+  std::vector<sock_filter> program{
+      Load(offsetof(seccomp_data, arch)),
+      JumpIfEqual(AUDIT_ARCH_X86_64, 1, 0),
+      allow,
+      Load(offsetof(seccomp_data, nr)),
+      JumpIfEqual(SYS_futex, 0, 6),
+      LoadArgument(1),
+      // The shim waits at its gate with this operation, which has no use for its last argument.
+      JumpIfEqual(FUTEX_WAIT, 0, 3),
+      LoadArgument(5),
+      JumpIfEqual(shm::kOwnCallMark, 0, 1),
+      allow,
+      trap,
+      JumpIfEqual(SYS_clock_gettime, 0, 5),
+      LoadArgument(0),
+      JumpIfEqual(CLOCK_PROCESS_CPUTIME_ID, 2, 0),
+      JumpIfEqual(CLOCK_THREAD_CPUTIME_ID, 1, 0),
+      // Negative numbers are processor clocks, too, of some process or thread.
+      {BPF_JMP | BPF_JGE | BPF_K, 0, static_cast<std::uint8_t>(count + 2), 1u << 31},
+      allow,
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    program.push_back(JumpIfEqual(kTrapped[i], count - i, 0));
+  }
+  program.push_back(allow);
+  program.push_back(LoadArgument(5));
+  program.push_back(JumpIfEqual(shm::kOwnCallMark, 0, 1));
+  program.push_back(allow);
+  program.push_back(trap);
+  return program;
 }
 
 }  // namespace
 
-int InstallFutexTrap() {
-  constexpr std::uint32_t kLoad = BPF_LD | BPF_W | BPF_ABS, kEqual = BPF_JMP | BPF_JEQ | BPF_K,
-                          kReturn = BPF_RET | BPF_K;
-  const sock_filter program[] = {
-      BPF_STMT(kLoad, offsetof(seccomp_data, arch)),
-      BPF_JUMP(kEqual, AUDIT_ARCH_X86_64, 0, 6),
-      BPF_STMT(kLoad, offsetof(seccomp_data, nr)),
-      BPF_JUMP(kEqual, SYS_futex, 0, 4),
-      // The shim's own waits at its gate carry a mark where FUTEX_WAIT ignores its argument.
-      BPF_STMT(kLoad, Low(1)),
-      BPF_JUMP(kEqual, FUTEX_WAIT, 0, 3),
-      BPF_STMT(kLoad, Low(5)),
-      BPF_JUMP(kEqual, shm::kGateFutexMark, 0, 1),
-      BPF_STMT(kReturn, SECCOMP_RET_ALLOW),
-      BPF_STMT(kReturn, SECCOMP_RET_USER_NOTIF),
-  };
-  const sock_fprog filter{sizeof program / sizeof program[0], const_cast<sock_filter*>(program)};
+int InstallTrap() {
+  std::vector<sock_filter> program = Program();
+  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter] {
     return static_cast<int>(
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,

@@ -1,0 +1,60 @@
+// System calls of clients that the kernel hands over.
+#include <sys/syscall.h>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
+  event_ns_ = task.reached_ns;
+  task.trap_id = call.id;
+  task.trap_listener = call.listener;
+  task.trap_result = 0;
+  task.trap_continues = false;
+  task.deadline_ns = shm::kNeverNs;
+  if (call.number == SYS_futex) {
+    HandleFutex(task, call);
+  } else {
+    HandleRawCall(task, call);
+  }
+  Refresh(*task.process->robot);
+  // What is there already ends the wait here and now.
+  if (task.trap_wait == TrapWait::kFds) PollEvents(0);
+}
+
+// A trapped call has arrived. That of the running thread stops it like a notification.
+void Engine::TrapArrived(int listener) {
+  const auto call = ReceiveTrapped(listener);
+  if (!call.has_value()) return;
+  if (running_ != nullptr && running_->tid == call->tid && running_->slot >= 0) {
+    trapped_ = *call;
+    return;
+  }
+  for (Task& task : tasks_) {
+    if (task.tid != call->tid || task.state == TaskState::kDead || task.slot < 0) continue;
+    // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
+    // again, or it came back from a call that nobody saw.
+    if (task.state == TaskState::kUnseen) MakeReady(task, shm::WakeReason::kGo);
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    task.early_trap = *call;
+    task.trap_id = 0;
+    return;
+  }
+  ContinueTrapped(listener, call->id);
+}
+
+// At the end of a run the kernel carries out all calls, those that wait included.
+void Engine::ReleaseTrapped() {
+  for (Task& task : tasks_) {
+    if (task.state == TaskState::kDead) continue;
+    if (task.trap_id != 0) ContinueTrapped(task.trap_listener, task.trap_id);
+    if (task.early_trap.has_value())
+      ContinueTrapped(task.early_trap->listener, task.early_trap->id);
+    task.trap_id = 0;
+    task.early_trap.reset();
+  }
+  if (trapped_.has_value()) ContinueTrapped(trapped_->listener, trapped_->id);
+  trapped_.reset();
+}
+
+}  // namespace tcs
