@@ -113,6 +113,15 @@ void Wakes() {
   }
 }
 
+// What only a C library's condition variables once used.
+void Refused() {
+  if (g_mode == Mode::kNative) return;
+  Word word{0}, other{0};
+  for (const int operation : {FUTEX_WAIT_REQUEUE_PI_PRIVATE, FUTEX_CMP_REQUEUE_PI_PRIVATE}) {
+    EXPECT(Futex(word, operation, 0, nullptr, &other) == -1 && errno == ENOSYS, "%d", operation);
+  }
+}
+
 // Between processes, by the memory they share.
 void Shared() {
   auto* word = static_cast<Word*>(
@@ -137,5 +146,6 @@ int main(int argc, char** argv) {
   Begin(argc, argv);
   Timeouts();
   Wakes();
+  Refused();
   Shared();
 }

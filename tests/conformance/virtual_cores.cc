@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/sysinfo.h>
 
 #include "tests/conformance/conformance.h"
@@ -56,12 +57,31 @@ void Priorities() {
   EXPECT(sched_setscheduler(0, SCHED_OTHER, &param) == 0, "back to SCHED_OTHER");
 }
 
+// Past the C library, as libnuma does it: the host's scheduler hears nothing of it.
+void RawCalls() {
+  sched_param before{}, after{};
+  EXPECT(syscall(SYS_sched_getparam, 0, &before) == 0, "the host's priority");
+  const sched_param highest{99};
+  EXPECT(syscall(SYS_sched_setscheduler, 0, SCHED_FIFO, &highest) == 0, "sched_setscheduler");
+  EXPECT(syscall(SYS_sched_setparam, 0, &highest) == 0, "sched_setparam");
+  cpu_set_t all;
+  memset(&all, 0xff, sizeof all);
+  EXPECT(syscall(SYS_sched_setaffinity, 0, sizeof all, &all) == 0, "sched_setaffinity");
+  EXPECT(syscall(SYS_sched_getparam, 0, &after) == 0, "the host's priority");
+  EXPECT(after.sched_priority == before.sched_priority, "the host's priority became %d",
+         after.sched_priority);
+  const long size = syscall(SYS_sched_getaffinity, 0, sizeof all, &all);
+  EXPECT(size > 0 && CPU_COUNT_S(static_cast<std::size_t>(size), &all) == 1, "it runs on %d",
+         CPU_COUNT_S(static_cast<std::size_t>(size), &all));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
   Cores();
   if (g_mode != Mode::kNative) Priorities();
+  if (g_mode != Mode::kNative) RawCalls();
   EXPECT(sched_yield() == 0, "sched_yield");
   errno = 0;
   EXPECT(nice(0) >= -20 && errno == 0, "nice");
