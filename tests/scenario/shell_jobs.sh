@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# Jobs, traps and timeouts of bash, and what people write in pipelines.
+expect() {
+  local wanted=$1 said accounting
+  for accounting in measured fixed; do
+    said=$("$tcsim" exec --accounting "$accounting" -- bash -c "$2" 2>&1 | grep -v 'tcsim: other runs')
+    [[ $said == "$wanted" ]] || fail "$accounting: '$2' says '$said' instead of '$wanted'"
+  done
+}
+expect 'at 6' 'seq 8 | xargs -P4 -I{} sleep 3; echo at $SECONDS'
+expect '143 at 2' 'sleep 100 & sleep 2; kill $!; wait $! 2>/dev/null; echo $? at $SECONDS'
+expect 'at 3, then 5' 'exec 2>/dev/null; set -m; sleep 5 & sleep 3 & wait -n; printf "at $SECONDS, "
+  wait; echo then $SECONDS'
+expect 'Running' 'set -m; sleep 5 & jobs | grep -o Running; wait 2>/dev/null'
+expect 'trapped at 2, 138' 'trap "printf \"trapped at \$SECONDS, \"" USR1; (sleep 2; kill -USR1 $$) &
+  sleep 10 & wait $!; echo $?'
+expect '142 at 3' 'read -t 3 line < <(sleep 100); echo $? at $SECONDS'
+expect '3' 'TIMEFORMAT=%0R; time sleep 3'
+expect 'alarm after 7' "perl -e '\$start = time; sleep 2; select(undef, undef, undef, 2);
+  \$SIG{ALRM} = sub { die qq(alarm) }; eval { alarm 3; sleep 100 }; \$@ =~ /alarm/ and
+  printf qq(alarm after %d), time - \$start'"
