@@ -183,13 +183,21 @@ void Engine::Settle(Task& task) {
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
   std::int64_t reached = reading.time_ns - frozen;
-  // What the notification itself takes is ours, not the client's.
+  std::int64_t charged = reading.cpu_ns;
+  // What the notification itself takes is ours, not the client's: neither its clock nor its charge
+  // shows it. But a yield is a system call natively, too, and who spins on it must get on.
   const std::int64_t noted = slot.note.time_ns - frozen;
-  if (notified_ && noted < running_horizon_ns_) reached = std::min(reached, std::max(noted, start));
-  const std::int64_t executed = std::max<std::int64_t>(0, reading.cpu_ns - task.charged_ns);
+  if (notified_ && noted < running_horizon_ns_ && slot.note.kind != shm::NotificationKind::kYield) {
+    const std::int64_t ours = std::max<std::int64_t>(0, reached - std::max(noted, start));
+    reached -= ours;
+    charged -= ours;
+    task.host_origin_ns +=
+        static_cast<std::int64_t>(static_cast<double>(ours) * task.process->robot->speed);
+  }
+  const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
   client_host_ns_ +=
       static_cast<std::int64_t>(static_cast<double>(executed) * task.process->robot->speed);
-  task.charged_ns = reading.cpu_ns;
+  task.charged_ns = charged;
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
     task.process->frozen_ns += std::max<std::int64_t>(0, reached - start);
