@@ -143,6 +143,9 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kSignalled:
       WakeSignalled(static_cast<pid_t>(note.args[0]));
       break;
+    case Kind::kQueueNotifies:
+      header_->queues_notify.store(1);
+      break;
     case Kind::kThreadExit:
       task.process->ended_cpu_ns += task.charged_ns;
       Slot(task).gate.store(shm::kGateOpen);
