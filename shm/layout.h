@@ -62,9 +62,16 @@ enum class NotificationKind : std::uint32_t {
   kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0
                    // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
                    // then set
-  kSignalled = 20,    // the thread has sent a signal to process args[0]; 0: to any
+  kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
+  kWaitKey =
+      22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey, args[1]:
+           // the object's number, args[2]: 1 to keep the place of the last such wait
+  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
 };
+
+// Kernel objects that cannot be polled.
+enum class WaitKey : std::uint32_t { kSemaphores = 1, kMessages = 2 };
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
 // _PROF).
@@ -167,7 +174,8 @@ static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 568);
 static_assert(offsetof(ThreadSlot, pid) == 592);
 
-// Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once.
+// Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
+// and key_waiters.
 struct alignas(64) SegmentHeader {
   std::uint64_t magic;
   std::uint32_t version;
@@ -181,7 +189,7 @@ struct alignas(64) SegmentHeader {
   std::int32_t coordinator_pid;
   Sync sync;
   std::atomic<std::uint32_t> queues_notify;  // 1: who sends to a message queue may send a signal
-  std::uint32_t reserved_word;
+  std::atomic<std::uint32_t> key_waiters;    // threads in kWaitKey: if none, kWakeKey is spared
   std::uint64_t reserved[7];
 };
 static_assert(sizeof(SegmentHeader) == 128);

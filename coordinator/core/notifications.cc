@@ -143,6 +143,16 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kSignalled:
       WakeSignalled(static_cast<pid_t>(note.args[0]));
       break;
+    case Kind::kWaitKey:
+      WaitForKey(task, note);
+      break;
+    case Kind::kWakeKey:
+      // The kernel would have given those who wait what they wait for, before the waker could take
+      // it again. So they go first, where its policy lets them.
+      if (WakeKey(note.args[0], note.args[1]) && task.policy == SCHED_OTHER) {
+        task.process->robot->ready.Rotate(task.order);
+      }
+      break;
     case Kind::kQueueNotifies:
       header_->queues_notify.store(1);
       break;
