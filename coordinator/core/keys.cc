@@ -30,7 +30,13 @@ bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
   }
   std::sort(waiting.begin(), waiting.end(),
             [](const Task* a, const Task* b) { return a->key_order < b->key_order; });
-  for (Task* task : waiting) MakeReady(*task, shm::WakeReason::kGo);
+  // A nanosecond apart, so that they try in this order on whatever cores they are.
+  const std::int64_t now = event_ns_;
+  for (Task* task : waiting) {
+    MakeReady(*task, shm::WakeReason::kGo);
+    ++event_ns_;
+  }
+  event_ns_ = now;
   return !waiting.empty();
 }
 
