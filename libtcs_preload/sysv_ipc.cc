@@ -11,6 +11,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -23,13 +24,6 @@ namespace {
 
 constexpr int kWouldWait = 4096;              // no errno
 constexpr std::size_t kMostOperations = 500;  // the kernel's SEMOPM; above it says E2BIG
-
-// After a change of the object: those who wait for one try again.
-void TellChanged(GuestThread& t, WaitKey kind, int id) {
-  if (g_header->key_waiters.load(std::memory_order_relaxed) == 0) return;
-  Exchange(t, Request{.kind = NotificationKind::kWakeKey,
-                      .args = {static_cast<std::int64_t>(kind), id}});
-}
 
 // Makes `call`, which returns -`blocks` where it would have to wait, until it need not. What it
 // reads and changes has a place in time, so nothing from before may be missing.

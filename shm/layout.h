@@ -71,7 +71,14 @@ enum class NotificationKind : std::uint32_t {
 };
 
 // Kernel objects that cannot be polled.
-enum class WaitKey : std::uint32_t { kSemaphores = 1, kMessages = 2 };
+// kTerminals is woken only: what is written to
+// one arrives some time later, unless somebody polls.
+enum class WaitKey : std::uint32_t {
+  kSemaphores = 1,
+  kMessages = 2,
+  kBacklogs = 3,
+  kTerminals = 4
+};
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
 // _PROF).
@@ -189,7 +196,8 @@ struct alignas(64) SegmentHeader {
   std::int32_t coordinator_pid;
   Sync sync;
   std::atomic<std::uint32_t> queues_notify;  // 1: who sends to a message queue may send a signal
-  std::atomic<std::uint32_t> key_waiters;    // threads in kWaitKey: if none, kWakeKey is spared
+  std::atomic<std::uint32_t>
+      key_waiters;  // threads that kWakeKey may concern; if none it is spared
   std::uint64_t reserved[7];
 };
 static_assert(sizeof(SegmentHeader) == 128);

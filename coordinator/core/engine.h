@@ -113,6 +113,8 @@ class Engine {
   bool WakeKey(std::int64_t kind, std::int64_t id);
   void WakeEveryKey();
   void EndKeyWait(Task& task);
+  void NoteTerminal(Task& task, int fd);
+  void FlushTerminals();
 
   // Signals that clients send (signals.cc).
   void WakeSignalled(pid_t receiver);

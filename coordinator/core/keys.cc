@@ -1,6 +1,10 @@
 // Waiting for kernel objects that cannot be polled (System V IPC), by the kind and number of the
 // object. Whoever changes one wakes all that wait for it, in the order in which they came; each
 // tries again, and comes back to its place if that was not for it.
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -24,6 +28,10 @@ void Engine::EndKeyWait(Task& task) {
 }
 
 bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
+    FlushTerminals();
+    return false;
+  }
   std::vector<Task*> waiting;
   for (Task& task : tasks_) {
     if (task.waits_for_key && task.key_kind == kind && task.key_id == id) waiting.push_back(&task);
@@ -38,6 +46,31 @@ bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
   }
   event_ns_ = now;
   return !waiting.empty();
+}
+
+void Engine::NoteTerminal(Task& task, int fd) {
+  struct stat status {};
+  if (task.watches_terminal || fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode) || !isatty(fd)) {
+    return;
+  }
+  task.watches_terminal = true;
+  header_->key_waiters.store(++key_waiters_);
+}
+
+// What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
+// own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
+// another.
+void Engine::FlushTerminals() {
+  for (int turn = 0; turn < 2; ++turn) {
+    for (const Task& task : tasks_) {
+      if (!task.watches_terminal) continue;
+      for (const int fd : task.watched) {
+        pollfd probe{fd, POLLIN, 0};
+        poll(&probe, 1, 0);
+      }
+    }
+  }
+  PollEvents(0);
 }
 
 // A process that ends may change any object: the kernel undoes what it did to semaphores.

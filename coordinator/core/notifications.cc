@@ -28,6 +28,8 @@ void Engine::EndWatches(Task& task) {
     close(fd);
   }
   task.watched.clear();
+  if (task.watches_terminal) header_->key_waiters.store(--key_waiters_);
+  task.watches_terminal = false;
 }
 
 void Engine::WaitForFds(Task& task, const shm::Notification& note) {
@@ -43,6 +45,7 @@ void Engine::WaitForFds(Task& task, const shm::Notification& note) {
     event.data.u64 = (static_cast<std::uint64_t>(Tag::kAwaited) << 32) | index;
     if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
       task.watched.push_back(fd);
+      NoteTerminal(task, fd);
     } else {
       close(fd);
     }

@@ -54,6 +54,7 @@ struct Task {
   bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
   std::uint64_t wait_mask = 0;            // this one; bit 0 is signal 1
   std::vector<int> watched;               // descriptors in the coordinator's epoll set
+  bool watches_terminal = false;          // among the watched
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
