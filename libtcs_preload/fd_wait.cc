@@ -90,8 +90,7 @@ bool PollNow(int fd, short events) {
 }
 
 FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
-  const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
-  if (flags < 0 || (flags & O_NONBLOCK) != 0) return FdState::kReady;
+  if (IsNonBlocking(fd)) return FdState::kReady;
   for (FdState state = FdState::kReady;; state = FdState::kWaited) {
     if (PollNow(fd, events)) return state;
     const pollfd waited{fd, events, 0};
@@ -112,16 +111,22 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
   }
 }
 
-void HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
-  if (NowNs(thread) <= thread.slot->clock.read_safe_ns) return;
-  if (!socket && FindTimerFd(fd) != nullptr) return;
+bool HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
+  if (NowNs(thread) <= thread.slot->clock.read_safe_ns) return false;
+  if (!socket && FindTimerFd(fd) != nullptr) return false;
   int type = 0;
   socklen_t size = sizeof type;
   if (socket && RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) == 0 &&
       type == SOCK_DGRAM && PollNow(fd, POLLIN)) {
-    return;
+    return false;
   }
   HoldForRead(thread);
+  return true;
+}
+
+bool IsNonBlocking(int fd) {
+  const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
+  return flags < 0 || (flags & O_NONBLOCK) != 0;
 }
 
 bool CanWait(int fd) {

@@ -29,7 +29,10 @@ bool PollNow(int fd, short events);
 // HoldForRead, unless others cannot change what the call finds. It takes a datagram that is there
 // already: that is from the past, and comes first whatever else is still sent. Or it reads a timer,
 // which expires at no time that the thread's horizon does not stop at.
-void HoldForReadFrom(GuestThread& thread, int fd, bool socket);
+// True if it held: somebody else may have taken what was there.
+bool HoldForReadFrom(GuestThread& thread, int fd, bool socket);
+
+bool IsNonBlocking(int fd);
 
 // True if calls on `fd` can wait for somebody else: sockets, pipes, terminals, event descriptors.
 bool CanWait(int fd);

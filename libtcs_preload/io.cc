@@ -3,48 +3,136 @@
 // Kernel-carried data is there at once for anybody who looks. So a write waits until nobody can
 // look at an earlier virtual time, and a read until nobody can write at an earlier one.
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
 #include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/transfer.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
 
 namespace {
 
+constexpr std::size_t kMostBuffers = 1024;  // above it the kernel says EINVAL
+
+// A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
+// that there is room again.
+constexpr auto kBacklogs = tcs::shm::WaitKey::kBacklogs;
+
+bool IsTerminal(int fd) {
+  char settings[64];  // the kernel's termios is smaller
+  return RawSyscall(SYS_ioctl, fd, TCGETS, Arg(settings)) == 0;
+}
+
+bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
+
 template <class Call>
 ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   GuestThread* t = Enter();
   if (t == nullptr || !CanWait(fd)) return ToErrno(call());
-  FdState state = FdState::kReady;
-  if (!dont_wait) {
-    const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
-    state = AwaitFd(*t, fd, POLLIN, deadline);
+  if (dont_wait || IsNonBlocking(fd)) {
+    HoldForReadFrom(*t, fd, socket);
+    return ToErrno(call());
   }
-  if (state == FdState::kFailed) return -1;
-  if (state == FdState::kReady) HoldForReadFrom(*t, fd, socket);
-  return ToErrno(call());
+  const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
+  for (;;) {
+    const FdState state = AwaitFd(*t, fd, POLLIN, deadline);
+    if (state == FdState::kFailed) return -1;
+    // While it holds, somebody else may take what is there.
+    if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
+      return ToErrno(call());
+    }
+  }
 }
 
-template <class Call>
-ssize_t WriteLike(int fd, bool dont_wait, bool socket, Call call) {
+long WritePart(int fd, const iovec* iov, std::size_t count) {
+  return RawSyscall(SYS_pwritev2, fd, Arg(iov), static_cast<long>(count), -1, -1, RWF_NOWAIT);
+}
+
+template <class Whole>
+ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   GuestThread* t = Enter();
-  if (t == nullptr || !CanWait(fd)) return ToErrno(call());
+  if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  if (!dont_wait) {
-    const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_SNDTIMEO) : tcs::shm::kNeverNs;
-    if (AwaitFd(*t, fd, POLLOUT, deadline) == FdState::kFailed) return -1;
-  }
-  return ToErrno(call());
+  if (count > kMostBuffers || IsNonBlocking(fd)) return ToErrno(whole());
+  Rest rest(iov, count);
+  if (rest.bytes() == 0) return ToErrno(whole());
+  const long result = TransferAll(
+      *t, fd, POLLOUT, SO_SNDTIMEO, rest,
+      [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
+  if (result > 0 && IsTerminal(fd)) TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
+  return ToErrno(result);
 }
 
-bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
+// Control data travels with the first part.
+template <class Whole>
+ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
+  if (t == nullptr) return ToErrno(whole());
+  HoldForWrite(*t);
+  if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
+    return ToErrno(whole());
+  }
+  Rest rest(message.msg_iov, message.msg_iovlen);
+  return ToErrno(TransferAll(
+      *t, fd, POLLOUT, SO_SNDTIMEO, rest,
+      [&](const iovec* part, std::size_t n) {
+        message.msg_iov = const_cast<iovec*>(part);
+        message.msg_iovlen = n;
+        const long sent = RawSyscall(SYS_sendmsg, fd, Arg(&message), flags | MSG_DONTWAIT);
+        if (sent > 0) message.msg_controllen = 0;
+        return sent;
+      },
+      whole));
+}
+
+// With MSG_WAITALL a stream gives all that is asked for, or what there is at its end.
+bool WaitsForAll(int fd, int flags) {
+  if ((flags & MSG_WAITALL) == 0 || (flags & (MSG_DONTWAIT | MSG_PEEK | MSG_TRUNC)) != 0) {
+    return false;
+  }
+  int type = 0;
+  socklen_t size = sizeof type;
+  return RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) == 0 &&
+         type == SOCK_STREAM && !IsNonBlocking(fd);
+}
+
+template <class Whole>
+ssize_t ReceiveAll(int fd, msghdr* message, int flags, Whole whole) {
+  GuestThread* t = Enter();
+  if (t == nullptr || message->msg_iovlen > kMostBuffers) return ToErrno(whole());
+  HoldForRead(*t);
+  Rest rest(message->msg_iov, message->msg_iovlen);
+  msghdr part_of = *message;
+  bool first = true;
+  const long done = TransferAll(
+      *t, fd, POLLIN, SO_RCVTIMEO, rest,
+      [&](const iovec* part, std::size_t n) {
+        part_of.msg_iov = const_cast<iovec*>(part);
+        part_of.msg_iovlen = n;
+        const long got =
+            RawSyscall(SYS_recvmsg, fd, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
+        if (got >= 0 && first) {
+          message->msg_namelen = part_of.msg_namelen;
+          message->msg_controllen = part_of.msg_controllen;
+          message->msg_flags = part_of.msg_flags;
+          part_of.msg_controllen = 0;
+          first = false;
+        }
+        return got;
+      },
+      whole);
+  return ToErrno(done);
+}
 
 }  // namespace
 
@@ -63,9 +151,17 @@ TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
 
 TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, sockaddr* from,
                             socklen_t* from_size) {
-  return ReadLike(fd, DontWait(flags), true, [&] {
+  auto whole = [&] {
     return RawSyscall(SYS_recvfrom, fd, Arg(buffer), size, flags, Arg(from), Arg(from_size));
-  });
+  };
+  if (from == nullptr && WaitsForAll(fd, flags)) {
+    iovec iov{buffer, size};
+    msghdr message{};
+    message.msg_iov = &iov;
+    message.msg_iovlen = 1;
+    return ReceiveAll(fd, &message, flags, whole);
+  }
+  return ReadLike(fd, DontWait(flags), true, whole);
 }
 
 TCS_EXPORT ssize_t __recvfrom_chk(int fd, void* buffer, std::size_t size, std::size_t room,
@@ -84,8 +180,9 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
-  return ReadLike(fd, DontWait(flags), true,
-                  [&] { return RawSyscall(SYS_recvmsg, fd, Arg(message), flags); });
+  auto whole = [&] { return RawSyscall(SYS_recvmsg, fd, Arg(message), flags); };
+  if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
+  return ReadLike(fd, DontWait(flags), true, whole);
 }
 
 // One message is waited for; those that are there with it come along. A timeout is a virtual one.
@@ -109,9 +206,11 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
 }
 
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
-  return static_cast<int>(ReadLike(fd, false, true, [&] {
+  const auto connection = static_cast<int>(ReadLike(fd, false, true, [&] {
     return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags);
   }));
+  if (GuestThread* t = Current(); t != nullptr && connection >= 0) TellChanged(*t, kBacklogs, 0);
+  return connection;
 }
 
 TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
@@ -119,16 +218,24 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 }
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
-  return WriteLike(fd, false, false, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
+  const iovec iov{const_cast<void*>(buffer), size};
+  return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
 
 TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
-  return WriteLike(fd, false, false, [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
+  return WriteAll(fd, iov, static_cast<std::size_t>(count),
+                  [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
 }
 
 TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flags,
                           const sockaddr* to, socklen_t to_size) {
-  return WriteLike(fd, DontWait(flags), true, [&] {
+  iovec iov{const_cast<void*>(buffer), size};
+  msghdr message{};
+  message.msg_name = const_cast<sockaddr*>(to);
+  message.msg_namelen = to_size;
+  message.msg_iov = &iov;
+  message.msg_iovlen = 1;
+  return SendAll(Enter(), fd, message, flags, [&] {
     return RawSyscall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
   });
 }
@@ -138,19 +245,57 @@ TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags)
 }
 
 TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  return WriteLike(fd, DontWait(flags), true,
-                   [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
+  return SendAll(Enter(), fd, *message, flags,
+                 [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
 }
 
+// What the socket has no room for is waited for, until all have been sent.
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
-  return static_cast<int>(WriteLike(fd, DontWait(flags), true, [&] {
-    return RawSyscall(SYS_sendmmsg, fd, Arg(messages), count, flags);
-  }));
+  GuestThread* t = Enter();
+  for (unsigned sent = 0; sent < count; ++sent) {
+    msghdr* message = &messages[sent].msg_hdr;
+    const ssize_t n = SendAll(t, fd, *message, flags,
+                              [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
+    if (n < 0) return sent > 0 ? static_cast<int>(sent) : -1;
+    messages[sent].msg_len = static_cast<unsigned>(n);
+  }
+  return static_cast<int>(count);
 }
+
+namespace {
+
+long ConnectOnce(int fd, const sockaddr* address, socklen_t size) {
+  const long flags = RawSyscall(SYS_fcntl, fd, F_GETFL);
+  RawSyscall(SYS_fcntl, fd, F_SETFL, flags | O_NONBLOCK);
+  const long result = RawSyscall(SYS_connect, fd, Arg(address), size);
+  RawSyscall(SYS_fcntl, fd, F_SETFL, flags);
+  return result;
+}
+
+long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t size) {
+  const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
+  for (bool again = false;; again = true) {
+    const long result = ConnectOnce(fd, address, size);
+    if (result != -EAGAIN || IsShutDown()) return result;
+    const Reply reply =
+        Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWaitKey,
+                            .deadline_ns = deadline,
+                            .args = {static_cast<std::int64_t>(kBacklogs), 0, again ? 1 : 0},
+                            .interruptible = true});
+    if (reply.reason == tcs::shm::WakeReason::kDeadline) return ConnectOnce(fd, address, size);
+    if (reply.reason == tcs::shm::WakeReason::kSignal && !RestartsAfterSignal()) return -EINTR;
+  }
+}
+
+}  // namespace
 
 // Connecting is a write: it makes the listener's descriptor readable.
 TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   GuestThread* t = Enter();
   if (t != nullptr) HoldForWrite(*t);
+  if (t != nullptr && address != nullptr && size >= sizeof address->sa_family &&
+      address->sa_family == AF_UNIX && !IsNonBlocking(fd)) {
+    return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
+  }
   return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));
 }

@@ -35,9 +35,6 @@ void ReportOnce(bool& reported, const char* name) {
 
 TCS_UNCOVERED(timer_create)
 TCS_UNCOVERED(timer_settime)
-TCS_UNCOVERED(mq_timedsend)
-TCS_UNCOVERED(mq_timedreceive)
-TCS_UNCOVERED(semtimedop)
 TCS_UNCOVERED(sigtimedwait)
 TCS_UNCOVERED(aio_suspend)
 TCS_UNCOVERED(aio_suspend64)

@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -62,7 +62,22 @@ enum class NotificationKind : std::uint32_t {
   kAffinity = 19,  // args[0]: tid, 0 for the own; args[1]: the robot's cores that it may use, bit 0
                    // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
                    // then set
-  kSignalled = 20,  // the thread has sent a signal to process args[0]; 0: to any
+  kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
+  kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
+  kWaitKey =
+      22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey, args[1]:
+           // the object's number, args[2]: 1 to keep the place of the last such wait
+  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
+};
+
+// Kernel objects that cannot be polled.
+// kTerminals is woken only: what is written to
+// one arrives some time later, unless somebody polls.
+enum class WaitKey : std::uint32_t {
+  kSemaphores = 1,
+  kMessages = 2,
+  kBacklogs = 3,
+  kTerminals = 4
 };
 
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
@@ -166,7 +181,8 @@ static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 568);
 static_assert(offsetof(ThreadSlot, pid) == 592);
 
-// Written by the coordinator before anyone attaches; shutdown alone changes later, once.
+// Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
+// and key_waiters.
 struct alignas(64) SegmentHeader {
   std::uint64_t magic;
   std::uint32_t version;
@@ -179,7 +195,10 @@ struct alignas(64) SegmentHeader {
   std::int64_t realtime_offset_ns;      // CLOCK_REALTIME minus virtual time; never 0
   std::int32_t coordinator_pid;
   Sync sync;
-  std::uint64_t reserved[8];
+  std::atomic<std::uint32_t> queues_notify;  // 1: who sends to a message queue may send a signal
+  std::atomic<std::uint32_t>
+      key_waiters;  // threads that kWakeKey may concern; if none it is spared
+  std::uint64_t reserved[7];
 };
 static_assert(sizeof(SegmentHeader) == 128);
 static_assert(offsetof(SegmentHeader, monotonic_offset_ns) == 32);

@@ -160,6 +160,7 @@ void Engine::SendReply(int connection, const Task& task) {
 // The slot goes to the end of the queue: a last word of its thread may still be in the pipe.
 void Engine::EndTask(Task& task) {
   EndWatches(task);
+  EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
   task.waits_for_child = task.waits_for_fds = false;
   task.trap_wait = TrapWait::kNone;
@@ -206,6 +207,7 @@ void Engine::ProcessEnded(std::size_t index) {
   for (Process& other : processes_) {
     if (other.pid == process.parent && !other.dead) WakeForSignals(other);
   }
+  WakeEveryKey();
   // Our own children, and those who lost their parent, are reaped here.
   int status = 0;
   if (waitpid(process.pid, &status, WNOHANG) != process.pid) return;

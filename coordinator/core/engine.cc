@@ -98,14 +98,15 @@ void Engine::Refresh(Robot& robot) {
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  const bool reads =
-      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child);
+  const bool reads = task.state == TaskState::kWaiting &&
+                     (task.waits_for_fds || task.waits_for_child || task.waits_for_key);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   EndWatches(task);
+  EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
   task.waits_for_fds = task.waits_for_child = task.has_wait_mask = false;
   task.reached_ns = std::max(task.reached_ns, event_ns_);
@@ -152,7 +153,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     idle = std::min(idle, other->deadline_ns);
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
-    if (!other->waits_for_fds && !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
+    if (!other->waits_for_fds && !other->waits_for_key &&
+        !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
       continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);

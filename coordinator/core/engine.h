@@ -128,6 +128,14 @@ class Engine {
   bool HandLockOn(const FutexKey& key, std::uint32_t flags);
   void WakeThoseWaitingFor(Task& ended);
 
+  // Kernel objects that cannot be polled (keys.cc).
+  void WaitForKey(Task& task, const shm::Notification& note);
+  bool WakeKey(std::int64_t kind, std::int64_t id);
+  void WakeEveryKey();
+  void EndKeyWait(Task& task);
+  void NoteTerminal(Task& task, int fd);
+  void FlushTerminals();
+
   // Signals that clients send (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
@@ -191,7 +199,8 @@ class Engine {
   shm::SegmentHeader* header_ = nullptr;
   int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
-  std::uint64_t futex_counter_ = 0;
+  std::uint64_t futex_counter_ = 0, key_counter_ = 0;
+  std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel

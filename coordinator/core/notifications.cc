@@ -28,6 +28,8 @@ void Engine::EndWatches(Task& task) {
     close(fd);
   }
   task.watched.clear();
+  if (task.watches_terminal) header_->key_waiters.store(--key_waiters_);
+  task.watches_terminal = false;
 }
 
 void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
@@ -42,6 +44,7 @@ void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
     event.data.u64 = (static_cast<std::uint64_t>(Tag::kAwaited) << 32) | index;
     if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
       task.watched.push_back(fd);
+      NoteTerminal(task, fd);
     } else {
       close(fd);
     }
@@ -141,6 +144,19 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kSignalled:
       WakeSignalled(static_cast<pid_t>(note.args[0]));
+      break;
+    case Kind::kWaitKey:
+      WaitForKey(task, note);
+      break;
+    case Kind::kWakeKey:
+      // The kernel would have given those who wait what they wait for, before the waker could take
+      // it again. So they go first, where its policy lets them.
+      if (WakeKey(note.args[0], note.args[1]) && task.policy == SCHED_OTHER) {
+        task.process->robot->ready.Rotate(task.order);
+      }
+      break;
+    case Kind::kQueueNotifies:
+      header_->queues_notify.store(1);
       break;
     case Kind::kThreadExit:
       task.process->ended_cpu_ns += task.charged_ns;

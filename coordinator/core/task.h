@@ -51,10 +51,13 @@ struct Task {
   std::int64_t reached_ns = 0;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
-  bool waits_for_fds = false, waits_for_child = false;
-  bool has_wait_mask = false;   // it waits with a signal mask of its own (sigsuspend):
-  std::uint64_t wait_mask = 0;  // this one; bit 0 is signal 1
-  std::vector<int> watched;     // descriptors in the coordinator's epoll set
+  bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
+  std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
+  std::uint64_t key_order = 0;            // of waiting
+  bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
+  std::uint64_t wait_mask = 0;            // this one; bit 0 is signal 1
+  std::vector<int> watched;               // descriptors in the coordinator's epoll set
+  bool watches_terminal = false;          // among the watched
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return

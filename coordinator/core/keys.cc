@@ -1,0 +1,84 @@
+// Waiting for kernel objects that cannot be polled (System V IPC), by the kind and number of the
+// object. Whoever changes one wakes all that wait for it, in the order in which they came; each
+// tries again, and comes back to its place if that was not for it.
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+void Engine::WaitForKey(Task& task, const shm::Notification& note) {
+  SetState(task, TaskState::kWaiting);
+  task.waits_for_key = true;
+  task.key_kind = note.args[0];
+  task.key_id = note.args[1];
+  if (note.args[2] == 0) task.key_order = ++key_counter_;
+  header_->key_waiters.store(++key_waiters_);
+}
+
+void Engine::EndKeyWait(Task& task) {
+  if (!task.waits_for_key) return;
+  task.waits_for_key = false;
+  header_->key_waiters.store(--key_waiters_);
+}
+
+bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
+    FlushTerminals();
+    return false;
+  }
+  std::vector<Task*> waiting;
+  for (Task& task : tasks_) {
+    if (task.waits_for_key && task.key_kind == kind && task.key_id == id) waiting.push_back(&task);
+  }
+  std::sort(waiting.begin(), waiting.end(),
+            [](const Task* a, const Task* b) { return a->key_order < b->key_order; });
+  // A nanosecond apart, so that they try in this order on whatever cores they are.
+  const std::int64_t now = event_ns_;
+  for (Task* task : waiting) {
+    MakeReady(*task, shm::WakeReason::kGo);
+    ++event_ns_;
+  }
+  event_ns_ = now;
+  return !waiting.empty();
+}
+
+void Engine::NoteTerminal(Task& task, int fd) {
+  struct stat status {};
+  if (task.watches_terminal || fstat(fd, &status) != 0 || !S_ISCHR(status.st_mode) || !isatty(fd)) {
+    return;
+  }
+  task.watches_terminal = true;
+  header_->key_waiters.store(++key_waiters_);
+}
+
+// What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
+// own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
+// another.
+void Engine::FlushTerminals() {
+  for (int turn = 0; turn < 2; ++turn) {
+    for (const Task& task : tasks_) {
+      if (!task.watches_terminal) continue;
+      for (const int fd : task.watched) {
+        pollfd probe{fd, POLLIN, 0};
+        poll(&probe, 1, 0);
+      }
+    }
+  }
+  PollEvents(0);
+}
+
+// A process that ends may change any object: the kernel undoes what it did to semaphores.
+void Engine::WakeEveryKey() {
+  if (key_waiters_ == 0) return;
+  for (const Task& task : tasks_) {
+    if (task.waits_for_key) WakeKey(task.key_kind, task.key_id);
+  }
+}
+
+}  // namespace tcs

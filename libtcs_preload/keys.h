@@ -1,0 +1,16 @@
+// Kernel objects that cannot be polled: whoever changes one tells those who wait for it.
+#pragma once
+
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// After a change of the object: those who wait for one try again.
+inline void TellChanged(GuestThread& thread, shm::WaitKey kind, std::int64_t id) {
+  if (g_header->key_waiters.load(std::memory_order_relaxed) == 0) return;
+  Exchange(thread, Request{.kind = shm::NotificationKind::kWakeKey,
+                           .args = {static_cast<std::int64_t>(kind), id}});
+}
+
+}  // namespace tcs::preload

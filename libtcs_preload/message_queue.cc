@@ -1,0 +1,131 @@
+// POSIX message queues. Linux can poll them, so they are waited for like other descriptors; the
+// kernel is only ever asked for what it can do at once.
+#include <errno.h>
+#include <mqueue.h>
+#include <poll.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/real.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+// A deadline that has passed: the kernel then checks everything, but does not wait.
+constexpr timespec kLongAgo{};
+
+bool ToDeadline(const timespec* timeout, std::int64_t* deadline_ns) {
+  *deadline_ns = tcs::shm::kNeverNs;
+  if (timeout == nullptr) return true;
+  if (ToNs(*timeout) != tcs::shm::kNeverNs) {
+    *deadline_ns = ToNs(*timeout) - OffsetNs(Clock::kRealtime);
+  }
+  return IsValid(*timeout);
+}
+
+// Makes `call` until it does not have to wait any more. It returns -ETIMEDOUT where it would.
+template <class Call>
+long WaitAndCall(GuestThread& t, mqd_t queue, short events, std::int64_t deadline_ns, Call call) {
+  for (;;) {
+    const long result = call();
+    if (result != -ETIMEDOUT) return result;
+    const pollfd waited{queue, events, 0};
+    switch (WaitForFds(t, &waited, 1, deadline_ns)) {
+      case WaitResult::kRetry:
+        break;
+      case WaitResult::kTimedOut:
+        return call();
+      case WaitResult::kInterrupted:
+        if (!RestartsAfterSignal()) return -EINTR;
+        break;
+    }
+  }
+}
+
+long Receive(GuestThread& t, mqd_t queue, char* text, std::size_t size, unsigned* priority,
+             const timespec* timeout) {
+  std::int64_t deadline;
+  if (!ToDeadline(timeout, &deadline)) return -EINVAL;
+  auto call = [&] {
+    return RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size), Arg(priority),
+                      Arg(&kLongAgo));
+  };
+  // A more urgent message than the one that is there may still be on its way.
+  if (PollNow(queue, POLLIN)) HoldForRead(t);
+  const long result = WaitAndCall(t, queue, POLLIN, deadline, call);
+  if (result != -EAGAIN) return result;
+  HoldForRead(t);
+  return call();
+}
+
+long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsigned priority,
+          const timespec* timeout) {
+  std::int64_t deadline;
+  if (!ToDeadline(timeout, &deadline)) return -EINVAL;
+  HoldForWrite(t);
+  const long result = WaitAndCall(t, queue, POLLOUT, deadline, [&] {
+    return RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
+                      static_cast<long>(priority), Arg(&kLongAgo));
+  });
+  // The kernel may have sent a signal with it.
+  if (result == 0 && g_header->queues_notify.load(std::memory_order_relaxed) != 0) {
+    Exchange(t, Request{.kind = tcs::shm::NotificationKind::kSignalled});
+  }
+  return result;
+}
+
+ssize_t TimedReceive(mqd_t queue, char* text, std::size_t size, unsigned* priority,
+                     const timespec* timeout) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return ToErrno(RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size),
+                              Arg(priority), Arg(timeout)));
+  }
+  return ToErrno(Receive(*t, queue, text, size, priority, timeout));
+}
+
+int TimedSend(mqd_t queue, const char* text, std::size_t size, unsigned priority,
+              const timespec* timeout) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
+                           static_cast<long>(priority), Arg(timeout))));
+  }
+  return static_cast<int>(ToErrno(Send(*t, queue, text, size, priority, timeout)));
+}
+
+}  // namespace
+
+TCS_EXPORT ssize_t mq_timedreceive(mqd_t queue, char* __restrict text, std::size_t size,
+                                   unsigned* __restrict priority,
+                                   const timespec* __restrict timeout) {
+  return TimedReceive(queue, text, size, priority, timeout);
+}
+
+TCS_EXPORT ssize_t mq_receive(mqd_t queue, char* text, std::size_t size, unsigned* priority) {
+  return TimedReceive(queue, text, size, priority, nullptr);
+}
+
+TCS_EXPORT int mq_timedsend(mqd_t queue, const char* text, std::size_t size, unsigned priority,
+                            const timespec* timeout) {
+  return TimedSend(queue, text, size, priority, timeout);
+}
+
+TCS_EXPORT int mq_send(mqd_t queue, const char* text, std::size_t size, unsigned priority) {
+  return TimedSend(queue, text, size, priority, nullptr);
+}
+
+TCS_EXPORT int mq_notify(mqd_t queue, const sigevent* notification) noexcept {
+  GuestThread* t = Enter();
+  // From now on senders tell the coordinator when they have sent something.
+  if (t != nullptr && notification != nullptr) {
+    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kQueueNotifies});
+  }
+  return TCS_REAL(mq_notify)(queue, notification);
+}

@@ -1,0 +1,156 @@
+// System V semaphores and message queues. The kernel cannot poll them, so it is only asked for what
+// it can do at once; where that is nothing, the thread waits until somebody has changed the object.
+// Whoever does tells the coordinator, if anybody waits.
+#include <errno.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/ipc.h>
+#include <sys/msg.h>
+#include <sys/sem.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/keys.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+using tcs::shm::NotificationKind;
+using tcs::shm::WaitKey;
+using tcs::shm::WakeReason;
+
+namespace {
+
+constexpr int kWouldWait = 4096;              // no errno
+constexpr std::size_t kMostOperations = 500;  // the kernel's SEMOPM; above it says E2BIG
+
+// Makes `call`, which returns -`blocks` where it would have to wait, until it need not. What it
+// reads and changes has a place in time, so nothing from before may be missing.
+template <class Call>
+long WaitAndCall(GuestThread& t, WaitKey kind, int id, int blocks, std::int64_t deadline_ns,
+                 Call call) {
+  HoldForRead(t);
+  for (bool again = false;; again = true) {
+    const long result = call();
+    if (result >= 0) TellChanged(t, kind, id);
+    if (again && result == -EINVAL) return -EIDRM;
+    if (result != -blocks) return result;
+    if (IsShutDown()) return -EINTR;
+    const Reply reply =
+        Exchange(t, Request{.kind = NotificationKind::kWaitKey,
+                            .deadline_ns = deadline_ns,
+                            .args = {static_cast<std::int64_t>(kind), id, again ? 1 : 0},
+                            .interruptible = true});
+    // These calls are not made again after a handler, whatever it was installed with.
+    if (reply.reason == WakeReason::kSignal) return -EINTR;
+    if (reply.reason == WakeReason::kDeadline) {
+      const long last = call();
+      if (last >= 0) TellChanged(t, kind, id);
+      return last;
+    }
+  }
+}
+
+// True if the first of the operations that has to wait is one that must not.
+bool MustNotWait(int id, const sembuf* operations, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    long value = RawSyscall(SYS_semctl, id, operations[i].sem_num, GETVAL);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (operations[j].sem_num == operations[i].sem_num) value += operations[j].sem_op;
+    }
+    const long change = operations[i].sem_op;
+    if (change == 0 ? value != 0 : value + change < 0) {
+      return (operations[i].sem_flg & IPC_NOWAIT) != 0;
+    }
+  }
+  return false;
+}
+
+long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count,
+             const timespec* timeout) {
+  if (timeout != nullptr && !IsValid(*timeout)) return -EINVAL;
+  if (count > kMostOperations) return -E2BIG;
+  sembuf at_once[kMostOperations];
+  bool some = false;  // must not wait
+  for (std::size_t i = 0; i < count; ++i) {
+    at_once[i] = operations[i];
+    some |= (operations[i].sem_flg & IPC_NOWAIT) != 0;
+    at_once[i].sem_flg = static_cast<short>(operations[i].sem_flg | IPC_NOWAIT);
+  }
+  const std::int64_t deadline =
+      timeout != nullptr ? DeadlineAfter(t, ToNs(*timeout)) : tcs::shm::kNeverNs;
+  const long result = WaitAndCall(t, WaitKey::kSemaphores, id, kWouldWait, deadline, [&]() -> long {
+    const long done = RawSyscall(SYS_semop, id, Arg(at_once), static_cast<long>(count));
+    return done == -EAGAIN && !(some && MustNotWait(id, operations, count)) ? -kWouldWait : done;
+  });
+  return result == -kWouldWait ? -EAGAIN : result;
+}
+
+int SemaphoreOperation(int id, sembuf* operations, std::size_t count, const timespec* timeout) {
+  GuestThread* t = Enter();
+  if (t == nullptr) {
+    return static_cast<int>(ToErrno(
+        RawSyscall(SYS_semtimedop, id, Arg(operations), static_cast<long>(count), Arg(timeout))));
+  }
+  return static_cast<int>(ToErrno(Operate(*t, id, operations, count, timeout)));
+}
+
+}  // namespace
+
+TCS_EXPORT int semop(int id, sembuf* operations, std::size_t count) noexcept {
+  return SemaphoreOperation(id, operations, count, nullptr);
+}
+
+TCS_EXPORT int semtimedop(int id, sembuf* operations, std::size_t count,
+                          const timespec* timeout) noexcept {
+  return SemaphoreOperation(id, operations, count, timeout);
+}
+
+TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
+  va_list arguments;
+  va_start(arguments, command);
+  const long argument = va_arg(arguments, long);  // a union of an int and pointers
+  va_end(arguments);
+  GuestThread* t = Enter();
+  if (t != nullptr) HoldForRead(*t);
+  const long result = RawSyscall(SYS_semctl, id, number, command, argument);
+  if (t != nullptr && result >= 0 &&
+      (command == IPC_RMID || command == SETVAL || command == SETALL)) {
+    TellChanged(*t, WaitKey::kSemaphores, id);
+  }
+  return static_cast<int>(ToErrno(result));
+}
+
+TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) {
+  GuestThread* t = Enter();
+  auto call = [&](int with) {
+    return RawSyscall(SYS_msgsnd, id, Arg(message), static_cast<long>(size), with);
+  };
+  if (t == nullptr) return static_cast<int>(ToErrno(call(flags)));
+  const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : EAGAIN;
+  return static_cast<int>(
+      ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs,
+                          [&] { return call(flags | IPC_NOWAIT); })));
+}
+
+TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, int flags) {
+  GuestThread* t = Enter();
+  auto call = [&](int with) {
+    return RawSyscall(SYS_msgrcv, id, Arg(message), static_cast<long>(size), type, with);
+  };
+  if (t == nullptr) return ToErrno(call(flags));
+  const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : ENOMSG;
+  return ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs,
+                             [&] { return call(flags | IPC_NOWAIT); }));
+}
+
+TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
+  GuestThread* t = Enter();
+  if (t != nullptr) HoldForRead(*t);
+  const long result = RawSyscall(SYS_msgctl, id, command, Arg(buffer));
+  if (t != nullptr && result >= 0 && (command == IPC_RMID || command == IPC_SET)) {
+    TellChanged(*t, WaitKey::kMessages, id);
+  }
+  return static_cast<int>(ToErrno(result));
+}

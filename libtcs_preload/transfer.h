@@ -1,0 +1,86 @@
+// Moving all of some buffers, as a call that may wait does it, in parts that need not wait.
+#pragma once
+
+#include <errno.h>
+#include <sys/uio.h>
+
+#include <cstddef>
+
+#include "libtcs_preload/fd_wait.h"
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// What is left of some buffers.
+class Rest {
+ public:
+  Rest(const iovec* iov, std::size_t count) : iov_(iov), count_(count) {
+    for (std::size_t i = 0; i < count; ++i) bytes_ += iov[i].iov_len;
+  }
+  std::size_t bytes() const { return bytes_; }
+
+  // All of it, or where something has been used already as much as fits into the copy.
+  const iovec* Next(std::size_t* count) {
+    if (offset_ == 0) {
+      *count = count_;
+      return iov_;
+    }
+    *count = count_ < kCopied ? count_ : kCopied;
+    for (std::size_t i = 0; i < *count; ++i) copy_[i] = iov_[i];
+    copy_[0].iov_base = static_cast<char*>(copy_[0].iov_base) + offset_;
+    copy_[0].iov_len -= offset_;
+    return copy_;
+  }
+
+  void Use(std::size_t bytes) {
+    bytes_ -= bytes;
+    offset_ += bytes;
+    while (count_ > 0 && offset_ >= iov_->iov_len) {
+      offset_ -= iov_->iov_len;
+      ++iov_;
+      --count_;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kCopied = 16;  // the stack may be a small one
+  const iovec* iov_;
+  std::size_t count_, offset_ = 0, bytes_ = 0;
+  iovec copy_[kCopied];
+};
+
+// `part(iov, count)` does what it can at once (-EAGAIN: nothing), the rest is waited for. A part
+// that the descriptor does not have (-EOPNOTSUPP), or that fails although the descriptor is ready,
+// is left to `whole`. Returns what the call returns to its caller, or -errno.
+template <class Part, class Whole>
+long TransferAll(GuestThread& thread, int fd, short events, int timeout_option, Rest& rest,
+                 Part part, Whole whole) {
+  const int saved = errno;
+  std::int64_t deadline_ns = -1;
+  for (long done = 0;;) {
+    std::size_t count = 0;
+    const iovec* iov = rest.Next(&count);
+    const long n = part(iov, count);
+    if (n > 0) {
+      done += n;
+      rest.Use(static_cast<std::size_t>(n));
+      if (rest.bytes() == 0) return done;
+      continue;
+    }
+    const bool can_part = n != -EOPNOTSUPP || done > 0;
+    if (n != -EAGAIN && can_part) return done > 0 ? done : n;
+    if (can_part && done == 0 && PollNow(fd, events)) return whole();
+    if (deadline_ns < 0) {
+      deadline_ns =
+          timeout_option != 0 ? SocketDeadline(thread, fd, timeout_option) : shm::kNeverNs;
+    }
+    if (AwaitFd(thread, fd, events, deadline_ns) == FdState::kFailed) {
+      const int error = errno;
+      errno = saved;
+      return done > 0 ? done : -error;
+    }
+    if (!can_part) return whole();
+  }
+}
+
+}  // namespace tcs::preload
