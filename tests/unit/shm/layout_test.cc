@@ -10,7 +10,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, VersionFourHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 4u);
+  EXPECT_EQ(kVersion, 5u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
