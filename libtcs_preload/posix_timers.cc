@@ -45,12 +45,9 @@ struct Call {
   sigval value;
 };
 
-// As the C library has it: the program's function runs with no signal blocked.
 void* RunFunction(void* raw) {
   const Call call = *static_cast<Call*>(raw);
   free(raw);
-  const unsigned long none = 0;
-  RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&none), 0, sizeof none);
   call.function(call.value);
   return nullptr;
 }
@@ -118,8 +115,9 @@ void FreePosixTimer(PosixTimer* timer) {
 }
 
 bool StartTimerThread(PosixTimer* timer) {
-  // The helper takes no signal of the program's.
-  const unsigned long all = ~0ul;
+  // It takes no signal of the program's, nor do the threads that it starts, as in the C library,
+  // which needs two itself: SIGCANCEL and SIGSETXID.
+  const unsigned long all = ~(3ul << 31);
   unsigned long before = 0;
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), sizeof all);
   pthread_attr_t attributes;
