@@ -117,7 +117,8 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
         Fail(EAGAIN);
         return FdState::kFailed;
       case WaitResult::kInterrupted:
-        if (!RestartsAfterSignal()) {
+        // As the kernel has it: with a timeout of its own a socket's wait is never made again.
+        if (deadline_ns != shm::kNeverNs || !RestartsAfterSignal()) {
           Fail(EINTR);
           return FdState::kFailed;
         }

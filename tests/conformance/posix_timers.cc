@@ -1,6 +1,7 @@
 // timer_create: by signal, to a thread, with a thread, without notice; overruns; absolute times;
 // processor time.
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -232,6 +233,36 @@ void* Sleep(void*) {
   return nullptr;
 }
 
+// A signal to the process goes to the thread that does not block it, wherever that waits.
+void ToWhoTakesIt() {
+  Handle(SIGRTMIN + 6);
+  sem_t never;
+  sem_init(&never, 0, 0);
+  pthread_t thread;
+  EXPECT(pthread_create(
+             &thread, nullptr,
+             [](void* semaphore) -> void* {
+               g_sleeper = Tid();
+               EXPECT(sem_wait(static_cast<sem_t*>(semaphore)) == -1 && errno == EINTR, "sem_wait");
+               return nullptr;
+             },
+             &never) == 0,
+         "pthread_create");
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGRTMIN + 6);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  usleep(1000);
+  const timer_t timer = Create(CLOCK_MONOTONIC, BySignal(SIGRTMIN + 6, 3));
+  g_count = 0;
+  const std::int64_t start = Now();
+  Set(timer, 25 * kMs);
+  pthread_join(thread, nullptr);
+  EXPECT(g_count == 1 && g_tid == g_sleeper, "%d signals, the last in %d", int(g_count), g_tid);
+  ExpectAt(g_at[0] - start, 25 * kMs, "the process's signal");
+  timer_delete(timer);
+}
+
 void ToOneThread() {
   Handle(SIGRTMIN + 4);
   pthread_t thread;
@@ -300,6 +331,21 @@ void Errors() {
   EXPECT(timer_delete(timer) == 0, "timer_delete");
 }
 
+// Another program in the same process is not hit by this one's timers.
+void EndWithTheProgram() {
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGALRM, SIG_DFL);
+    timer_t timer;
+    if (timer_create(CLOCK_MONOTONIC, nullptr, &timer) != 0) _exit(1);
+    Set(timer, 50 * kMs);
+    execlp("sleep", "sleep", "0.2", nullptr);
+    _exit(2);
+  }
+  int status = -1;
+  EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -310,6 +356,8 @@ int main(int argc, char** argv) {
   WithoutNotice();
   OnProcessorTime();
   Errors();
+  EndWithTheProgram();
   ByThreads();
   ToOneThread();
+  ToWhoTakesIt();
 }
