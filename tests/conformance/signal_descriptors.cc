@@ -51,8 +51,10 @@ void ByTimer(int fd) {
   pollfd polled{fd, POLLIN, 0};
   start = Now();
   AlarmIn(40 * kMs);
-  EXPECT(poll(&polled, 1, 10) == 0, "poll found something");
-  ExpectPassed(start, 10 * kMs, "poll's timeout");
+  if (g_mode != Mode::kNative) {  // a busy machine may be late
+    EXPECT(poll(&polled, 1, 10) == 0, "poll found something");
+    ExpectPassed(start, 10 * kMs, "poll's timeout");
+  }
   EXPECT(poll(&polled, 1, 1000) == 1 && polled.revents == POLLIN, "poll");
   ExpectPassed(start, 40 * kMs, "poll");
   Read(fd);
@@ -79,7 +81,8 @@ void InEpoll(int fd, std::uint32_t trigger) {
   for (int round = 0; round < 5; ++round) {
     const std::int64_t start = Now();
     AlarmIn(30 * kMs);
-    EXPECT(epoll_wait(set, &event, 1, 10) == 0, "round %d: too early", round);
+    if (g_mode != Mode::kNative)  // a busy machine may be late
+      EXPECT(epoll_wait(set, &event, 1, 10) == 0, "round %d: too early", round);
     EXPECT(epoll_wait(set, &event, 1, 1000) == 1 && event.data.u64 == 2, "round %d", round);
     ExpectPassed(start, 30 * kMs, "epoll_wait");
     EXPECT(Read(fd).ssi_signo == SIGALRM, "another signal");
