@@ -75,9 +75,10 @@ int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
                     timeout == nullptr ? -1 : ToNs(*timeout));
     if (signal > 0 && found.si_code == SI_TIMER) {
       // It was sent before these happened.
-      found.si_overrun = static_cast<int>(
-          Exchange(*t, Request{.kind = NotificationKind::kTimerOverrun, .args = {found.si_timerid}})
-              .values[0]);
+      found.si_overrun =
+          static_cast<int>(Exchange(*t, Request{.kind = NotificationKind::kTimerOverrun,
+                                                .args = {found.si_timerid, 1}})
+                               .values[0]);
     }
   }
   if (signal < 0) return static_cast<int>(ToErrno(signal));

@@ -66,7 +66,8 @@ enum class NotificationKind : std::uint32_t {
                    // for core 0, 0 to ask only; reply[0]: 0, or negative for an errno; reply[1]: as
                    // then set
   kSignalled = 20,     // the thread has sent a signal to process args[0]; 0: to any
-  kTimerOverrun = 21,  // args[0]: timer id; reply[0]: overruns of the signal accepted last
+  kTimerOverrun = 21,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
+                       // reply[0]: overruns of the signal accepted last
 };
 
 // What a timer runs on, and what it does besides writing to an eventfd. A sigset's bit 0 is signal

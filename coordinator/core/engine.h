@@ -133,7 +133,7 @@ class Engine {
   static Task* TakerOf(const Process& process, const TimerSignal& signal);
   void RouteTimerSignals(Process& process);
   void SendTimerSignalsTo(const Task& task);
-  static void NoteAccepted(const Process& process, std::int64_t id, Timer& timer);
+  static void NoteAccepted(Process& process);
 
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.

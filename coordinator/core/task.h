@@ -91,6 +91,8 @@ struct Timer {
   bool queued = false;             // it was not seen accepted yet
   std::int64_t overruns = 0;       // of that signal
   std::int64_t last_overruns = 0;  // of the one accepted before
+  pid_t sent_to = 0;               // 0: the process
+  void Accept();
 };
 
 // A timer's signal on its way.

@@ -21,8 +21,9 @@ bool Handles(const Task& task, int signal) {
   return (sets.caught & ~blocked & Bit(signal)) != 0;
 }
 
-void Send(const Process& process, const TimerSignal& signal, pid_t tid) {
+void Send(Process& process, const TimerSignal& signal, pid_t tid) {
   if (signal.timer_id != 0) {
+    process.timers[signal.timer_id].sent_to = tid;
     SendTimerSignal({.pid = process.pid,
                      .tid = tid,
                      .number = signal.number,
@@ -75,21 +76,24 @@ void Engine::SendTimerSignalsTo(const Task& task) {
   });
 }
 
-// Has the signal that was sent last been accepted? While one of its number is pending it counts as
-// not: whose it is cannot be seen where timers share a number.
-void Engine::NoteAccepted(const Process& process, std::int64_t id, Timer& timer) {
-  if (!timer.queued) return;
-  for (const TimerSignal& signal : process.timer_signals) {
-    if (signal.timer_id == id) return;
+void Timer::Accept() {
+  queued = false;
+  last_overruns = overruns;
+  overruns = 0;
+}
+
+// Finds out which timers' signals have been accepted. While one of a signal's number is pending
+// where it was sent to it counts as not: whose it is cannot be seen.
+void Engine::NoteAccepted(Process& process) {
+  for (auto& [id, timer] : process.timers) {
+    if (!timer.queued) continue;
+    const bool unsent = std::any_of(process.timer_signals.begin(), process.timer_signals.end(),
+                                    [id = id](const TimerSignal& s) { return s.timer_id == id; });
+    if (unsent) continue;
+    const SignalSets sets = ReadSignalSets(timer.sent_to != 0 ? timer.sent_to : process.pid);
+    const std::uint64_t pending = timer.sent_to != 0 ? sets.own_pending : sets.shared_pending;
+    if ((pending & Bit(timer.kind.signal)) == 0) timer.Accept();
   }
-  for (const Task* task : process.robot->tasks) {
-    if (task->process != &process) continue;
-    const SignalSets sets = ReadSignalSets(task->tid);
-    if (((sets.own_pending | sets.shared_pending) & Bit(timer.kind.signal)) != 0) return;
-  }
-  timer.queued = false;
-  timer.last_overruns = timer.overruns;
-  timer.overruns = 0;
 }
 
 }  // namespace tcs

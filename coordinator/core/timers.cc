@@ -121,7 +121,8 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
   if (found == process.timers.end()) return;
   Timer& timer = found->second;
   if (note.kind == shm::NotificationKind::kTimerOverrun) {
-    NoteAccepted(process, id, timer);
+    if (note.args[1] != 0 && timer.queued) timer.Accept();
+    NoteAccepted(process);
     task.reply[0] = timer.last_overruns;
     return;
   }
@@ -130,6 +131,7 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
   if (note.kind != shm::NotificationKind::kTimerSet) return;
   timer.next_ns = std::max<std::int64_t>(0, note.args[1]);
   timer.interval_ns = std::max<std::int64_t>(0, note.args[2]);
+  timer.queued = false;
   timer.overruns = timer.last_overruns = 0;
   FindNextExpiry(process);
   if (timer.event_fd >= 0) {
@@ -147,7 +149,6 @@ void Engine::SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::
     process.timer_signals.push_back({.number = timer.kind.signal});
     return;
   }
-  NoteAccepted(process, id, timer);
   if (timer.queued) {
     timer.overruns = std::min<std::int64_t>(INT_MAX, timer.overruns + count);
     return;
@@ -165,6 +166,7 @@ void Engine::SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::
 bool Engine::Expire(Process& process, std::int64_t now_ns) {
   const std::int64_t now = now_ns + process.frozen_ns;
   bool wrote = false;
+  NoteAccepted(process);
   for (auto& [id, timer] : process.timers) {
     if (timer.kind.clock != TimerClock::kTime) continue;
     const std::int64_t count = TakeExpirations(timer, now);
@@ -188,6 +190,7 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
 void Engine::ExpireCpuTimers(const Task& ran) {
   Process& process = *ran.process;
   if (!process.has_cpu_timers) return;
+  NoteAccepted(process);
   for (auto& [id, timer] : process.timers) {
     if (timer.kind.clock == TimerClock::kTime) continue;
     if (timer.kind.clock == TimerClock::kThreadCpu && timer.kind.clock_tid != ran.tid) continue;

@@ -233,6 +233,66 @@ void* Sleep(void*) {
   return nullptr;
 }
 
+// Timers of several threads, all with the same signal, and two of the process with another.
+constexpr int kThreads = 4, kPeriods = 10;
+
+void* Periods(void* raw) {
+  const std::int64_t period = (5 + *static_cast<int*>(raw)) * kMs;
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGRTMIN + 7);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  sigevent event = BySignal(SIGRTMIN + 7, 0);
+  event.sigev_notify = SIGEV_THREAD_ID;
+  event._sigev_un._tid = Tid();
+  const timer_t timer = Create(CLOCK_MONOTONIC, event);
+  const std::int64_t start = Now();
+  Set(timer, period, period);
+  for (int i = 1; i <= kPeriods; ++i) {
+    siginfo_t info{};
+    EXPECT(sigwaitinfo(&set, &info) == SIGRTMIN + 7, "sigwaitinfo");
+    if (g_mode == Mode::kNative) continue;
+    EXPECT(info.si_overrun == 0, "%d overruns", info.si_overrun);
+    const std::int64_t after = Now() - start;
+    EXPECT(after >= i * period && after < i * period + kMs, "period %d of %lld: %lld ns", i,
+           (long long)period, (long long)after);
+  }
+  timer_delete(timer);
+  return nullptr;
+}
+
+void SharedNumbers() {
+  pthread_t threads[kThreads];
+  int numbers[kThreads] = {0, 1, 0, 3};
+  for (int i = 0; i < kThreads; ++i) {
+    EXPECT(pthread_create(&threads[i], nullptr, Periods, &numbers[i]) == 0, "pthread_create");
+  }
+  for (const pthread_t thread : threads) pthread_join(thread, nullptr);
+
+  sigset_t set, before;
+  sigemptyset(&set);
+  sigaddset(&set, SIGRTMIN + 8);
+  sigprocmask(SIG_BLOCK, &set, &before);
+  const timer_t timers[] = {Create(CLOCK_MONOTONIC, BySignal(SIGRTMIN + 8, 0)),
+                            Create(CLOCK_REALTIME, BySignal(SIGRTMIN + 8, 1))};
+  Set(timers[0], 10 * kMs, 10 * kMs);
+  Set(timers[1], 10 * kMs, 5 * kMs);
+  int seen[2] = {0, 0};
+  for (int i = 0; i < 30; ++i) {
+    siginfo_t info{};
+    EXPECT(sigwaitinfo(&set, &info) == SIGRTMIN + 8, "sigwaitinfo");
+    ++seen[info.si_value.sival_int];
+    if (g_mode != Mode::kNative) EXPECT(info.si_overrun == 0, "%d overruns", info.si_overrun);
+  }
+  if (g_mode != Mode::kNative)
+    EXPECT(seen[0] == 10 && seen[1] == 20, "%d and %d", seen[0], seen[1]);
+  for (const timer_t timer : timers) timer_delete(timer);
+  const timespec now{};
+  while (sigtimedwait(&set, nullptr, &now) > 0) {
+  }
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+}
+
 // A signal to the process goes to the thread that does not block it, wherever that waits.
 void ToWhoTakesIt() {
   Handle(SIGRTMIN + 6);
@@ -360,4 +420,5 @@ int main(int argc, char** argv) {
   ByThreads();
   ToOneThread();
   ToWhoTakesIt();
+  SharedNumbers();
 }
