@@ -11,6 +11,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/signal_fds.h"
 #include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -62,9 +63,18 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
   }
   shm::WaitFd waited[shm::kMaxWaitFds];
   std::uint32_t n = 0;
+  unsigned long signals = 0;
+  bool rearm = false;
+  for (unsigned long i = 0; i < count; ++i) {
+    bool is_epoll = false;
+    const unsigned long its = fds[i].fd < 0 ? 0 : SignalsOf(fds[i].fd, &is_epoll);
+    signals |= its;
+    rearm |= its != 0 && is_epoll;
+  }
   int gathered = -1;
   for (unsigned long i = 0; i < count; ++i) {
-    if (fds[i].fd < 0) continue;
+    bool is_epoll = false;
+    if (fds[i].fd < 0 || (SignalsOf(fds[i].fd, &is_epoll) != 0 && !is_epoll)) continue;
     if (n == shm::kMaxWaitFds) {
       gathered = GatherInEpoll(fds, count);
       waited[0] = shm::WaitFd{gathered, EPOLLIN};
@@ -76,10 +86,14 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
   }
   const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kWaitFds,
                                                .deadline_ns = deadline_ns,
+                                               .args = {0, static_cast<std::int64_t>(signals)},
                                                .fds = waited,
                                                .fd_count = n,
                                                .interruptible = true});
   if (gathered >= 0) RawSyscall(SYS_close, gathered);
+  for (unsigned long i = 0; rearm && i < count; ++i) {
+    if (fds[i].fd >= 0) RearmSignalFds(fds[i].fd);
+  }
   return ToResult(reply.reason);
 }
 
@@ -102,7 +116,8 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
         Fail(EAGAIN);
         return FdState::kFailed;
       case WaitResult::kInterrupted:
-        if (!RestartsAfterSignal()) {
+        // As the kernel has it: with a timeout of its own a socket's wait is never made again.
+        if (deadline_ns != shm::kNeverNs || !RestartsAfterSignal()) {
           Fail(EINTR);
           return FdState::kFailed;
         }

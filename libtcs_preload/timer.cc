@@ -116,7 +116,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
   const long fd = RawSyscall(SYS_eventfd2, 0, flags);
   if (fd < 0) return static_cast<int>(ToErrno(fd));
   const TimerValue made = Ask(*t, NotificationKind::kTimerCreate, fd, 0, 0);
-  if (made.next_ns < tcs::shm::kFirstTimerFdId ||
+  if (made.next_ns < tcs::shm::kFirstTimerId ||
       !RememberTimerFd(static_cast<int>(fd), made.next_ns, base)) {
     RawSyscall(SYS_close, fd);
     return Fail(EMFILE);

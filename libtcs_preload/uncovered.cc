@@ -33,9 +33,6 @@ void ReportOnce(bool& reported, const char* name) {
     return LookUpReal<Untyped>(real, #name)(a, b, c, d, e, f);                         \
   }
 
-TCS_UNCOVERED(timer_create)
-TCS_UNCOVERED(timer_settime)
-TCS_UNCOVERED(sigtimedwait)
 TCS_UNCOVERED(aio_suspend)
 TCS_UNCOVERED(aio_suspend64)
 TCS_UNCOVERED(aio_read)

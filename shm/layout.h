@@ -39,11 +39,14 @@ enum class NotificationKind : std::uint32_t {
   kHorizon = 1,  // the thread's clock has reached its horizon
   kRead = 2,     // go on once nothing can be produced before time_ns any more
   kWrite = 3,    // go on once nobody can still read before time_ns
-  kIdle = 4,     // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1]
-  kWaitFds = 5,  // sleep until one of fds is ready, or deadline_ns
+  kIdle = 4,     // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
+                 // 2 if also until a signal of the set args[1] is pending
+  kWaitFds = 5,  // sleep until one of fds is ready, a signal of the set args[1] is pending, or
+                 // deadline_ns
   kWaitChild =
       6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or deadline_ns
-  kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable; reply[0]: timer id
+  kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable, or -1; args[1] to
+                     // args[3]: TimerKind; reply[0]: timer id
   kTimerSet = 8,  // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply:
                   // as kTimerGet
   kTimerGet = 9,  // args[0]: timer id; reply[0]: next expiry or 0, reply[1]: interval
@@ -67,7 +70,9 @@ enum class NotificationKind : std::uint32_t {
   kWaitKey =
       22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey, args[1]:
            // the object's number, args[2]: 1 to keep the place of the last such wait
-  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
+  kWakeKey = 23,       // the object of args[0] and args[1] has been changed
+  kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
+                       // reply[0]: overruns of the signal accepted last
 };
 
 // Kernel objects that cannot be polled.
@@ -80,9 +85,22 @@ enum class WaitKey : std::uint32_t {
   kTerminals = 4
 };
 
+// What a timer runs on, and what it does besides writing to an eventfd. A sigset's bit 0 is signal
+// 1.
+enum class TimerClock : std::uint16_t { kTime = 0, kProcessCpu = 1, kThreadCpu = 2 };
+struct TimerKind {
+  TimerClock clock = TimerClock::kTime;
+  std::uint16_t is_posix = 0;   // of timer_create: ends when its process executes another program
+  std::int32_t clock_tid = 0;   // of kThreadCpu
+  std::int32_t signal = 0;      // to be sent; 0: none
+  std::int32_t signal_tid = 0;  // to this thread; 0: to the process
+  std::int64_t value = 0;       // in the signal
+};
+static_assert(sizeof(TimerKind) == 3 * sizeof(std::int64_t));
+
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
 // _PROF).
-inline constexpr std::int64_t kFirstTimerFdId = 16;
+inline constexpr std::int64_t kFirstTimerId = 16;
 
 // Why a dispatch ended a wait.
 enum class WakeReason : std::uint32_t {

@@ -122,6 +122,8 @@ void Engine::Attach(int connection) {
     free_slots_.pop_front();
     by_slot_[static_cast<std::size_t>(task.slot)] = &task;
     new (&Slot(task)) shm::ThreadSlot{};
+  } else {
+    DeletePosixTimers(*task.process);  // it has executed another program
   }
   shm::ThreadSlot& slot = Slot(task);
   slot.pid = task.process->pid;
@@ -162,6 +164,8 @@ void Engine::EndTask(Task& task) {
   EndWatches(task);
   EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
+  waiting_for_signals_ -= task.awaited_signals != 0;
+  task.awaited_signals = 0;
   task.waits_for_child = task.waits_for_fds = false;
   task.trap_wait = TrapWait::kNone;
   LeaveLock(task);

@@ -281,8 +281,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   notified_ = preempted_ = false;
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
-    for (const int signal : task.process->pending_signals) kill(task.process->pid, signal);
-    task.process->pending_signals.clear();
+    SendTimerSignalsTo(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
   Resume(task);
@@ -292,7 +291,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   event_ns_ = task.cpu->progress_ns;
-  ExpireCpuTimers(*task.process);
+  ExpireCpuTimers(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;
     task.reply[0] = task.reply[1] = 0;

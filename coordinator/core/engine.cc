@@ -98,8 +98,9 @@ void Engine::Refresh(Robot& robot) {
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  const bool reads = task.state == TaskState::kWaiting &&
-                     (task.waits_for_fds || task.waits_for_child || task.waits_for_key);
+  const bool reads =
+      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child ||
+                                            task.waits_for_key || task.awaited_signals != 0);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     task.turn_ns = 0;
@@ -108,6 +109,8 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   EndWatches(task);
   EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
+  waiting_for_signals_ -= task.awaited_signals != 0;
+  task.awaited_signals = 0;
   task.waits_for_fds = task.waits_for_child = task.has_wait_mask = false;
   task.reached_ns = std::max(task.reached_ns, event_ns_);
   // Whoever waited for others looks at what they did: that must be all of it.
@@ -134,9 +137,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   *idle_until = 0;
   if (IsCallback()) return furthest;
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
-  if (const std::int64_t cpu_timer = NextCpuExpiry(*task.process); cpu_timer != shm::kNeverNs) {
-    limit = std::min(
-        limit, cpu.progress_ns + std::max<std::int64_t>(0, cpu_timer - ChargedTo(*task.process)));
+  if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
+    limit = std::min(limit, cpu.progress_ns + left);
   }
   std::int64_t idle = limit;
   for (const Task* other : robot.tasks) {
@@ -153,7 +155,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     idle = std::min(idle, other->deadline_ns);
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
-    if (!other->waits_for_fds && !other->waits_for_key &&
+    if (!other->waits_for_fds && !other->waits_for_key && other->awaited_signals == 0 &&
         !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
       continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
@@ -220,6 +222,7 @@ bool Engine::StepWorld() {
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
+  PollSignals();
   if (unseen_ == 0) return;
   for (Task& task : tasks_) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
@@ -230,7 +233,8 @@ void Engine::PollUnseen() {
 }
 
 void Engine::WaitOutside() {
-  PollEvents(unseen_ > 0 || waiting_for_child_ > 0 ? kUnseenPollNs : kOutsidePollNs);
+  const bool unseen = unseen_ > 0 || waiting_for_child_ > 0 || waiting_for_signals_ > 0;
+  PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs);
 }
 
 // Before idle time is jumped over: is something from outside already there?

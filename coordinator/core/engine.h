@@ -1,6 +1,7 @@
 // The coordinator's state and its parts: the loop and the choice of who acts (engine.cc), set-up
 // (setup.cc) and end (finish.cc), the dispatch of a thread and its charge (dispatch.cc), what
-// clients say (notifications.cc), their timers (timers.cc), and what the kernel says (events.cc).
+// clients say (notifications.cc), their timers (timers.cc) and signals (signals.cc), and what the
+// kernel says (events.cc).
 #pragma once
 
 #include <deque>
@@ -136,19 +137,31 @@ class Engine {
   void NoteTerminal(Task& task, int fd);
   void FlushTerminals();
 
-  // Signals that clients send (signals.cc).
+  // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
+  void AwaitSignals(Task& task, std::uint64_t set);
+  bool EndAwait(Task& task, const SignalSets& sets);
+  void PollSignals();
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
   void FireDue(Robot& robot, std::int64_t now_ns);
   bool Expire(Process& process, std::int64_t now_ns);
-  void SendTimerSignals(Task& task);
-  void ExpireCpuTimers(Process& process);
-  std::int64_t NextCpuExpiry(const Process& process) const;
+  void CreateTimer(Task& task, const shm::Notification& note);
+  static void DeleteTimer(Process& process, std::int64_t id);
+  static void DeletePosixTimers(Process& process);
+  void SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::int64_t count);
+  void ExpireCpuTimers(const Task& ran);
+  std::int64_t CpuTimeToExpiry(const Task& task) const;
   std::int64_t ChargedTo(const Process& process) const;
   static void FindNextExpiry(Process& process);
+
+  // Their signals (timer_signals.cc).
+  static Task* TakerOf(const Process& process, const TimerSignal& signal);
+  void RouteTimerSignals(Process& process);
+  void SendTimerSignalsTo(const Task& task);
+  static void NoteAccepted(Process& process);
 
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.
@@ -194,6 +207,8 @@ class Engine {
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
+  int waiting_for_signals_ = 0;
+  std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
   shm::SegmentHeader* header_ = nullptr;

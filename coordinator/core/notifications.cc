@@ -107,9 +107,11 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       SetState(task, TaskState::kWaiting);
       task.has_wait_mask = note.args[0] == 1;
       task.wait_mask = static_cast<std::uint64_t>(note.args[1]);
+      if (note.args[0] == 2) AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
       break;
     case Kind::kWaitFds:
       WatchFds(task, note.fds, std::min(note.fd_count, shm::kMaxWaitFds));
+      AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
       Refresh(robot);
       // What is there already ends the wait here and now.
       PollEvents(0);
@@ -121,6 +123,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kTimerSet:
     case Kind::kTimerGet:
     case Kind::kTimerDelete:
+    case Kind::kTimerOverrun:
       SetTimer(task, note);
       break;
     case Kind::kSpawned:

@@ -1,6 +1,11 @@
 // Signals that clients send to each other. The kernel delivers them; but a thread that waits runs
-// its handler only when it is dispatched, and that is to be at the sender's virtual time.
+// its handler only when it is dispatched, and that is to be at the sender's virtual time. So is the
+// end of a wait for the signal itself.
 #include <signal.h>
+#include <x86intrin.h>
+
+#include <algorithm>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -8,6 +13,8 @@
 namespace tcs {
 
 namespace {
+
+constexpr std::int64_t kLookEveryNs = 1'000'000;  // real time
 
 constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
 
@@ -20,6 +27,33 @@ std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::ui
 
 }  // namespace
 
+// True if the thread waits for a signal that is pending: then it goes on.
+bool Engine::EndAwait(Task& task, const SignalSets& sets) {
+  if (((sets.own_pending | sets.shared_pending) & task.awaited_signals) == 0) return false;
+  MakeReady(task, shm::WakeReason::kGo);
+  return true;
+}
+
+void Engine::AwaitSignals(Task& task, std::uint64_t set) {
+  if (set == 0) return;
+  task.awaited_signals = set;
+  ++waiting_for_signals_;
+  EndAwait(task, ReadSignalSets(task.tid));
+}
+
+// Nobody says that a signal has come from outside, so those who wait for one are looked at now and
+// then.
+void Engine::PollSignals() {
+  if (waiting_for_signals_ == 0 || __rdtsc() < next_signal_look_tsc_) return;
+  next_signal_look_tsc_ =
+      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+  for (Task& task : tasks_) {
+    if (task.awaited_signals == 0) continue;
+    const std::int64_t before_ns = std::exchange(event_ns_, std::max(event_ns_, task.reached_ns));
+    if (!EndAwait(task, ReadSignalSets(task.tid))) event_ns_ = before_ns;
+  }
+}
+
 // What is for the whole process goes to the first of its threads that does not block it, as the
 // kernel has it.
 void Engine::WakeForSignals(Process& process) {
@@ -27,6 +61,7 @@ void Engine::WakeForSignals(Process& process) {
   for (Task& task : tasks_) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     const SignalSets sets = ReadSignalSets(task.tid);
+    if (EndAwait(task, sets)) continue;
     const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
     const std::uint64_t mine =
         Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, blocked);

@@ -56,6 +56,7 @@ struct Task {
   std::uint64_t key_order = 0;            // of waiting
   bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
   std::uint64_t wait_mask = 0;            // this one; bit 0 is signal 1
+  std::uint64_t awaited_signals = 0;      // its wait ends when one of them is pending
   std::vector<int> watched;               // descriptors in the coordinator's epoll set
   bool watches_terminal = false;          // among the watched
   int trap_listener = -1;
@@ -90,10 +91,26 @@ struct Task {
   int row = 0;  // in the schedule trace
 };
 
-// Times are those of the process's clock, or its charged processor time for the two CPU timers.
+// Times are those of the process's clock, or charged processor time, as its kind says.
 struct Timer {
   std::int64_t next_ns = 0, interval_ns = 0;  // next 0: not armed
-  int event_fd = -1;                          // -1: a signal
+  int event_fd = -1;
+  shm::TimerKind kind;
+  // Of timer_create: one signal is on its way at a time, further expirations are counted.
+  bool queued = false;             // it was not seen accepted yet
+  std::int64_t overruns = 0;       // of that signal
+  std::int64_t last_overruns = 0;  // of the one accepted before
+  pid_t sent_to = 0;               // 0: the process
+  void Accept();
+};
+
+// A timer's signal on its way.
+struct TimerSignal {
+  int number = 0;
+  pid_t tid = 0;              // 0: to the process
+  std::int64_t timer_id = 0;  // 0: setitimer's
+  std::int64_t value = 0, overruns = 0;
+  pid_t taker = 0;  // the thread that will run its handler: sent at its next dispatch
 };
 
 struct Process {
@@ -106,12 +123,12 @@ struct Process {
   // What its clock is ahead of the virtual CPU's: computed while the world stood still. 0 unless
   // --sync callback.
   std::int64_t frozen_ns = 0;
-  std::map<std::int64_t, Timer> timers;         // ITIMER_REAL and timerfds, by id
-  std::int64_t next_expiry_ns = shm::kNeverNs;  // of `timers`
-  Timer cpu_timers[2];                          // ITIMER_VIRTUAL, ITIMER_PROF
-  std::int64_t next_timer_id = shm::kFirstTimerFdId;
-  std::vector<int> pending_signals;  // of expired timers, sent at its next dispatch
-  std::int64_t overruns = 0;         // periodic expiries that found nobody waiting
+  std::map<std::int64_t, Timer> timers;         // by id
+  std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock
+  bool has_cpu_timers = false;                  // some run on processor time
+  std::int64_t next_timer_id = shm::kFirstTimerId;
+  std::vector<TimerSignal> timer_signals;
+  std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
   bool dead = false;
   int threads = 1;         // that ever attached

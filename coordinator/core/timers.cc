@@ -1,15 +1,44 @@
-// The timers of clients: setitimer, alarm and timerfd. What runs out at one instant fires there.
+// The timers of clients: setitimer, alarm, timerfd and timer_create. What runs out at one instant
+// fires there.
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <climits>
+#include <cstring>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
+
+namespace {
+
+using shm::TimerClock;
+
+// How often it has run out by `now`, on its clock; sets it to the next time.
+std::int64_t TakeExpirations(Timer& timer, std::int64_t now) {
+  if (timer.next_ns == 0 || timer.next_ns > now) return 0;
+  if (timer.interval_ns == 0) {
+    timer.next_ns = 0;
+    return 1;
+  }
+  const std::int64_t count = 1 + (now - timer.next_ns) / timer.interval_ns;
+  timer.next_ns += count * timer.interval_ns;
+  return count;
+}
+
+// The three of setitimer are there without being created.
+shm::TimerKind KindOfItimer(std::int64_t which) {
+  shm::TimerKind kind;
+  kind.signal = which == ITIMER_REAL ? SIGALRM : which == ITIMER_VIRTUAL ? SIGVTALRM : SIGPROF;
+  kind.clock = which == ITIMER_REAL ? TimerClock::kTime : TimerClock::kProcessCpu;
+  return kind;
+}
+
+}  // namespace
 
 std::int64_t Engine::ChargedTo(const Process& process) const {
   std::int64_t charged = process.ended_cpu_ns;
@@ -21,47 +50,89 @@ std::int64_t Engine::ChargedTo(const Process& process) const {
 
 void Engine::FindNextExpiry(Process& process) {
   process.next_expiry_ns = shm::kNeverNs;
+  process.has_cpu_timers = false;
   for (const auto& [id, timer] : process.timers) {
-    if (timer.next_ns != 0)
+    if (timer.next_ns == 0) continue;
+    if (timer.kind.clock == TimerClock::kTime) {
       process.next_expiry_ns = std::min(process.next_expiry_ns, timer.next_ns);
+    } else {
+      process.has_cpu_timers = true;
+    }
   }
 }
 
-std::int64_t Engine::NextCpuExpiry(const Process& process) const {
-  std::int64_t next = shm::kNeverNs;
-  for (const Timer& timer : process.cpu_timers) {
-    if (timer.next_ns != 0) next = std::min(next, timer.next_ns);
+// The processor time that the thread may still use before a timer on such time runs out.
+std::int64_t Engine::CpuTimeToExpiry(const Task& task) const {
+  const Process& process = *task.process;
+  std::int64_t left = shm::kNeverNs;
+  if (!process.has_cpu_timers) return left;
+  for (const auto& [id, timer] : process.timers) {
+    if (timer.next_ns == 0) continue;
+    if (timer.kind.clock == TimerClock::kProcessCpu) {
+      left = std::min(left, timer.next_ns - ChargedTo(process));
+    } else if (timer.kind.clock == TimerClock::kThreadCpu && timer.kind.clock_tid == task.tid) {
+      left = std::min(left, timer.next_ns - task.charged_ns);
+    }
   }
-  return next;
+  return std::max<std::int64_t>(0, left);
+}
+
+void Engine::CreateTimer(Task& task, const shm::Notification& note) {
+  Process& process = *task.process;
+  Timer timer;
+  static_assert(sizeof timer.kind == sizeof note.args - sizeof note.args[0]);
+  memcpy(static_cast<void*>(&timer.kind), &note.args[1], sizeof timer.kind);
+  if (timer.kind.signal < 0 || timer.kind.signal > SIGRTMAX) return;
+  if (note.args[0] >= 0) {
+    timer.event_fd = DuplicateFd(process.pidfd, static_cast<int>(note.args[0]));
+    if (timer.event_fd < 0) return;
+  }
+  task.reply[0] = process.next_timer_id++;
+  process.timers[task.reply[0]] = timer;
+}
+
+void Engine::DeleteTimer(Process& process, std::int64_t id) {
+  const auto found = process.timers.find(id);
+  if (found == process.timers.end()) return;
+  if (found->second.event_fd >= 0) close(found->second.event_fd);
+  process.timers.erase(found);
+  std::erase_if(process.timer_signals, [&](const TimerSignal& s) { return s.timer_id == id; });
+  FindNextExpiry(process);
+}
+
+// A process's timer_create timers end when it executes another program.
+void Engine::DeletePosixTimers(Process& process) {
+  std::vector<std::int64_t> ended;
+  for (const auto& [id, timer] : process.timers) {
+    if (timer.kind.is_posix != 0) ended.push_back(id);
+  }
+  for (const std::int64_t id : ended) DeleteTimer(process, id);
 }
 
 void Engine::SetTimer(Task& task, const shm::Notification& note) {
   Process& process = *task.process;
   const std::int64_t id = note.args[0];
-  if (note.kind == shm::NotificationKind::kTimerCreate) {
-    const int fd = DuplicateFd(process.pidfd, static_cast<int>(id));
-    if (fd < 0) return;
-    const std::int64_t made = process.next_timer_id++;
-    process.timers[made] = Timer{0, 0, fd};
-    task.reply[0] = made;
+  if (note.kind == shm::NotificationKind::kTimerCreate) return CreateTimer(task, note);
+  if (note.kind == shm::NotificationKind::kTimerDelete) return DeleteTimer(process, id);
+  if (id >= ITIMER_REAL && id <= ITIMER_PROF && !process.timers.contains(id)) {
+    process.timers[id].kind = KindOfItimer(id);
+  }
+  const auto found = process.timers.find(id);
+  if (found == process.timers.end()) return;
+  Timer& timer = found->second;
+  if (note.kind == shm::NotificationKind::kTimerOverrun) {
+    if (note.args[1] != 0 && timer.queued) timer.Accept();
+    NoteAccepted(process);
+    task.reply[0] = timer.last_overruns;
     return;
   }
-  if (note.kind == shm::NotificationKind::kTimerDelete) {
-    const auto found = process.timers.find(id);
-    if (found == process.timers.end()) return;
-    if (found->second.event_fd >= 0) close(found->second.event_fd);
-    process.timers.erase(found);
-    FindNextExpiry(process);
-    return;
-  }
-  const bool on_cpu_time = id == ITIMER_VIRTUAL || id == ITIMER_PROF;
-  if (!on_cpu_time && id != ITIMER_REAL && !process.timers.contains(id)) return;
-  Timer& timer = on_cpu_time ? process.cpu_timers[id - ITIMER_VIRTUAL] : process.timers[id];
   task.reply[0] = timer.next_ns;
   task.reply[1] = timer.interval_ns;
   if (note.kind != shm::NotificationKind::kTimerSet) return;
   timer.next_ns = std::max<std::int64_t>(0, note.args[1]);
   timer.interval_ns = std::max<std::int64_t>(0, note.args[2]);
+  timer.queued = false;
+  timer.overruns = timer.last_overruns = 0;
   FindNextExpiry(process);
   if (timer.event_fd >= 0) {
     // Setting a timer forgets expirations that were not read; emptying must not wait.
@@ -72,71 +143,65 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
   }
 }
 
+// POSIX: one signal of a timer is on its way at a time; what runs out meanwhile is its overruns.
+void Engine::SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::int64_t count) {
+  if (timer.kind.is_posix == 0) {
+    process.timer_signals.push_back({.number = timer.kind.signal});
+    return;
+  }
+  if (timer.queued) {
+    timer.overruns = std::min<std::int64_t>(INT_MAX, timer.overruns + count);
+    return;
+  }
+  timer.queued = true;
+  timer.overruns = std::min<std::int64_t>(INT_MAX, count - 1);
+  process.timer_signals.push_back({.number = timer.kind.signal,
+                                   .tid = timer.kind.signal_tid,
+                                   .timer_id = id,
+                                   .value = timer.kind.value,
+                                   .overruns = timer.overruns});
+}
+
 // Fires what has run out for one process; true if a descriptor was written to.
 bool Engine::Expire(Process& process, std::int64_t now_ns) {
   const std::int64_t now = now_ns + process.frozen_ns;
   bool wrote = false;
+  NoteAccepted(process);
   for (auto& [id, timer] : process.timers) {
-    if (timer.next_ns == 0 || timer.next_ns > now) continue;
-    std::uint64_t count = 1;
+    if (timer.kind.clock != TimerClock::kTime) continue;
+    const std::int64_t count = TakeExpirations(timer, now);
+    if (count == 0) continue;
     if (timer.interval_ns > 0) {
-      count += static_cast<std::uint64_t>((now - timer.next_ns) / timer.interval_ns);
-      timer.next_ns += static_cast<std::int64_t>(count) * timer.interval_ns;
       const bool awaited = std::any_of(
           process.robot->tasks.begin(), process.robot->tasks.end(), [&](const Task* task) {
             return task->process == &process &&
                    (task->state == TaskState::kWaiting || task->state == TaskState::kUnseen);
           });
-      process.overruns += static_cast<std::int64_t>(count) - (awaited ? 1 : 0);
-    } else {
-      timer.next_ns = 0;
+      process.overruns += count - (awaited ? 1 : 0);
     }
-    if (timer.event_fd >= 0) {
-      wrote |= write(timer.event_fd, &count, sizeof count) == sizeof count;
-    } else {
-      process.pending_signals.push_back(SIGALRM);
-    }
+    if (timer.event_fd >= 0) wrote |= write(timer.event_fd, &count, sizeof count) == sizeof count;
+    if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);
   }
   FindNextExpiry(process);
   return wrote;
 }
 
-// The two timers on processor time run out while their process runs; it is told at its next
-// dispatch.
-void Engine::ExpireCpuTimers(Process& process) {
-  if (NextCpuExpiry(process) == shm::kNeverNs) return;
-  const std::int64_t charged = ChargedTo(process);
-  for (const int which : {ITIMER_VIRTUAL, ITIMER_PROF}) {
-    Timer& timer = process.cpu_timers[which - ITIMER_VIRTUAL];
-    if (timer.next_ns == 0 || timer.next_ns > charged) continue;
-    if (timer.interval_ns > 0) {
-      timer.next_ns += ((charged - timer.next_ns) / timer.interval_ns + 1) * timer.interval_ns;
-    } else {
-      timer.next_ns = 0;
-    }
-    process.pending_signals.push_back(which == ITIMER_VIRTUAL ? SIGVTALRM : SIGPROF);
+// Timers on processor time run out while their process runs; it is told at its next dispatch.
+void Engine::ExpireCpuTimers(const Task& ran) {
+  Process& process = *ran.process;
+  if (!process.has_cpu_timers) return;
+  NoteAccepted(process);
+  for (auto& [id, timer] : process.timers) {
+    if (timer.kind.clock == TimerClock::kTime) continue;
+    if (timer.kind.clock == TimerClock::kThreadCpu && timer.kind.clock_tid != ran.tid) continue;
+    const std::int64_t now =
+        timer.kind.clock == TimerClock::kThreadCpu ? ran.charged_ns : ChargedTo(process);
+    const std::int64_t count = TakeExpirations(timer, now);
+    if (count == 0) continue;
+    if (timer.event_fd >= 0) eventfd_write(timer.event_fd, static_cast<eventfd_t>(count));
+    if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);
   }
-}
-
-// A thread that waits, and is to run a handler, is dispatched first: the handler is its work.
-// Otherwise the signal goes at once: it stays pending, is ignored, ends the process, or ends what
-// the kernel holds the thread in. One that is ready gets it at its dispatch.
-void Engine::SendTimerSignals(Task& task) {
-  Process& process = *task.process;
-  if (task.state != TaskState::kWaiting && task.state != TaskState::kUnseen) return;
-  const SignalSets sets = ReadSignalSets(task.tid);
-  const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
-  const auto is_handled = [&](int signal) {
-    return (sets.caught & ~blocked & (std::uint64_t{1} << (signal - 1))) != 0;
-  };
-  const bool handled =
-      std::any_of(process.pending_signals.begin(), process.pending_signals.end(), is_handled);
-  if (task.state == TaskState::kWaiting && handled) {
-    MakeReady(task, shm::WakeReason::kSignal);
-    return;
-  }
-  for (const int signal : process.pending_signals) kill(process.pid, signal);
-  process.pending_signals.clear();
+  FindNextExpiry(process);
 }
 
 void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
@@ -148,7 +213,7 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
     }
     Process& process = *task->process;
     if (process.next_expiry_ns - process.frozen_ns <= now_ns) wrote |= Expire(process, now_ns);
-    if (!process.pending_signals.empty()) SendTimerSignals(*task);
+    if (!process.timer_signals.empty()) RouteTimerSignals(process);
   }
   if (wrote) PollEvents(0);
 }

@@ -92,16 +92,37 @@ char ThreadState(pid_t tid) {
 }
 
 SignalSets ReadSignalSets(pid_t tid) {
-  std::ifstream file("/proc/" + std::to_string(tid) + "/status");
-  SignalSets sets;
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("SigBlk:", 0) == 0) sets.blocked = std::stoull(line.substr(7), nullptr, 16);
-    if (line.rfind("SigCgt:", 0) == 0) sets.caught = std::stoull(line.substr(7), nullptr, 16);
-    if (line.rfind("SigPnd:", 0) == 0) sets.own_pending = std::stoull(line.substr(7), nullptr, 16);
-    if (line.rfind("ShdPnd:", 0) == 0)
-      sets.shared_pending = std::stoull(line.substr(7), nullptr, 16);
+  char path[64], text[4096];
+  snprintf(path, sizeof path, "/proc/%d/status", tid);
+  const int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return {};
+  const ssize_t n = read(fd, text, sizeof text - 1);
+  close(fd);
+  text[std::max<ssize_t>(n, 0)] = '\0';
+  const auto set = [&](const char* name) {
+    const char* found = strstr(text, name);
+    return found == nullptr ? 0 : strtoull(found + strlen(name), nullptr, 16);
+  };
+  return {.caught = set("\nSigCgt:"),
+          .blocked = set("\nSigBlk:"),
+          .own_pending = set("\nSigPnd:"),
+          .shared_pending = set("\nShdPnd:")};
+}
+
+void SendTimerSignal(const TimerSignalRequest& request) {
+  // The kernel lets one process send this code to another.
+  static_assert(SI_TIMER < 0);
+  siginfo_t info{};
+  info.si_signo = request.number;
+  info.si_code = SI_TIMER;
+  info.si_timerid = request.timer_id;
+  info.si_overrun = request.overruns;
+  info.si_value.sival_ptr = reinterpret_cast<void*>(request.value);
+  if (request.tid == 0) {
+    syscall(SYS_rt_sigqueueinfo, request.pid, request.number, &info);
+  } else {
+    syscall(SYS_rt_tgsigqueueinfo, request.pid, request.tid, request.number, &info);
   }
-  return sets;
 }
 
 std::string ThreadSystemCall(pid_t tid) {

@@ -45,6 +45,14 @@ struct SignalSets {
 };
 SignalSets ReadSignalSets(pid_t tid);
 
+// With what the kernel would put into the signal of a timer; to a process, or one of its threads.
+struct TimerSignalRequest {
+  pid_t pid = 0, tid = 0;  // tid 0: to the process
+  int number = 0, timer_id = 0, overruns = 0;
+  std::int64_t value = 0;
+};
+void SendTimerSignal(const TimerSignalRequest& request);
+
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 

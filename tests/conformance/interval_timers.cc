@@ -73,6 +73,26 @@ void Alarms() {
   EXPECT(alarm(0) == 1, "an alarm just set");
 }
 
+void Microseconds() {
+  g_count = 0;
+  const std::int64_t start = Now();
+  EXPECT(ualarm(20'000, 10'000) == 0, "no alarm was set");
+  WaitFor(3);
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t after = g_at[i] - start, due = (20 + 10 * i) * kMs;
+    EXPECT(after >= due, "expiry %d came after %lld ns", i, (long long)after);
+    if (g_mode == Mode::kMeasured)
+      EXPECT(after < due + kMs, "expiry %d after %lld ns", i, (long long)after);
+    if (g_mode == Mode::kFixed)
+      EXPECT(after <= due + 5 * kCallNs, "expiry %d after %lld ns", i, (long long)after);
+  }
+  const useconds_t left = ualarm(0, 0);
+  EXPECT(left > 0 && left <= 10'000, "%u us were left", left);
+  const int count = g_count;
+  usleep(30'000);
+  EXPECT(g_count == count, "an alarm that was taken away came");
+}
+
 // Fires by processor time, which a sleep does not use.
 void OnProcessorTime(int which, int signal_number) {
   if (g_mode == Mode::kFixed) return;  // computing is free there
@@ -98,6 +118,7 @@ int main(int argc, char** argv) {
   signal(SIGALRM, Note);
   OnceAndAgain();
   Alarms();
+  Microseconds();
   OnProcessorTime(ITIMER_VIRTUAL, SIGVTALRM);
   OnProcessorTime(ITIMER_PROF, SIGPROF);
   const itimerval bad{{0, 0}, {0, 1'000'000}};

@@ -4,7 +4,6 @@
 #include <mqueue.h>
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <sys/ipc.h>
 #include <sys/msg.h>
@@ -94,20 +93,6 @@ void Queues() {
       [&] { EXPECT(mq_receive(queue, text, sizeof text, nullptr) == 2, "mq_receive"); });
 }
 
-void Signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGUSR1);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  int signal = 0;
-  Meanwhile(
-      "sigwait", [](pid_t parent) { kill(parent, SIGUSR1); },
-      [&] { EXPECT(sigwait(&set, &signal) == 0 && signal == SIGUSR1, "sigwait"); });
-  Meanwhile(
-      "sigwaitinfo", [](pid_t parent) { kill(parent, SIGUSR1); },
-      [&] { EXPECT(sigwaitinfo(&set, nullptr) == SIGUSR1, "sigwaitinfo"); });
-}
-
 // A process made without the C library's fork.
 void Clones() {
   static char stack[64 * 1024];
@@ -151,7 +136,6 @@ int main(int argc, char** argv) {
   Files();
   SystemV();
   Queues();
-  Signals();
   Inheritance();
   Clones();
   unlink((g_folder + "/fifo").c_str());

@@ -1,6 +1,7 @@
 // timerfd: relative, absolute, periodic, counted, and waited for in all ways.
 #include <poll.h>
 #include <sys/epoll.h>
+#include <sys/select.h>
 #include <sys/timerfd.h>
 
 #include "tests/conformance/conformance.h"
@@ -60,6 +61,47 @@ int main(int argc, char** argv) {
     Expirations(fd);
     EXPECT(epoll_wait(set, &event, 1, 5000) == 1, "epoll_wait");
     close(set);
+    Expirations(fd);
+    fd_set readable;
+    FD_ZERO(&readable);
+    FD_SET(fd, &readable);
+    EXPECT(select(fd + 1, &readable, nullptr, nullptr, nullptr) == 1 && FD_ISSET(fd, &readable),
+           "select");
+
+    // Each period is fetched at its own time, however it is waited for.
+    spec = {ToTimespec(10 * kMs), ToTimespec(20 * kMs)};
+    start = Now();
+    timerfd_settime(fd, 0, &spec, nullptr);
+    for (int i = 0; i < 6; ++i) {
+      if (i % 2 == 1) EXPECT(poll(&polled, 1, -1) == 1, "poll");
+      const std::uint64_t count = Expirations(fd);
+      EXPECT(count == 1 || g_mode == Mode::kNative, "%llu expirations", (unsigned long long)count);
+      const std::int64_t after = Now() - start, due = (20 + 10 * i) * kMs;
+      EXPECT(after >= due, "period %d after %lld ns", i, (long long)after);
+      if (g_mode == Mode::kMeasured)
+        EXPECT(after < due + kMs, "period %d after %lld ns", i, (long long)after);
+      if (g_mode == Mode::kFixed)
+        EXPECT(after <= due + 5 * kCallNs, "period %d after %lld ns", i, (long long)after);
+    }
+
+    // At an absolute time that is past it is there at once, with the periods since.
+    spec = {ToTimespec(10 * kMs), ToTimespec(Now(clock) - 35 * kMs)};
+    start = Now();
+    timerfd_settime(fd, TFD_TIMER_ABSTIME, &spec, nullptr);
+    const std::uint64_t since = Expirations(fd);
+    EXPECT(since >= 4 && (g_mode == Mode::kNative || since == 4), "%llu expirations",
+           (unsigned long long)since);
+    ExpectWaited(start, 0, 3, "a timer at a past time");
+
+    // Nobody sets the clock, so nothing is cancelled.
+    spec = {{0, 0}, ToTimespec(Now(clock) + 30 * kMs)};
+    start = Now();
+    EXPECT(timerfd_settime(fd, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &spec, nullptr) == 0,
+           "TFD_TIMER_CANCEL_ON_SET: %s", strerror(errno));
+    EXPECT(Expirations(fd) == 1, "one expiration");
+    EXPECT(Now() - start >= 30 * kMs - kMs, "too early");
+    spec = {ToTimespec(10 * kMs), ToTimespec(10 * kMs)};
+    timerfd_settime(fd, 0, &spec, nullptr);
 
     // Taken away, it never fires.
     spec = {};

@@ -1,0 +1,99 @@
+// The signals of timers, sent at their instant: at once where they become pending, are ignored or
+// end the process; at the dispatch of the thread that will run a handler, for the handler is its
+// work.
+#include <signal.h>
+
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
+
+// Would the thread run a handler for it?
+bool Handles(const Task& task, int signal) {
+  const SignalSets sets = ReadSignalSets(task.tid);
+  const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
+  return (sets.caught & ~blocked & Bit(signal)) != 0;
+}
+
+void Send(Process& process, const TimerSignal& signal, pid_t tid) {
+  if (signal.timer_id != 0) {
+    process.timers[signal.timer_id].sent_to = tid;
+    SendTimerSignal({.pid = process.pid,
+                     .tid = tid,
+                     .number = signal.number,
+                     .timer_id = static_cast<int>(signal.timer_id),
+                     .overruns = static_cast<int>(signal.overruns),
+                     .value = signal.value});
+  } else if (tid == 0 || tid == process.pid) {
+    kill(process.pid, signal.number);  // the kernel prefers the first thread
+  } else {
+    tgkill(process.pid, tid, signal.number);
+  }
+}
+
+}  // namespace
+
+// Null if nobody runs a handler, or only one that the kernel holds in a call.
+Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->slot < 0) continue;
+    if (signal.tid != 0 && task->tid != signal.tid) continue;
+    if (Handles(*task, signal.number)) return task->state == TaskState::kUnseen ? nullptr : task;
+  }
+  return nullptr;
+}
+
+void Engine::RouteTimerSignals(Process& process) {
+  std::vector<TimerSignal> later;
+  for (TimerSignal& signal : process.timer_signals) {
+    if (signal.taker == 0 || KnownTask(signal.taker) == nullptr) {
+      Task* taker = TakerOf(process, signal);
+      if (taker == nullptr) {
+        Send(process, signal, signal.tid);
+        continue;
+      }
+      signal.taker = taker->tid;
+      if (taker->state == TaskState::kWaiting) MakeReady(*taker, shm::WakeReason::kSignal);
+    }
+    later.push_back(signal);
+  }
+  const bool sent = later.size() < process.timer_signals.size();
+  process.timer_signals = std::move(later);
+  if (sent) WakeForSignals(process);
+}
+
+void Engine::SendTimerSignalsTo(const Task& task) {
+  std::erase_if(task.process->timer_signals, [&](const TimerSignal& signal) {
+    if (signal.taker != 0 && signal.taker != task.tid) return false;
+    Send(*task.process, signal, signal.taker);
+    return true;
+  });
+}
+
+void Timer::Accept() {
+  queued = false;
+  last_overruns = overruns;
+  overruns = 0;
+}
+
+// Finds out which timers' signals have been accepted. While one of a signal's number is pending
+// where it was sent to it counts as not: whose it is cannot be seen.
+void Engine::NoteAccepted(Process& process) {
+  for (auto& [id, timer] : process.timers) {
+    if (!timer.queued) continue;
+    const bool unsent = std::any_of(process.timer_signals.begin(), process.timer_signals.end(),
+                                    [id = id](const TimerSignal& s) { return s.timer_id == id; });
+    if (unsent) continue;
+    const SignalSets sets = ReadSignalSets(timer.sent_to != 0 ? timer.sent_to : process.pid);
+    const std::uint64_t pending = timer.sent_to != 0 ? sets.own_pending : sets.shared_pending;
+    if ((pending & Bit(timer.kind.signal)) == 0) timer.Accept();
+  }
+}
+
+}  // namespace tcs

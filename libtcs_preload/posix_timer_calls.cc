@@ -1,0 +1,227 @@
+// timer_create and its kin. The coordinator keeps the timers and sends their signals. Programs of
+// before glibc 2.3.3, whose timer_t was an int, do not exist here: all versions are one.
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/syscall.h>
+#include <time.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/posix_timers.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/real.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+using tcs::shm::NotificationKind;
+using tcs::shm::TimerClock;
+using tcs::shm::TimerKind;
+
+namespace {
+
+// The kernel's ids of other clocks on processor time (posix-timers.h).
+constexpr clockid_t kPerThreadBit = 4;
+constexpr clockid_t kClockFdBits = 3;
+
+bool IsThread(GuestThread& t, int tid) {
+  return tid > 0 && RawSyscall(SYS_tgkill, t.slot->pid, tid, 0) == 0;
+}
+
+// 0, or the error of timer_create.
+int KindOfClock(GuestThread& t, clockid_t clock, TimerKind* kind) {
+  switch (clock) {
+    case CLOCK_REALTIME:
+    case CLOCK_MONOTONIC:
+    case CLOCK_BOOTTIME:
+    case CLOCK_TAI:
+      return 0;
+    case CLOCK_REALTIME_ALARM:
+    case CLOCK_BOOTTIME_ALARM:
+    case CLOCK_MONOTONIC_RAW:
+    case CLOCK_REALTIME_COARSE:
+    case CLOCK_MONOTONIC_COARSE:
+      return EOPNOTSUPP;
+    case CLOCK_PROCESS_CPUTIME_ID:
+      kind->clock = TimerClock::kProcessCpu;
+      return 0;
+    case CLOCK_THREAD_CPUTIME_ID:
+      kind->clock = TimerClock::kThreadCpu;
+      kind->clock_tid = t.slot->tid;
+      return 0;
+    default:
+      break;
+  }
+  if (clock >= 0 || (clock & kClockFdBits) == kClockFdBits) return EINVAL;
+  const int owner = static_cast<int>(~(clock >> 3));
+  if ((clock & kPerThreadBit) == 0) {
+    kind->clock = TimerClock::kProcessCpu;
+    return owner == 0 || owner == t.slot->pid ? 0 : EINVAL;
+  }
+  kind->clock = TimerClock::kThreadCpu;
+  kind->clock_tid = owner == 0 ? t.slot->tid : owner;
+  return IsThread(t, kind->clock_tid) ? 0 : EINVAL;
+}
+
+int KindOfEvent(GuestThread& t, const sigevent& event, TimerKind* kind) {
+  switch (event.sigev_notify) {
+    case SIGEV_NONE:
+    case SIGEV_THREAD:
+      return 0;
+    case SIGEV_THREAD_ID:
+      kind->signal_tid = event._sigev_un._tid;
+      if (!IsThread(t, kind->signal_tid)) return EINVAL;
+      [[fallthrough]];
+    case SIGEV_SIGNAL:
+      kind->signal = event.sigev_signo;
+      kind->value = reinterpret_cast<std::int64_t>(event.sigev_value.sival_ptr);
+      return kind->signal > 0 && kind->signal < 65 ? 0 : EINVAL;
+    default:
+      return EINVAL;
+  }
+}
+
+// What its threads need: from the program's attributes, as they are now.
+void KeepThread(const sigevent& event, PosixTimer* timer) {
+  timer->function = event.sigev_notify_function;
+  timer->value = event.sigev_value;
+  pthread_attr_t defaults;
+  pthread_attr_init(&defaults);
+  const pthread_attr_t* given = event.sigev_notify_attributes;
+  if (given == nullptr) given = &defaults;
+  pthread_attr_getstacksize(given, &timer->stack_size);
+  pthread_attr_getguardsize(given, &timer->guard_size);
+  pthread_attr_destroy(&defaults);
+}
+
+// 0 or the error; on an error the caller frees the timer.
+int Make(GuestThread& t, const sigevent& event, const TimerKind& kind, PosixTimer* timer) {
+  const bool threaded = event.sigev_notify == SIGEV_THREAD;
+  timer->event_fd = -1;
+  timer->overruns = 0;
+  if (threaded) {
+    timer->event_fd = static_cast<int>(RawSyscall(SYS_eventfd2, 0, EFD_CLOEXEC));
+    if (timer->event_fd < 0) return EAGAIN;
+    KeepThread(event, timer);
+  }
+  Request request{.kind = NotificationKind::kTimerCreate, .args = {timer->event_fd}};
+  __builtin_memcpy(&request.args[1], &kind, sizeof kind);
+  timer->id = Exchange(t, request).values[0];
+  int error = timer->id >= tcs::shm::kFirstTimerId ? 0 : EAGAIN;
+  __atomic_store_n(&timer->state, PosixTimer::kLive, __ATOMIC_RELEASE);
+  if (error == 0 && threaded && !StartTimerThread(timer)) {
+    Exchange(t, Request{.kind = NotificationKind::kTimerDelete, .args = {timer->id}});
+    error = EAGAIN;
+  }
+  if (error != 0 && threaded) RawSyscall(SYS_close, timer->event_fd);
+  return error;
+}
+
+// What the timer's clock shows, in the coordinator's terms: virtual or charged time. A clock of
+// another thread is read where that thread last stopped.
+std::int64_t NowOn(GuestThread& t, const PosixTimer& timer) {
+  TimerKind kind;
+  KindOfClock(t, timer.clock, &kind);
+  if (kind.clock == TimerClock::kTime) return NowNs(t);
+  timespec now{};
+  clock_gettime(timer.clock, &now);
+  return ToNs(now);
+}
+
+std::int64_t OffsetOf(clockid_t clock) {
+  if (clock == CLOCK_REALTIME || clock == CLOCK_TAI) return OffsetNs(Clock::kRealtime);
+  if (clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME) return OffsetNs(Clock::kMonotonic);
+  return 0;
+}
+
+itimerspec ToSpec(const Reply& reply, std::int64_t now) {
+  const std::int64_t next = reply.values[0];
+  const std::int64_t left = next == 0 ? 0 : next > now ? next - now : 1;
+  return itimerspec{ToTimespec(reply.values[1]), ToTimespec(left)};
+}
+
+}  // namespace
+
+TCS_EXPORT int timer_create(clockid_t clock, sigevent* __restrict given,
+                            timer_t* __restrict name) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr || IsShutDown()) return TCS_REAL(timer_create)(clock, given, name);
+  TimerKind kind;
+  kind.is_posix = 1;
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGALRM;
+  if (given != nullptr) event = *given;
+  if (const int error = KindOfClock(*t, clock, &kind); error != 0) return Fail(error);
+  if (const int error = KindOfEvent(*t, event, &kind); error != 0) return Fail(error);
+  PosixTimer* timer = ClaimPosixTimer();
+  if (timer == nullptr) return Fail(EAGAIN);
+  timer->clock = clock;
+  if (const int error = Make(*t, event, kind, timer); error != 0) {
+    FreePosixTimer(timer);
+    return Fail(error);
+  }
+  *name = reinterpret_cast<timer_t>(timer->id);
+  return 0;
+}
+
+TCS_EXPORT int timer_delete(timer_t name) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(timer_delete)(name);
+  PosixTimer* timer = FindPosixTimer(name);
+  if (timer == nullptr) return Fail(EINVAL);
+  __atomic_store_n(&timer->state, PosixTimer::kEnding, __ATOMIC_RELEASE);
+  Exchange(*t, Request{.kind = NotificationKind::kTimerDelete, .args = {timer->id}});
+  if (timer->event_fd < 0) {
+    FreePosixTimer(timer);
+    return 0;
+  }
+  const std::uint64_t wake = 1;
+  RawSyscall(SYS_write, timer->event_fd, Arg(&wake), sizeof wake);
+  return 0;
+}
+
+TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restrict value,
+                             itimerspec* __restrict old) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(timer_settime)(name, flags, value, old);
+  const PosixTimer* timer = FindPosixTimer(name);
+  if (timer == nullptr || value == nullptr) return Fail(EINVAL);
+  if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
+  const std::int64_t now = NowOn(*t, *timer);
+  const std::int64_t wanted = ToNs(value->it_value);
+  std::int64_t first = 0;
+  if (wanted != 0) {
+    first =
+        (flags & TIMER_ABSTIME) != 0 ? wanted - OffsetOf(timer->clock) : AddSaturated(now, wanted);
+    if (first <= 0) first = 1;  // long past, but armed
+  }
+  const Reply before = Exchange(*t, Request{.kind = NotificationKind::kTimerSet,
+                                            .args = {timer->id, first, ToNs(value->it_interval)}});
+  if (old != nullptr) *old = ToSpec(before, now);
+  return 0;
+}
+
+TCS_EXPORT int timer_gettime(timer_t name, itimerspec* value) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(timer_gettime)(name, value);
+  const PosixTimer* timer = FindPosixTimer(name);
+  if (timer == nullptr) return Fail(EINVAL);
+  const Reply reply =
+      Exchange(*t, Request{.kind = NotificationKind::kTimerGet, .args = {timer->id}});
+  *value = ToSpec(reply, NowOn(*t, *timer));
+  return 0;
+}
+
+TCS_EXPORT int timer_getoverrun(timer_t name) noexcept {
+  GuestThread* t = Enter();
+  if (t == nullptr) return TCS_REAL(timer_getoverrun)(name);
+  const PosixTimer* timer = FindPosixTimer(name);
+  if (timer == nullptr) return Fail(EINVAL);
+  if (timer->event_fd >= 0) return __atomic_load_n(&timer->overruns, __ATOMIC_RELAXED);
+  const Reply reply =
+      Exchange(*t, Request{.kind = NotificationKind::kTimerOverrun, .args = {timer->id}});
+  return static_cast<int>(reply.values[0]);
+}
