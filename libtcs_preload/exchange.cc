@@ -39,10 +39,6 @@ void FillRecord(shm::ThreadSlot& slot, const Request& request) {
   memcpy(note.args, request.args, sizeof note.args);
   note.fd_count = request.fd_count;
   if (request.fd_count > 0) memcpy(note.fds, request.fds, request.fd_count * sizeof(shm::WaitFd));
-  if (request.text != nullptr) {
-    strncpy(note.text, request.text, sizeof note.text - 1);
-    note.text[sizeof note.text - 1] = '\0';
-  }
 }
 
 void Notify(const GuestThread& thread) {

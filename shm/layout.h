@@ -57,7 +57,7 @@ enum class NotificationKind : std::uint32_t {
   kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
                       // the virtual scheduler; reply[0]: 0, or negative for an errno
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
-  kUncovered = 15,    // text names a call that tcs does not cover; reported once
+  kStrangers = 15,    // the process is about to get threads that never register
   kThreadExit = 16,   // the thread ends
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
   kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
@@ -165,9 +165,8 @@ struct Notification {
   std::int64_t deadline_ns;  // kNeverNs for none
   std::int64_t args[4];
   WaitFd fds[kMaxWaitFds];
-  char text[64];  // NUL-terminated
 };
-static_assert(sizeof(Notification) == 376);
+static_assert(sizeof(Notification) == 312);
 
 // What the shim leaves in the last argument, unused, of the system calls that it makes itself: they
 // are the kernel's. All others that wait or read time are handed to the coordinator.
@@ -192,12 +191,12 @@ struct alignas(64) ThreadSlot {
   std::uint32_t cores;  // of the robot
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
-  std::uint8_t reserved[400];
+  std::uint8_t reserved[464];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
-static_assert(offsetof(ThreadSlot, gate) == 568);
-static_assert(offsetof(ThreadSlot, pid) == 592);
+static_assert(offsetof(ThreadSlot, gate) == 504);
+static_assert(offsetof(ThreadSlot, pid) == 528);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters.

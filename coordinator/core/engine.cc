@@ -242,7 +242,23 @@ bool Engine::HasJumpedOver() {
   external_event_ = false;
   PollEvents(0);
   PollUnseen();
+  if (StrangersRun()) {
+    PollEvents(kUnseenPollNs);
+    return false;
+  }
   return !external_event_;
+}
+
+// Threads that never registered are at work: time waits for them.
+bool Engine::StrangersRun() {
+  for (const Process& process : processes_) {
+    if (!process.has_strangers || process.dead) continue;
+    for (const pid_t tid : ThreadsOf(process.pid)) {
+      const char state = KnownTask(tid) == nullptr ? ThreadState(tid) : 'S';
+      if (state == 'R' || state == 'D') return true;
+    }
+  }
+  return false;
 }
 
 void Engine::ShowProgress() {

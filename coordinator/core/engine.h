@@ -51,6 +51,7 @@ class Engine {
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   bool IsSafe(const Task& task) const;
   void PollUnseen();
+  bool StrangersRun();
   void WaitOutside();
   void ShowProgress();
 
@@ -96,6 +97,7 @@ class Engine {
   void TrapArrived(int listener);
   void HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
+  void HandleStranger(const TrappedCall& call);
   void ReleaseTrapped();
 
   // Those other than futex (raw_calls.cc).
@@ -113,6 +115,7 @@ class Engine {
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
+  void WakeForStranger(const Process& process, const TrappedCall& call);
   bool FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);

@@ -138,6 +138,14 @@ bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
   });
 }
 
+void Engine::WakeForStranger(const Process& process, const TrappedCall& call) {
+  const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
+  if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return;
+  const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
+  FutexWake(KeyOf(process.pid, call.args[0], is_private), static_cast<int>(call.args[2]),
+            command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
+}
+
 void Engine::HandleFutex(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   switch (command) {
@@ -171,6 +179,11 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       break;
     default:
       task.trap_result = -ENOSYS;
+  }
+  const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET;
+  // Threads that tcs does not know wait in the kernel.
+  if (wakes && task.process->has_strangers && task.trap_result < static_cast<int>(call.args[2])) {
+    task.trap_continues = true;
   }
 }
 

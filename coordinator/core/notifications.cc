@@ -11,15 +11,7 @@
 
 namespace tcs {
 
-namespace {
-
-std::string Printable(const char* text, std::size_t size) {
-  std::string printable(text, strnlen(text, size));
-  for (char& c : printable) c = c >= ' ' && c < 127 ? c : '?';
-  return printable;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void Engine::EndWatches(Task& task) {
   for (const int fd : task.watched) {
@@ -141,9 +133,8 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kAffinity:
       HandleScheduling(task, note);
       break;
-    case Kind::kUncovered:
-      Warn(task.process->name + " uses " + Printable(note.text, sizeof note.text) +
-           ", which does not live in virtual time yet: its waits take real time");
+    case Kind::kStrangers:
+      task.process->has_strangers = true;
       break;
     case Kind::kSignalled:
       WakeSignalled(static_cast<pid_t>(note.args[0]));

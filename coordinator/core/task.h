@@ -131,9 +131,10 @@ struct Process {
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
   bool dead = false;
-  int threads = 1;         // that ever attached
-  bool is_client = false;  // named in the scenario, rather than a child of one
-  int wait_status = 0;     // once dead, of the coordinator's own children
+  int threads = 1;             // that ever attached
+  bool has_strangers = false;  // threads that never will
+  bool is_client = false;      // named in the scenario, rather than a child of one
+  int wait_status = 0;         // once dead, of the coordinator's own children
   std::int64_t ended_at_ns = -1;
 };
 

@@ -1,7 +1,10 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
 
+#include <algorithm>
+
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
 
 namespace tcs {
 
@@ -40,7 +43,21 @@ void Engine::TrapArrived(int listener) {
     task.trap_id = 0;
     return;
   }
-  ContinueTrapped(listener, call->id);
+  HandleStranger(*call);
+}
+
+// A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
+// has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
+// here.
+void Engine::HandleStranger(const TrappedCall& call) {
+  const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
+  const auto known = std::find_if(processes_.begin(), processes_.end(),
+                                  [pid](const Process& p) { return p.pid == pid && !p.dead; });
+  if (known != processes_.end() && KnownTask(call.tid) == nullptr) {
+    known->has_strangers = true;
+    WakeForStranger(*known, call);
+  }
+  ContinueTrapped(call.listener, call.id);
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.

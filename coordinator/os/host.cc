@@ -142,6 +142,14 @@ std::vector<pid_t> ThreadsOf(pid_t pid) {
   return tids;
 }
 
+pid_t ProcessOfThread(pid_t tid) {
+  std::ifstream file("/proc/" + std::to_string(tid) + "/status");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("Tgid:", 0) == 0) return std::stoi(line.substr(5));
+  }
+  return -1;
+}
+
 int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 int DuplicateFd(int pidfd, int fd) {

@@ -57,6 +57,8 @@ void SendTimerSignal(const TimerSignalRequest& request);
 std::string ThreadSystemCall(pid_t tid);
 
 std::vector<pid_t> ThreadsOf(pid_t pid);
+// -1 if it has ended.
+pid_t ProcessOfThread(pid_t tid);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
