@@ -1,7 +1,10 @@
 #include "tests/bench/probe/calls.h"
 
+#include <pthread.h>
 #include <sched.h>
+#include <sys/syscall.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "tests/bench/probe/batches.h"
 
@@ -19,6 +22,18 @@ double ShortSleepTicks() {
 
 double ExchangeTicks() {
   return TicksPerCall({100, 50}, [] { sched_yield(); });
+}
+
+double MutexTicks() {
+  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  return TicksPerCall({1000, 1000}, [&] {
+    pthread_mutex_lock(&mutex);
+    pthread_mutex_unlock(&mutex);
+  });
+}
+
+double KernelCallTicks() {
+  return TicksPerCall({1000, 1000}, [] { syscall(SYS_getppid); });
 }
 
 }  // namespace tcs::bench

@@ -9,4 +9,10 @@ double ShortSleepTicks();
 // sched_yield with nobody to yield to; under tcs exactly one exchange with the coordinator.
 double ExchangeTicks();
 
+// Locks and unlocks a mutex that nobody else wants.
+double MutexTicks();
+
+// A system call that is not trapped.
+double KernelCallTicks();
+
 }  // namespace tcs::bench

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/bench/probe/calls.h"
+#include "tests/bench/probe/handover.h"
 #include "tests/bench/probe/ping_pong.h"
 #include "tests/bench/probe/whose_time.h"
 #include "tests/bench/probe/work.h"
@@ -20,6 +21,9 @@ double Measure(const std::string& what, const char* steps) {
   if (what == "clock") return tcs::bench::ClockReadTicks();
   if (what == "sleep") return tcs::bench::ShortSleepTicks();
   if (what == "exchange") return tcs::bench::ExchangeTicks();
+  if (what == "mutex") return tcs::bench::MutexTicks();
+  if (what == "kernel_call") return tcs::bench::KernelCallTicks();
+  if (what == "handover") return tcs::bench::HandoverTicks();
   if (what == "ping_pong") return tcs::bench::PingPongTicks();
   if (what == "work") return tcs::bench::SecondsOfWork(std::atoll(steps));
   return -1;
