@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# 200 clients of mixed kinds for a minute of virtual time: nobody hangs, loses anything or leaves
+# anything behind, the coordinator does not grow, and progress stays together.
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+kinds=(periodic bursts threads births children stream datagrams signals descriptors)
+{
+  echo "duration: 61s"
+
+  echo "robots:"
+  client=0
+  for robot in $(seq 10); do
+    echo "  robot$robot:"
+    echo "    cpu: {cores: $((robot % 3 + 1))}"
+    echo "    clients:"
+    for _ in $(seq 20); do
+      kind=${kinds[client++ % ${#kinds[@]}]}
+      echo "      $kind$client: {command: [$build/bin/soak_client, $kind, \"60\"], priority: $((client % 4))}"
+    done
+  done
+} >"$out/scenario.yaml"
+shared_before=$(ls /dev/shm | wc -l)
+
+"$tcsim" run "$out/scenario.yaml" --out "$out/run" >"$out/said" 2>&1 &
+run=$!
+# How many descriptors and threads the coordinator has, over its life.
+while kill -0 "$run" 2>/dev/null; do
+  coordinator=$(pgrep -P "$run" | head -1 || true)
+  if [[ -n $coordinator ]]; then
+    ls "/proc/$coordinator/fd" 2>/dev/null | wc -l >>"$out/descriptors" || true
+    ls "/proc/$coordinator/task" 2>/dev/null | wc -l >>"$out/threads" || true
+  fi
+  sleep 0.5
+done
+wait "$run" || fail "$(cat "$out/said")"
+python3 - "$out" <<'PY'
+import json, pathlib, sys
+out = pathlib.Path(sys.argv[1])
+summary = json.loads((out / "run/summary.json").read_text())
+assert 59_900_000_000 <= summary["virtual_ns"] <= 61_000_000_000, summary["virtual_ns"]
+assert summary["drift_ns"] <= summary["drift_bound_ns"], summary["drift_ns"]
+assert summary["staleness_ns"] == 0, summary["staleness_ns"]
+assert len(summary["clients"]) == 200
+for name, client in summary["clients"].items():
+    log = out / ("run/%s.err.log" % name.replace("/", "-"))
+    assert client["wait_status"] == 0 and client["ended_at_ns"] >= 59_000_000_000, (name, client, log.read_text())
+counts = [int(line) for line in (out / "descriptors").read_text().split()]
+# Each client has a few while it lives; what grows beyond the middle of the run is a leak.
+middle = max(counts[len(counts) // 3 : len(counts) * 2 // 3])
+assert max(counts[len(counts) * 2 // 3 :]) <= middle + 60, counts
+assert set((out / "threads").read_text().split()) <= {"0", "1"}, "the coordinator has threads"
+PY
+(($(ls /dev/shm | wc -l) == shared_before)) || fail "something is left in /dev/shm"
+! pgrep -f "$build/bin/soak_client" >/dev/null || fail "clients are left"
