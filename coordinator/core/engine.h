@@ -145,7 +145,8 @@ class Engine {
   void WakeForSignals(Process& process);
   void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets);
-  void PollSignals();
+  bool PollSignals();
+  bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
