@@ -162,6 +162,7 @@ class Engine {
   static void FindNextExpiry(Process& process);
 
   // Their signals (timer_signals.cc).
+  static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   static Task* TakerOf(const Process& process, const TimerSignal& signal);
   void RouteTimerSignals(Process& process);
   void SendTimerSignalsTo(const Task& task);
