@@ -230,7 +230,7 @@ void Engine::AwaitStop(Task& task) {
     if (!first) ContinueClock(task);
     const std::int64_t asked_ns = HostNsToHorizon(task);
     const std::uint64_t asked_tsc = stop_tsc_;
-    if (PollEvents(asked_ns)) return;
+    if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
     if (task.slot < 0) {

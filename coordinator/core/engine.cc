@@ -141,6 +141,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     limit = std::min(limit, cpu.progress_ns + left);
   }
   std::int64_t idle = limit;
+  const std::int64_t turn_end =
+      task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
   for (const Task* other : robot.tasks) {
     const std::int64_t expiry = other->process->next_expiry_ns;
     if (other->process == task.process || other->priority > task.priority) {
@@ -153,6 +155,10 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
       continue;
     }
     idle = std::min(idle, other->deadline_ns);
+    if (other->priority == task.priority && task.policy != SCHED_FIFO) {
+      // Its turn comes when this one's is over.
+      limit = std::min(limit, std::max(std::min(other->deadline_ns, expiry), turn_end));
+    }
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
     if (!other->waits_for_fds && !other->waits_for_key && other->awaited_signals == 0 &&
@@ -162,9 +168,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }
   limit = std::min(limit, robot.ready.NextMoreUrgent(cpu.core));
-  if (task.policy != SCHED_FIFO && robot.ready.HasWaitingEqual(cpu.core)) {
-    limit = std::min(limit, cpu.progress_ns + QuantumOf(task) - task.turn_ns);
-  }
+  if (robot.ready.HasWaitingEqual(cpu.core)) limit = std::min(limit, turn_end);
   *idle_until = std::min(idle, limit);
   return limit;
 }

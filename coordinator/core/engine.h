@@ -145,7 +145,8 @@ class Engine {
   void WakeForSignals(Process& process);
   void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets);
-  void PollSignals();
+  bool PollSignals();
+  bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
@@ -161,6 +162,7 @@ class Engine {
   static void FindNextExpiry(Process& process);
 
   // Their signals (timer_signals.cc).
+  static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   static Task* TakerOf(const Process& process, const TimerSignal& signal);
   void RouteTimerSignals(Process& process);
   void SendTimerSignalsTo(const Task& task);

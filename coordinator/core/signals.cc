@@ -14,7 +14,7 @@ namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kLookEveryNs = 1'000'000;  // real time
+constexpr std::int64_t kLookEveryNs = 10'000'000;  // real time
 
 constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
 
@@ -42,16 +42,34 @@ void Engine::AwaitSignals(Task& task, std::uint64_t set) {
 }
 
 // Nobody says that a signal has come from outside, so those who wait for one are looked at now and
-// then.
-void Engine::PollSignals() {
-  if (waiting_for_signals_ == 0 || __rdtsc() < next_signal_look_tsc_) return;
+// then. True if one goes on.
+bool Engine::PollSignals() {
+  if (waiting_for_signals_ == 0 || __rdtsc() < next_signal_look_tsc_) return false;
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+  bool ended = false;
+  const std::int64_t now_ns = running_ != nullptr ? WrittenAt() : event_ns_;
   for (Task& task : tasks_) {
     if (task.awaited_signals == 0) continue;
-    const std::int64_t before_ns = std::exchange(event_ns_, std::max(event_ns_, task.reached_ns));
-    if (!EndAwait(task, ReadSignalSets(task.tid))) event_ns_ = before_ns;
+    const std::int64_t before_ns = std::exchange(event_ns_, std::max(now_ns, task.reached_ns));
+    const bool its = EndAwait(task, ReadSignalSets(task.tid));
+    if (!its) event_ns_ = before_ns;
+    ended |= its;
   }
+  return ended;
+}
+
+// PollEvents for the running thread, in turns while somebody waits for signals.
+bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
+  while (waiting_for_signals_ > 0 && timeout_ns > kLookEveryNs) {
+    if (PollEvents(kLookEveryNs)) return true;
+    if (!preempted_) return false;
+    preempted_ = false;
+    if (PollSignals()) return true;
+    timeout_ns -= kLookEveryNs;
+    ContinueClock(task);
+  }
+  return PollEvents(timeout_ns);
 }
 
 // What is for the whole process goes to the first of its threads that does not block it, as the

@@ -30,14 +30,24 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
                      .timer_id = static_cast<int>(signal.timer_id),
                      .overruns = static_cast<int>(signal.overruns),
                      .value = signal.value});
-  } else if (tid == 0 || tid == process.pid) {
-    kill(process.pid, signal.number);  // the kernel prefers the first thread
+  } else if (tid == 0 || process.threads == 1) {
+    kill(process.pid, signal.number);
   } else {
     tgkill(process.pid, tid, signal.number);
   }
 }
 
 }  // namespace
+
+// The thread that waits to accept it, 0 if there is none. The kernel, too, prefers it to others.
+pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
+  for (const Task* task : process.robot->tasks) {
+    if (task->process != &process || task->waits_for_fds) continue;
+    if (signal.tid != 0 && task->tid != signal.tid) continue;
+    if ((task->awaited_signals & Bit(signal.number)) != 0) return task->tid;
+  }
+  return 0;
+}
 
 // Null if nobody runs a handler, or only one that the kernel holds in a call.
 Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
@@ -53,9 +63,10 @@ void Engine::RouteTimerSignals(Process& process) {
   std::vector<TimerSignal> later;
   for (TimerSignal& signal : process.timer_signals) {
     if (signal.taker == 0 || KnownTask(signal.taker) == nullptr) {
-      Task* taker = TakerOf(process, signal);
+      const pid_t accepter = AccepterOf(process, signal);
+      Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
       if (taker == nullptr) {
-        Send(process, signal, signal.tid);
+        Send(process, signal, accepter != 0 ? accepter : signal.tid);
         continue;
       }
       signal.taker = taker->tid;
