@@ -2,6 +2,8 @@
 #include <pthread.h>
 #include <threads.h>
 
+#include <atomic>
+
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -15,6 +17,7 @@ bool g_flag = false;
 once_flag g_once = ONCE_FLAG_INIT;
 pthread_once_t g_pthread_once = PTHREAD_ONCE_INIT;
 int g_made = 0;
+std::atomic<bool> g_began{false};
 
 void ExpectPassed(std::int64_t start, std::int64_t wanted, const char* what) {
   const std::int64_t passed = Now() - start;
@@ -25,16 +28,18 @@ void ExpectPassed(std::int64_t start, std::int64_t wanted, const char* what) {
 }
 
 void MakeSlowly() {
+  g_began = true;
   usleep(kDelay / 1000);
   ++g_made;
 }
 
-// A thread runs `during` while the caller is in `wait`.
+// A thread runs `during`, and once that has begun the caller is in `wait`.
 void Meanwhile(const char* what, std::int64_t wanted, thrd_start_t during, void (*wait)()) {
   const std::int64_t start = Now();
+  g_began = false;
   thrd_t thread;
   EXPECT(thrd_create(&thread, during, nullptr) == thrd_success, "thrd_create");
-  usleep(1'000);
+  while (!g_began) usleep(100);
   wait();
   ExpectPassed(start, wanted, what);
   EXPECT(thrd_join(thread, nullptr) == thrd_success, "thrd_join");
@@ -49,6 +54,7 @@ int main(int argc, char** argv) {
   Meanwhile(
       "cnd_wait", kDelay,
       [](void*) {
+        g_began = true;
         usleep(kDelay / 1000);
         mtx_lock(&g_mutex);
         g_flag = true;
@@ -64,6 +70,7 @@ int main(int argc, char** argv) {
       "mtx_lock", kDelay,
       [](void*) {
         mtx_lock(&g_mutex);
+        g_began = true;
         usleep(kDelay / 1000);
         return mtx_unlock(&g_mutex);
       },

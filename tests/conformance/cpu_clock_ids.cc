@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   clockid_t named = 0;
   EXPECT(clock_getcpuclockid(getpid(), &named) == 0, "clock_getcpuclockid");
   for (const clockid_t clock : {process, named, thread}) {
-    const std::int64_t start = Now(clock), start_time = Now();
+    const std::int64_t start_time = Now(), start = Now(clock);
     usleep(300'000);
     EXPECT(Now(clock) - start < 100 * kMs, "a sleep was charged");
     // Under tcs the clock's readings are what moves it with set costs.

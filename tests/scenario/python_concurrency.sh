@@ -81,6 +81,12 @@ def alarm():
     signal.alarm(5)
     signal.pause()
 
+def blocked_alarm(wait):
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGALRM])
+    signal.alarm(2)
+    wait([signal.SIGALRM])
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGALRM])
+
 if __name__ == "__main__":
     took("threads", 3, threads)
     took("join", 10, join_with_timeout)
@@ -98,6 +104,8 @@ if __name__ == "__main__":
     took("ThreadPoolExecutor", 2, lambda: executor(concurrent.futures.ThreadPoolExecutor))
     took("ProcessPoolExecutor", 2, lambda: executor(concurrent.futures.ProcessPoolExecutor))
     took("alarm", 5, alarm)
+    took("sigwait", 2, lambda: blocked_alarm(signal.sigwait))
+    took("sigtimedwait", 3, lambda: signal.sigtimedwait([signal.SIGUSR1], 3))
     print("done")
 PY
 for accounting in measured fixed; do

@@ -9,6 +9,7 @@ expect() {
   done
 }
 expect 'at 6' 'seq 8 | xargs -P4 -I{} sleep 3; echo at $SECONDS'
+expect '124 at 5' 'timeout 5 sleep 100; echo $? at $SECONDS'
 expect '143 at 2' 'sleep 100 & sleep 2; kill $!; wait $! 2>/dev/null; echo $? at $SECONDS'
 expect 'at 3, then 5' 'exec 2>/dev/null; set -m; sleep 5 & sleep 3 & wait -n; printf "at $SECONDS, "
   wait; echo then $SECONDS'

@@ -15,5 +15,9 @@ expect_verified --poll 1 --poll-ops 2000 -t 10
 expect_verified --switch 1 --switch-ops 5000 -t 10
 expect_verified --sem 1 --sem-ops 5000 -t 10
 expect_verified --futex 1 --futex-ops 20 -t 10
+expect_verified --mq 1 --mq-ops 100 -t 10
+expect_verified --sem-sysv 1 --sem-sysv-ops 1000 -t 10
+expect_verified --msg 1 --msg-ops 1000 -t 10
+expect_verified --timer 1 --timer-ops 1000 -t 10
 said=$("$tcsim" exec --accounting fixed -- stress-ng --verify --poll 1 -t 1 2>&1)
 [[ $said == *"successful run completed in 1.00s"* ]] || fail "a virtual second: $said"
