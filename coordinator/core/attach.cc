@@ -17,6 +17,8 @@ namespace tcs {
 
 namespace {
 
+constexpr std::size_t kKeptAfterEnd = 64;
+
 void Refuse(int connection, const char* why) {
   shm::AttachReply reply{};
   reply.magic = shm::kMagic;
@@ -28,12 +30,46 @@ void Refuse(int connection, const char* why) {
 
 }  // namespace
 
-Task* Engine::AddTask(Process& process, pid_t tid) {
+// The place of one that ended long enough ago, so that nobody speaks of it any more; else a new
+// one.
+Task& Engine::PlaceForTask() {
+  if (ended_tasks_.size() > kKeptAfterEnd) {
+    Task& task = *ended_tasks_.front();
+    ended_tasks_.pop_front();
+    const int order = task.order;
+    task = Task{};
+    task.order = order;
+    return task;
+  }
   Task& task = tasks_.emplace_back();
+  task.order = static_cast<int>(tasks_.size() - 1);
+  return task;
+}
+
+// The same. A child that has not been waited for keeps its place, and so does a client.
+Process& Engine::PlaceForProcess() {
+  if (ended_processes_.size() > kKeptAfterEnd) {
+    Process& process = *ended_processes_.front();
+    ended_processes_.pop_front();
+    if (ThreadState(process.pid) != 'Z') {
+      const std::uint32_t index = process.index;
+      process = Process{};
+      process.index = index;
+      return process;
+    }
+    ended_processes_.push_back(&process);
+  }
+  Process& process = processes_.emplace_back();
+  process.index = static_cast<std::uint32_t>(processes_.size() - 1);
+  return process;
+}
+
+Task* Engine::AddTask(Process& process, pid_t tid) {
+  Task& task = PlaceForTask();
   ++living_;
+  by_tid_[tid] = &task;
   task.process = &process;
   task.tid = tid;
-  task.order = static_cast<int>(tasks_.size() - 1);
   task.priority = process.priority;
   task.parked = false;
   task.reached_ns = event_ns_;
@@ -45,7 +81,7 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
 
 Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name,
                       int priority) {
-  Process& process = processes_.emplace_back();
+  Process& process = PlaceForProcess();
   process.pid = pid;
   process.parent = parent;
   process.robot = robot;
@@ -58,7 +94,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.frozen_ns = other.frozen_ns;
   }
   if (process.pidfd >= 0) {
-    Watch(process.pidfd, EPOLLIN, Tag::kProcess, static_cast<std::uint32_t>(processes_.size() - 1));
+    Watch(process.pidfd, EPOLLIN, Tag::kProcess, process.index);
   }
   Task* task = AddTask(process, pid);
   // Children have no name of their own; their place in the order is the same in every run.
@@ -76,10 +112,8 @@ Task* Engine::AddThread(Process& process, pid_t tid) {
 }
 
 Task* Engine::KnownTask(pid_t tid) {
-  for (Task& known : tasks_) {
-    if (known.tid == tid && known.state != TaskState::kDead) return &known;
-  }
-  return nullptr;
+  const auto known = by_tid_.find(tid);
+  return known == by_tid_.end() ? nullptr : known->second;
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
@@ -159,8 +193,20 @@ void Engine::SendReply(int connection, const Task& task) {
   sendmsg(connection, &message, MSG_NOSIGNAL);
 }
 
-// The slot goes to the end of the queue: a last word of its thread may still be in the pipe.
+// What the thread has had and done goes to its process. The slot goes to the end of the queue: a
+// last word of its thread may still be in the pipe.
 void Engine::EndTask(Task& task) {
+  Process& process = *task.process;
+  process.ended_cpu_ns += task.charged_ns;
+  process.ended_host_ns += HostCpuOf(task);
+  process.ended_activations += task.activations;
+  if (task.cpu_clock_fd >= 0) close(task.cpu_clock_fd);
+  if (task.slot >= 0) {
+    const shm::ClockPage& clock = Slot(task).clock;
+    process.ended_stolen_ns += clock.stolen_ns.load();
+    report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
+    by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
+  }
   EndWatches(task);
   EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
@@ -175,6 +221,8 @@ void Engine::EndTask(Task& task) {
   std::erase(task.process->robot->tasks, &task);
   if (task.slot >= 0) free_slots_.push_back(task.slot);
   if (last_ == &task) last_ = nullptr;
+  by_tid_.erase(task.tid);
+  ended_tasks_.push_back(&task);
   Refresh(*task.process->robot);
 }
 
@@ -213,6 +261,7 @@ void Engine::ProcessEnded(std::size_t index) {
   }
   WakeEveryKey();
   // Our own children, and those who lost their parent, are reaped here.
+  if (!process.is_client) ended_processes_.push_back(&process);
   int status = 0;
   if (waitpid(process.pid, &status, WNOHANG) != process.pid) return;
   process.wait_status = status;

@@ -28,13 +28,20 @@ constexpr int kSilentTurns = 60;
 
 }  // namespace
 
+// The thread's own CPU clock; -1 if it cannot be read any more.
+std::int64_t Engine::HostClockOf(Task& task) {
+  if (task.process->threads == 1) return ProcessCpuClockNs(task.tid);
+  if (task.cpu_clock_fd < 0) task.cpu_clock_fd = OpenThreadCpuClock(task.tid);
+  return ReadThreadCpuClock(task.cpu_clock_fd);
+}
+
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
   const std::int64_t frozen = task.process->frozen_ns;
   if (task.host_origin_ns < 0) {
-    task.host_origin_ns = ThreadCpuClockNs(task.tid, task.process->threads == 1);
+    task.host_origin_ns = HostClockOf(task);
   }
   page.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
   page.base_cpu_ns = task.charged_ns;
@@ -52,7 +59,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       IsFixed() ? ~std::uint64_t{0}
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
   page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
-  page.other_cpu_ns = task.process->ended_cpu_ns;
+  page.other_cpu_ns = task.process->threads == 1 ? task.process->ended_cpu_ns
+                                                 : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   page.last_shown_ns.store(std::max(last, cpu.progress_ns + frozen), std::memory_order_relaxed);
@@ -135,7 +143,7 @@ void Engine::CheckCpuClock(Task& task) {
   if (IsFixed()) return;
   shm::ClockPage& page = Slot(task).clock;
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
-  const std::int64_t cpu = ThreadCpuClockNs(task.tid, task.process->threads == 1);
+  const std::int64_t cpu = HostClockOf(task);
   if (cpu < 0) return;
   // What is stolen at every dispatch is the context switch itself. Only slices that the thread has
   // not checked in between say something about it.

@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
@@ -73,6 +74,7 @@ class Engine {
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
   void CheckCpuClock(Task& task);
+  static std::int64_t HostClockOf(Task& task);
   std::int64_t WrittenAt();
 
   // Notifications (notifications.cc).
@@ -180,6 +182,8 @@ class Engine {
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority);
+  Task& PlaceForTask();
+  Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
   Task* KnownTask(pid_t tid);
@@ -188,6 +192,7 @@ class Engine {
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
+  std::int64_t HostCpuOf(Task& task);
 
   void Warn(const std::string& text);
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
@@ -208,6 +213,9 @@ class Engine {
   std::deque<Task> tasks_;
   std::vector<std::int64_t> progress_;  // Refresh's own
   std::vector<Task*> by_slot_;
+  std::unordered_map<pid_t, Task*> by_tid_;  // the living
+  std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
+  std::deque<Process*> ended_processes_;
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen

@@ -64,28 +64,40 @@ void Engine::Report(RunReport* report) {
   report->commands = world_.commands();
   report->client_ns = client_host_ns_;
   report->interrupted = stop_requested_;
-  for (Task& task : tasks_) {
-    if (task.slot < 0) continue;
-    // A slot that has passed on to another thread no longer speaks of this one.
-    const bool own = by_slot_[static_cast<std::size_t>(task.slot)] == &task;
-    if (own) {
-      report->staleness_ns = std::max(report->staleness_ns, Slot(task).clock.staleness_ns.load());
-    }
-    if (!task.process->is_client) continue;
+  for (const Process& process : processes_) {
+    if (!process.is_client) continue;
     ClientReport client;
-    client.name = task.process->name;
-    client.charged_ns = task.charged_ns;
-    if (own) client.stolen_ns = Slot(task).clock.stolen_ns.load();
-    client.activations = task.activations;
-    client.overruns = task.process->overruns;
-    if (task.state != TaskState::kDead && task.host_origin_ns >= 0) {
-      const std::int64_t now = ThreadCpuClockNs(task.tid, task.process->threads == 1);
-      if (now >= 0) client.host_cpu_ns = now - task.host_origin_ns;
+    client.name = process.name;
+    client.charged_ns = process.ended_cpu_ns;
+    client.host_cpu_ns = process.ended_host_ns;
+    client.stolen_ns = process.ended_stolen_ns;
+    client.activations = process.ended_activations;
+    client.overruns = process.overruns;
+    client.ended_at_ns = process.ended_at_ns;
+    client.wait_status = process.wait_status;
+    for (Task* task : process.robot->tasks) {
+      if (task->process != &process || task->slot < 0) continue;
+      client.charged_ns += task->charged_ns;
+      client.host_cpu_ns += HostCpuOf(*task);
+      client.stolen_ns += Slot(*task).clock.stolen_ns.load();
+      client.activations += task->activations;
     }
-    client.ended_at_ns = task.process->ended_at_ns;
-    client.wait_status = task.process->wait_status;
     report->clients.push_back(client);
   }
+  for (const Robot& robot : robots_) {
+    for (const Task* task : robot.tasks) {
+      if (task->slot < 0) continue;
+      report->staleness_ns = std::max(report->staleness_ns, Slot(*task).clock.staleness_ns.load());
+    }
+  }
+}
+
+// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
+// no longer be asked.
+std::int64_t Engine::HostCpuOf(Task& task) {
+  if (task.host_origin_ns < 0) return 0;
+  const std::int64_t now = HostClockOf(task);
+  return now < 0 ? 0 : now - task.host_origin_ns;
 }
 
 }  // namespace tcs

@@ -153,7 +153,6 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       header_->queues_notify.store(1);
       break;
     case Kind::kThreadExit:
-      task.process->ended_cpu_ns += task.charged_ns;
       Slot(task).gate.store(shm::kGateOpen);
       EndTask(task);
       WakeThoseWaitingFor(task);

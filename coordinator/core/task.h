@@ -83,6 +83,7 @@ struct Task {
   std::int64_t turn_ns = 0;           // had since its equals last had a turn
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
+  int cpu_clock_fd = -1;  // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
   bool parked = true;           // at its gate, rather than stopped by priority
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
@@ -114,6 +115,7 @@ struct TimerSignal {
 };
 
 struct Process {
+  std::uint32_t index = 0;  // its place in the engine's list
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
   Robot* robot = nullptr;
@@ -130,6 +132,8 @@ struct Process {
   std::vector<TimerSignal> timer_signals;
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
+  // Of threads that have ended, for the report.
+  std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   bool dead = false;
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will

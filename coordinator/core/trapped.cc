@@ -33,17 +33,14 @@ void Engine::TrapArrived(int listener) {
     trapped_ = *call;
     return;
   }
-  for (Task& task : tasks_) {
-    if (task.tid != call->tid || task.state == TaskState::kDead || task.slot < 0) continue;
-    // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
-    // again, or it came back from a call that nobody saw.
-    if (task.state == TaskState::kUnseen) MakeReady(task, shm::WakeReason::kGo);
-    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
-    task.early_trap = *call;
-    task.trap_id = 0;
-    return;
-  }
-  HandleStranger(*call);
+  Task* task = KnownTask(call->tid);
+  if (task == nullptr || task->slot < 0) return HandleStranger(*call);
+  // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
+  // again, or it came back from a call that nobody saw.
+  if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo);
+  if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal);
+  task->early_trap = *call;
+  task->trap_id = 0;
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it

@@ -65,17 +65,26 @@ void LeaveRealTime(pid_t tid) {
   sched_setscheduler(tid, SCHED_OTHER, &param);
 }
 
-std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread) {
-  if (only_thread) {
-    // The kernel's encoding of a process's CPU clock (posix-timers.h): CPUCLOCK_SCHED.
-    const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(tid) << 3) | 2u);
-    timespec t;
-    return clock_gettime(id, &t) == 0 ? t.tv_sec * 1'000'000'000 + t.tv_nsec : -1;
-  }
-  // A thread's own clock can be read by its own process only; this is the same number.
-  std::ifstream file("/proc/" + std::to_string(tid) + "/schedstat");
-  std::int64_t on_cpu_ns = -1;
-  return file >> on_cpu_ns ? on_cpu_ns : -1;
+std::int64_t ProcessCpuClockNs(pid_t pid) {
+  // The kernel's encoding of a process's CPU clock (posix-timers.h): CPUCLOCK_SCHED.
+  const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(pid) << 3) | 2u);
+  timespec t;
+  return clock_gettime(id, &t) == 0 ? t.tv_sec * 1'000'000'000 + t.tv_nsec : -1;
+}
+
+// A thread's own clock can be read by its own process only; this is the same number.
+int OpenThreadCpuClock(pid_t tid) {
+  char path[64];
+  snprintf(path, sizeof path, "/proc/%d/schedstat", tid);
+  return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+std::int64_t ReadThreadCpuClock(int fd) {
+  char text[128];
+  const ssize_t n = pread(fd, text, sizeof text - 1, 0);
+  if (n <= 0) return -1;
+  text[n] = '\0';
+  return strtoll(text, nullptr, 10);
 }
 
 char ThreadState(pid_t tid) {

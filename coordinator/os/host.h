@@ -32,8 +32,13 @@ void LeaveRealTime(pid_t tid);
 // A clock of the host, in nanoseconds.
 std::int64_t HostClockNs(clockid_t id);
 
-// CPU time of a thread of any process; -1 if it has ended.
-std::int64_t ThreadCpuClockNs(pid_t tid, bool only_thread);
+// CPU time of a process; -1 if it has ended.
+std::int64_t ProcessCpuClockNs(pid_t pid);
+
+// CPU time of one thread of any process: where it is read, -1 if that cannot be had; and its value,
+// -1 once the thread has ended.
+int OpenThreadCpuClock(pid_t tid);
+std::int64_t ReadThreadCpuClock(int fd);
 
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);

@@ -1,5 +1,5 @@
-// soak_client KIND SECONDS: one client among many, of one of kKinds, for SECONDS of its own clock. It checks
-// what it can see for itself, and ends with 1 and a sentence where that is wrong.
+// soak_client KIND SECONDS: one client among many, of one of kKinds, for SECONDS of its own clock.
+// It checks what it can see for itself, and ends with 1 and a sentence where that is wrong.
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -203,9 +203,7 @@ void Descriptors() {
   }
 }
 
-void MakePipes(int* ends) {
-  Expect(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0, "socketpair");
-}
+void MakePipes(int* ends) { Expect(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0, "socketpair"); }
 
 void MakeDatagrams(int* ends) {
   Expect(socketpair(AF_UNIX, SOCK_DGRAM, 0, ends) == 0, "socketpair");
