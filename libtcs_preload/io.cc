@@ -70,7 +70,9 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   const long result = TransferAll(
       *t, fd, POLLOUT, SO_SNDTIMEO, rest,
       [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
-  if (result > 0 && IsTerminal(fd)) TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
+  if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
+    TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
+  }
   return ToErrno(result);
 }
 

@@ -6,9 +6,11 @@
 
 namespace tcs::preload {
 
+inline bool AnybodyWaits() { return g_header->key_waiters.load(std::memory_order_relaxed) != 0; }
+
 // After a change of the object: those who wait for one try again.
 inline void TellChanged(GuestThread& thread, shm::WaitKey kind, std::int64_t id) {
-  if (g_header->key_waiters.load(std::memory_order_relaxed) == 0) return;
+  if (!AnybodyWaits()) return;
   Exchange(thread, Request{.kind = shm::NotificationKind::kWakeKey,
                            .args = {static_cast<std::int64_t>(kind), id}});
 }

@@ -67,17 +67,15 @@ enum class NotificationKind : std::uint32_t {
                    // then set
   kSignalled = 20,      // the thread has sent a signal to process args[0]; 0: to any
   kQueueNotifies = 21,  // a message queue will have the kernel send a signal: see queues_notify
-  kWaitKey =
-      22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey, args[1]:
-           // the object's number, args[2]: 1 to keep the place of the last such wait
-  kWakeKey = 23,       // the object of args[0] and args[1] has been changed
+  kWaitKey = 22,  // sleep until a kernel object is changed, or deadline_ns; args[0]: a WaitKey,
+                  // args[1]: its number, args[2]: 1 to keep the place of the last such wait
+  kWakeKey = 23,  // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
 };
 
-// Kernel objects that cannot be polled.
-// kTerminals is woken only: what is written to
-// one arrives some time later, unless somebody polls.
+// Kernel objects that cannot be polled. kTerminals is for waking only: what is written to one end
+// of a terminal reaches the other some time later, unless somebody polls.
 enum class WaitKey : std::uint32_t {
   kSemaphores = 1,
   kMessages = 2,
