@@ -21,8 +21,8 @@ TEST(Layout, VersionFiveHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
-  EXPECT_EQ(offsetof(ThreadSlot, gate), 568u);
-  EXPECT_EQ(offsetof(ThreadSlot, reply), 576u);
+  EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
+  EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
 }
 
 TEST(Layout, SlotsFollowTheHeaderWithoutAGap) {
