@@ -7,6 +7,7 @@
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/vdso.h"
 #include "shm/clock_page.h"
 
 namespace tcs::preload {
@@ -50,6 +51,7 @@ GuestThread* CurrentSlow() {
   t_thread.attaching = false;
   g_process->mode = ProcessState::kAttached;
   SeedProcess(*t_thread.slot);
+  if (t_thread.slot->patch_vdso != 0) PatchVdso();
   return &t_thread;
 }
 

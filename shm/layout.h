@@ -189,7 +189,8 @@ struct alignas(64) ThreadSlot {
   std::uint32_t cores;  // of the robot
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
-  std::uint8_t reserved[464];
+  std::uint32_t patch_vdso;  // 1: calls of the vDSO are to be led to the shim
+  std::uint8_t reserved[460];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);

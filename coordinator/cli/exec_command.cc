@@ -8,8 +8,8 @@
 
 namespace tcs {
 
-int ExecCommand(const std::vector<std::string>& command, double speed, int cores,
-                const RunOptions& options) {
+int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
+  const std::vector<std::string>& command = arguments.command;
   std::error_code gone;
   const std::string folder = std::filesystem::current_path(gone);
   if (gone) return Fail("the current folder is gone; change to one that exists");
@@ -23,7 +23,8 @@ int ExecCommand(const std::vector<std::string>& command, double speed, int cores
   ClientSpec client;
   client.name = command[0];
   client.command = command;
-  scenario.robots.push_back({"computer", cores, speed, {client}});
+  client.patch_vdso = arguments.patch_vdso;
+  scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
   if (!report.error.empty()) return Fail(report.error);

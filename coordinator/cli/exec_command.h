@@ -8,9 +8,14 @@
 
 namespace tcs {
 
-// Runs `command` alone on a computer of `cores` cores of the given speed, without dynamics; the
-// exit status is the command's own.
-int ExecCommand(const std::vector<std::string>& command, double speed, int cores,
-                const RunOptions& options);
+struct ExecArguments {
+  std::vector<std::string> command;
+  double speed = 1.0;  // of each core
+  int cores = 1;
+  bool patch_vdso = false;
+};
+
+// Runs the command alone on a computer, without dynamics; the exit status is the command's own.
+int ExecCommand(const ExecArguments& arguments, const RunOptions& options);
 
 }  // namespace tcs

@@ -59,6 +59,9 @@ int main(int argc, char** argv) {
   exec->add_option("--cores", cores, "how many processors it has")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  bool patch_vdso = false;
+  exec->add_flag("--patch-vdso", patch_vdso,
+                 "also for programs that read the kernel's clocks past the C library");
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -93,7 +96,7 @@ int main(int argc, char** argv) {
   }
   if (seeded->count() > 0) arguments.seed = seed;
   return tcs::RunGuarded([&] {
-    return exec->parsed() ? tcs::ExecCommand(command, speed, cores, options)
+    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, patch_vdso}, options)
                           : tcs::RunCommand(arguments, options);
   });
 }

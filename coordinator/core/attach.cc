@@ -91,6 +91,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   for (const Process& other : processes_) {
     if (other.pid != parent || other.dead) continue;
     process.call_cost_ns = other.call_cost_ns;
+    process.patch_vdso = other.patch_vdso;
     process.frozen_ns = other.frozen_ns;
   }
   if (process.pidfd >= 0) {
@@ -164,6 +165,7 @@ void Engine::Attach(int connection) {
   slot.tid = task.tid;
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
+  slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.gate.store(shm::kGateClosed);
   SetState(task, TaskState::kReady);
   task.parked = true;

@@ -182,6 +182,7 @@ std::string Engine::StartClients() {
       Task* task = NewTask(pid, getpid(), &computer, client.name, client.priority);
       task->process->is_client = true;
       task->process->call_cost_ns = client.fixed_call_cost.ns();
+      task->process->patch_vdso = client.patch_vdso;
     }
   }
   return {};

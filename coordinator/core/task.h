@@ -122,6 +122,7 @@ struct Process {
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0;
+  bool patch_vdso = false;
   // What its clock is ahead of the virtual CPU's: computed while the world stood still. 0 unless
   // --sync callback.
   std::int64_t frozen_ns = 0;

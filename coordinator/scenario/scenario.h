@@ -29,6 +29,7 @@ struct ClientSpec {
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
+  bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
 };
 
 struct RobotSpec {

@@ -104,6 +104,12 @@ std::uint64_t YamlValue::AsUnsigned64() const {
   return *number;
 }
 
+bool YamlValue::AsBoolean() const {
+  const std::string text = Scalar("true or false");
+  if (text != "true" && text != "false") Fail("is " + Quote(text) + "; it must be true or false");
+  return text == "true";
+}
+
 VirtualDuration YamlValue::AsDuration() const {
   const auto result = ParseDuration(Scalar("a duration like 20s or 10ms"));
   if (const auto* error = std::get_if<LoadError>(&result)) {

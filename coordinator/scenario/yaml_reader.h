@@ -48,6 +48,7 @@ class YamlValue {
   double AsNonNegativeNumber(std::string_view unit) const;
   std::int64_t AsInteger(std::int64_t least, std::int64_t most) const;
   std::uint64_t AsUnsigned64() const;
+  bool AsBoolean() const;  // true or false
   VirtualDuration AsDuration() const;
   VirtualDuration AsPositiveDuration() const;
   // A list of `size` numbers; `example` shows one.

@@ -115,6 +115,7 @@ const Mistake kRobotMistakes[] = {
      25,
      {"robots.hunter.clients.controller.body", "unknown body 'preditor'", "'predator'?"}},
     {"FreeCalls", "fixed_call_cost: 3us", "fixed_call_cost: 0", 27, {"longer than 0"}},
+    {"PatchOfWhat", "patch_vdso: true", "patch_vdso: yes", 28, {"'yes'", "true or false"}},
     {"EqualsInVariable", "{MODE: fast}", "{\"A=B\": fast}", 26, {"environment variable's name"}},
     {"VariableWithoutValue", "{MODE: fast}", "{MODE: }", 26, {"MODE has no value", "quotes"}},
     {"DuplicateClient", "      planner:", "      controller:", 28, {"twice", "line 21"}},

@@ -87,6 +87,8 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_EQ(planner.priority, 0);
   EXPECT_EQ(planner.body, std::nullopt);
   EXPECT_EQ(planner.fixed_call_cost, VirtualDuration::Microseconds(1));
+  EXPECT_TRUE(planner.patch_vdso);
+  EXPECT_FALSE(controller.patch_vdso);
 }
 
 TEST_F(LoadTest, TheChannelsAreAsWritten) {

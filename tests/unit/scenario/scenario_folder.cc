@@ -40,7 +40,7 @@ robots:
         body: predator
         environment: {MODE: fast}
         fixed_call_cost: 3us
-      planner: {command: [sh, -c, "true"]}
+      planner: {command: [sh, -c, "true"], patch_vdso: true}
 channels:
   eyes:
     type: udp_json
