@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <linux/futex.h>
 #include <poll.h>
+#include <pthread.h>
 #include <string.h>
 #include <time.h>
 
@@ -134,6 +135,8 @@ struct Interrupted {
 
 Reply Exchange(GuestThread& thread, const Request& request) {
   if (IsShutDown()) return Reply{WakeReason::kGo, {0, 0}};
+  const bool waits = request.interruptible || request.suspend_mask != nullptr;
+  if (waits) pthread_testcancel();
   Reply reply;
   if (thread.depth++ == 0) {
     reply = ExchangeOnce(thread, request);
@@ -143,6 +146,7 @@ Reply Exchange(GuestThread& thread, const Request& request) {
     outer.PutBack(*thread.slot);
   }
   --thread.depth;
+  if (waits && reply.reason == WakeReason::kSignal) pthread_testcancel();
   return reply;
 }
 

@@ -14,7 +14,8 @@ struct Request {
   std::int64_t args[4] = {};
   const shm::WaitFd* fds = nullptr;
   std::uint32_t fd_count = 0;
-  // A signal handler that runs meanwhile ends the exchange with WakeReason::kSignal.
+  // A signal handler that runs meanwhile ends the exchange with WakeReason::kSignal, and the thread
+  // can be cancelled.
   bool interruptible = false;
   // The kernel's signal mask to wait with for a handler, instead of at the gate; null: the gate.
   const unsigned long* suspend_mask = nullptr;

@@ -4,6 +4,7 @@
 // look at an earlier virtual time, and a read until nobody can write at an earlier one.
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -39,6 +40,7 @@ bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 template <class Call>
 ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   GuestThread* t = Enter();
+  pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(call());
   if (dont_wait || IsNonBlocking(fd)) {
     HoldForReadFrom(*t, fd, socket);
@@ -62,6 +64,7 @@ long WritePart(int fd, const iovec* iov, std::size_t count) {
 template <class Whole>
 ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   GuestThread* t = Enter();
+  pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
   if (count > kMostBuffers || IsNonBlocking(fd)) return ToErrno(whole());

@@ -7,6 +7,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -56,4 +57,19 @@ TCS_EXPORT int pthread_kill(pthread_t thread, int signal) noexcept {
 
 TCS_EXPORT int pthread_sigqueue(pthread_t thread, int signal, const sigval value) noexcept {
   return SendSignal(0, signal, [&] { return TCS_REAL(pthread_sigqueue)(thread, signal, value); });
+}
+
+// The C library's own signal for this; it sends it only to threads in system calls of its making.
+// What the shim waits in is to end by it, too.
+TCS_EXPORT int pthread_cancel(pthread_t thread) {
+  constexpr int kCancelSignal = 32;
+  const bool own = pthread_equal(thread, pthread_self()) != 0;
+  const pid_t tid = own ? -1 : TidOf(thread);
+  return SendSignal(0, kCancelSignal, [&] {
+    const int error = TCS_REAL(pthread_cancel)(thread);
+    if (error == 0 && tid > 0) {
+      RawSyscall(SYS_tgkill, RawSyscall(SYS_getpid), tid, kCancelSignal);
+    }
+    return error;
+  });
 }

@@ -1,6 +1,7 @@
 // poll, select and epoll.
 #include <errno.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -27,6 +28,7 @@ constexpr timespec kNow{};
 template <class IsReady, class Probe, class Wait>
 int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, IsReady is_ready,
                  Probe probe, Wait wait) {
+  pthread_testcancel();
   const std::int64_t deadline = DeadlineAfter(t, timeout_ns);
   const MaskDuringWait masked(mask);
   if (timeout_ns == 0 || is_ready() != 0) {

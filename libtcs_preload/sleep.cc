@@ -1,5 +1,6 @@
 // Sleeping.
 #include <errno.h>
+#include <pthread.h>
 #include <threads.h>
 #include <time.h>
 #include <unistd.h>
@@ -15,6 +16,7 @@ namespace {
 
 // Sleeps for `duration_ns`. Returns 0, or EINTR with what remained in *remaining_ns.
 int SleepFor(GuestThread& t, std::int64_t duration_ns, std::int64_t* remaining_ns) {
+  pthread_testcancel();
   const Now now = ReadNow(t);
   const std::int64_t deadline = AddSaturated(now.shown_ns, duration_ns);
   if (SleepUntil(t, now.reading, deadline)) return 0;

@@ -5,10 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <cstdint>
+
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/thread_end.h"
 
 using namespace tcs::preload;
 
@@ -19,7 +22,17 @@ struct Start {
   void* argument;
 };
 
-void EndOfThread(void*) {
+pthread_key_t g_end;
+bool g_has_end = false;
+
+// The last of a thread's destructors, in the last round that they get: what the program's own do,
+// they do in virtual time. `round` is which one this is.
+void EndOfThread(void* round) {
+  const auto now = reinterpret_cast<std::intptr_t>(round);
+  if (now < PTHREAD_DESTRUCTOR_ITERATIONS) {
+    pthread_setspecific(g_end, reinterpret_cast<void*>(now + 1));
+    return;
+  }
   if (t_thread.slot == nullptr) return;
   Announce(t_thread, Request{.kind = tcs::shm::NotificationKind::kThreadExit});
   t_thread.slot = nullptr;
@@ -29,12 +42,8 @@ void EndOfThread(void*) {
 void* RunThread(void* raw) {
   const Start start = *static_cast<Start*>(raw);
   free(raw);
-  void* result = nullptr;
-  pthread_cleanup_push(EndOfThread, nullptr);
   Current();
-  result = start.routine(start.argument);
-  pthread_cleanup_pop(1);
-  return result;
+  return start.routine(start.argument);
 }
 
 // What the attributes ask of the scheduler is meant for the robot's. The host's must not hear of
@@ -84,6 +93,16 @@ class SchedulingAsked {
 };
 
 }  // namespace
+
+namespace tcs::preload {
+
+void PrepareThreadEnds() { g_has_end = pthread_key_create(&g_end, EndOfThread) == 0; }
+
+void WatchThreadEnd() {
+  if (g_has_end) pthread_setspecific(g_end, reinterpret_cast<void*>(std::intptr_t{1}));
+}
+
+}  // namespace tcs::preload
 
 TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
                               void* (*routine)(void*), void* argument) noexcept {

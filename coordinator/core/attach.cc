@@ -132,6 +132,19 @@ Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
   return NewTask(pid, parent_pid, &robots_.front(), fmt::format("pid {}", pid), 0);
 }
 
+// The thread registers again: its process executes another program. What it waited for is over, and
+// so are all other threads.
+void Engine::ForgetFormerProgram(Task& task) {
+  const std::vector<Task*> threads = task.process->robot->tasks;
+  for (Task* other : threads) {
+    if (other->process == task.process && other != &task) EndTask(*other);
+  }
+  if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kGo);
+  task.trap_id = 0;
+  task.early_trap.reset();
+  task.notified_early = false;
+}
+
 void Engine::Attach(int connection) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
@@ -148,6 +161,7 @@ void Engine::Attach(int connection) {
     Refuse(connection, "there is no room for more threads");
     return;
   }
+  if (task.slot >= 0) ForgetFormerProgram(task);
   if (&task != running_) {
     SetLevel(task.tid, Level::kWaiting);
     task.level = Level::kWaiting;

@@ -22,6 +22,7 @@ constexpr std::int64_t kGrainNs = 100'000;
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
+constexpr int kDeathTurns = 25;  // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
 
 std::int64_t QuantumOf(const Task& task) {
@@ -279,9 +280,21 @@ void Engine::ShowProgress() {
   options_.on_progress(progress);
 }
 
+// All threads have said that they end; the kernel is about to end their processes. False once that
+// is over.
+bool Engine::AwaitDeaths() {
+  for (int turn = 0; turn < kDeathTurns && living_ == 0; ++turn) {
+    const bool all_dead = std::all_of(processes_.begin(), processes_.end(),
+                                      [](const Process& process) { return process.dead; });
+    if (all_dead || stop_requested_) return false;
+    PollEvents(kOutsidePollNs);
+  }
+  return living_ > 0;
+}
+
 // One step of the run; false at its end.
 bool Engine::Step() {
-  if (living_ == 0) return false;
+  if (living_ == 0) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
   if (StepWorld()) return true;

@@ -46,6 +46,7 @@ class Engine {
 
   // The loop (engine.cc).
   bool Step();
+  bool AwaitDeaths();
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   bool HasJumpedOver();
@@ -177,6 +178,7 @@ class Engine {
   bool BlockedInKernel();
   void RearmDetector();
   void Attach(int connection);
+  void ForgetFormerProgram(Task& task);
   Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid);
   void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);

@@ -61,6 +61,14 @@ void Engine::RearmDetector() {
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
   const char state = ThreadState(running_->tid);
+  const bool gone = state == 'X' || state == 'Z';
+  if (gone && running_->process->threads > 1) {
+    // It ended without a word, as a program that makes system calls of its own can.
+    Task& ended = *running_;
+    EndTask(ended);
+    WakeThoseWaitingFor(ended);
+    return true;
+  }
   const bool stopped = state == 'T';  // by a signal, until another one
   if ((state != 'S' && !stopped) || running_->slot < 0) return false;
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
