@@ -118,6 +118,7 @@ class Engine {
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
+  bool HoldsToWake(Task& task, const TrappedCall& call, int command);
   void WakeForStranger(const Process& process, const TrappedCall& call);
   bool FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);

@@ -146,8 +146,28 @@ void Engine::WakeForStranger(const Process& process, const TrappedCall& call) {
             command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
 }
 
+// A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call is
+// made again once that is over.
+bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
+  const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET ||
+                     command == FUTEX_WAKE_OP || command == FUTEX_REQUEUE ||
+                     command == FUTEX_CMP_REQUEUE || command == FUTEX_UNLOCK_PI;
+  if (!wakes || IsCallback() || task.reached_ns <= root_.WriteSafe(task.cpu->leaf)) return false;
+  // Nobody waits: then nobody can be woken too early.
+  if (command != FUTEX_WAKE_OP &&
+      MostUrgentWaiter(FutexKeyFor(task, call, call.args[0]), kAnyBit) == nullptr) {
+    return false;
+  }
+  task.early_trap = call;
+  task.trap_id = 0;
+  SetState(task, TaskState::kHolding);
+  task.hold = shm::NotificationKind::kWrite;
+  return true;
+}
+
 void Engine::HandleFutex(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
+  if (HoldsToWake(task, call, command)) return;
   switch (command) {
     case FUTEX_WAIT:
     case FUTEX_WAIT_BITSET:
