@@ -1,4 +1,5 @@
 // Running one thread up to its horizon, and charging it for what it did.
+#include <fmt/format.h>
 #include <linux/futex.h>
 #include <signal.h>
 #include <sys/syscall.h>
@@ -243,9 +244,10 @@ void Engine::AwaitStop(Task& task) {
     preempted_ = false;
     if (task.slot < 0) {
       if (++starting_turns < kStartTurns) continue;
-      report_.error =
-          task.process->name +
-          " did not load the shim within 30 s; is it dynamically linked, and not set-uid?";
+      report_.error = fmt::format(
+          "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
+          "set-uid?",
+          ProgramOf(task.process->pid), task.process->name);
       return;
     }
     if (IsFixed()) {

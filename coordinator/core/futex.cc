@@ -146,8 +146,8 @@ void Engine::WakeForStranger(const Process& process, const TrappedCall& call) {
             command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
 }
 
-// A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call is
-// made again once that is over.
+// A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call
+// is made again once that is over.
 bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
   const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET ||
                      command == FUTEX_WAKE_OP || command == FUTEX_REQUEUE ||

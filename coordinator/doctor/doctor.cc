@@ -16,6 +16,7 @@
 #include "coordinator/doctor/interpret.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/trap.h"
 
 namespace tcs {
 
@@ -79,6 +80,15 @@ Finding TryShim(const std::string& path) {
                    std::string(text, static_cast<std::size_t>(std::max<ssize_t>(0, n))));
 }
 
+// In a child, for a filter stays for ever.
+int TryTrap() {
+  const pid_t child = fork();
+  if (child == 0) _exit(InstallTrap() >= 0 ? 0 : errno);
+  int status = -1;
+  if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
+  return WEXITSTATUS(status);
+}
+
 Finding LookAtCpu() {
   cpu_set_t allowed;
   sched_getaffinity(0, sizeof allowed, &allowed);
@@ -116,7 +126,9 @@ std::vector<Finding> Examine(const std::string& preload_library) {
   return {
       JudgeRealTime(TryRealTime()),
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
-                      ReadFile("/proc/sys/kernel/sched_rt_period_us")),
+                      ReadFile("/proc/sys/kernel/sched_rt_period_us"),
+                      ReadFile("/proc/sys/kernel/osrelease")),
+      JudgeTrap(TryTrap()),
       JudgeTsc(ReadFile("/proc/cpuinfo"),
                ReadFile("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
       LookAtCpu(),

@@ -48,17 +48,35 @@ Finding JudgeRealTime(int error) {
       "again (in a container: --cap-add SYS_NICE)"};
 }
 
-Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us) {
-  const long runtime = ToLong(runtime_us, -1), period = ToLong(period_us, 1'000'000);
-  if (runtime < 0 || runtime >= period) {
-    return {"real-time throttling", Verdict::kOk, "off", ""};
+Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us,
+                        const std::string& release) {
+  constexpr char kName[] = "real-time throttling";
+  int major = 0, minor = 0;
+  std::sscanf(release.c_str(), "%d.%d", &major, &minor);
+  if (major > 6 || (major == 6 && minor >= 12)) {
+    return {kName, Verdict::kWarning,
+            "ordinary programs get 50 ms of each second on a busy processor (the fair server)",
+            "results do not change, but runs take that much longer; as root, `echo 0 > "
+            "/sys/kernel/debug/sched/fair_server/cpuN/runtime` turns it off for processor N, where "
+            "the kernel permits it"};
   }
-  return {"real-time throttling", Verdict::kWarning,
+  const long runtime = ToLong(runtime_us, -1), period = ToLong(period_us, 1'000'000);
+  if (runtime < 0 || runtime >= period) return {kName, Verdict::kOk, "off", ""};
+  return {kName, Verdict::kWarning,
           fmt::format("real-time programs get {:.0f} % of each {:.1f} s",
                       100.0 * static_cast<double>(runtime) / static_cast<double>(period),
                       static_cast<double>(period) * 1e-6),
           "results do not change, but runs take that much longer; `sysctl -w "
           "kernel.sched_rt_runtime_us=-1` turns it off"};
+}
+
+Finding JudgeTrap(int error) {
+  constexpr char kName[] = "system-call trap";
+  if (error == 0) return {kName, Verdict::kOk, "yes", ""};
+  return {kName, Verdict::kWarning,
+          fmt::format("no: {}", error == EBUSY ? "another one is installed" : strerror(error)),
+          "threads would wait for each other in real time; run tcsim on Linux 5.5 or newer, and "
+          "outside a sandbox that uses seccomp notifications itself"};
 }
 
 Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource) {

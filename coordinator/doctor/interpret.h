@@ -9,8 +9,13 @@ namespace tcs {
 
 // `error`: the errno of asking for the coordinator's real-time priority; 0 if it was granted.
 Finding JudgeRealTime(int error);
-// `text`: /proc/sys/kernel/sched_rt_runtime_us and .../sched_rt_period_us.
-Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us);
+// Texts: /proc/sys/kernel/sched_rt_runtime_us, .../sched_rt_period_us and .../osrelease. From
+// Linux 6.12 on the scheduler's fair server does what throttling did, and does not heed its
+// setting.
+Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us,
+                        const std::string& release);
+// `error`: the errno of installing the trap; 0 if it was installed.
+Finding JudgeTrap(int error);
 // `cpuinfo`: /proc/cpuinfo; `clocksource`: the kernel's current one.
 Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource);
 // `cpu`: the one that tcs takes; `isolated`: /sys/devices/system/cpu/isolated, such as "2-3,6".

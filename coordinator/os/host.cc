@@ -140,6 +140,12 @@ std::string ThreadSystemCall(pid_t tid) {
   return file >> number ? number : "unknown";
 }
 
+std::string ProgramOf(pid_t pid) {
+  std::error_code gone;
+  const auto path = std::filesystem::read_symlink("/proc/" + std::to_string(pid) + "/exe", gone);
+  return gone ? "pid " + std::to_string(pid) : path.string();
+}
+
 std::vector<pid_t> ThreadsOf(pid_t pid) {
   std::vector<pid_t> tids;
   std::error_code gone;

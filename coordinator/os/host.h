@@ -61,6 +61,9 @@ void SendTimerSignal(const TimerSignalRequest& request);
 // The number of the system call that a thread is in, as text; "unknown" if it is in none.
 std::string ThreadSystemCall(pid_t tid);
 
+// The file that a process executes; "pid N" if that cannot be had.
+std::string ProgramOf(pid_t pid);
+
 std::vector<pid_t> ThreadsOf(pid_t pid);
 // -1 if it has ended.
 pid_t ProcessOfThread(pid_t tid);

@@ -19,12 +19,27 @@ TEST(Doctor, WithoutRealTimePriorityTcsCannotRun) {
 }
 
 TEST(Doctor, ThrottlingIsAWarningUnlessItIsOff) {
-  EXPECT_EQ(JudgeThrottling("-1\n", "1000000\n").verdict, Verdict::kOk);
-  EXPECT_EQ(JudgeThrottling("1000000\n", "1000000\n").verdict, Verdict::kOk);
-  const Finding on = JudgeThrottling("950000\n", "1000000\n");
+  EXPECT_EQ(JudgeThrottling("-1\n", "1000000\n", "6.1.0-28\n").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeThrottling("1000000\n", "1000000\n", "6.1.0-28\n").verdict, Verdict::kOk);
+  const Finding on = JudgeThrottling("950000\n", "1000000\n", "6.1.0-28\n");
   EXPECT_EQ(on.verdict, Verdict::kWarning);
   EXPECT_NE(on.found.find("95 %"), std::string::npos);
   EXPECT_TRUE(CanRun({on}));
+}
+
+TEST(Doctor, TheFairServerDoesNotHeedTheThrottlesSetting) {
+  for (const char* release : {"6.12.1\n", "6.18.0-rc1\n", "7.0\n"}) {
+    const Finding server = JudgeThrottling("-1\n", "1000000\n", release);
+    EXPECT_EQ(server.verdict, Verdict::kWarning) << release;
+    EXPECT_NE(server.mend.find("fair_server"), std::string::npos);
+  }
+}
+
+TEST(Doctor, WithoutATrapItSaysWhatThatMeans) {
+  EXPECT_EQ(JudgeTrap(0).verdict, Verdict::kOk);
+  const Finding taken = JudgeTrap(EBUSY);
+  EXPECT_EQ(taken.verdict, Verdict::kWarning);
+  EXPECT_NE(taken.found.find("another one"), std::string::npos);
 }
 
 TEST(Doctor, TheTscMustBeInvariant) {
