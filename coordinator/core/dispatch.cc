@@ -25,7 +25,9 @@ constexpr double kMostSwitchNs = 20'000.0;
 constexpr std::int64_t kLeastSliceNs = 2'000;
 constexpr std::int64_t kStartTurnNs = 1'000'000'000;
 constexpr int kStartTurns = 30;
-constexpr int kSilentTurns = 60;
+// Under set costs, a thread that computes for so many turns without a call is taken to spin.
+constexpr int kSilentTurns = 5;
+constexpr std::int64_t kSpinTurnNs = 1'000'000;
 
 }  // namespace
 
@@ -133,7 +135,7 @@ void Engine::ContinueClock(Task& task) {
 
 // Real time until the running thread has to be preempted, less what timers are late.
 std::int64_t Engine::HostNsToHorizon(const Task& task) {
-  if (task.slot < 0 || IsFixed()) return kStartTurnNs;
+  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kStartTurnNs;
   const std::int64_t now =
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
@@ -251,10 +253,8 @@ void Engine::AwaitStop(Task& task) {
       return;
     }
     if (IsFixed()) {
-      if (++silent_turns < kSilentTurns) continue;
-      report_.error = task.process->name +
-                      " has computed for a minute without a single call, and under --accounting "
-                      "fixed only calls take time; run it with --accounting measured";
+      if (!task.spins && ++silent_turns < kSilentTurns) continue;
+      task.spins = preempted_ = true;
       return;
     }
     const double took_ns = static_cast<double>(stop_tsc_ - asked_tsc) / ticks_per_ns_;
@@ -264,6 +264,30 @@ void Engine::AwaitStop(Task& task) {
       preempted_ = true;
       return;
     }
+  }
+}
+
+// Under set costs computing takes no time, so a thread that spins on what others write to memory
+// would spin for ever. It waits until somebody has run, and looks again, as long as it makes no
+// call.
+void Engine::StepAside(Task& task) {
+  if (notified_ || trapped_.has_value() || task.state == TaskState::kDead) {
+    task.spins = false;
+    return;
+  }
+  Warn(task.process->name +
+       " has computed for 5 s without a call: under --accounting fixed that counts as waiting for "
+       "what others do, and depends on the host; run it with --accounting measured");
+  SetState(task, TaskState::kWaiting);
+  task.deadline_ns = shm::kNeverNs;
+  has_spinners_ = true;
+  Refresh(*task.process->robot);
+}
+
+void Engine::WakeSpinners() {
+  has_spinners_ = false;
+  for (Task& task : tasks_) {
+    if (task.spins && task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kGo);
   }
 }
 
@@ -302,6 +326,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   running_ = nullptr;
   event_ns_ = task.cpu->progress_ns;
   ExpireCpuTimers(task);
+  if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;
     task.reply[0] = task.reply[1] = 0;

@@ -197,6 +197,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     task.reached_ns = cpu.progress_ns;
   } else {
     Dispatch(task, horizon, idle_until);
+    if (has_spinners_ && !task.spins) WakeSpinners();
   }
   task.turn_ns += cpu.progress_ns - start;
   if (task.turn_ns >= QuantumOf(task)) {
@@ -301,6 +302,10 @@ bool Engine::Step() {
   const std::int64_t least = root_.Least();
   if (least == shm::kNeverNs) {
     if (world_.present()) return false;
+    if (has_spinners_) {
+      WakeSpinners();
+      return true;
+    }
     WaitOutside();
     return true;
   }

@@ -75,6 +75,8 @@ class Engine {
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
   void CheckCpuClock(Task& task);
+  void StepAside(Task& task);
+  void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
   std::int64_t WrittenAt();
 
@@ -248,6 +250,7 @@ class Engine {
   std::uint64_t stop_tsc_ = 0;  // when the running thread was last found stopped
   Task* last_ = nullptr;        // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
+  bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
   bool external_event_ = false;
 

@@ -85,6 +85,7 @@ struct Task {
   std::int64_t host_origin_ns = -1;
   int cpu_clock_fd = -1;  // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
+  bool spins = false;           // computes without calls where computing takes no time
   bool parked = true;           // at its gate, rather than stopped by priority
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   Level level = Level::kWaiting;
