@@ -8,33 +8,11 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/child_later.h"
 
 using namespace conformance;
 
 namespace {
-
-constexpr std::int64_t kDelay = 50 * kMs;
-
-// `child` runs in a child process after the delay; `parent` blocks meanwhile.
-template <class Child, class Parent>
-void WakesAtTheWritersTime(const char* what, Child child, Parent parent) {
-  const std::int64_t start = Now();
-  const pid_t pid = fork();
-  if (pid == 0) {
-    usleep(kDelay / 1000);
-    child();
-    _exit(0);
-  }
-  parent();
-  const std::int64_t passed = Now() - start;
-  EXPECT(passed >= kDelay, "%s woke after %lld ns", what, (long long)passed);
-  if (g_mode != Mode::kNative) {
-    EXPECT(passed < kDelay + 10 * kMs, "%s woke after %lld ns", what, (long long)passed);
-  }
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);
-}
 
 void ReadOne(int fd) {
   char c = 0;
@@ -61,11 +39,11 @@ int Bound(int type, Address* address) {
 void Pairs() {
   int fds[2];
   EXPECT(pipe(fds) == 0, "pipe");
-  WakesAtTheWritersTime(
+  WakesAfterTheDelay(
       "a pipe", [&] { WriteOne(fds[1]); }, [&] { ReadOne(fds[0]); });
   for (const int type : {SOCK_STREAM, SOCK_DGRAM, SOCK_SEQPACKET}) {
     EXPECT(socketpair(AF_UNIX, type, 0, fds) == 0, "socketpair");
-    WakesAtTheWritersTime(
+    WakesAfterTheDelay(
         "a socketpair", [&] { WriteOne(fds[1]); }, [&] { ReadOne(fds[0]); });
   }
 }
@@ -73,7 +51,7 @@ void Pairs() {
 void Udp() {
   sockaddr_in address = Loopback();
   const int receiver = Bound(SOCK_DGRAM, &address);
-  WakesAtTheWritersTime(
+  WakesAfterTheDelay(
       "UDP",
       [&] {
         const int sender = socket(AF_INET, SOCK_DGRAM, 0);
@@ -96,7 +74,7 @@ void Tcp() {
   const int listener = Bound(SOCK_STREAM, &address);
   EXPECT(listen(listener, 1) == 0, "listen");
   int connection = -1;
-  WakesAtTheWritersTime(
+  WakesAfterTheDelay(
       "accept",
       [&] {
         const int fd = socket(AF_INET, SOCK_STREAM, 0);
@@ -118,7 +96,7 @@ void Terminal() {
   EXPECT(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0, "posix_openpt");
   const int slave = open(ptsname(master), O_RDWR | O_NOCTTY);
   EXPECT(slave >= 0, "open: %s", strerror(errno));
-  WakesAtTheWritersTime(
+  WakesAfterTheDelay(
       "a terminal", [&] { EXPECT(write(master, "z\n", 2) == 2, "write"); },
       [&] { ReadOne(slave); });
 }
@@ -130,13 +108,13 @@ void EndOfFile() {
   const pid_t pid = fork();
   if (pid == 0) {
     close(fds[0]);
-    usleep(kDelay / 1000);
+    usleep(kChildDelay / 1000);
     _exit(0);  // closes the last writing end
   }
   close(fds[1]);
   char c;
   EXPECT(read(fds[0], &c, 1) == 0, "no end of file");
-  EXPECT(Now() - start >= kDelay, "the end of file came early");
+  EXPECT(Now() - start >= kChildDelay, "the end of file came early");
   waitpid(pid, nullptr, 0);
 }
 

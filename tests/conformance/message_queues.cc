@@ -5,15 +5,13 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-#include <functional>
-
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/child_later.h"
 
 using namespace conformance;
 
 namespace {
 
-constexpr std::int64_t kDelay = 30 * kMs;
+constexpr std::int64_t kChildDelay = 30 * kMs;
 char g_name[64];
 
 mqd_t OpenQueue(int flags) {
@@ -43,18 +41,18 @@ int SendUntil(mqd_t queue, std::int64_t deadline) {
 
 void Deadlines(mqd_t queue) {
   std::int64_t start = Now();
-  std::int64_t deadline = Now(CLOCK_REALTIME) + kDelay;
+  std::int64_t deadline = Now(CLOCK_REALTIME) + kChildDelay;
   EXPECT(ReceiveUntil(queue, deadline) == -1 && errno == ETIMEDOUT, "receive: %s", strerror(errno));
-  ExpectWaited(start, kDelay, 2, "a receive's deadline");
+  ExpectWaited(start, kChildDelay, 2, "a receive's deadline");
   start = Now();
   EXPECT(ReceiveUntil(queue, deadline) == -1 && errno == ETIMEDOUT, "receive: %s", strerror(errno));
   ExpectWaited(start, 0, 2, "a deadline that has passed");
 
   EXPECT(SendUntil(queue, deadline) == 0 && SendUntil(queue, 0) == 0, "there is room");
   start = Now();
-  deadline = Now(CLOCK_REALTIME) + kDelay;
+  deadline = Now(CLOCK_REALTIME) + kChildDelay;
   EXPECT(SendUntil(queue, deadline) == -1 && errno == ETIMEDOUT, "send: %s", strerror(errno));
-  ExpectWaited(start, kDelay, 2, "a send's deadline");
+  ExpectWaited(start, kChildDelay, 2, "a send's deadline");
   EXPECT(ReceiveUntil(queue, 0) == 1 && Receive(queue) == 1, "what is there is received");
 }
 
@@ -76,26 +74,6 @@ void Errors(mqd_t queue) {
   EXPECT(Receive(impatient) == 1 && Receive(impatient) == 1, "receive");
   for (const mqd_t q : {reader, writer, impatient}) mq_close(q);
   EXPECT(Receive(-1) == -1 && errno == EBADF, "%s", strerror(errno));
-}
-
-// `child` acts in a child process after the delay; `parent` waits for that.
-void WakesAfterTheDelay(const char* what, const std::function<void()>& child,
-                        const std::function<void()>& parent) {
-  const std::int64_t start = Now();
-  const pid_t pid = fork();
-  if (pid == 0) {
-    usleep(kDelay / 1000);
-    child();
-    _exit(0);
-  }
-  parent();
-  const std::int64_t passed = Now() - start;
-  EXPECT(passed >= kDelay, "%s woke after %lld ns", what, (long long)passed);
-  if (g_mode != Mode::kNative) {
-    EXPECT(passed < kDelay + 10 * kMs, "%s woke after %lld ns", what, (long long)passed);
-  }
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);
 }
 
 void Waits(mqd_t queue) {
@@ -146,7 +124,7 @@ void Notification(mqd_t queue) {
       "a notified process",
       [queue] { EXPECT(mq_send(queue, "x", 1, 0) == 0, "send: %s", strerror(errno)); },
       [] { EXPECT(pause() == -1 && errno == EINTR, "pause"); });
-  EXPECT(g_notified_ns - start >= kDelay, "notified after %lld ns",
+  EXPECT(g_notified_ns - start >= kChildDelay, "notified after %lld ns",
          (long long)(g_notified_ns - start));
   EXPECT(Receive(queue) == 1, "receive: %s", strerror(errno));
 }

@@ -4,33 +4,11 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/child_later.h"
 
 using namespace conformance;
 
 namespace {
-
-constexpr std::int64_t kDelay = 50 * kMs;
-
-// A child does `later` after kDelay, while the parent is in `wait`.
-template <class Later, class Wait>
-void Meanwhile(const char* what, Later later, Wait wait) {
-  const std::int64_t start = Now();
-  const pid_t pid = fork();
-  if (pid == 0) {
-    usleep(kDelay / 1000);
-    later();
-    _exit(0);
-  }
-  wait();
-  const std::int64_t passed = Now() - start;
-  EXPECT(passed >= kDelay, "%s woke after %lld ns", what, (long long)passed);
-  if (g_mode != Mode::kNative) {
-    EXPECT(passed < kDelay + 10 * kMs, "%s woke after %lld ns", what, (long long)passed);
-  }
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);
-}
 
 struct Messages {
   char text[2][8] = {};
@@ -50,7 +28,7 @@ void Buffers() {
   int fds[2];
   EXPECT(pipe(fds) == 0, "pipe");
   char ab[] = "ab", cd[] = "cd";
-  Meanwhile(
+  WakesAfterTheDelay(
       "readv",
       [&] {
         const iovec parts[] = {{ab, 2}, {cd, 2}};
@@ -66,7 +44,7 @@ void Buffers() {
 void Datagrams() {
   int fds[2];
   EXPECT(socketpair(AF_UNIX, SOCK_DGRAM, 0, fds) == 0, "socketpair");
-  Meanwhile(
+  WakesAfterTheDelay(
       "recvmmsg",
       [&] {
         Messages out;
@@ -79,7 +57,7 @@ void Datagrams() {
       });
   Messages rest;
   recvmmsg(fds[0], rest.headers, 2, MSG_DONTWAIT, nullptr);
-  Meanwhile(
+  WakesAfterTheDelay(
       "recvmsg",
       [&] {
         Messages out;
@@ -101,7 +79,7 @@ void Connections() {
   size = sizeof address;
   EXPECT(getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) == 0, "getsockname");
   EXPECT(listen(listener, 2) == 0, "listen");
-  Meanwhile(
+  WakesAfterTheDelay(
       "accept4",
       [&] {
         const int fd = socket(AF_UNIX, SOCK_STREAM, 0);

@@ -5,40 +5,18 @@
 #include <sys/sem.h>
 #include <sys/wait.h>
 
-#include <functional>
-
-#include "tests/conformance/conformance.h"
+#include "tests/conformance/child_later.h"
 
 using namespace conformance;
 
 namespace {
 
-constexpr std::int64_t kDelay = 30 * kMs;
+constexpr std::int64_t kChildDelay = 30 * kMs;
 
 struct Message {
   long type;
   char text[4096];
 };
-
-// `child` acts in a child process after the delay; `parent` waits for that.
-void WakesAfterTheDelay(const char* what, const std::function<void()>& child,
-                        const std::function<void()>& parent) {
-  const std::int64_t start = Now();
-  const pid_t pid = fork();
-  if (pid == 0) {
-    usleep(kDelay / 1000);
-    child();
-    _exit(0);
-  }
-  parent();
-  const std::int64_t passed = Now() - start;
-  EXPECT(passed >= kDelay, "%s woke after %lld ns", what, (long long)passed);
-  if (g_mode != Mode::kNative) {
-    EXPECT(passed < kDelay + 10 * kMs, "%s woke after %lld ns", what, (long long)passed);
-  }
-  int status = 0;
-  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: child status %x", what, status);
-}
 
 int Operate(int id, int number, int change, int flags = 0) {
   sembuf operation{static_cast<unsigned short>(number), static_cast<short>(change),
@@ -50,10 +28,10 @@ void Must(int result) { EXPECT(result == 0, "%s", strerror(errno)); }
 
 void SemaphoreDeadlines(int id) {
   sembuf take{0, -1, 0};
-  const timespec timeout = ToTimespec(kDelay), none{}, bad{0, kSecond};
+  const timespec timeout = ToTimespec(kChildDelay), none{}, bad{0, kSecond};
   std::int64_t start = Now();
   EXPECT(semtimedop(id, &take, 1, &timeout) == -1 && errno == EAGAIN, "%s", strerror(errno));
-  ExpectWaited(start, kDelay, 2, "semtimedop");
+  ExpectWaited(start, kChildDelay, 2, "semtimedop");
   start = Now();
   EXPECT(semtimedop(id, &take, 1, &none) == -1 && errno == EAGAIN, "%s", strerror(errno));
   EXPECT(Operate(id, 0, -1, IPC_NOWAIT) == -1 && errno == EAGAIN, "%s", strerror(errno));
@@ -89,14 +67,15 @@ void SemaphoreWaits(int id) {
   const pid_t holder = fork();
   if (holder == 0) {
     Must(Operate(id, 1, -1, SEM_UNDO));
-    usleep(2 * kDelay / 1000);
+    usleep(2 * kChildDelay / 1000);
     _exit(0);
   }
-  usleep(kDelay / 1000);
+  usleep(kChildDelay / 1000);
   Must(Operate(id, 1, -1));
   const std::int64_t passed = Now() - start;
-  EXPECT(passed >= 2 * kDelay, "undone after %lld ns", (long long)passed);
-  if (g_mode != Mode::kNative) EXPECT(passed < 2 * kDelay + 10 * kMs, "%lld ns", (long long)passed);
+  EXPECT(passed >= 2 * kChildDelay, "undone after %lld ns", (long long)passed);
+  if (g_mode != Mode::kNative)
+    EXPECT(passed < 2 * kChildDelay + 10 * kMs, "%lld ns", (long long)passed);
   EXPECT(waitpid(holder, nullptr, 0) == holder, "waitpid");
 }
 
@@ -113,7 +92,7 @@ void SemaphoreOrder(int id) {
       _exit(write(order[1], &i, sizeof i) == sizeof i ? 0 : 1);
     }
   }
-  usleep(kDelay / 1000);
+  usleep(kChildDelay / 1000);
   for (int i = 0; i < 3; ++i) {
     Must(Operate(id, 0, 1));
     int came = -1;
@@ -168,11 +147,12 @@ void Interruptions(int semaphores, int messages) {
   sigaction(SIGALRM, &action, nullptr);
   for (const bool receives : {false, true}) {
     const std::int64_t start = Now();
-    ualarm(kDelay / 1000, 0);
+    ualarm(kChildDelay / 1000, 0);
     Message message;
     const long result = receives ? msgrcv(messages, &message, 8, 0, 0) : Operate(semaphores, 0, -1);
     EXPECT(result == -1 && errno == EINTR, "%ld: %s", result, strerror(errno));
-    ExpectWaited(start + (g_mode == Mode::kFixed ? kCallNs : 0), kDelay, 1, "an interrupted wait");
+    ExpectWaited(start + (g_mode == Mode::kFixed ? kCallNs : 0), kChildDelay, 1,
+                 "an interrupted wait");
   }
   EXPECT(g_alarms == 2, "%d alarms", int(g_alarms));
 }
