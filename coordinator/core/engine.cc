@@ -151,7 +151,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     }
     idle = std::min(idle, expiry);
     if (other == &task) continue;
-    if (other->state != TaskState::kWaiting) {
+    if (other->state != TaskState::kWaiting || other->spins) {
       idle = 0;
       continue;
     }
