@@ -49,6 +49,10 @@ sock_filter Load(std::size_t offset) {
   return {BPF_LD | BPF_W | BPF_ABS, 0, 0, static_cast<std::uint32_t>(offset)};
 }
 
+// libnuma compares the processors that it is told of, which are the robot's, with the nodes of the
+// host's memory in /sys, which it looks at only if the kernel knows this call.
+constexpr std::uint32_t kNuma = SYS_get_mempolicy;
+
 sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
 
 // The lower half of an argument.
@@ -64,6 +68,8 @@ std::vector<sock_filter> Program() {
       JumpIfEqual(AUDIT_ARCH_X86_64, 1, 0),
       allow,
       Load(offsetof(seccomp_data, nr)),
+      JumpIfEqual(kNuma, 0, 1),
+      Return(SECCOMP_RET_ERRNO | ENOSYS),
       JumpIfEqual(SYS_futex, 0, 6),
       LoadArgument(1),
       // The shim waits at its gate with this operation, which has no use for its last argument.

@@ -3,7 +3,10 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # cyclictest measures how late a periodic thread wakes. Alone on its processor: by the call that
 # asks for the time under fixed accounting, by what it has computed under measured. The other
 # threads of several wait for those that are due at the same instant.
-latencies() { "$tcsim" exec --accounting "$1" -- cyclictest -q -p 80 -i 1000 "${@:2}"; }
+latencies() { on_cores 1 "$@"; }
+on_cores() {
+  "$tcsim" exec --cores "$1" --accounting "$2" -- cyclictest -q -p 80 -i 1000 "${@:3}"
+}
 worst() { sed -n 's/.*Max: *\([0-9]*\).*/\1/p' | sort -n | tail -1; }
 said=$(latencies fixed -t 1 -l 2000)
 [[ $said == *"C:   2000 Min:      1 Act:    1 Avg:    1 Max:       1"* ]] || fail "alone: $said"
@@ -12,6 +15,9 @@ said=$(latencies fixed -t 4 -l 1000)
 (($(worst <<<"$said") <= 7)) || fail "later than the calls of the other three: $said"
 [[ $(latencies fixed -t 4 -l 1000 | sed 's/([ 0-9]*)//') == "$(sed 's/([ 0-9]*)//' <<<"$said")" ]] ||
   fail "two fixed runs differ"
+# Each on a core of its own, whatever the host has.
+said=$(on_cores 4 fixed -t 4 -l 1000)
+[[ $(grep -c 'Min: *1 .*Avg: *1 Max: *1$' <<<"$said") == 4 ]] || fail "four cores: $said"
 # 4 threads, whose periods begin to coincide at 1, 1.5, 2 and 2.5 ms, compute next to nothing.
 said=$(latencies measured -t 4 -l 1000)
 (($(worst <<<"$said") < 1000)) || fail "a millisecond late: $said"
