@@ -129,6 +129,8 @@ class Engine {
   std::int64_t FutexWakeOp(const Task& task, const TrappedCall& call);
   bool IsEnding(const Task& joiner, pid_t tid) const;
   FutexKey FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
+  FutexKey WokenKeyFor(const Process& process, const TrappedCall& call,
+                       std::uint64_t address) const;
   void StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits);
   Task* MostUrgentWaiter(const FutexKey& key, std::uint32_t bits);
 

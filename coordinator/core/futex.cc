@@ -26,6 +26,18 @@ FutexKey Engine::FutexKeyFor(const Task& task, const TrappedCall& call, std::uin
   return KeyOf(task.process->pid, address, (call.args[1] & FUTEX_PRIVATE_FLAG) != 0);
 }
 
+// The same for a wake. What a shared address is mapped to takes a look at the process, and where
+// nobody waits at the same place of any page, nobody can be woken.
+FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
+                             std::uint64_t address) const {
+  constexpr std::uint64_t kInPage = 4095;
+  const bool is_waited_for = std::any_of(tasks_.begin(), tasks_.end(), [address](const Task& task) {
+    return task.trap_wait == TrapWait::kFutex && ((task.futex.address ^ address) & kInPage) == 0;
+  });
+  const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
+  return KeyOf(process.pid, address, is_private || !is_waited_for);
+}
+
 // From an absolute or relative timeout in the caller's memory to a deadline on its virtual CPU.
 bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
   task.deadline_ns = shm::kNeverNs;
@@ -120,13 +132,13 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
                                              static_cast<std::uint32_t>(operand));
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
-  std::int64_t woken =
-      FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+  std::int64_t woken = FutexWake(WokenKeyFor(*task.process, call, call.args[0]),
+                                 static_cast<int>(call.args[2]), kAnyBit);
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
-    woken +=
-        FutexWake(FutexKeyFor(task, call, call.args[4]), static_cast<int>(call.args[3]), kAnyBit);
+    woken += FutexWake(WokenKeyFor(*task.process, call, call.args[4]),
+                       static_cast<int>(call.args[3]), kAnyBit);
   }
   return woken;
 }
@@ -141,8 +153,7 @@ bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
 void Engine::WakeForStranger(const Process& process, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return;
-  const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
-  FutexWake(KeyOf(process.pid, call.args[0], is_private), static_cast<int>(call.args[2]),
+  FutexWake(WokenKeyFor(process, call, call.args[0]), static_cast<int>(call.args[2]),
             command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
 }
 
@@ -174,12 +185,12 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       task.trap_result = FutexWait(task, call, command);
       break;
     case FUTEX_WAKE:
-      task.trap_result =
-          FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]), kAnyBit);
+      task.trap_result = FutexWake(WokenKeyFor(*task.process, call, call.args[0]),
+                                   static_cast<int>(call.args[2]), kAnyBit);
       break;
     case FUTEX_WAKE_BITSET:
       task.trap_result =
-          FutexWake(FutexKeyFor(task, call, call.args[0]), static_cast<int>(call.args[2]),
+          FutexWake(WokenKeyFor(*task.process, call, call.args[0]), static_cast<int>(call.args[2]),
                     static_cast<std::uint32_t>(call.args[5]));
       break;
     case FUTEX_REQUEUE:

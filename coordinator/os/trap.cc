@@ -13,9 +13,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cstdio>
-#include <fstream>
-#include <string>
 #include <vector>
 
 #include "shm/layout.h"
@@ -142,25 +139,6 @@ bool ContinueTrapped(int listener, std::uint64_t id) {
   response.id = id;
   response.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &response) == 0;
-}
-
-FutexKey KeyOf(pid_t pid, std::uint64_t address, bool is_private) {
-  if (!is_private) {
-    std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
-    for (std::string line; std::getline(maps, line);) {
-      unsigned long long first = 0, last = 0, offset = 0, inode = 0;
-      unsigned major = 0, minor = 0;
-      char rights[5] = "";
-      if (sscanf(line.c_str(), "%llx-%llx %4s %llx %x:%x %llu", &first, &last, rights, &offset,
-                 &major, &minor, &inode) != 7 ||
-          address < first || address >= last) {
-        continue;
-      }
-      if (rights[3] != 's') break;
-      return {0, (std::uint64_t{major} << 20 | minor) << 40 ^ inode, address - first + offset};
-    }
-  }
-  return {pid, 0, address};
 }
 
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {
