@@ -118,7 +118,7 @@ class Engine {
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
   void WakeForStranger(const Process& process, const TrappedCall& call);
-  bool FutexDeadline(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);

@@ -43,7 +43,7 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   if (command == FUTEX_TRYLOCK_PI) return -EAGAIN;
   Task* owner = KnownTask(owner_tid);
   if (owner == nullptr) return -ESRCH;
-  if (!FutexDeadline(task, call, command)) return -EFAULT;
+  if (const std::int64_t wrong = FutexDeadline(task, call, command); wrong != 0) return wrong;
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   task.lock_owner = owner;
