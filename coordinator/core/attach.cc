@@ -249,10 +249,13 @@ void Engine::ProcessEnded(std::size_t index) {
   close(process.pidfd);
   process.pidfd = -1;
   for (Process& other : processes_) {
-    if (other.pid == process.parent && !other.dead) other.children_cpu_ns += charged;
+    if (other.pid != process.parent || other.dead) continue;
+    other.children_cpu_ns += charged;
+    ++other.children_ended;
   }
   for (Task& task : tasks_) {
-    if (task.waits_for_child && task.process->pid == process.parent) {
+    if (task.waits_for_child && task.process->pid == process.parent &&
+        (task.awaited_child <= 0 || task.awaited_child == process.pid)) {
       MakeReady(task, shm::WakeReason::kGo);
     }
   }

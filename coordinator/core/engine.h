@@ -80,7 +80,7 @@ class Engine {
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
   void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
-  void WaitForChild(Task& task);
+  void WaitForChild(Task& task, pid_t which);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);

@@ -260,8 +260,16 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
     HoldRaw(task, shm::NotificationKind::kRead);
     return;
   }
+  pid_t which = 0;  // any
+  if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
+  if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
+  const bool has_ended = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
+    return p.parent == task.process->pid && p.dead && !p.is_client &&
+           (which == 0 || p.pid == which) && ThreadState(p.pid) == 'Z';
+  });
+  if (has_ended) return HoldRaw(task, shm::NotificationKind::kRead);
   task.trap_wait = TrapWait::kChild;
-  WaitForChild(task);
+  WaitForChild(task, which);
 }
 
 std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {

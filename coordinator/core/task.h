@@ -52,6 +52,8 @@ struct Task {
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
   bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
+  pid_t awaited_child = 0;           // this one; 0: any
+  std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
   std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
   std::uint64_t key_order = 0;            // of waiting
   bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
@@ -133,6 +135,7 @@ struct Process {
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
   // Of threads that have ended, for the report.
+  std::int64_t children_ended = 0;  // how many
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   bool dead = false;
   int threads = 1;             // that ever attached
