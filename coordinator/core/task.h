@@ -74,6 +74,7 @@ struct Task {
   std::uint32_t futex_bits = 0;
   Task* lock_owner = nullptr;      // of the priority-inheriting lock that it waits for,
   std::uint64_t lock_address = 0;  // which is here in its memory
+  std::uint64_t handed_lock = 0;   // has been handed to it, and it does not know yet; 0: none
   // What the futex's word says: the thread that it waits for in a join, or a lock's owner.
   pid_t names_tid = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
