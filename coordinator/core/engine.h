@@ -186,6 +186,9 @@ class Engine {
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
+  void EndThreadsLostInExec(pid_t pid);
+  void LeaveWait(Task& task);
+  bool HasExited(const Task& task) const;
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
 

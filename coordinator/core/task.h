@@ -135,8 +135,8 @@ struct Process {
   std::vector<TimerSignal> timer_signals;
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
-  // Of threads that have ended, for the report.
   std::int64_t children_ended = 0;  // how many
+  // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   bool dead = false;
   int threads = 1;             // that ever attached
