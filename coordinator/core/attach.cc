@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -132,17 +133,31 @@ Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
   return NewTask(pid, parent_pid, &robots_.front(), fmt::format("pid {}", pid), 0);
 }
 
-// The thread registers again: its process executes another program. What it waited for is over, and
-// so are all other threads.
-void Engine::ForgetFormerProgram(Task& task) {
-  const std::vector<Task*> threads = task.process->robot->tasks;
-  for (Task* other : threads) {
-    if (other->process == task.process && other != &task) EndTask(*other);
+// A thread that executes another program becomes its process's first one; all others have ended,
+// and nobody else says so.
+void Engine::EndThreadsLostInExec(pid_t pid) {
+  Task* first = KnownTask(pid);
+  const auto of = std::find_if(processes_.begin(), processes_.end(),
+                               [pid](const Process& p) { return p.pid == pid && !p.dead; });
+  if (of == processes_.end() || of->threads == 1) return;
+  const bool by_another = running_ != nullptr && running_ != first && running_->process == &*of;
+  if (by_another) {
+    Settle(*running_);
+    event_ns_ = running_->reached_ns;
   }
-  if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kGo);
-  task.trap_id = 0;
-  task.early_trap.reset();
-  task.notified_early = false;
+  const std::vector<Task*> threads = of->robot->tasks;
+  for (Task* task : threads) {
+    if (task->process != &*of || task == first) continue;
+    EndTask(*task);
+    WakeThoseWaitingFor(*task);
+  }
+  of->has_strangers = false;
+  if (first == nullptr || !by_another) return;
+  // The processor clock under its number is another thread's from now on.
+  if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
+  first->host_origin_ns =
+      HostClockOf(*first) -
+      static_cast<std::int64_t>(static_cast<double>(first->charged_ns) * of->robot->speed);
 }
 
 void Engine::Attach(int connection) {
@@ -156,12 +171,12 @@ void Engine::Attach(int connection) {
     Refuse(connection, "it comes from another version of tcs");
     return;
   }
+  if (hello.tid == hello.pid) EndThreadsLostInExec(hello.pid);
   Task& task = *TaskFor(hello.pid, hello.parent_pid, hello.tid);
   if (task.slot < 0 && free_slots_.empty()) {
     Refuse(connection, "there is no room for more threads");
     return;
   }
-  if (task.slot >= 0) ForgetFormerProgram(task);
   if (&task != running_) {
     SetLevel(task.tid, Level::kWaiting);
     task.level = Level::kWaiting;
@@ -181,6 +196,11 @@ void Engine::Attach(int connection) {
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.gate.store(shm::kGateClosed);
+  LeaveWait(task);
+  task.early_trap.reset();
+  task.trap_id = 0;
+  task.notified_early = false;
+  task.reached_ns = std::max(task.reached_ns, event_ns_);
   SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;
@@ -209,6 +229,19 @@ void Engine::SendReply(int connection, const Task& task) {
   sendmsg(connection, &message, MSG_NOSIGNAL);
 }
 
+// Whatever the thread waits for, it waits no longer.
+void Engine::LeaveWait(Task& task) {
+  EndWatches(task);
+  EndKeyWait(task);
+  waiting_for_child_ -= task.waits_for_child;
+  waiting_for_signals_ -= task.awaited_signals != 0;
+  task.awaited_signals = 0;
+  task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
+  task.trap_wait = TrapWait::kNone;
+  task.deadline_ns = shm::kNeverNs;
+  LeaveLock(task);
+}
+
 // What the thread has had and done goes to its process. The slot goes to the end of the queue: a
 // last word of its thread may still be in the pipe.
 void Engine::EndTask(Task& task) {
@@ -223,14 +256,7 @@ void Engine::EndTask(Task& task) {
     report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
-  EndWatches(task);
-  EndKeyWait(task);
-  waiting_for_child_ -= task.waits_for_child;
-  waiting_for_signals_ -= task.awaited_signals != 0;
-  task.awaited_signals = 0;
-  task.waits_for_child = task.waits_for_fds = false;
-  task.trap_wait = TrapWait::kNone;
-  LeaveLock(task);
+  LeaveWait(task);
   SetState(task, TaskState::kDead);
   --living_;
   task.parked = true;
@@ -265,10 +291,13 @@ void Engine::ProcessEnded(std::size_t index) {
   close(process.pidfd);
   process.pidfd = -1;
   for (Process& other : processes_) {
-    if (other.pid == process.parent && !other.dead) other.children_cpu_ns += charged;
+    if (other.pid != process.parent || other.dead) continue;
+    other.children_cpu_ns += charged;
+    ++other.children_ended;
   }
   for (Task& task : tasks_) {
-    if (task.waits_for_child && task.process->pid == process.parent) {
+    if (task.waits_for_child && task.process->pid == process.parent &&
+        (task.awaited_child <= 0 || task.awaited_child == process.pid)) {
       MakeReady(task, shm::WakeReason::kGo);
     }
   }

@@ -105,8 +105,8 @@ void Engine::Resume(Task& task) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
       ContinueTrapped(task.trap_listener, task.trap_id);
-    } else {
-      AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+    } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
+      task.handed_lock = 0;
     }
     task.trap_id = 0;
   } else if (task.slot >= 0 && task.parked) {

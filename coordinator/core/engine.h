@@ -83,7 +83,7 @@ class Engine {
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
   void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
-  void WaitForChild(Task& task);
+  void WaitForChild(Task& task, pid_t which);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
@@ -122,7 +122,7 @@ class Engine {
   void HandleFutex(Task& task, const TrappedCall& call);
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);
   void WakeForStranger(const Process& process, const TrappedCall& call);
-  bool FutexDeadline(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);
@@ -183,7 +183,6 @@ class Engine {
   bool BlockedInKernel();
   void RearmDetector();
   void Attach(int connection);
-  void ForgetFormerProgram(Task& task);
   Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid);
   void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);
@@ -193,6 +192,9 @@ class Engine {
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
+  void EndThreadsLostInExec(pid_t pid);
+  void LeaveWait(Task& task);
+  bool HasExited(const Task& task) const;
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
 

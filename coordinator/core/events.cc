@@ -1,6 +1,7 @@
 // What the kernel says: notifications in the pipe, descriptors that clients wait for, commands,
 // blocked threads, births and deaths.
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
@@ -22,6 +23,9 @@ constexpr int kEventsAtOnce = 64;
 constexpr std::int64_t kHeldTurnNs = 100'000;
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
+// So long the threads of a process that ends as a whole have to be gone, too.
+constexpr int kExitTurns = 20;
+constexpr std::uint64_t kKilled = std::uint64_t{1} << (SIGKILL - 1);
 
 }  // namespace
 
@@ -57,14 +61,25 @@ void Engine::RearmDetector() {
   detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
 }
 
+// The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
+// itself), and its process goes on.
+bool Engine::HasExited(const Task& task) const {
+  const std::vector<pid_t> threads = ThreadsOf(task.process->pid);
+  return std::any_of(threads.begin(), threads.end(), [&](pid_t tid) {
+    const char state = ThreadState(tid);
+    return tid != task.tid && state != 'Z' && state != 'X' &&
+           (ReadSignalSets(tid).own_pending & kKilled) == 0;
+  });
+}
+
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
   const char state = ThreadState(running_->tid);
-  const bool gone = state == 'X' || state == 'Z';
-  if (gone && running_->process->threads > 1) {
-    // It ended without a word, as a program that makes system calls of its own can.
+  if ((state == 'Z' || state == 'X') && held_turns_ > kExitTurns && HasExited(*running_)) {
     Task& ended = *running_;
+    Settle(ended);
+    event_ns_ = ended.reached_ns;
     EndTask(ended);
     WakeThoseWaitingFor(ended);
     return true;

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 
 namespace tcs {
@@ -39,43 +40,50 @@ FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
 }
 
 // From an absolute or relative timeout in the caller's memory to a deadline on its virtual CPU.
-bool Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
+std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
   task.deadline_ns = shm::kNeverNs;
-  if (call.args[3] == 0) return true;
+  if (call.args[3] == 0) return 0;
   timespec timeout{};
-  if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return false;
+  if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
+  if (timeout.tv_sec < 0 || timeout.tv_nsec < 0 || timeout.tv_nsec >= 1'000'000'000) return -EINVAL;
   constexpr std::int64_t kMostSeconds = shm::kNeverNs / 1'000'000'000 / 4;
-  if (timeout.tv_sec > kMostSeconds) return true;
+  if (timeout.tv_sec > kMostSeconds) return 0;
   const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_nsec;
   const std::int64_t now = task.reached_ns;
   if (command == FUTEX_WAIT) {
-    task.deadline_ns = now + std::max<std::int64_t>(0, ns);
-    return true;
+    task.deadline_ns = now + ns;
+    return 0;
   }
   const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
   const std::int64_t offset = realtime ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
   task.deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
-  return true;
+  return 0;
 }
 
 std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command) {
+  const auto bits = static_cast<std::uint32_t>(call.args[5]);
+  const std::int64_t wrong = FutexDeadline(task, call, command);
+  if (wrong != 0) return wrong;
+  if (command == FUTEX_WAIT_BITSET && bits == 0) return -EINVAL;
+  if (call.args[0] % sizeof(std::uint32_t) != 0) return -EINVAL;
   std::uint32_t value = 0;
   if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
   // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
   if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
-  if (!FutexDeadline(task, call, command)) return -EFAULT;
   if (const pid_t joined = static_cast<pid_t>(value & FUTEX_TID_MASK); IsEnding(task, joined)) {
-    // A join: the kernel clears the word when the thread has gone, which it is about to be.
-    for (int turn = 0; turn < kEndTurns && value == static_cast<std::uint32_t>(call.args[2]);
-         ++turn) {
-      usleep(kEndTurnUs);
+    // A join: the kernel clears the word when the thread has gone, which it is about to be. If it
+    // has gone and the word is still the same, that is only a number like the thread's.
+    for (int turn = 0;; ++turn) {
+      const char state = ThreadState(joined);
       if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+      if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
+      if (state == 'X' || state == 'Z' || turn == kEndTurns) break;
+      usleep(kEndTurnUs);
     }
-    return -EAGAIN;
   }
   task.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK);
   StartFutexWait(task, FutexKeyFor(task, call, call.args[0]),
-                 command == FUTEX_WAIT ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
+                 command == FUTEX_WAIT ? kAnyBit : bits);
   return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <linux/futex.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 
@@ -33,7 +34,9 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   std::uint32_t value = 0;
   if (!ReadMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   const auto owner_tid = static_cast<pid_t>(value & kOwner);
-  if (owner_tid == task.tid) return -EDEADLK;
+  // A signal may have ended its wait when it already had the lock; then the kernel calls again.
+  const bool has_it_now = std::exchange(task.handed_lock, 0) == call.args[0];
+  if (owner_tid == task.tid) return has_it_now ? 0 : -EDEADLK;
   const FutexKey key = FutexKeyFor(task, call, call.args[0]);
   if (owner_tid == 0) {
     const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
@@ -43,7 +46,7 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   if (command == FUTEX_TRYLOCK_PI) return -EAGAIN;
   Task* owner = KnownTask(owner_tid);
   if (owner == nullptr) return -ESRCH;
-  if (!FutexDeadline(task, call, command)) return -EFAULT;
+  if (const std::int64_t wrong = FutexDeadline(task, call, command); wrong != 0) return wrong;
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   task.lock_owner = owner;
@@ -59,6 +62,7 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
   if (next == nullptr) return false;
   Task* before = next->lock_owner;
   next->lock_owner = nullptr;
+  next->handed_lock = next->lock_address;
   next->trap_wait = TrapWait::kNone;
   const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
   const std::uint32_t value =
@@ -77,6 +81,7 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
 
 std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
   std::uint32_t value = 0;
+  task.handed_lock = 0;
   if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
   if (static_cast<pid_t>(value & kOwner) != task.tid) return -EPERM;
   if (HandLockOn(FutexKeyFor(task, call, call.args[0]), 0)) return 0;

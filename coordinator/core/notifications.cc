@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -43,19 +44,12 @@ void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   }
 }
 
-void Engine::WaitForChild(Task& task) {
+void Engine::WaitForChild(Task& task, pid_t which) {
   SetState(task, TaskState::kWaiting);
   task.waits_for_child = true;
+  task.awaited_child = which;
   ++waiting_for_child_;
   task.deadline_ns = shm::kNeverNs;
-  for (const Process& child : processes_) {
-    // A child that ended before the parent came to wait.
-    if (child.dead && child.parent == task.process->pid && !child.is_client &&
-        ThreadState(child.pid) == 'Z') {
-      MakeReady(task, shm::WakeReason::kGo);
-      return;
-    }
-  }
 }
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
@@ -109,7 +103,13 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       PollEvents(0);
       break;
     case Kind::kWaitChild:
-      WaitForChild(task);
+      WaitForChild(task, static_cast<pid_t>(note.args[0]));
+      // It has looked, and found none; but since then one may have ended. One that it does not wait
+      // for stays there, so a look at who is there would never let it wait.
+      if (std::exchange(task.children_looked, task.process->children_ended) !=
+          task.process->children_ended) {
+        MakeReady(task, shm::WakeReason::kGo);
+      }
       break;
     case Kind::kTimerCreate:
     case Kind::kTimerSet:

@@ -260,8 +260,16 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
     HoldRaw(task, shm::NotificationKind::kRead);
     return;
   }
+  pid_t which = 0;  // any
+  if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
+  if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
+  const bool has_ended = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
+    return p.parent == task.process->pid && p.dead && !p.is_client &&
+           (which == 0 || p.pid == which) && ThreadState(p.pid) == 'Z';
+  });
+  if (has_ended) return HoldRaw(task, shm::NotificationKind::kRead);
   task.trap_wait = TrapWait::kChild;
-  WaitForChild(task);
+  WaitForChild(task, which);
 }
 
 std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
@@ -358,14 +366,18 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
 
 // A trapped call that waited goes on, for `reason`.
 void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
-  constexpr int kRestart = 512;  // the kernel's ERESTARTSYS, which it never shows to programs
+  // The kernel's ERESTARTSYS and ERESTARTNOINTR, which it never shows to programs.
+  constexpr int kRestart = 512, kRestartAlways = 513;
   const TrapWait wait = task.trap_wait;
+  const bool waits_for_lock = task.lock_owner != nullptr;
   task.trap_wait = TrapWait::kNone;
   LeaveLock(task);
   if (reason == shm::WakeReason::kSignal) {
     task.trap_continues = false;
     // As the kernel has it: after a handler it makes the call again if that wants it.
     task.trap_result = task.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
+    // A lock is never given up for a signal: the C library would take it for acquired.
+    if (waits_for_lock) task.trap_result = -kRestartAlways;
     if (wait == TrapWait::kSleep && task.remaining_address != 0) {
       const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
       Write(task, task.remaining_address, timespec{left / kNsPerSecond, left % kNsPerSecond});

@@ -78,6 +78,12 @@ void Engine::WakeForSignals(Process& process) {
   std::uint64_t taken = 0;
   for (Task& task : tasks_) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
+    // A thread that waits may have kept the level of its last dispatch. With a signal it would run
+    // before its next one, and lose what its call is to return.
+    if (&task != last_ && task.level == Level::kActive) {
+      SetLevel(task.tid, Level::kWaiting);
+      task.level = Level::kWaiting;
+    }
     const SignalSets sets = ReadSignalSets(task.tid);
     if (EndAwait(task, sets)) continue;
     const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;

@@ -52,6 +52,8 @@ struct Task {
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
   bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
+  pid_t awaited_child = 0;           // this one; 0: any
+  std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
   std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
   std::uint64_t key_order = 0;            // of waiting
   bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
@@ -72,6 +74,7 @@ struct Task {
   std::uint32_t futex_bits = 0;
   Task* lock_owner = nullptr;      // of the priority-inheriting lock that it waits for,
   std::uint64_t lock_address = 0;  // which is here in its memory
+  std::uint64_t handed_lock = 0;   // has been handed to it, and it does not know yet; 0: none
   // What the futex's word says: the thread that it waits for in a join, or a lock's owner.
   pid_t names_tid = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
@@ -134,6 +137,7 @@ struct Process {
   std::vector<TimerSignal> timer_signals;
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
+  std::int64_t children_ended = 0;  // how many
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   bool dead = false;

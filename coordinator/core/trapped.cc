@@ -54,7 +54,17 @@ void Engine::HandleStranger(const TrappedCall& call) {
     known->has_strangers = true;
     WakeForStranger(*known, call);
   }
-  ContinueTrapped(call.listener, call.id);
+  switch (call.number) {
+    case SYS_sched_setscheduler:
+    case SYS_sched_setparam:
+    case SYS_sched_setattr:
+    case SYS_sched_setaffinity:
+      // The host's scheduler must not hear of it from them either.
+      AnswerTrapped(call.listener, call.id, 0);
+      return;
+    default:
+      ContinueTrapped(call.listener, call.id);
+  }
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.

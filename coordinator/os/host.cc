@@ -149,9 +149,10 @@ std::string ProgramOf(pid_t pid) {
 std::vector<pid_t> ThreadsOf(pid_t pid) {
   std::vector<pid_t> tids;
   std::error_code gone;
-  for (const auto& entry :
-       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/task", gone)) {
-    tids.push_back(std::stoi(entry.path().filename()));
+  // Not a range-for: its steps throw, where the process ends meanwhile.
+  std::filesystem::directory_iterator entry("/proc/" + std::to_string(pid) + "/task", gone);
+  for (; !gone && entry != std::filesystem::directory_iterator{}; entry.increment(gone)) {
+    tids.push_back(std::stoi(entry->path().filename()));
   }
   std::sort(tids.begin(), tids.end());
   return tids;

@@ -122,6 +122,30 @@ void Refused() {
   }
 }
 
+// What is no time, no bit and no address; and a number that happens to be that of a thread that has
+// ended, which is no reason not to wait.
+void Arguments() {
+  Word word{0};
+  for (const timespec wrong : {timespec{-1, 0}, timespec{0, -1}, timespec{0, kSecond}}) {
+    for (const int operation : {FUTEX_WAIT_PRIVATE, FUTEX_WAIT_BITSET_PRIVATE}) {
+      EXPECT(Futex(word, operation, 0, &wrong, nullptr, 1) == -1 && errno == EINVAL, "a timeout");
+    }
+  }
+  EXPECT(Futex(word, FUTEX_WAIT_BITSET_PRIVATE, 0) == -1 && errno == EINVAL, "no bits");
+  pthread_t thread;
+  const auto routine = [](void* at) -> void* {
+    *static_cast<Word*>(at) = static_cast<std::uint32_t>(gettid());
+    return nullptr;
+  };
+  EXPECT(pthread_create(&thread, nullptr, routine, &word) == 0, "pthread_create");
+  pthread_join(thread, nullptr);
+  const timespec timeout = ToTimespec(20 * kMs);
+  const std::int64_t start = Now();
+  EXPECT(Futex(word, FUTEX_WAIT_PRIVATE, word, &timeout) == -1 && errno == ETIMEDOUT,
+         "a number like a thread's: %s", strerror(errno));
+  EXPECT(Now() - start >= 20 * kMs, "it gave up early");
+}
+
 // Between processes, by the memory they share.
 void Shared() {
   auto* word = static_cast<Word*>(
@@ -147,5 +171,6 @@ int main(int argc, char** argv) {
   Timeouts();
   Wakes();
   Refused();
+  Arguments();
   Shared();
 }

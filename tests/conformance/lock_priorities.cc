@@ -3,6 +3,7 @@
 #include <linux/futex.h>
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -90,6 +91,51 @@ void TimeoutIsKept() {
   pthread_mutex_unlock(&g_mutex);
 }
 
+std::atomic<int> g_handled{0};
+
+// A lock is waited for on, whatever handlers run meanwhile.
+void SignalsWhileWaiting() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { ++g_handled; };
+  sigaction(SIGUSR1, &action, nullptr);
+  pthread_mutexattr_t attributes;
+  pthread_mutexattr_init(&attributes);
+  pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
+  for (const bool timed : {false, true}) {
+    static pthread_mutex_t mutex;
+    static bool times;
+    static std::atomic<bool> mine;
+    times = timed;
+    mine = true;
+    pthread_mutex_init(&mutex, &attributes);
+    pthread_mutex_lock(&mutex);
+    const auto lock = [](void*) -> void* {
+      timespec deadline;
+      clock_gettime(CLOCK_REALTIME, &deadline);
+      deadline.tv_sec += 100;
+      const int error =
+          times ? pthread_mutex_timedlock(&mutex, &deadline) : pthread_mutex_lock(&mutex);
+      EXPECT(error == 0, "%s", strerror(error));
+      EXPECT(!mine, "two have the lock");
+      EXPECT(pthread_mutex_unlock(&mutex) == 0, "unlock");
+      return nullptr;
+    };
+    pthread_t thread;
+    pthread_create(&thread, nullptr, lock, nullptr);
+    for (int i = 0; i < 3; ++i) {
+      usleep(10'000);
+      pthread_kill(thread, SIGUSR1);
+    }
+    usleep(10'000);
+    mine = false;
+    pthread_mutex_unlock(&mutex);
+    // It has the lock now, and has not gone on yet.
+    pthread_kill(thread, SIGUSR1);
+    pthread_join(thread, nullptr);
+  }
+  EXPECT(g_handled >= 6, "%d handlers have run", g_handled.load());
+}
+
 void* LockAndEnd(void* mutex) {
   EXPECT(pthread_mutex_lock(static_cast<pthread_mutex_t*>(mutex)) == 0, "lock");
   usleep(20'000);
@@ -131,6 +177,7 @@ void OwnerDies(int protocol, bool process) {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   TimeoutIsKept();
+  SignalsWhileWaiting();
   for (const int protocol : {PTHREAD_PRIO_NONE, PTHREAD_PRIO_INHERIT}) {
     for (const bool process : {false, true}) OwnerDies(protocol, process);
   }

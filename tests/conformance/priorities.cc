@@ -3,8 +3,10 @@
 // one. And what the scheduling calls set, they report.
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 
 #include <atomic>
@@ -217,6 +219,27 @@ void WrongValuesAreRefused() {
   EXPECT(sched_setaffinity(0, sizeof nothing, &nothing) == -1 && errno == EINVAL, "no core");
 }
 
+// A process that shares its parent's memory, made without the C library's knowledge: the host's
+// scheduler does not hear of its wishes either.
+int AskForFifo(void*) {
+  const sched_param wanted{kUrgent};
+  syscall(SYS_sched_setscheduler, 0, SCHED_FIFO, &wanted);
+  sched_param now{};
+  syscall(SYS_sched_getparam, 0, &now);
+  _exit(now.sched_priority);
+}
+
+void StrangersAskInVain() {
+  static char stack[65'536];
+  const pid_t child =
+      clone(AskForFifo, stack + sizeof stack, CLONE_VM | CLONE_VFORK | SIGCHLD, nullptr);
+  int status = 0;
+  EXPECT(waitpid(child, &status, 0) == child && WIFEXITED(status), "waitpid: %x", status);
+  if (g_mode != Mode::kNative) {
+    EXPECT(WEXITSTATUS(status) < kUrgent, "priority %d of the host", WEXITSTATUS(status));
+  }
+}
+
 void AffinityIsOfTheComputersCores() {
   cpu_set_t cores;
   EXPECT(sched_getaffinity(0, sizeof cores, &cores) == 0, "%s", strerror(errno));
@@ -234,6 +257,7 @@ int main(int argc, char** argv) {
   AffinityIsOfTheComputersCores();
   if (g_mode == Mode::kNative && !IsPermitted()) return 0;
   WrongValuesAreRefused();
+  StrangersAskInVain();
   WhatIsSetIsReported();
   AttributesAreHeeded();
   for (const bool other : {false, true}) {

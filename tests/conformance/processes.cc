@@ -1,6 +1,7 @@
 // Children in all the ways they are made, and waiting for their end.
 #include <spawn.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 
 #include "tests/conformance/conformance.h"
@@ -56,6 +57,21 @@ void Waits() {
   EXPECT(waitpid(-1, &status, 0) == -1 && errno == ECHILD, "there are no children left");
 }
 
+// One that has ended, and that is not waited for, does not keep from waiting.
+void WaitsBesideOneThatEnded() {
+  const std::int64_t start = Now();
+  const pid_t first = fork();
+  if (first == 0) _exit(0);
+  const pid_t second = Sleeper(1), third = Sleeper(2);
+  usleep(kLife / 2000);
+  int status = 0;
+  EXPECT(waitpid(second, &status, 0) == second && WEXITSTATUS(status) == 1, "waitpid: %x", status);
+  EXPECT(syscall(SYS_wait4, third, &status, 0, nullptr) == third && WEXITSTATUS(status) == 2,
+         "wait4: %x", status);
+  ExpectLived(start, "waitpid beside one that ended");
+  EXPECT(waitpid(first, &status, 0) == first && status == 0, "waitpid: %x", status);
+}
+
 void ClocksGoOnInAChild() {
   const std::int64_t before = Now();
   int fds[2];
@@ -108,6 +124,7 @@ void Programs() {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   Waits();
+  WaitsBesideOneThatEnded();
   ClocksGoOnInAChild();
   Programs();
 }

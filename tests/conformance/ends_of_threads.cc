@@ -1,0 +1,68 @@
+// Threads that end without a word of their own: the first one by pthread_exit, others because one
+// of them executes another program.
+#include <pthread.h>
+#include <sys/wait.h>
+
+#include "tests/conformance/conformance.h"
+
+using namespace conformance;
+
+namespace {
+
+void* Sleep(void*) {
+  usleep(200'000);
+  return nullptr;
+}
+
+void* ExecuteSleep(void*) {
+  usleep(1'000);
+  execlp("sleep", "sleep", "0.5", nullptr);
+  return nullptr;
+}
+
+template <class Program>
+void InAChild(const char* what, std::int64_t life_ns, Program program) {
+  const std::int64_t start = Now();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    program();
+    _exit(1);
+  }
+  int status = -1;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "%s: status %x", what, status);
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= life_ns, "%s took %lld ns", what, (long long)passed);
+  if (g_mode != Mode::kNative) {
+    EXPECT(passed < life_ns + 20 * kMs, "%s took %lld ns", what, (long long)passed);
+  }
+}
+
+pthread_t Begun(void* (*routine)(void*)) {
+  pthread_t thread;
+  EXPECT(pthread_create(&thread, nullptr, routine, nullptr) == 0, "pthread_create");
+  return thread;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  InAChild("the first thread's end", 200 * kMs, [] {
+    Begun(Sleep);
+    usleep(1'000);
+    pthread_exit(nullptr);
+  });
+  InAChild("a program beside threads that sleep", 505 * kMs, [] {
+    Begun(Sleep);
+    usleep(5'000);
+    execlp("sleep", "sleep", "0.5", nullptr);
+  });
+  InAChild("a program of another thread", 501 * kMs, [] {
+    Begun(Sleep);
+    pthread_join(Begun(ExecuteSleep), nullptr);
+  });
+  InAChild("a program of another thread, the first one gone", 501 * kMs, [] {
+    Begun(ExecuteSleep);
+    pthread_exit(nullptr);
+  });
+}
