@@ -26,7 +26,9 @@ std::int64_t TakeExpirations(Timer& timer, std::int64_t now) {
     return 1;
   }
   const std::int64_t count = 1 + (now - timer.next_ns) / timer.interval_ns;
-  timer.next_ns += count * timer.interval_ns;
+  const std::int64_t last_ns = timer.next_ns + (count - 1) * timer.interval_ns;
+  const bool ends = last_ns > shm::kNeverNs - timer.interval_ns;  // after the end of all time
+  timer.next_ns = ends ? shm::kNeverNs : last_ns + timer.interval_ns;
   return count;
 }
 

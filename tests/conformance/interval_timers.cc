@@ -1,4 +1,5 @@
 // setitimer, getitimer and alarm, on all three clocks.
+#include <limits.h>
 #include <signal.h>
 #include <sys/time.h>
 
@@ -113,6 +114,18 @@ void OnProcessorTime(int which, int signal_number) {
 
 }  // namespace
 
+// An interval that ends after all time runs out once, and stays set.
+void BeyondAllTime() {
+  const int before = g_count;
+  const itimerval far{{LONG_MAX / 2, 0}, {0, 1'000}};
+  EXPECT(setitimer(ITIMER_REAL, &far, nullptr) == 0, "%s", strerror(errno));
+  for (int i = 0; i < 3; ++i) usleep(20'000);
+  EXPECT(g_count == before + 1, "%d signals", g_count - before);
+  itimerval left{};
+  const itimerval off{};
+  EXPECT(setitimer(ITIMER_REAL, &off, &left) == 0 && left.it_value.tv_sec > 1'000'000, "not set");
+}
+
 int main(int argc, char** argv) {
   Begin(argc, argv);
   signal(SIGALRM, Note);
@@ -121,6 +134,7 @@ int main(int argc, char** argv) {
   Microseconds();
   OnProcessorTime(ITIMER_VIRTUAL, SIGVTALRM);
   OnProcessorTime(ITIMER_PROF, SIGPROF);
+  BeyondAllTime();
   const itimerval bad{{0, 0}, {0, 1'000'000}};
   EXPECT(setitimer(ITIMER_REAL, &bad, nullptr) == -1 && errno == EINVAL, "a bad time was taken");
 }
