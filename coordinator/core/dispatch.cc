@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "shm/clock_page.h"
 
@@ -309,6 +310,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     HandleTrapped(task, early);
     return;
   }
+  Beat();
   running_ = &task;
   trapped_.reset();
   running_horizon_ns_ = horizon_ns;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
 
@@ -215,6 +216,7 @@ bool Engine::StepWorld() {
   const std::int64_t now = world_.progress_ns();
   if (now >= limit && world_.NextOutputNs() > std::min(now, limit)) return false;
   event_ns_ = std::max(event_ns_, now);
+  Beat();
   const bool sent = world_.Advance(limit);
   trace_.Slice(world_row_, now, world_.progress_ns());
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
@@ -239,6 +241,7 @@ void Engine::PollUnseen() {
 }
 
 void Engine::WaitOutside() {
+  Beat();
   const bool unseen = unseen_ > 0 || waiting_for_child_ > 0 || waiting_for_signals_ > 0;
   PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs);
 }

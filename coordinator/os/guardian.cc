@@ -6,14 +6,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
+#include <new>
 #include <vector>
+
+#include "coordinator/os/host.h"
 
 namespace tcs {
 
@@ -22,10 +29,48 @@ namespace {
 constexpr int kKillTurns = 400;  // of 5 ms
 constexpr useconds_t kKillTurnUs = 5'000;
 
-volatile sig_atomic_t g_coordinator = 0;
+volatile sig_atomic_t g_coordinator = 0, g_is_to_stop = 0;
+GuardLimits g_limits;
+// In memory that both processes share.
+std::atomic<std::uint64_t>* g_beats = nullptr;
+std::uint64_t g_beats_seen = 0;
+std::int64_t g_computed_ns = 0;
 
 void PassOn(int signal) {
-  if (g_coordinator > 0) kill(static_cast<pid_t>(g_coordinator), signal);
+  if (g_coordinator <= 0) return;
+  kill(static_cast<pid_t>(g_coordinator), signal);
+  g_is_to_stop = 1;
+  alarm(g_limits.stop_within_s);
+}
+
+void EndIt(const char* sentence) {
+  const ssize_t n = write(STDERR_FILENO, sentence, strlen(sentence));
+  static_cast<void>(n);
+  kill(static_cast<pid_t>(g_coordinator), SIGKILL);
+}
+
+// In the handler of SIGALRM.
+void Look(int) {
+  const auto pid = static_cast<pid_t>(g_coordinator);
+  if (pid <= 0) return;
+  if (g_is_to_stop != 0) return EndIt("tcsim: the run did not stop in time, and is killed\n");
+  const std::uint64_t beats = g_beats->load();
+  const std::int64_t computed_ns = std::max<std::int64_t>(0, ProcessCpuClockNs(pid));
+  const bool busy = computed_ns - g_computed_ns > std::int64_t{g_limits.look_every_s} * 800'000'000;
+  if (busy && beats == g_beats_seen) {
+    return EndIt(
+        "tcsim: the coordinator computes without getting on, and is killed; this is a fault of "
+        "tcsim, please report it\n");
+  }
+  g_beats_seen = beats;
+  g_computed_ns = computed_ns;
+  alarm(g_limits.look_every_s);
+}
+
+void MakeBeats() {
+  void* page =
+      mmap(nullptr, sizeof *g_beats, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (page != MAP_FAILED) g_beats = new (page) std::atomic<std::uint64_t>(0);
 }
 
 void Handle(int signal, void (*handler)(int)) {
@@ -94,8 +139,14 @@ void KillDescendants() {
   }
 }
 
-int RunGuarded(const std::function<int()>& coordinate) {
+void Beat() {
+  if (g_beats != nullptr) g_beats->fetch_add(1, std::memory_order_relaxed);
+}
+
+int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
+  g_limits = limits;
+  MakeBeats();
   // Until the handlers stand, nothing may get past them to the guardian alone.
   sigset_t passed_on, before;
   sigemptyset(&passed_on);
@@ -117,6 +168,8 @@ int RunGuarded(const std::function<int()>& coordinate) {
   }
   g_coordinator = coordinator;
   for (const int signal : {SIGTERM, SIGHUP}) Handle(signal, PassOn);
+  Handle(SIGALRM, Look);
+  if (g_beats != nullptr) alarm(limits.look_every_s);
   for (const int signal : {SIGINT, SIGQUIT}) Handle(signal, SIG_IGN);
   sigprocmask(SIG_SETMASK, &before, nullptr);
 
@@ -129,6 +182,7 @@ int RunGuarded(const std::function<int()>& coordinate) {
       kill(coordinator, SIGCONT);
       continue;
     }
+    alarm(0);
     KillDescendants();
     if (pid == coordinator && WIFSIGNALED(status)) DieOf(WTERMSIG(status));
     return pid == coordinator ? WEXITSTATUS(status) : 2;

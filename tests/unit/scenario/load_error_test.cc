@@ -120,7 +120,11 @@ const Mistake kRobotMistakes[] = {
     {"VariableWithoutValue", "{MODE: fast}", "{MODE: }", 26, {"MODE has no value", "quotes"}},
     {"DuplicateClient", "      planner:", "      controller:", 28, {"twice", "line 21"}},
     {"MisspeltClients", "    clients:", "    client:", 20, {"unknown key 'client'", "'clients'?"}},
-    {"ClientIsAText", "{command: [sh, -c, \"true\"]}", "sh", 28, {"planner is not a map"}},
+    {"ClientIsAText",
+     "{command: [sh, -c, \"true\"], patch_vdso: true}",
+     "sh",
+     28,
+     {"planner is not a map"}},
 };
 
 const Mistake kChannelMistakes[] = {
