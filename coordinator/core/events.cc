@@ -85,12 +85,12 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   const bool stopped = state == 'T';  // by a signal, until another one
-  if ((state != 'S' && !stopped) || running_->slot < 0) return false;
+  if (!stopped && (state != 'S' || running_->slot < 0)) return false;
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
   // program because of a short system call.
   const bool alone = running_->process->threads == 1;
   const int turns = !alone ? 0 : IsFixed() ? kHeldTurnsFixed : world_.present() ? kHeldTurns : 0;
-  if (held_turns_ < turns) return false;
+  if (!stopped && held_turns_ < turns) return false;
   SetState(*running_, TaskState::kUnseen);
   running_->parked = false;
   if (stopped) return true;

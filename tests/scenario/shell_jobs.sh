@@ -21,3 +21,6 @@ expect '3' 'TIMEFORMAT=%0R; time sleep 3'
 expect 'alarm after 7' "perl -e '\$start = time; sleep 2; select(undef, undef, undef, 2);
   \$SIG{ALRM} = sub { die qq(alarm) }; eval { alarm 3; sleep 100 }; \$@ =~ /alarm/ and
   printf qq(alarm after %d), time - \$start'"
+# Stopped while it waits, and before it has begun.
+expect '0 at 6' 'sleep 3 & sleep 1; kill -STOP $!; sleep 5; kill -CONT $!; wait $!; echo $? at $SECONDS'
+expect '0 at 4' 'sleep 3 & kill -STOP $!; sleep 1; kill -CONT $!; wait $!; echo $? at $SECONDS'
