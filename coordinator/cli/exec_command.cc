@@ -1,8 +1,10 @@
 #include "coordinator/cli/exec_command.h"
 
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
+#include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/scenario/executable.h"
 
@@ -10,6 +12,11 @@ namespace tcs {
 
 int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   const std::vector<std::string>& command = arguments.command;
+  std::optional<VirtualDuration> call_cost;
+  if (const std::string error = TakeDuration("call-cost", arguments.call_cost, &call_cost);
+      !error.empty()) {
+    return Fail(error);
+  }
   std::error_code gone;
   const std::string folder = std::filesystem::current_path(gone);
   if (gone) return Fail("the current folder is gone; change to one that exists");
@@ -24,6 +31,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   client.name = command[0];
   client.command = command;
   client.patch_vdso = arguments.patch_vdso;
+  if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);

@@ -13,6 +13,7 @@ struct ExecArguments {
   double speed = 1.0;  // of each core
   int cores = 1;
   bool patch_vdso = false;
+  std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default
 };
 
 // Runs the command alone on a computer, without dynamics; the exit status is the command's own.

@@ -62,6 +62,9 @@ int main(int argc, char** argv) {
   bool patch_vdso = false;
   exec->add_flag("--patch-vdso", patch_vdso,
                  "also for programs that read the kernel's clocks past the C library");
+  std::string call_cost;
+  exec->add_option("--call-cost", call_cost,
+                   "of one call under --accounting fixed; 1us unless told");
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -96,7 +99,8 @@ int main(int argc, char** argv) {
   }
   if (seeded->count() > 0) arguments.seed = seed;
   return tcs::RunGuarded([&] {
-    return exec->parsed() ? tcs::ExecCommand({command, speed, cores, patch_vdso}, options)
-                          : tcs::RunCommand(arguments, options);
+    return exec->parsed()
+               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost}, options)
+               : tcs::RunCommand(arguments, options);
   });
 }

@@ -3,28 +3,15 @@
 #include <filesystem>
 #include <system_error>
 
+#include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/summary.h"
-#include "coordinator/scenario/duration.h"
 #include "coordinator/scenario/load.h"
 
 namespace tcs {
 
 namespace {
-
-// A duration above 0 from the option `--name`; an empty text sets nothing. The sentence, if it is
-// not one.
-std::string TakeDuration(const std::string& name, const std::string& text,
-                         std::optional<VirtualDuration>* to) {
-  if (text.empty()) return {};
-  auto parsed = ParseDuration(text);
-  if (const auto* error = std::get_if<LoadError>(&parsed))
-    return "--" + name + ": " + error->message;
-  *to = std::get<VirtualDuration>(parsed);
-  if (**to > VirtualDuration{}) return {};
-  return "--" + name + ": " + text + " is not above 0; give a time such as 1ms or 20s";
-}
 
 std::string MakeFolder(const std::string& path) {
   std::error_code error;

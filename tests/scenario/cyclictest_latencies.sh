@@ -15,6 +15,12 @@ said=$(latencies fixed -t 4 -l 1000)
 (($(worst <<<"$said") <= 7)) || fail "later than the calls of the other three: $said"
 [[ $(latencies fixed -t 4 -l 1000 | sed 's/([ 0-9]*)//') == "$(sed 's/([ 0-9]*)//' <<<"$said")" ]] ||
   fail "two fixed runs differ"
+# Where a call costs less than it can tell, nothing is late: neither alone nor on a core each.
+for threads in 1 4; do
+  said=$("$tcsim" exec --cores "$threads" --accounting fixed --call-cost 10ns -- \
+    cyclictest -q -p 80 -i 1000 -t "$threads" -l 1000)
+  [[ $(grep -c 'Min: *0 .*Avg: *0 Max: *0$' <<<"$said") == "$threads" ]] || fail "not 0: $said"
+done
 # Each on a core of its own, whatever the host has.
 said=$(on_cores 4 fixed -t 4 -l 1000)
 [[ $(grep -c 'Min: *1 .*Avg: *1 Max: *1$' <<<"$said") == 4 ]] || fail "four cores: $said"

@@ -32,6 +32,7 @@ touch "$out/file"
 refused "'$out/file'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/file"
 refused '\{measured,fixed\}' "$tcsim" exec --accounting guessed -- true
 refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
+refused 'call-cost.*above 0' "$tcsim" exec --call-cost 0ns -- true
 refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
 
 # The rest needs somebody without rights.
