@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# What people start besides their robot's programs says the same as natively, and ends the same.
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+like_native() {
+  local wanted said accounting
+  wanted=$(bash -c "$1" 2>&1 </dev/null; echo "exit status $?")
+  for accounting in measured fixed; do
+    said=$("$tcsim" exec --accounting "$accounting" -- bash -c "$1" 2>&1 </dev/null
+           echo "exit status $?")
+    said=$(grep -v 'tcsim: other runs' <<<"$said")
+    [[ $said == "$wanted" ]] || fail "$accounting: '$1' says '$said' instead of '$wanted'"
+  done
+}
+cat >pools.py <<'PY'
+import asyncio, multiprocessing, time
+
+def square(x):
+    time.sleep(0.5)
+    return x * x
+
+async def cat():
+    process = await asyncio.create_subprocess_exec("cat", stdin=-1, stdout=-1)
+    print(len((await process.communicate(b"hello" * 10000))[0]), process.returncode)
+
+if __name__ == "__main__":
+    for kind in "spawn", "forkserver", "fork":
+        with multiprocessing.get_context(kind).Pool(2) as pool:
+            print(kind, pool.map(square, range(4)))
+    asyncio.run(cat())
+PY
+like_native 'python3 pools.py'
+like_native 'tar cf - -C /usr/share/doc/bash . | gzip -n | sha1sum'
+like_native 'seq 100000 | sort -R --random-source=/bin/bash | sort -n --parallel=4 -S 4M | sha1sum'
+like_native 'dd if=/dev/zero bs=64k count=20 status=none | sha1sum; timeout 1 sleep 3'
+if command -v g++ >/dev/null; then
+  like_native 'echo "int main() { return 3; }" >three.cc; g++ -o three three.cc && ./three'
+fi
+if command -v git >/dev/null; then
+  like_native 'rm -rf kept; git init -q kept; cd kept; echo a >a; git add a
+    git -c user.name=a -c user.email=b commit -qm first; git log --format=%s; git status --short'
+fi
+if command -v xz >/dev/null; then
+  like_native 'xz -T4 -c --block-size=256KiB /bin/bash | xz -dc | sha1sum'
+fi
+if command -v sqlite3 >/dev/null; then
+  like_native 'rm -f x; sqlite3 x "create table t(a); insert into t values (1), (2);
+    select sum(a) from t"'
+fi
+if command -v socat >/dev/null; then
+  like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat & sleep 0.5
+    echo hello | socat -t1 - TCP:127.0.0.1:5599; kill $!'
+fi
