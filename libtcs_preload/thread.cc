@@ -41,8 +41,8 @@ void EndOfThread(void* round) {
 
 void* RunThread(void* raw) {
   const Start start = *static_cast<Start*>(raw);
-  free(raw);
   Current();
+  free(raw);  // which may wait for another thread, so only now
   return start.routine(start.argument);
 }
 

@@ -29,12 +29,15 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
 void Engine::TrapArrived(int listener) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return;
-  if (running_ != nullptr && running_->tid == call->tid && running_->slot >= 0) {
+  Task* task = KnownTask(call->tid);
+  // Before it registers a thread is known if it was announced, and others may wait with it for a
+  // lock of the C library; what else it calls then is the loader's business.
+  const bool ours = task != nullptr && (task->slot >= 0 || call->number == SYS_futex);
+  if (!ours) return HandleStranger(*call);
+  if (task == running_) {
     trapped_ = *call;
     return;
   }
-  Task* task = KnownTask(call->tid);
-  if (task == nullptr || task->slot < 0) return HandleStranger(*call);
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
   if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo);
