@@ -19,14 +19,14 @@ duration: 1s
 dynamics: {}
 bodies: {ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}}
 robots: {r: {clients: {idle: {command: [sleep, "1"]}}}}
-channels: {thrust: {type: udp_json, commands: {body: ship, listen: "127.0.0.1:47431"}}}
+channels: {thrust: {type: udp_json, commands: {body: ship, listen: "127.0.0.1:27431"}}}
 YAML
 python3 -c '
 import socket, time
-s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(("127.0.0.1", 47431))
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM); s.bind(("127.0.0.1", 27431))
 print("bound", flush=True); time.sleep(60)' >"$out/holder" &
 for _ in $(seq 50); do grep -q bound "$out/holder" && break; sleep 0.1; done
-refused 'port 47431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/run"
+refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/run"
 
 touch "$out/file"
 refused "'$out/file'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/file"
