@@ -89,11 +89,10 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   process.name = name;
   process.priority = priority;
   process.pidfd = OpenPidfd(pid);
-  for (const Process& other : processes_) {
-    if (other.pid != parent || other.dead) continue;
-    process.call_cost_ns = other.call_cost_ns;
-    process.patch_vdso = other.patch_vdso;
-    process.frozen_ns = other.frozen_ns;
+  if (const Process* maker = LivingProcess(parent); maker != nullptr) {
+    process.call_cost_ns = maker->call_cost_ns;
+    process.patch_vdso = maker->patch_vdso;
+    process.frozen_ns = maker->frozen_ns;
   }
   if (process.pidfd >= 0) {
     Watch(process.pidfd, EPOLLIN, Tag::kProcess, process.index);
@@ -113,6 +112,12 @@ Task* Engine::AddThread(Process& process, pid_t tid) {
   return task;
 }
 
+Process* Engine::LivingProcess(pid_t pid) {
+  const auto found = std::find_if(processes_.begin(), processes_.end(),
+                                  [pid](const Process& p) { return p.pid == pid && !p.dead; });
+  return found == processes_.end() ? nullptr : &*found;
+}
+
 Task* Engine::KnownTask(pid_t tid) {
   const auto known = by_tid_.find(tid);
   return known == by_tid_.end() ? nullptr : known->second;
@@ -122,12 +127,8 @@ Task* Engine::KnownTask(pid_t tid) {
 // known process, or a process that nobody announced.
 Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
   if (Task* known = KnownTask(tid); known != nullptr) return known;
-  Process* parent = nullptr;
-  for (Process& known : processes_) {
-    if (known.dead) continue;
-    if (known.pid == pid) return AddThread(known, tid);
-    if (known.pid == parent_pid) parent = &known;
-  }
+  if (Process* known = LivingProcess(pid); known != nullptr) return AddThread(*known, tid);
+  Process* parent = LivingProcess(parent_pid);
   if (parent != nullptr)
     return NewTask(pid, parent_pid, parent->robot, parent->name, parent->priority);
   return NewTask(pid, parent_pid, &robots_.front(), fmt::format("pid {}", pid), 0);
@@ -137,17 +138,16 @@ Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
 // and nobody else says so.
 void Engine::EndThreadsLostInExec(pid_t pid) {
   Task* first = KnownTask(pid);
-  const auto of = std::find_if(processes_.begin(), processes_.end(),
-                               [pid](const Process& p) { return p.pid == pid && !p.dead; });
-  if (of == processes_.end() || of->threads == 1) return;
-  const bool by_another = running_ != nullptr && running_ != first && running_->process == &*of;
+  Process* of = LivingProcess(pid);
+  if (of == nullptr || of->threads == 1) return;
+  const bool by_another = running_ != nullptr && running_ != first && running_->process == of;
   if (by_another) {
     Settle(*running_);
     event_ns_ = running_->reached_ns;
   }
   const std::vector<Task*> threads = of->robot->tasks;
   for (Task* task : threads) {
-    if (task->process != &*of || task == first) continue;
+    if (task->process != of || task == first) continue;
     EndTask(*task);
     WakeThoseWaitingFor(*task);
   }
@@ -290,10 +290,10 @@ void Engine::ProcessEnded(std::size_t index) {
   epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
   close(process.pidfd);
   process.pidfd = -1;
-  for (Process& other : processes_) {
-    if (other.pid != process.parent || other.dead) continue;
-    other.children_cpu_ns += charged;
-    ++other.children_ended;
+  Process* parent = LivingProcess(process.parent);
+  if (parent != nullptr) {
+    parent->children_cpu_ns += charged;
+    ++parent->children_ended;
   }
   for (Task& task : tasks_) {
     if (task.waits_for_child && task.process->pid == process.parent &&
@@ -301,9 +301,7 @@ void Engine::ProcessEnded(std::size_t index) {
       MakeReady(task, shm::WakeReason::kGo);
     }
   }
-  for (Process& other : processes_) {
-    if (other.pid == process.parent && !other.dead) WakeForSignals(other);
-  }
+  if (parent != nullptr) WakeForSignals(*parent);
   WakeEveryKey();
   // Our own children, and those who lost their parent, are reaped here.
   if (!process.is_client) ended_processes_.push_back(&process);

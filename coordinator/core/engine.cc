@@ -108,18 +108,12 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
     task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
-  EndWatches(task);
-  EndKeyWait(task);
-  waiting_for_child_ -= task.waits_for_child;
-  waiting_for_signals_ -= task.awaited_signals != 0;
-  task.awaited_signals = 0;
-  task.waits_for_fds = task.waits_for_child = task.has_wait_mask = false;
   task.reached_ns = std::max(task.reached_ns, event_ns_);
+  if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
+  LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
   task.hold = shm::NotificationKind::kRead;
-  if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
-  task.deadline_ns = shm::kNeverNs;
   task.reason = reason;
   Refresh(*task.process->robot);
 }

@@ -121,7 +121,7 @@ class Engine {
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);
-  void WakeForStranger(const Process& process, const TrappedCall& call);
+  std::int64_t CarryOutWake(const Process& process, const TrappedCall& call);
   std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
@@ -195,6 +195,7 @@ class Engine {
   void EndThreadsLostInExec(pid_t pid);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
+  Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
 

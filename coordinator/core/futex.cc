@@ -151,18 +151,19 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
   return woken;
 }
 
+// FUTEX_WAKE and FUTEX_WAKE_BITSET: the threads woken; none for other commands.
+std::int64_t Engine::CarryOutWake(const Process& process, const TrappedCall& call) {
+  const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
+  if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return 0;
+  return FutexWake(WokenKeyFor(process, call, call.args[0]), static_cast<int>(call.args[2]),
+                   command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
+}
+
 // The thread has said that it ends, but the kernel may not be through with it yet.
 bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
   return std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
     return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
   });
-}
-
-void Engine::WakeForStranger(const Process& process, const TrappedCall& call) {
-  const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
-  if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return;
-  FutexWake(WokenKeyFor(process, call, call.args[0]), static_cast<int>(call.args[2]),
-            command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
 }
 
 // A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call
@@ -174,7 +175,7 @@ bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
   if (!wakes || IsCallback() || task.reached_ns <= root_.WriteSafe(task.cpu->leaf)) return false;
   // Nobody waits: then nobody can be woken too early.
   if (command != FUTEX_WAKE_OP &&
-      MostUrgentWaiter(FutexKeyFor(task, call, call.args[0]), kAnyBit) == nullptr) {
+      MostUrgentWaiter(WokenKeyFor(*task.process, call, call.args[0]), kAnyBit) == nullptr) {
     return false;
   }
   task.early_trap = call;
@@ -193,13 +194,11 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       task.trap_result = FutexWait(task, call, command);
       break;
     case FUTEX_WAKE:
-      task.trap_result = FutexWake(WokenKeyFor(*task.process, call, call.args[0]),
-                                   static_cast<int>(call.args[2]), kAnyBit);
-      break;
     case FUTEX_WAKE_BITSET:
-      task.trap_result =
-          FutexWake(WokenKeyFor(*task.process, call, call.args[0]), static_cast<int>(call.args[2]),
-                    static_cast<std::uint32_t>(call.args[5]));
+      task.trap_result = CarryOutWake(*task.process, call);
+      // Threads that tcs does not know wait in the kernel.
+      task.trap_continues =
+          task.process->has_strangers && task.trap_result < static_cast<int>(call.args[2]);
       break;
     case FUTEX_REQUEUE:
     case FUTEX_CMP_REQUEUE:
@@ -218,11 +217,6 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       break;
     default:
       task.trap_result = -ENOSYS;
-  }
-  const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET;
-  // Threads that tcs does not know wait in the kernel.
-  if (wakes && task.process->has_strangers && task.trap_result < static_cast<int>(call.args[2])) {
-    task.trap_continues = true;
   }
 }
 

@@ -64,9 +64,7 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
 }
 
 void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
-  for (const Process& known : processes_) {
-    if (known.pid == pid && !known.dead) return;
-  }
+  if (LivingProcess(pid) != nullptr) return;
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   SetLevel(pid, Level::kWaiting);
   Process& of = *parent.process;

@@ -369,15 +369,12 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
   // The kernel's ERESTARTSYS and ERESTARTNOINTR, which it never shows to programs.
   constexpr int kRestart = 512, kRestartAlways = 513;
   const TrapWait wait = task.trap_wait;
-  const bool waits_for_lock = task.lock_owner != nullptr;
-  task.trap_wait = TrapWait::kNone;
-  LeaveLock(task);
   if (reason == shm::WakeReason::kSignal) {
     task.trap_continues = false;
     // As the kernel has it: after a handler it makes the call again if that wants it.
     task.trap_result = task.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
     // A lock is never given up for a signal: the C library would take it for acquired.
-    if (waits_for_lock) task.trap_result = -kRestartAlways;
+    if (task.lock_owner != nullptr) task.trap_result = -kRestartAlways;
     if (wait == TrapWait::kSleep && task.remaining_address != 0) {
       const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
       Write(task, task.remaining_address, timespec{left / kNsPerSecond, left % kNsPerSecond});

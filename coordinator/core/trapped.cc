@@ -1,8 +1,6 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
 
-#include <algorithm>
-
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
@@ -51,11 +49,10 @@ void Engine::TrapArrived(int listener) {
 // here.
 void Engine::HandleStranger(const TrappedCall& call) {
   const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
-  const auto known = std::find_if(processes_.begin(), processes_.end(),
-                                  [pid](const Process& p) { return p.pid == pid && !p.dead; });
-  if (known != processes_.end() && KnownTask(call.tid) == nullptr) {
-    known->has_strangers = true;
-    WakeForStranger(*known, call);
+  Process* process = LivingProcess(pid);
+  if (process != nullptr && KnownTask(call.tid) == nullptr) {
+    process->has_strangers = true;
+    CarryOutWake(*process, call);
   }
   switch (call.number) {
     case SYS_sched_setscheduler:

@@ -1,7 +1,7 @@
 // A signal handler ends a sleep; what was left is told.
 #include <signal.h>
-#include <sys/time.h>
 
+#include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -10,12 +10,6 @@ namespace {
 
 volatile sig_atomic_t g_handled = 0;
 void Count(int) { g_handled = g_handled + 1; }
-
-void AlarmIn(std::int64_t ns) {
-  itimerval timer{};
-  timer.it_value.tv_usec = ns / 1000;
-  setitimer(ITIMER_REAL, &timer, nullptr);
-}
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // pause and sigsuspend end with the handler of a signal.
 #include <signal.h>
-#include <sys/time.h>
 
+#include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -10,12 +10,6 @@ namespace {
 
 volatile sig_atomic_t g_count = 0;
 void Count(int) { g_count = g_count + 1; }
-
-void AlarmIn(std::int64_t ns) {
-  itimerval timer{};
-  timer.it_value.tv_usec = ns / 1000;
-  setitimer(ITIMER_REAL, &timer, nullptr);
-}
 
 void ExpectAbout(std::int64_t start, std::int64_t wanted, const char* what) {
   const std::int64_t passed = Now() - start;

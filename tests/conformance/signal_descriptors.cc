@@ -8,17 +8,12 @@
 #include <sys/time.h>
 #include <sys/wait.h>
 
+#include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
 
 namespace {
-
-void AlarmIn(std::int64_t ns) {
-  itimerval timer{};
-  timer.it_value.tv_usec = ns / 1000;
-  setitimer(ITIMER_REAL, &timer, nullptr);
-}
 
 signalfd_siginfo Read(int fd) {
   signalfd_siginfo info{};

@@ -7,6 +7,7 @@
 
 #include <atomic>
 
+#include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -21,12 +22,6 @@ sigset_t SetOf(std::initializer_list<int> signals) {
   sigemptyset(&set);
   for (const int signal : signals) sigaddset(&set, signal);
   return set;
-}
-
-void AlarmIn(std::int64_t ns) {
-  itimerval timer{};
-  timer.it_value.tv_usec = ns / 1000;
-  setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
 // Never early; under tcs late by no more than calls cost.
