@@ -15,6 +15,7 @@
 namespace {
 
 constexpr char kWork[] = "work";
+constexpr char kPlanning[] = "planning";
 
 bool Wanted(const std::vector<std::string>& only, const std::string& name) {
   return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
@@ -26,7 +27,7 @@ int main(int argc, char** argv) {
   int rounds = 7;
   std::vector<std::string> only;
   bool json = false, quick = false;
-  std::vector<std::string> names{kWork};
+  std::vector<std::string> names{kWork, kPlanning};
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
 
   CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
@@ -56,6 +57,11 @@ int main(int argc, char** argv) {
   if (Wanted(only, kWork)) {
     auto rows = tcs::bench::MeasureWorkUnderLoad(rounds, work_seconds);
     if (rows) results.work = *rows;
+    complete = complete && rows.has_value();
+  }
+  if (Wanted(only, kPlanning)) {
+    auto rows = tcs::bench::MeasurePlanningUnderLoad(rounds);
+    if (rows) results.planning = *rows;
     complete = complete && rows.has_value();
   }
   fmt::print("{}", json ? ToJson(results) : ToTables(results));

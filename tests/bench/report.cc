@@ -1,6 +1,7 @@
 #include "tests/bench/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -24,21 +25,23 @@ std::string CallTable(const std::vector<CallRow>& rows) {
   return text;
 }
 
-std::string WorkTable(const std::vector<WorkRow>& rows) {
-  std::string text = fmt::format("{:<24}{:>9}", "fixed work, own clock", "idle");
+// `unit` is what the idle values are in.
+std::string LoadTable(const char* title, const char* unit, const char* goal,
+                      const std::vector<LoadRow>& rows) {
+  std::string text = fmt::format("{:<24}{:>16}", title, "idle");
   for (std::size_t load = 1; load < kSpinnerCounts.size(); ++load) {
-    text += fmt::format("   {:<22}", fmt::format("beside {} spinners", kSpinnerCounts[load]));
+    text += fmt::format("   {:<21}", fmt::format("beside {} spinners", kSpinnerCounts[load]));
   }
   text += "goal\n";
-  for (const WorkRow& row : rows) {
-    text += fmt::format("{:<24}{:>7.3f} s", row.title, row.idle_seconds);
+  for (const LoadRow& row : rows) {
+    text += fmt::format("{:<24}{:>9.6g} {:<6}", row.title, row.idle, unit);
     // Beside no spinners it is the idle value itself.
     for (std::size_t load = 1; load < kSpinnerCounts.size(); ++load) {
       const Spread& relative = row.relative[load];
-      text += fmt::format("   {:<22}", fmt::format("{:.3f} ({:.3f}-{:.3f})", relative.median,
+      text += fmt::format("   {:<21}", fmt::format("{:.3f} ({:.3f}-{:.3f})", relative.median,
                                                    relative.lowest, relative.highest));
     }
-    text += row.world == World::kTcs ? "0.97 to 1.03\n" : "\n";
+    text += row.world == World::kTcs ? fmt::format("{}\n", goal) : "\n";
   }
   return text;
 }
@@ -47,16 +50,33 @@ Json ToJson(const Spread& spread) {
   return {{"median", spread.median}, {"lowest", spread.lowest}, {"highest", spread.highest}};
 }
 
+Json ToJson(const std::vector<LoadRow>& rows) {
+  Json json = Json::object();
+  for (const LoadRow& row : rows) {
+    Json& to = json[row.title];
+    to["idle"] = row.idle;
+    for (std::size_t load = 0; load < kSpinnerCounts.size(); ++load) {
+      to["beside_spinners"][std::to_string(kSpinnerCounts[load])] = ToJson(row.relative[load]);
+    }
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string ToTables(const Results& results) {
-  std::string text;
-  if (results.calls.empty() && results.work.empty()) return text;
-  if (!results.calls.empty()) text += CallTable(results.calls);
-  if (!results.calls.empty() && !results.work.empty()) text += "\n";
-  if (!results.work.empty()) text += WorkTable(results.work);
-  return text + fmt::format("\nMedians of {} round{}, on one processor.\n", results.rounds,
-                            results.rounds == 1 ? "" : "s");
+  std::vector<std::string> tables;
+  if (!results.calls.empty()) tables.push_back(CallTable(results.calls));
+  if (!results.work.empty()) {
+    tables.push_back(LoadTable("fixed work, own clock", "s", "0.97 to 1.03", results.work));
+  }
+  if (!results.planning.empty()) {
+    tables.push_back(
+        LoadTable("explored by solve(1.0)", "states", "0.95 to 1.05", results.planning));
+  }
+  if (tables.empty()) return {};
+  return fmt::format("{}\nMedians of {} round{}, on one processor.\n", fmt::join(tables, "\n"),
+                     results.rounds, results.rounds == 1 ? "" : "s");
 }
 
 std::string ToJson(const Results& results) {
@@ -68,13 +88,8 @@ std::string ToJson(const Results& results) {
                                          {"ratio", ToJson(row.ratio)},
                                          {"goal", row.benchmark.goal}};
   }
-  for (const WorkRow& row : results.work) {
-    Json& to = json["work"][row.title];
-    to["idle_seconds"] = row.idle_seconds;
-    for (std::size_t load = 0; load < kSpinnerCounts.size(); ++load) {
-      to["beside_spinners"][std::to_string(kSpinnerCounts[load])] = ToJson(row.relative[load]);
-    }
-  }
+  if (!results.work.empty()) json["work_seconds"] = ToJson(results.work);
+  if (!results.planning.empty()) json["explored_states"] = ToJson(results.planning);
   return json.dump(2) + "\n";
 }
 

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "tests/bench/call_ratios.h"
-#include "tests/bench/work_under_load.h"
+#include "tests/bench/under_load.h"
 
 namespace tcs::bench {
 
 struct Results {
   int rounds = 0;
   std::vector<CallRow> calls;
-  std::vector<WorkRow> work;
+  std::vector<LoadRow> work, planning;
 };
 
 std::string ToTables(const Results& results);

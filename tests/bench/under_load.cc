@@ -1,4 +1,4 @@
-#include "tests/bench/work_under_load.h"
+#include "tests/bench/under_load.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@ namespace {
 constexpr std::int64_t kTrialSteps = 20'000'000;
 
 struct Samples {
-  WorkRow row;
-  std::array<std::vector<double>, kSpinnerCounts.size()> seconds;
+  LoadRow row;
+  std::array<std::vector<double>, kSpinnerCounts.size()> numbers;
 };
 
 // How many steps take `seconds` natively.
@@ -27,50 +27,59 @@ std::optional<std::string> StepsFor(double seconds) {
 }
 
 // One run in each world beside the given number of spinners.
-bool MeasureBeside(std::size_t load, const std::string& steps, std::vector<Samples>* all) {
+bool MeasureBeside(std::size_t load, Probe probe, std::vector<Samples>* all) {
   const Spinners spinners(kSpinnerCounts[load]);
   if (!spinners.complete()) {
-    fmt::print(stderr, "tcs_bench: work: the spinners cannot be started\n");
+    fmt::print(stderr, "tcs_bench: {}: the spinners cannot be started\n", probe.what);
     return false;
   }
   for (Samples& samples : *all) {
-    const auto seconds = RunProbe({"work", samples.row.world, steps});
-    if (!seconds) return false;
-    samples.seconds[load].push_back(*seconds);
+    probe.world = samples.row.world;
+    const auto number = RunProbe(probe);
+    if (!number) return false;
+    samples.numbers[load].push_back(*number);
   }
   return true;
 }
 
-WorkRow Summarize(const Samples& samples) {
-  WorkRow row = samples.row;
-  const std::vector<double>& idle = samples.seconds[0];
-  row.idle_seconds = SpreadOf(idle).median;
+LoadRow Summarize(const Samples& samples) {
+  LoadRow row = samples.row;
+  const std::vector<double>& idle = samples.numbers[0];
+  row.idle = SpreadOf(idle).median;
   for (std::size_t load = 0; load < kSpinnerCounts.size(); ++load) {
     std::vector<double> relative;
     for (std::size_t round = 0; round < idle.size(); ++round) {
-      relative.push_back(samples.seconds[load][round] / idle[round]);
+      relative.push_back(samples.numbers[load][round] / idle[round]);
     }
     row.relative[load] = SpreadOf(relative);
   }
   return row;
 }
 
-}  // namespace
-
-std::optional<std::vector<WorkRow>> MeasureWorkUnderLoad(int rounds, double seconds) {
-  const std::optional<std::string> steps = StepsFor(seconds);
-  if (!steps) return std::nullopt;
+std::optional<std::vector<LoadRow>> MeasureUnderLoad(const Probe& probe, int rounds) {
   std::vector<Samples> all{{{World::kNative, "natively"}, {}},
                            {{World::kFaketime, "under libfaketime"}, {}},
                            {{World::kTcs, "under tcs"}, {}}};
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t load = 0; load < kSpinnerCounts.size(); ++load) {
-      if (!MeasureBeside(load, *steps, &all)) return std::nullopt;
+      if (!MeasureBeside(load, probe, &all)) return std::nullopt;
     }
   }
-  std::vector<WorkRow> rows;
+  std::vector<LoadRow> rows;
   for (const Samples& samples : all) rows.push_back(Summarize(samples));
   return rows;
+}
+
+}  // namespace
+
+std::optional<std::vector<LoadRow>> MeasureWorkUnderLoad(int rounds, double seconds) {
+  const std::optional<std::string> steps = StepsFor(seconds);
+  if (!steps) return std::nullopt;
+  return MeasureUnderLoad({"work", World::kNative, *steps}, rounds);
+}
+
+std::optional<std::vector<LoadRow>> MeasurePlanningUnderLoad(int rounds) {
+  return MeasureUnderLoad({"explored"}, rounds);
 }
 
 }  // namespace tcs::bench
