@@ -63,6 +63,9 @@ int main(int argc, char** argv) {
   app.add_option("--budget", options.planner.budget_s, "how long to plan [s]")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  app.add_option("--iterations", options.planner.iterations,
+                 "plan for so many iterations, however long they take, not for a time")
+      ->check(CLI::PositiveNumber);
   app.add_option("--reply-duration", options.planner.reply_s, "how much of a plan to send back [s]")
       ->capture_default_str()
       ->check(CLI::Range(0.01, 1.0));

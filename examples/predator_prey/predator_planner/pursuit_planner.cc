@@ -1,74 +1,73 @@
 #include "examples/predator_prey/predator_planner/pursuit_planner.h"
 
-#include <ompl/base/PlannerTerminationCondition.h>
-#include <ompl/base/ProblemDefinition.h>
 #include <ompl/base/ScopedState.h>
-#include <ompl/control/PathControl.h>
+#include <ompl/base/terminationconditions/IterationTerminationCondition.h>
+#include <ompl/control/planners/sst/SST.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "examples/predator_prey/common/periodic_timer.h"
-#include "examples/predator_prey/predator_planner/time_near_prey.h"
 
 namespace predator_prey {
 
 namespace ob = ompl::base;
 namespace oc = ompl::control;
 
-PursuitPlanner::PursuitPlanner(const PlannerOptions& options) : options_(options) {
-  const ob::StateSpacePtr space = MakePursuitSpace(options.space);
-  si_ = std::make_shared<oc::SpaceInformation>(space, MakeWrenchSpace(space, options.space));
-  si_->setStatePropagator(std::make_shared<PursuitPropagator>(si_, options.model));
-  si_->setStateValidityChecker(
-      [si = si_.get()](const ob::State* state) { return si->satisfiesBounds(state); });
-  si_->setPropagationStepSize(options.step_s);
-  si_->setMinMaxControlDuration(options.min_control_steps, options.max_control_steps);
-  si_->setup();
+PursuitPlanner::PursuitPlanner(const PlannerOptions& options)
+    : options_(options),
+      setup_(MakeWrenchSpace(MakePursuitSpace(options.space), options.space)),
+      cost_(std::make_shared<TimeNearPrey>(setup_.getSpaceInformation())) {
+  const oc::SpaceInformationPtr& si = setup_.getSpaceInformation();
+  si->setPropagationStepSize(options.step_s);
+  si->setMinMaxControlDuration(options.min_control_steps, options.max_control_steps);
+  setup_.setStatePropagator(std::make_shared<PursuitPropagator>(si, options.model));
+  setup_.setStateValidityChecker(
+      [si = si.get()](const ob::State* state) { return si->satisfiesBounds(state); });
+  setup_.setOptimizationObjective(cost_);
 
-  sst_ = std::make_unique<oc::SST>(si_);
-  sst_->setGoalBias(options.goal_bias);
-  sst_->setSelectionRadius(options.selection_radius);
-  sst_->setPruningRadius(options.pruning_radius);
+  const auto planner = std::make_shared<oc::SST>(si);
+  planner->setGoalBias(options.goal_bias);
+  planner->setSelectionRadius(options.selection_radius);
+  planner->setPruningRadius(options.pruning_radius);
+  setup_.setPlanner(planner);
 }
 
-ob::ProblemDefinitionPtr PursuitPlanner::MakeProblem(const PlanRequest& request) const {
-  const Pursuit start{.predator = request.predator,
-                      .prey_position_m = request.prey.position_m,
-                      .prey_velocity_mps = request.prey.linear_velocity_mps};
-  ob::ScopedState<> start_state(si_);
-  WriteState(start, start_state.get());
-  si_->enforceBounds(start_state.get());
+void PursuitPlanner::SetProblem(const PlanRequest& request) {
+  ob::ScopedState<> start(setup_.getStateSpace());
+  WriteState({.predator = request.predator,
+              .prey_position_m = request.prey.position_m,
+              .prey_velocity_mps = request.prey.linear_velocity_mps},
+             start.get());
+  setup_.getSpaceInformation()->enforceBounds(start.get());
 
-  auto problem = std::make_shared<ob::ProblemDefinition>(si_);
-  problem->addStartState(start_state);
-  problem->setGoal(std::make_shared<PursuitGoal>(si_, options_.goal, ReadState(start_state.get())));
-  return problem;
+  setup_.clear();
+  setup_.setStartState(start);
+  setup_.setGoal(std::make_shared<PursuitGoal>(setup_.getSpaceInformation(), options_.goal,
+                                               ReadState(start.get())));
+}
+
+ob::PlannerStatus PursuitPlanner::Solve() {
+  if (options_.iterations == 0) return setup_.solve(options_.budget_s);
+  ob::IterationTerminationCondition work(options_.iterations);
+  return setup_.solve(work);
 }
 
 PlanReply PursuitPlanner::Plan(const PlanRequest& request) {
   const double begin_s = MonotonicSeconds();
-  const ob::ProblemDefinitionPtr problem = MakeProblem(request);
-  const auto objective = std::make_shared<TimeNearPrey>(si_);
-  problem->setOptimizationObjective(objective);
-  sst_->clear();
-  sst_->setProblemDefinition(problem);
-  sst_->setup();
-  const ob::PlannerStatus status =
-      sst_->solve(ob::timedPlannerTerminationCondition(options_.budget_s));
+  const std::uint64_t explored_before = cost_->motions();
+  SetProblem(request);
+  const ob::PlannerStatus status = Solve();
 
-  PlanReply reply{.id = request.id, .states_explored = objective->motions()};
+  PlanReply reply{.id = request.id, .states_explored = cost_->motions() - explored_before};
   reply.reaches_goal = status == ob::PlannerStatus::EXACT_SOLUTION;
-  if (const ob::PathPtr path = problem->getSolutionPath()) {
-    const auto& controls = *path->as<oc::PathControl>();
-    reply.plan_duration_s = controls.length();
-    reply.steps = Beginning(controls);
+  if (setup_.haveSolutionPath()) {
+    const oc::PathControl& path = setup_.getSolutionPath();
+    reply.plan_duration_s = path.length();
+    reply.steps = Beginning(path);
   }
   reply.planning_time_s = MonotonicSeconds() - begin_s;
   return reply;
 }
-
-void PursuitPlanner::Forget() { sst_->clear(); }
 
 std::vector<PlanStep> PursuitPlanner::Beginning(oc::PathControl path) const {
   path.interpolate();  // one control and state each propagation step

@@ -1,12 +1,11 @@
-// Plans the predator's pursuit with OMPL's SST, which improves its plan until the time is over.
+// Plans the predator's pursuit with OMPL's SST, which improves its plan until the budget is used
+// up.
 //
-// For one thread; starts none. Reads the system clock for the budget and CLOCK_MONOTONIC for the
-// statistics. Call ompl::RNG::setSeed before the first one is made to have the same random numbers
-// every time.
+// For one thread; OMPL starts another one that watches the clock when the budget is 1 s or more.
+// Call ompl::RNG::setSeed before the first one is made to have the same random numbers every time.
 #pragma once
 
-#include <ompl/control/SpaceInformation.h>
-#include <ompl/control/planners/sst/SST.h>
+#include <ompl/control/SimpleSetup.h>
 
 #include <memory>
 
@@ -14,13 +13,15 @@
 #include "examples/predator_prey/predator_planner/pursuit_goal.h"
 #include "examples/predator_prey/predator_planner/pursuit_propagator.h"
 #include "examples/predator_prey/predator_planner/pursuit_space.h"
+#include "examples/predator_prey/predator_planner/time_near_prey.h"
 
 namespace predator_prey {
 
 struct PlannerOptions {
   double budget_s = 1.0;
-  double reply_s = 0.2;  // how much of the plan is given away; a datagram must hold it
-  double step_s = 0.01;  // of propagation
+  unsigned iterations = 0;  // when not 0, the budget instead: so much work, however long it takes
+  double reply_s = 0.2;     // how much of the plan is given away; a datagram must hold it
+  double step_s = 0.01;     // of propagation
   unsigned min_control_steps = 10;
   unsigned max_control_steps = 30;
   double goal_bias = 0.2;
@@ -39,15 +40,16 @@ class PursuitPlanner {
   PlanReply Plan(const PlanRequest& request);
 
   // Frees what the last plan needed. The next plan would do it, at its own expense of time.
-  void Forget();
+  void Forget() { setup_.clear(); }
 
  private:
-  ompl::base::ProblemDefinitionPtr MakeProblem(const PlanRequest& request) const;
+  void SetProblem(const PlanRequest& request);
+  ompl::base::PlannerStatus Solve();
   std::vector<PlanStep> Beginning(ompl::control::PathControl path) const;
 
   PlannerOptions options_;
-  ompl::control::SpaceInformationPtr si_;
-  std::unique_ptr<ompl::control::SST> sst_;
+  ompl::control::SimpleSetup setup_;
+  std::shared_ptr<TimeNearPrey> cost_;
 };
 
 }  // namespace predator_prey
