@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# The paper's experiment and what it left open, from trials to the page: docs/EXPERIMENT.md.
+# `./dev experiment` calls it. What is done already is not done again, so that it can be interrupted.
+set -euo pipefail
+
+usage() {
+  cat <<'END'
+usage: ./dev experiment [--quick] [--out DIR]
+
+  --quick     fewer, shorter trials: the same picture in minutes instead of an hour or two
+  --out DIR   where results and report.html go; out/experiment (with --quick out/experiment-quick) unless told
+
+Call it again after an interruption: it goes on where it was.
+END
+}
+
+die() { printf './dev experiment: %s\n' "$*" >&2; exit 2; }
+
+build=${1:?the build folder}
+shift
+quick=false out=
+while (($#)); do
+  case "$1" in
+    --quick) quick=true ;;
+    --out) out=${2:?./dev experiment: --out needs a folder}; shift ;;
+    -h | --help) usage; exit ;;
+    *) usage >&2; die "there is no option '$1'" ;;
+  esac
+  shift
+done
+
+if $quick; then
+  out=${out:-out/experiment-quick}
+  trials=2 sweep_trials=1 callback_duration=8s duration=20s sweep_duration=10s
+  lengths=10s,20s,40s speeds=0.5,1,2,4
+else
+  out=${out:-out/experiment}
+  trials=10 sweep_trials=3 callback_duration=20s duration=20s sweep_duration=20s
+  lengths=20s,60s,180s speeds=0.25,0.5,1,2,4,8
+fi
+
+tcsim="$build/bin/tcsim"
+scenario="$build/examples/predator_prey/scenario.yaml"
+speed=robots.predator.cpu.speed
+# As much thinking for each plan as fits into a second or so at speed 1, however long it takes.
+same_work='robots.predator.clients.planner.command=[./predator_planner, --port, "27012", --iterations, "50000", --seed, "${seed}"]'
+
+failed=()
+results=()
+
+# series FOLDER LABEL ARGUMENTS of `tcsim trials`
+series() {
+  local folder="$out/$1" label=$2 status=0
+  shift 2
+  printf '\n%s\n' "$label"
+  "$tcsim" trials "$scenario" --out "$folder" --name "$label" "$@" || status=$?
+  case $status in
+    0) ;;
+    1) failed+=("$label") ;;  # some trials failed, which it named; the others count
+    *) exit "$status" ;;
+  esac
+  results+=("$folder")
+}
+
+series tcs "tcs" --trials "$trials" --duration "$duration"
+series callback-ode "callback on ODE" --trials "$trials" --duration "$callback_duration" \
+  --sync callback --set dynamics.engine=ode
+series callback-simbody "callback on Simbody" --trials "$trials" --duration "$callback_duration" \
+  --sync callback
+series lengths "tcs, longer and longer" --trials 1 --vary "duration=$lengths"
+series speeds "a second for each plan" --trials "$sweep_trials" --duration "$sweep_duration" \
+  --vary "$speed=$speeds"
+series speeds-same-work "the same work for each plan" --trials "$sweep_trials" \
+  --duration "$sweep_duration" --set "$same_work" --vary "$speed=$speeds"
+
+printf '\nWhat a stock OMPL planner explores in one second of its own clock\n'
+explored="$out/explored.txt"
+if ! [[ -s $explored ]]; then
+  rounds=5
+  $quick && rounds=3
+  "$build/bin/tcs_bench" --only planning --rounds "$rounds" >"$explored.new"
+  mv "$explored.new" "$explored"
+fi
+cat "$explored"
+
+printf '\n'
+"$tcsim" report "${results[@]}" --bodies predator,prey --mark 5 --out "$out/report.html"
+((${#failed[@]} == 0)) || die "trials failed (named above) in: ${failed[*]}"
