@@ -56,6 +56,12 @@ struct RegionSpec {
   double damping_nspm = 0.0;
 };
 
+enum class EngineKind {
+  kSimbody,
+  kOde,
+};
+
+// Simbody's.
 enum class IntegratorKind {
   kRungeKutta3,
   kRungeKuttaMerson,
@@ -64,14 +70,19 @@ enum class IntegratorKind {
   kExplicitEuler,
 };
 
+// Which engine moves the bodies, and by which steps.
 struct IntegratorSpec {
-  IntegratorKind kind = IntegratorKind::kRungeKutta3;
+  EngineKind engine = EngineKind::kSimbody;
+  IntegratorKind kind = IntegratorKind::kRungeKutta3;  // Simbody alone has a choice
   // Steps of this length, counted from the last stop (an AdvanceTo target or the time of a
-  // command); the last step before a stop is shorter where the length does not fit. 0:
-  // error-controlled with `accuracy`.
+  // command); the last step before a stop is shorter where the length does not fit. 0: what the
+  // engine does by itself: Simbody controls its error by `accuracy`, ODE takes kOdeStep.
   VirtualDuration fixed_step{};
-  double accuracy = 1e-3;  // relative error of one step, between 0 and 1
+  double accuracy = 1e-3;  // relative error of one of Simbody's steps, between 0 and 1
 };
+
+// Gazebo's, too.
+inline constexpr VirtualDuration kOdeStep = VirtualDuration::Milliseconds(1);
 
 struct WorldSpec {
   std::vector<BodySpec> bodies;
@@ -109,15 +120,15 @@ class Dynamics {
   // The state at Now().
   virtual BodyState Read(int body) const = 0;
 
-  // A checkpoint holds the state, the acting wrenches, the pending commands and the integrator's
-  // next step size: after Restore the same calls compute bitwise what they computed in the run that
-  // was saved, with every integrator, fixed or error-controlled, and also after an AdvanceTo that
-  // threw.
+  // A checkpoint holds the state, the acting wrenches, the pending commands and, of an engine that
+  // chooses its steps, the next one's size: after Restore the same calls compute bitwise what they
+  // computed in the run that was saved, with every integrator, fixed or error-controlled, and also
+  // after an AdvanceTo that threw.
   virtual std::unique_ptr<Checkpoint> Save() = 0;
   virtual void Restore(const Checkpoint& checkpoint) = 0;
 };
 
-// Simbody behind the interface. Throws DynamicsError for a world that Simbody refuses.
-std::unique_ptr<Dynamics> MakeSimbodyDynamics(const WorldSpec& world);
+// On the engine that world.integrator names. Throws DynamicsError for a world that it refuses.
+std::unique_ptr<Dynamics> MakeDynamics(const WorldSpec& world);
 
 }  // namespace tcs

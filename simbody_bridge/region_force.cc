@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "simbody_bridge/region_law.h"
+
 namespace tcs {
 
 RegionForce::RegionForce(const RegionSpec& region, std::vector<SimTK::MobilizedBody::Free> bodies)
@@ -18,12 +20,7 @@ void RegionForce::calcForce(const SimTK::State& state,
     const SimTK::Vec3 velocity = body.getBodyOriginVelocity(state);
     SimTK::SpatialVec& body_force = body_forces[body.getMobilizedBodyIndex()];
     for (int axis = 0; axis < 3; ++axis) {
-      const double penetration = std::abs(position[axis]) - region_.half_extent_m;
-      if (penetration <= 0) continue;
-      const double outward = std::copysign(1.0, position[axis]);
-      const double push =
-          region_.stiffness_npm * penetration + region_.damping_nspm * outward * velocity[axis];
-      body_force[1][axis] -= outward * std::max(0.0, push);
+      body_force[1][axis] += WallForce(region_, position[axis], velocity[axis]);
     }
   }
 }

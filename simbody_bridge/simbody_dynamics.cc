@@ -2,11 +2,11 @@
 // is always that of the last stop. A stop is an AdvanceTo target, the time of a command or the end
 // of a fixed step, and the integrator is never allowed beyond the next one, so there is nothing to
 // take back when a command arrives.
+#include "simbody_bridge/simbody_dynamics.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,18 +14,13 @@
 #include "simbody_bridge/command_queue.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/make_integrator.h"
+#include "simbody_bridge/require.h"
 #include "simbody_bridge/simbody.h"
 #include "simbody_bridge/simbody_model.h"
 #include "simbody_bridge/world_check.h"
 
 namespace tcs {
 namespace {
-
-void Require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "tcs: bug: %s\n", what);
-  std::abort();
-}
 
 // Simbody's messages run over several lines.
 std::string OnOneLine(std::string text) {
@@ -184,7 +179,6 @@ void SimbodyDynamics::Restore(const Checkpoint& checkpoint) {
 }  // namespace
 
 std::unique_ptr<Dynamics> MakeSimbodyDynamics(const WorldSpec& world) {
-  CheckWorld(world);
   try {
     return std::make_unique<SimbodyDynamics>(world);
   } catch (const DynamicsError&) {

@@ -26,6 +26,7 @@ std::string MakeFolder(const std::string& path) {
 
 int RunCommand(const RunArguments& arguments, RunOptions options) {
   ScenarioOverrides overrides;
+  overrides.set = arguments.set;
   overrides.seed = arguments.seed;
   for (const std::string& error :
        {TakeDuration("duration", arguments.duration, &overrides.duration),

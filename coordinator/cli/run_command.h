@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coordinator/core/coordinator.h"
 
@@ -12,6 +13,7 @@ namespace tcs {
 struct RunArguments {
   std::string scenario, duration, drift, out = "out";
   std::optional<std::uint64_t> seed;
+  std::vector<std::string> set;  // KEY=VALUE
 };
 
 // The exit status. `options` brings accounting, synchronisation and the shim.

@@ -73,6 +73,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
 std::string WriteSummary(const Scenario& scenario, const RunReport& r, const std::string& path) {
   nlohmann::ordered_json json{{"scenario", scenario.name},
                               {"seed", scenario.seed},
+                              {"set", scenario.set},
                               {"interrupted", r.interrupted},
                               {"virtual_ns", r.virtual_ns},
                               {"real_ns", r.real_ns},

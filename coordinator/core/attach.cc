@@ -93,6 +93,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.call_cost_ns = maker->call_cost_ns;
     process.patch_vdso = maker->patch_vdso;
     process.frozen_ns = maker->frozen_ns;
+    process.shown_ns = maker->shown_ns;
   }
   if (process.pidfd >= 0) {
     Watch(process.pidfd, EPOLLIN, Tag::kProcess, process.index);

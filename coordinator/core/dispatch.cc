@@ -212,9 +212,11 @@ void Engine::Settle(Task& task) {
   task.charged_ns = charged;
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
-    task.process->frozen_ns += std::max<std::int64_t>(0, reached - start);
-    most_frozen_ns_ = std::max(most_frozen_ns_, task.process->frozen_ns);
-    trace_.Slice(task.row, start + frozen, start + task.process->frozen_ns);
+    task.frozen_ns = frozen + std::max<std::int64_t>(0, reached - start);
+    task.process->frozen_ns = task.frozen_ns;
+    task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
+    most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
+    trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
     return;
   }
   // What the clock has shown has happened, even where stolen time was found in it afterwards.

@@ -87,7 +87,7 @@ void Engine::Refresh(Robot& robot) {
     for (const Task* task : robot.tasks) {
       if (task->state == TaskState::kWaiting) due = std::min(due, task->deadline_ns);
       if (task->process->next_expiry_ns != shm::kNeverNs) {
-        due = std::min(due, task->process->next_expiry_ns - task->process->frozen_ns);
+        due = std::min(due, task->process->next_expiry_ns);
       }
     }
     if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
@@ -169,6 +169,11 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   return limit;
 }
 
+// A program's clock stands while it waits, for as long as it is ahead of the world's.
+void Engine::LetWorldCatchUp(Process& process, std::int64_t now_ns) {
+  process.frozen_ns = std::max<std::int64_t>(0, process.shown_ns - now_ns);
+}
+
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.progress_ns = std::max(cpu.progress_ns, root_.Least());
@@ -182,6 +187,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;
   robot.ready.Ran(cpu.core, task.order);
+  if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns;

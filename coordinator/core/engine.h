@@ -47,6 +47,7 @@ class Engine {
   // The loop (engine.cc).
   bool Step();
   bool AwaitDeaths();
+  static void LetWorldCatchUp(Process& process, std::int64_t now_ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   bool HasJumpedOver();

@@ -51,6 +51,7 @@ struct Task {
   std::int64_t reached_ns = 0;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::int64_t deadline_ns = shm::kNeverNs;
+  std::int64_t frozen_ns = 0;  // its process's when it last stopped
   bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
   pid_t awaited_child = 0;           // this one; 0: any
   std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
@@ -99,6 +100,7 @@ struct Task {
 // Times are those of the process's clock, or charged processor time, as its kind says.
 struct Timer {
   std::int64_t next_ns = 0, interval_ns = 0;  // next 0: not armed
+  std::int64_t frozen_ns = 0;                 // its process's when it was armed
   int event_fd = -1;
   shm::TimerKind kind;
   // Of timer_create: one signal is on its way at a time, further expirations are counted.
@@ -127,11 +129,13 @@ struct Process {
   int priority = 0;
   std::int64_t call_cost_ns = 0;
   bool patch_vdso = false;
-  // What its clock is ahead of the virtual CPU's: computed while the world stood still. 0 unless
-  // --sync callback.
+  // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the
+  // world stood still. While it waits the world catches up, but its clock never goes back, nor
+  // behind the end of a wait that is over by time.
   std::int64_t frozen_ns = 0;
+  std::int64_t shown_ns = 0;                    // the furthest that its clock has come
   std::map<std::int64_t, Timer> timers;         // by id
-  std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock
+  std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
   bool has_cpu_timers = false;                  // some run on processor time
   std::int64_t next_timer_id = shm::kFirstTimerId;
   std::vector<TimerSignal> timer_signals;

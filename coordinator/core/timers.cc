@@ -56,7 +56,7 @@ void Engine::FindNextExpiry(Process& process) {
   for (const auto& [id, timer] : process.timers) {
     if (timer.next_ns == 0) continue;
     if (timer.kind.clock == TimerClock::kTime) {
-      process.next_expiry_ns = std::min(process.next_expiry_ns, timer.next_ns);
+      process.next_expiry_ns = std::min(process.next_expiry_ns, timer.next_ns - timer.frozen_ns);
     } else {
       process.has_cpu_timers = true;
     }
@@ -133,6 +133,7 @@ void Engine::SetTimer(Task& task, const shm::Notification& note) {
   if (note.kind != shm::NotificationKind::kTimerSet) return;
   timer.next_ns = std::max<std::int64_t>(0, note.args[1]);
   timer.interval_ns = std::max<std::int64_t>(0, note.args[2]);
+  timer.frozen_ns = process.frozen_ns;
   timer.queued = false;
   timer.overruns = timer.last_overruns = 0;
   FindNextExpiry(process);
@@ -166,13 +167,14 @@ void Engine::SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::
 
 // Fires what has run out for one process; true if a descriptor was written to.
 bool Engine::Expire(Process& process, std::int64_t now_ns) {
-  const std::int64_t now = now_ns + process.frozen_ns;
   bool wrote = false;
   NoteAccepted(process);
   for (auto& [id, timer] : process.timers) {
     if (timer.kind.clock != TimerClock::kTime) continue;
+    const std::int64_t now = now_ns + timer.frozen_ns;
     const std::int64_t count = TakeExpirations(timer, now);
     if (count == 0) continue;
+    process.shown_ns = std::max(process.shown_ns, now);
     if (timer.interval_ns > 0) {
       const bool awaited = std::any_of(
           process.robot->tasks.begin(), process.robot->tasks.end(), [&](const Task* task) {
@@ -211,10 +213,12 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   bool wrote = false;
   for (Task* task : robot.tasks) {
     if (task->state == TaskState::kWaiting && task->deadline_ns <= now_ns) {
+      Process& woken = *task->process;
+      woken.shown_ns = std::max(woken.shown_ns, task->deadline_ns + task->frozen_ns);
       MakeReady(*task, shm::WakeReason::kDeadline);
     }
     Process& process = *task->process;
-    if (process.next_expiry_ns - process.frozen_ns <= now_ns) wrote |= Expire(process, now_ns);
+    if (process.next_expiry_ns <= now_ns) wrote |= Expire(process, now_ns);
     if (!process.timer_signals.empty()) RouteTimerSignals(process);
   }
   if (wrote) PollEvents(0);

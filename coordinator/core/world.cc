@@ -33,7 +33,7 @@ class Spent {
 std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
-  dynamics_ = MakeSimbodyDynamics(*scenario.world);
+  dynamics_ = MakeDynamics(*scenario.world);
   for (const SensorChannelSpec& spec : scenario.sensors) {
     sensors_.push_back({spec, 0, {}});
   }

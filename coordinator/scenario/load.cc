@@ -41,11 +41,12 @@ std::string FolderOf(const std::string& path) {
 }
 
 Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
-  const YamlMap top = ParseYaml(path, ReadFile(path)).AsMap();
+  const YamlMap top = ParseYaml(path, ReadFile(path), overrides.set).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
                  "channels"});
   Scenario scenario;
   scenario.path = path;
+  scenario.set = overrides.set;
   scenario.name = fs::path(path).stem().string();
   if (const YamlValue* name = top.Find("name")) {
     scenario.name = name->AsText();

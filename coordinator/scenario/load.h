@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "coordinator/scenario/load_error.h"
 #include "coordinator/scenario/scenario.h"
@@ -12,8 +13,10 @@
 
 namespace tcs {
 
-// What the command line sets in the file's stead; the values must be valid (durations above 0).
+// What the command line sets in the file's stead. The last three, which win over `set`, must be
+// valid (durations above 0).
 struct ScenarioOverrides {
+  std::vector<std::string> set;  // "KEY=VALUE", see set_option.h; checked like the file
   std::optional<VirtualDuration> duration;
   std::optional<VirtualDuration> drift;
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
@@ -21,7 +24,8 @@ struct ScenarioOverrides {
 
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the
 // files it names change or the ports it names are taken. The first mistake is the error, one
-// sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "). Reads the
+// sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "), or "--set
+// KEY=VALUE: " where the value does not come from the file. Reads the
 // environment (PATH, ${NAME}); not thread-safe against those who change it.
 [[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
                                                 const ScenarioOverrides& overrides = {});

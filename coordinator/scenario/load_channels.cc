@@ -50,11 +50,11 @@ class Endpoints {
                              use.endpoint.host == kAnyAddress || endpoint.host == kAnyAddress;
       if (use.endpoint.port == endpoint.port && same_host) {
         value.Fail("uses port " + std::to_string(endpoint.port) + " again, which is that of " +
-                   use.name + " on line " + std::to_string(use.line) +
+                   use.name + " " + use.place.Reference() +
                    "; give each channel a port of its own");
       }
     }
-    uses_.push_back({endpoint, value.name(), value.line()});
+    uses_.push_back({endpoint, value.name(), value.place()});
     return endpoint;
   }
 
@@ -62,7 +62,7 @@ class Endpoints {
   struct Use {
     UdpEndpoint endpoint;
     std::string name;
-    int line;
+    Place place;
   };
   std::vector<Use> uses_;
 };

@@ -30,8 +30,23 @@ IntegratorKind LoadIntegratorKind(const YamlValue& value) {
   value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "integrators"));
 }
 
+EngineKind LoadEngine(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "simbody") return EngineKind::kSimbody;
+  if (text == "ode") return EngineKind::kOde;
+  value.Fail("is the unknown '" + text + "'; " + Suggest(text, {"simbody", "ode"}, "engines"));
+}
+
 IntegratorSpec LoadIntegrator(const YamlMap& dynamics) {
   IntegratorSpec integrator;
+  if (const YamlValue* engine = dynamics.Find("engine")) integrator.engine = LoadEngine(*engine);
+  for (const char* key : {"integrator", "accuracy"}) {
+    const YamlValue* value = dynamics.Find(key);
+    if (value == nullptr || integrator.engine == EngineKind::kSimbody) continue;
+    value->Fail(
+        "is Simbody's, and dynamics.engine is ode, which takes fixed steps; remove it, or set "
+        "step");
+  }
   if (const YamlValue* kind = dynamics.Find("integrator")) {
     integrator.kind = LoadIntegratorKind(*kind);
   }
@@ -124,7 +139,7 @@ void LoadWorld(const YamlMap& top, Scenario* scenario) {
     return;
   }
   const YamlMap map = dynamics->AsMap();
-  map.AllowOnly({"integrator", "accuracy", "step", "gravity", "region"});
+  map.AllowOnly({"engine", "integrator", "accuracy", "step", "gravity", "region"});
   WorldSpec world;
   world.integrator = LoadIntegrator(map);
   if (const YamlValue* gravity = map.Find("gravity")) world.gravity_mps2 = gravity->AsVector3();

@@ -65,7 +65,8 @@ struct CommandChannelSpec {
 
 struct Scenario {
   std::string name;
-  std::string path;  // of the YAML file; empty for `tcsim exec`
+  std::string path;              // of the YAML file; empty for `tcsim exec`
+  std::vector<std::string> set;  // what --set has put in the file's stead
   VirtualDuration duration = VirtualDuration::Seconds(10);
   VirtualDuration drift_bound = VirtualDuration::Milliseconds(1);
   std::uint64_t seed = 1;

@@ -7,13 +7,10 @@
 
 #include "coordinator/scenario/duration.h"
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/set_option.h"
 
 namespace tcs {
 namespace {
-
-std::string At(const std::string& file, int line) {
-  return file + ":" + std::to_string(line) + ": ";
-}
 
 std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
 
@@ -39,15 +36,24 @@ int LineOfValue(const YAML::Node& node, int key_line) {
 
 }  // namespace
 
-YamlValue::YamlValue(std::string file, std::string name, int line, YAML::Node node)
-    : file_(std::move(file)), name_(std::move(name)), line_(line), node_(std::move(node)) {}
+YamlValue::YamlValue(Place place, std::string name, YAML::Node node,
+                     std::shared_ptr<const SetOptions> set)
+    : place_(std::move(place)),
+      name_(std::move(name)),
+      node_(std::move(node)),
+      set_(std::move(set)) {}
 
 void YamlValue::Fail(std::string_view sentence) const {
   FailPlainly(Described() + " " + std::string(sentence));
 }
 
 void YamlValue::FailPlainly(std::string_view sentence) const {
-  throw ScenarioMistake{At(file_, line_) + std::string(sentence)};
+  throw ScenarioMistake{place_.Prefix() + std::string(sentence)};
+}
+
+Place YamlValue::PlaceOf(const YAML::Node& node, int line) const {
+  if (const std::string* option = set_->OriginOf(node)) return {*option, 0};
+  return place_.IsOption() ? place_ : Place{place_.source, line};
 }
 
 std::string YamlValue::Scalar(std::string_view expected) const {
@@ -132,8 +138,8 @@ std::vector<YamlValue> YamlValue::AsList(std::string_view example) const {
   std::vector<YamlValue> list;
   for (std::size_t i = 0; i < node_.size(); ++i) {
     const YAML::Node element = node_[i];
-    list.emplace_back(file_, name_ + "[" + std::to_string(i) + "]", LineOf(element, line_),
-                      element);
+    list.emplace_back(PlaceOf(element, LineOf(element, place_.line)),
+                      name_ + "[" + std::to_string(i) + "]", element, set_);
   }
   return list;
 }
@@ -160,24 +166,23 @@ YamlMap YamlValue::AsMap() const {
          "; give it keys with values, or {} for none");
   }
   std::vector<YamlMap::Entry> entries;
-  int previous_line = line_;
+  int previous_line = place_.line;
   for (const auto& pair : node_) {
     const int key_line = LineOf(pair.first, previous_line);
     previous_line = key_line;
+    const Place key_place = PlaceOf(pair.second, key_line);
     if (!pair.first.IsScalar()) {
-      YamlValue(file_, name_, key_line, pair.first).Fail("has a key that is not a text; write one");
+      At(key_place).Fail("has a key that is not a text; write one");
     }
     const std::string key = pair.first.Scalar();
-    std::string name = name_.empty() ? key : name_ + "." + key;
+    const YamlValue value(PlaceOf(pair.second, LineOfValue(pair.second, key_line)),
+                          name_.empty() ? key : name_ + "." + key, pair.second, set_);
     for (const YamlMap::Entry& earlier : entries) {
       if (earlier.key != key) continue;
-      YamlValue(file_, name, key_line, pair.second)
-          .Fail("is given twice, first on line " + std::to_string(earlier.key_line) +
-                "; rename or remove one");
+      value.At(key_place).Fail("is given twice, first " + earlier.key_place.Reference() +
+                               "; rename or remove one");
     }
-    entries.push_back(
-        {key, key_line,
-         YamlValue(file_, std::move(name), LineOfValue(pair.second, key_line), pair.second)});
+    entries.push_back({key, key_place, value});
   }
   return YamlMap(*this, std::move(entries));
 }
@@ -188,7 +193,7 @@ YamlMap::YamlMap(YamlValue place, std::vector<Entry> entries)
 void YamlMap::AllowOnly(const std::vector<std::string>& known) const {
   for (const Entry& entry : entries_) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
-    entry.value.AtLine(entry.key_line)
+    entry.value.At(entry.key_place)
         .FailPlainly("unknown key " + Quote(entry.key) +
                      (place_.name().empty() ? "" : " in " + place_.name()) + "; " +
                      Suggest(entry.key, known, "keys"));
@@ -207,25 +212,28 @@ const YamlValue& YamlMap::Require(std::string_view key, std::string_view example
   place_.Fail("lacks the key " + Quote(key) + "; add it, like " + std::string(example));
 }
 
-YamlValue ParseYaml(const std::string& file, const std::string& text) {
+YamlValue ParseYaml(const std::string& file, const std::string& text,
+                    const std::vector<std::string>& set) {
   const int last_line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
   std::vector<YAML::Node> documents;
   try {
     documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
     const int line = error.mark.is_null() ? last_line : error.mark.line + 1;
-    throw ScenarioMistake{At(file, line) + "this is not valid YAML (" + error.msg +
+    throw ScenarioMistake{Place{file, line}.Prefix() + "this is not valid YAML (" + error.msg +
                           "); indent with spaces, and quote a text that holds : # { } [ or ]"};
   }
   if (documents.empty() || documents[0].IsNull()) {
-    throw ScenarioMistake{At(file, 1) +
+    throw ScenarioMistake{Place{file, 1}.Prefix() +
                           "the scenario is empty; write at least duration and robots"};
   }
   if (documents.size() > 1) {
-    throw ScenarioMistake{At(file, LineOf(documents[1], last_line)) +
+    throw ScenarioMistake{Place{file, LineOf(documents[1], last_line)}.Prefix() +
                           "a second YAML document begins here; keep one scenario to a file"};
   }
-  return YamlValue(file, "", LineOf(documents[0], 1), documents[0]);
+  const auto options = std::make_shared<SetOptions>();
+  const YAML::Node tree = options->Apply(documents[0], set);
+  return YamlValue({file, LineOf(documents[0], 1)}, "", tree, options);
 }
 
 void CheckName(const YamlMap::Entry& entry) {
@@ -235,7 +243,7 @@ void CheckName(const YamlMap::Entry& entry) {
   const bool fine = !name.empty() && name.size() <= 64 && name[0] != '.' && name[0] != '-' &&
                     name.find_first_not_of(kAllowed) == std::string::npos;
   if (!fine) {
-    entry.value.AtLine(entry.key_line)
+    entry.value.At(entry.key_place)
         .FailPlainly(Quote(name) +
                      " is not a name; use up to 64 letters, digits, '_', '-' and '.'");
   }

@@ -1,45 +1,48 @@
 // Reading a YAML tree so that every mistake becomes one sentence with its place.
 //
 // Internal to the loader: a mistake is thrown as ScenarioMistake, which LoadScenario catches. A
-// value knows where it stands: its line, and its name as a dotted path from the scenario's top
-// ("bodies.predator.mass").
+// value knows where it stands: its place, a line of the file or an option of the command line, and
+// its name as a dotted path from the scenario's top ("bodies.predator.mass").
 #pragma once
 
 #include <yaml-cpp/yaml.h>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "coordinator/scenario/place.h"
 #include "shm/virtual_time.h"
 
 namespace tcs {
 
 struct ScenarioMistake {
-  std::string message;  // "FILE:LINE: …"
+  std::string message;  // "FILE:LINE: …" or "--set KEY=VALUE: …"
 };
 
+class SetOptions;
 class YamlMap;
 
 class YamlValue {
  public:
-  // `line` counts from 1. An empty name is the scenario itself.
-  YamlValue(std::string file, std::string name, int line, YAML::Node node);
+  // An empty name is the scenario itself. `set` knows which nodes are not the file's.
+  YamlValue(Place place, std::string name, YAML::Node node, std::shared_ptr<const SetOptions> set);
 
   const std::string& name() const { return name_; }
-  int line() const { return line_; }
+  const Place& place() const { return place_; }
 
   // The name for a sentence.
   std::string Described() const { return name_.empty() ? "the scenario" : name_; }
 
-  // The same value, its mistakes reported for another line.
-  YamlValue AtLine(int line) const { return YamlValue(file_, name_, line, node_); }
+  // The same value, its mistakes reported for another place.
+  YamlValue At(const Place& place) const { return YamlValue(place, name_, node_, set_); }
 
-  // Throws "FILE:LINE: NAME SENTENCE".
+  // Throws "PLACE: NAME SENTENCE".
   [[noreturn]] void Fail(std::string_view sentence) const;
-  // Throws "FILE:LINE: SENTENCE".
+  // Throws "PLACE: SENTENCE".
   [[noreturn]] void FailPlainly(std::string_view sentence) const;
 
   std::string AsText() const;
@@ -60,11 +63,13 @@ class YamlValue {
 
  private:
   std::string Scalar(std::string_view expected) const;
+  // The place of a node in this one that stands on `line` if it stands in the file at all.
+  Place PlaceOf(const YAML::Node& node, int line) const;
 
-  std::string file_;
+  Place place_;
   std::string name_;
-  int line_;
   YAML::Node node_;
+  std::shared_ptr<const SetOptions> set_;
 };
 
 // A map in the order of the file, every key once.
@@ -72,7 +77,7 @@ class YamlMap {
  public:
   struct Entry {
     std::string key;
-    int key_line;
+    Place key_place;
     YamlValue value;
   };
 
@@ -94,8 +99,10 @@ class YamlMap {
   std::vector<Entry> entries_;
 };
 
-// Parses the YAML `text` of `file`; throws ScenarioMistake if it is not one YAML document.
-YamlValue ParseYaml(const std::string& file, const std::string& text);
+// Parses the YAML `text` of `file` and applies `set` to it, each element a "KEY=VALUE" (see
+// set_option.h); throws ScenarioMistake if it is not one YAML document or has no such place.
+YamlValue ParseYaml(const std::string& file, const std::string& text,
+                    const std::vector<std::string>& set = {});
 
 // Names of bodies, robots, clients and channels become names of files and topics: throws unless
 // the key is made of letters, digits, '_', '-' and '.', and does not begin with '.' or '-'.

@@ -16,5 +16,6 @@ assert (short["virtual_ns"], long["virtual_ns"]) == (500_000_000, 1_000_000_000)
 for run in (short, long):
     ratio = run["drift_ns"] / run["virtual_ns"]
     assert 8 < ratio < 13, ratio
-    assert run["staleness_ns"] > 0.8 * run["drift_ns"], "what the planner reads is as old"
+    # One plan has been computed since it read; of five plans that is a fifth.
+    assert run["staleness_ns"] > 0.7 * run["drift_ns"], "what the planner reads is as old"
 PY

@@ -25,8 +25,8 @@ std::vector<std::vector<BodyState>> GoOn(Dynamics& dynamics) {
 class Checkpoints : public EveryIntegrator {};
 
 TEST_P(Checkpoints, SavingDoesNotChangeTheRun) {
-  auto saved = MakeSimbodyDynamics(BusyWorld(GetParam()));
-  auto plain = MakeSimbodyDynamics(BusyWorld(GetParam()));
+  auto saved = MakeDynamics(BusyWorld(GetParam()));
+  auto plain = MakeDynamics(BusyWorld(GetParam()));
   for (int i = 1; i <= 50; ++i) {
     auto checkpoint = saved->Save();
     saved->AdvanceTo(AtMs(23 * i));
@@ -36,7 +36,7 @@ TEST_P(Checkpoints, SavingDoesNotChangeTheRun) {
 }
 
 TEST_P(Checkpoints, RestoringRepeatsTheOriginalRunBitwiseAnyNumberOfTimes) {
-  auto dynamics = MakeSimbodyDynamics(BusyWorld(GetParam()));
+  auto dynamics = MakeDynamics(BusyWorld(GetParam()));
   GoOn(*dynamics);
   // One wrench acts, one is still to come.
   dynamics->Apply(0, {.force_n = {3, 0, 0}, .torque_nm = {}},
@@ -58,8 +58,14 @@ TEST_P(Checkpoints, RestoringRepeatsTheOriginalRunBitwiseAnyNumberOfTimes) {
 
 INSTANTIATE_TEST_SUITE_P(Dynamics, Checkpoints, testing::ValuesIn(FixedAndAdaptive()), NameOfParam);
 
-TEST(Checkpoint, BringsBackTheCommandsThatWerePending) {
-  auto dynamics = MakeSimbodyDynamics(OneBody());
+class Checkpoint : public EveryEngine {};
+class CheckpointDeathTest : public EveryEngine {};
+
+INSTANTIATE_TEST_SUITE_P(Engines, Checkpoint, testing::ValuesIn(Engines()), NameOfEngine);
+INSTANTIATE_TEST_SUITE_P(Engines, CheckpointDeathTest, testing::ValuesIn(Engines()), NameOfEngine);
+
+TEST_P(Checkpoint, BringsBackTheCommandsThatWerePending) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
   dynamics->Apply(0, {.force_n = {2, 0, 0}, .torque_nm = {}}, AtMs(10));
   const auto checkpoint = dynamics->Save();
   dynamics->AdvanceTo(AtMs(20));
@@ -71,17 +77,17 @@ TEST(Checkpoint, BringsBackTheCommandsThatWerePending) {
   EXPECT_NEAR(dynamics->Read(0).linear_velocity_mps[0], 2 / 2.0 * 0.1, 1e-14);
 }
 
-TEST(Checkpoint, OfTheStartCanBeRestored) {
-  auto dynamics = MakeSimbodyDynamics(BusyWorld({}));
+TEST_P(Checkpoint, OfTheStartCanBeRestored) {
+  auto dynamics = MakeDynamics(BusyWorld(GetParam()));
   const auto checkpoint = dynamics->Save();
   const auto original = GoOn(*dynamics);
   dynamics->Restore(*checkpoint);
   EXPECT_TRUE(SameBits(original.back(), GoOn(*dynamics).back()));
 }
 
-TEST(CheckpointDeathTest, BelongsToTheDynamicsThatSavedIt) {
-  auto dynamics = MakeSimbodyDynamics(OneBody());
-  auto other = MakeSimbodyDynamics(OneBody());
+TEST_P(CheckpointDeathTest, BelongsToTheDynamicsThatSavedIt) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
+  auto other = MakeDynamics(OneBody(GetParam()));
   const auto checkpoint = dynamics->Save();
   EXPECT_DEATH(other->Restore(*checkpoint), "a checkpoint belongs to the dynamics that saved it");
 }

@@ -15,15 +15,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Expects that `world` is refused with exactly `message`.
 void ExpectRefused(const WorldSpec& world, const std::string& message) {
   try {
-    MakeSimbodyDynamics(world);
+    MakeDynamics(world);
     ADD_FAILURE() << "accepted, instead of: " << message;
   } catch (const DynamicsError& e) {
     EXPECT_EQ(e.what(), message);
   }
 }
 
-TEST(DynamicsErrors, NameTheBodyWithoutAMass) {
-  WorldSpec world = OneBody();
+class DynamicsErrors : public EveryEngine {};
+class DynamicsDeathTest : public EveryEngine {};
+
+INSTANTIATE_TEST_SUITE_P(Engines, DynamicsErrors, testing::ValuesIn(Engines()), NameOfEngine);
+INSTANTIATE_TEST_SUITE_P(Engines, DynamicsDeathTest, testing::ValuesIn(Engines()), NameOfEngine);
+
+TEST_P(DynamicsErrors, NameTheBodyWithoutAMass) {
+  WorldSpec world = OneBody(GetParam());
   world.bodies[0].mass_kg = 0;
   ExpectRefused(world, "body 'ship': the mass must be positive and finite, but is 0 kg");
   world.bodies[0].mass_kg = -1.5;
@@ -34,8 +40,8 @@ TEST(DynamicsErrors, NameTheBodyWithoutAMass) {
   ExpectRefused(world, "body 'ship': the mass must be positive and finite, but is inf kg");
 }
 
-TEST(DynamicsErrors, NameTheBodyWithAnImpossibleInertia) {
-  WorldSpec world = OneBody();
+TEST_P(DynamicsErrors, NameTheBodyWithAnImpossibleInertia) {
+  WorldSpec world = OneBody(GetParam());
   world.bodies.push_back(world.bodies[0]);
   world.bodies[1].name = "stick";
   world.bodies[1].inertia_kgm2 = {1, 2, 3.5};
@@ -54,24 +60,24 @@ TEST(DynamicsErrors, NameTheBodyWithAnImpossibleInertia) {
       "body 'stick': the principal moments of inertia must be positive and finite, but are "
       "(1, nan, 1) kg m^2");
   world.bodies[1].inertia_kgm2 = {0.3, 0.1, 0.2};  // flat, and rounded the wrong way: allowed
-  EXPECT_NO_THROW(MakeSimbodyDynamics(world));
+  EXPECT_NO_THROW(MakeDynamics(world));
 }
 
-TEST(DynamicsErrors, NameTheBodyWithAnInitialStateThatIsNone) {
-  WorldSpec world = OneBody();
+TEST_P(DynamicsErrors, NameTheBodyWithAnInitialStateThatIsNone) {
+  WorldSpec world = OneBody(GetParam());
   world.bodies[0].initial.linear_velocity_mps[1] = kNan;
   ExpectRefused(world, "body 'ship': the initial state must be finite");
-  world = OneBody();
+  world = OneBody(GetParam());
   world.bodies[0].initial.orientation_xyzw = {0, 0, 0, 2};
   ExpectRefused(
       world, "body 'ship': the initial orientation must be a unit quaternion, but its length is 2");
 }
 
-TEST(DynamicsErrors, NameTheFieldOfTheWorld) {
-  WorldSpec world = OneBody();
+TEST_P(DynamicsErrors, NameTheFieldOfTheWorld) {
+  WorldSpec world = OneBody(GetParam());
   world.gravity_mps2[2] = kInfinity;
   ExpectRefused(world, "gravity: it must be finite");
-  world = OneBody();
+  world = OneBody(GetParam());
   world.has_region = true;
   world.region.half_extent_m = 0;
   ExpectRefused(world, "region: the half extent must be positive and finite, but is 0 m");
@@ -79,14 +85,13 @@ TEST(DynamicsErrors, NameTheFieldOfTheWorld) {
   ExpectRefused(world, "region: the stiffness must be finite and not negative, but is -50 N/m");
   world.region = {.half_extent_m = 1, .stiffness_npm = 50, .damping_nspm = kNan};
   ExpectRefused(world, "region: the damping must be finite and not negative, but is nan N s/m");
-  ExpectRefused(OneBody({.fixed_step = VirtualDuration::Nanoseconds(-1)}),
-                "integrator: the fixed step must not be negative, but is -1 ns");
-  ExpectRefused(OneBody({.accuracy = 0}),
-                "integrator: the accuracy must lie between 0 and 1, but is 0");
+  ExpectRefused(
+      OneBody({.engine = GetParam().engine, .fixed_step = VirtualDuration::Nanoseconds(-1)}),
+      "integrator: the fixed step must not be negative, but is -1 ns");
 }
 
-TEST(DynamicsErrors, RefuseAWrenchThatIsNotFiniteAndGoOn) {
-  auto dynamics = MakeSimbodyDynamics(OneBody());
+TEST_P(DynamicsErrors, RefuseAWrenchThatIsNotFiniteAndGoOn) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
   try {
     dynamics->Apply(0, {.force_n = {0, 0, 0}, .torque_nm = {0, kNan, 0}}, AtMs(1));
     ADD_FAILURE() << "accepted";
@@ -98,15 +103,16 @@ TEST(DynamicsErrors, RefuseAWrenchThatIsNotFiniteAndGoOn) {
 }
 
 // A wall far too stiff for the step: every step throws the body further out than the one before.
-TEST(DynamicsErrors, NameTheBodyThatDivergesAndRestoreRecovers) {
-  WorldSpec world = OneBody(
-      {.kind = IntegratorKind::kExplicitEuler, .fixed_step = VirtualDuration::Milliseconds(100)});
+TEST_P(DynamicsErrors, NameTheBodyThatDivergesAndRestoreRecovers) {
+  WorldSpec world = OneBody({.engine = GetParam().engine,
+                             .kind = IntegratorKind::kExplicitEuler,
+                             .fixed_step = VirtualDuration::Milliseconds(100)});
   world.bodies.push_back(world.bodies[0]);
   world.bodies[1].name = "rocket";
   world.bodies[1].initial.position_m = {11, 0, 0};
   world.has_region = true;
   world.region.stiffness_npm = 1e60;
-  auto dynamics = MakeSimbodyDynamics(world);
+  auto dynamics = MakeDynamics(world);
   const auto checkpoint = dynamics->Save();
   for (int attempt = 0; attempt < 2; ++attempt) {
     try {
@@ -121,12 +127,17 @@ TEST(DynamicsErrors, NameTheBodyThatDivergesAndRestoreRecovers) {
   }
 }
 
-TEST(DynamicsErrors, TellWhenErrorControlFindsNoStepSmallEnough) {
+TEST(SimbodyErrors, NameTheAccuracyThatIsNone) {
+  ExpectRefused(OneBody({.accuracy = 0}),
+                "integrator: the accuracy must lie between 0 and 1, but is 0");
+}
+
+TEST(SimbodyErrors, TellWhenErrorControlFindsNoStepSmallEnough) {
   WorldSpec world = OneBody();
   world.has_region = true;
   world.region.stiffness_npm = 1e300;
   world.bodies[0].initial.position_m = {11e9, 0, 0};
-  auto dynamics = MakeSimbodyDynamics(world);
+  auto dynamics = MakeDynamics(world);
   try {
     dynamics->AdvanceTo(AtMs(10));
     ADD_FAILURE() << "went on";
@@ -136,8 +147,8 @@ TEST(DynamicsErrors, TellWhenErrorControlFindsNoStepSmallEnough) {
   }
 }
 
-TEST(DynamicsDeathTest, TimeOnlyGoesForward) {
-  auto dynamics = MakeSimbodyDynamics(OneBody());
+TEST_P(DynamicsDeathTest, TimeOnlyGoesForward) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
   dynamics->AdvanceTo(AtMs(2));
   EXPECT_DEATH(dynamics->AdvanceTo(AtMs(1)), "can only advance to a later, finite time");
   EXPECT_DEATH(dynamics->AdvanceTo(VirtualTime::Never()),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -63,20 +64,68 @@ inline std::string NameOf(IntegratorKind kind) {
   return "unknown";
 }
 
+inline constexpr IntegratorSpec kOde{.engine = EngineKind::kOde};
+
 inline std::vector<IntegratorSpec> FixedAndAdaptive() {
   std::vector<IntegratorSpec> specs;
   for (const IntegratorKind kind : kAllKinds) {
     specs.push_back({.kind = kind, .fixed_step = VirtualDuration::Microseconds(700)});
     specs.push_back({.kind = kind, .fixed_step = {}, .accuracy = 1e-4});
   }
+  specs.push_back({.engine = EngineKind::kOde, .fixed_step = VirtualDuration::Microseconds(700)});
+  specs.push_back(kOde);
   return specs;
+}
+
+// Every method with steps of one length.
+inline std::vector<IntegratorSpec> EveryMethod(VirtualDuration step) {
+  std::vector<IntegratorSpec> specs;
+  for (const IntegratorKind kind : kAllKinds) {
+    specs.push_back({.kind = kind, .fixed_step = step});
+  }
+  specs.push_back({.engine = EngineKind::kOde, .fixed_step = step});
+  return specs;
+}
+
+inline std::string NameOf(const IntegratorSpec& spec) {
+  return spec.engine == EngineKind::kOde ? "Ode" : NameOf(spec.kind);
+}
+
+inline bool IsExplicitEuler(const IntegratorSpec& spec) {
+  return spec.engine == EngineKind::kSimbody && spec.kind == IntegratorKind::kExplicitEuler;
+}
+
+// Its error falls with the step and not with a power of it.
+inline bool IsFirstOrder(const IntegratorSpec& spec) {
+  return spec.engine == EngineKind::kOde || IsExplicitEuler(spec) ||
+         spec.kind == IntegratorKind::kSemiExplicitEuler2;
 }
 
 class EveryIntegrator : public testing::TestWithParam<IntegratorSpec> {};
 
 inline std::string NameOfParam(const testing::TestParamInfo<IntegratorSpec>& info) {
+  if (info.param.engine == EngineKind::kOde) {
+    return info.param.fixed_step > VirtualDuration{} ? "OdeFixed" : "Ode";
+  }
   return NameOf(info.param.kind) +
          (info.param.fixed_step > VirtualDuration{} ? "Fixed" : "Adaptive");
+}
+
+// The engines, each as it is by default.
+class EveryEngine : public testing::TestWithParam<IntegratorSpec> {};
+
+inline std::vector<IntegratorSpec> Engines() { return {IntegratorSpec{}, kOde}; }
+
+inline std::string NameOfEngine(const testing::TestParamInfo<IntegratorSpec>& info) {
+  return info.param.engine == EngineKind::kOde ? "Ode" : "Simbody";
+}
+
+// How far a constant `acceleration_mps2` over `seconds` may take a body from where the closed form
+// has it.
+inline double PositionTolerance(const IntegratorSpec& spec, double acceleration_mps2,
+                                double seconds) {
+  const double euler_m = std::abs(acceleration_mps2) * kOdeStep.seconds() * seconds / 2;
+  return spec.engine == EngineKind::kOde ? 1.01 * euler_m + 1e-14 : 1e-14;
 }
 
 inline bool SameBits(const BodyState& a, const BodyState& b) {

@@ -136,6 +136,18 @@ TEST_F(LoadTest, AStepMakesTheIntegratorsStepsFixed) {
   EXPECT_EQ(scenario.world->integrator.fixed_step, VirtualDuration::Microseconds(500));
 }
 
+TEST_F(LoadTest, TheEngineCanBeOdeWithAStepOfItsOwnOrOfOurs) {
+  EXPECT_EQ(Load(kGoodScenario).world->integrator.engine, EngineKind::kSimbody);
+  const auto integrator = [this](std::string_view lines) {
+    return Load(WithReplaced("  integrator: verlet\n  accuracy: 1e-4\n", lines)).world->integrator;
+  };
+  EXPECT_EQ(integrator("  engine: simbody\n").engine, EngineKind::kSimbody);
+  EXPECT_EQ(integrator("  engine: ode\n").engine, EngineKind::kOde);
+  EXPECT_EQ(integrator("  engine: ode\n").fixed_step, VirtualDuration{});
+  EXPECT_EQ(integrator("  engine: ode\n  step: 2ms\n").fixed_step,
+            VirtualDuration::Milliseconds(2));
+}
+
 TEST_F(LoadTest, OrientationsAreNormalised) {
   const Scenario scenario =
       Load(WithReplaced("position: [-5, 0, 0]", "orientation: [0, 0, 0.7071, 0.7071]"));

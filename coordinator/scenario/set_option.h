@@ -1,0 +1,32 @@
+// --set KEY=VALUE: a scenario's tree with one of its keys added, replaced or removed.
+//
+// KEY is the way to it from the top, as the loader's own sentences write it: keys joined by dots,
+// elements of lists by number ("command.5" or "command[5]"). Names may have dots themselves; of the
+// names that fit the longest is meant. VALUE is YAML; null removes the key.
+//
+// Internal to the loader: mistakes are thrown as ScenarioMistake.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tcs {
+
+class SetOptions {
+ public:
+  // The tree `root` with the `options`, each "KEY=VALUE", applied in their order. Changes nothing
+  // of `root`, whose nodes the new tree shares.
+  YAML::Node Apply(const YAML::Node& root, const std::vector<std::string>& options);
+
+  // "--set KEY=VALUE" if that is where `node` of the new tree comes from; null if it is the file.
+  const std::string* OriginOf(const YAML::Node& node) const;
+
+ private:
+  friend class SetOption;
+  std::vector<std::pair<YAML::Node, std::string>> origins_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,12 @@
+// libode as a whole: set up once in a process, and checked to be the library that its headers
+// describe.
+#pragma once
+
+namespace tcs {
+
+// Call before anything else of ODE's; does something the first time only. From then on what ODE
+// takes for an error is thrown as DynamicsError instead of ending the process, and what it has to
+// say besides is one line on stderr. Throws DynamicsError if libode cannot be used.
+void OpenOde();
+
+}  // namespace tcs

@@ -1,0 +1,12 @@
+// What the walls of a region do to a body, the same for every engine. See RegionSpec for the law.
+#pragma once
+
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+// The wall's force along one axis on a body at `position_m` with `velocity_mps` along that axis, in
+// newtons.
+double WallForce(const RegionSpec& region, double position_m, double velocity_mps);
+
+}  // namespace tcs
