@@ -1,10 +1,6 @@
 #include "coordinator/cli/live_line.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
-#include <cstdio>
 
 namespace tcs {
 
@@ -13,8 +9,6 @@ namespace {
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
-
-bool LiveLine::HasTerminal() { return isatty(STDERR_FILENO) == 1; }
 
 std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   const double passed_ns = static_cast<double>(progress.virtual_ns - last_virtual_ns_);
@@ -37,16 +31,7 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
 }
 
 void LiveLine::Show(const RunProgress& progress) {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  fmt::print(stderr, "\r\033[K{}", Text(progress, known ? size.ws_col - 1u : 79u));
-  std::fflush(stderr);
-  shown_ = true;
-}
-
-void LiveLine::Clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
-  shown_ = false;
+  line_.Show(Text(progress, TerminalLine::Columns()));
 }
 
 }  // namespace tcs

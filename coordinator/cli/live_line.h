@@ -1,10 +1,11 @@
-// One line on the terminal that says how a run is going, rewritten in place.
+// The line on the terminal that says how a run is going.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <string>
 
+#include "coordinator/cli/terminal_line.h"
 #include "coordinator/core/coordinator.h"
 
 namespace tcs {
@@ -13,21 +14,17 @@ class LiveLine {
  public:
   explicit LiveLine(std::int64_t duration_ns) : duration_ns_(duration_ns) {}
 
-  // True where somebody can see it: stderr is a terminal.
-  static bool HasTerminal();
-
   // What to show for `progress`; loads are since the last call. Fits into `columns`.
   std::string Text(const RunProgress& progress, std::size_t columns);
 
   void Show(const RunProgress& progress);
-  // Takes the line away again, if one was shown.
-  void Clear();
+  void Clear() { line_.Clear(); }
 
  private:
   std::int64_t duration_ns_;
   std::int64_t last_virtual_ns_ = 0;
   std::map<std::string, std::int64_t> last_charged_ns_;
-  bool shown_ = false;
+  TerminalLine line_;
 };
 
 }  // namespace tcs

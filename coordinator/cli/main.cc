@@ -9,6 +9,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/cli/trials_options.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
 
@@ -46,11 +47,15 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
       ->capture_default_str();
+  run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
                   "consistent: world and programs advance together (default); callback: the world "
                   "stands still while programs compute, as in today's simulators")
       ->check(CLI::IsMember({"consistent", "callback"}));
+
+  tcs::TrialsArguments trials_arguments;
+  const CLI::App* trials = tcs::AddTrials(&app, &trials_arguments);
 
   double speed = 1.0;
   int cores = 1;
@@ -101,6 +106,7 @@ int main(int argc, char** argv) {
     return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
   }
   if (seeded->count() > 0) arguments.seed = seed;
+  if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()
                ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost}, options)

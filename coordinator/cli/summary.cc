@@ -5,8 +5,9 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "coordinator/os/files.h"
 
 namespace tcs {
 
@@ -96,10 +97,7 @@ std::string WriteSummary(const Scenario& scenario, const RunReport& r, const std
         {"wait_status", c.wait_status},
     };
   }
-  std::ofstream file(path);
-  file << json.dump(2) << '\n';
-  file.close();
-  return file.fail() ? fmt::format("{} cannot be written: {}", path, strerror(errno)) : "";
+  return WriteWhole(path, json.dump(2) + "\n");
 }
 
 }  // namespace tcs

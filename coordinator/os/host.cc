@@ -42,17 +42,29 @@ std::uint64_t CalibrateTsc() {
                                     static_cast<double>(ticks) * 4294967296.0);
 }
 
+namespace {
+
+std::string TakeCoordinatorLevel() {
+  const sched_param param{static_cast<int>(Level::kCoordinator)};
+  if (sched_setscheduler(0, SCHED_FIFO, &param) == 0) return {};
+  return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 13 "
+         "(ulimit -r, or rtprio in /etc/security/limits.conf); `tcsim doctor` shows the details";
+}
+
+}  // namespace
+
 std::string EnterRealTime(int cpu) {
   cpu_set_t one;
   CPU_ZERO(&one);
   CPU_SET(static_cast<std::size_t>(cpu), &one);
   if (sched_setaffinity(0, sizeof one, &one) != 0) return "cannot bind to a CPU";
-  const sched_param param{static_cast<int>(Level::kCoordinator)};
-  if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
-    return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 13 "
-           "(ulimit -r, or rtprio in /etc/security/limits.conf); `tcsim doctor` shows the details";
-  }
-  return {};
+  return TakeCoordinatorLevel();
+}
+
+std::string WhyNoRealTime() {
+  std::string why = TakeCoordinatorLevel();
+  if (why.empty()) LeaveRealTime(0);
+  return why;
 }
 
 void SetLevel(pid_t tid, Level level) {

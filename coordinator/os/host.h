@@ -24,6 +24,9 @@ std::uint64_t CalibrateTsc();
 // one sentence.
 std::string EnterRealTime(int cpu);
 
+// Why this process cannot have the coordinator's level; empty if it can. It has it in between.
+std::string WhyNoRealTime();
+
 void SetLevel(pid_t tid, Level level);
 
 // Back to ordinary scheduling.

@@ -1,0 +1,253 @@
+#include "coordinator/cli/trials_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "coordinator/cli/duration_option.h"
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/terminal_line.h"
+#include "coordinator/os/cpu_places.h"
+#include "coordinator/os/guardian.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/own_network.h"
+#include "coordinator/scenario/load.h"
+#include "coordinator/trials/record.h"
+#include "coordinator/trials/result_folder.h"
+#include "coordinator/trials/runner.h"
+
+namespace tcs {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A run may take ten seconds to stop.
+constexpr unsigned kStopWithinS = 15;
+// Larger files that a command names are data; to hash them would take a while.
+constexpr std::uintmax_t kLargestProgram = 64 << 20;
+
+// The scenario as each group of trials runs it. The sentence, if one cannot be run.
+std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
+                       std::vector<Scenario>* scenarios) {
+  ScenarioOverrides overrides;
+  for (const std::string& error :
+       {TakeDuration("duration", arguments.options.duration, &overrides.duration),
+        TakeDuration("drift", arguments.options.drift, &overrides.drift)}) {
+    if (!error.empty()) return error;
+  }
+  for (std::size_t group = 0; group < GroupLabels(plan).size(); ++group) {
+    auto loaded = LoadScenario(arguments.scenario, overrides);
+    if (const auto* error = std::get_if<LoadError>(&loaded)) return error->message;
+    scenarios->push_back(std::move(std::get<Scenario>(loaded)));
+  }
+  return {};
+}
+
+std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
+                     std::vector<Scenario>* scenarios) {
+  plan->options = arguments.options;
+  plan->trials = arguments.trials;
+  if (!arguments.vary.empty()) {
+    if (std::string error = ParseVary(arguments.vary, &plan->vary.emplace()); !error.empty()) {
+      return error;
+    }
+  }
+  if (std::string error = LoadGroups(arguments, *plan, scenarios); !error.empty()) return error;
+  const Scenario& scenario = scenarios->front();
+  plan->scenario = fs::absolute(arguments.scenario).lexically_normal();
+  plan->name = arguments.name.empty() ? scenario.name : arguments.name;
+  plan->first_seed = arguments.first_seed.value_or(scenario.seed);
+  const auto others = static_cast<std::uint64_t>(plan->trials - 1);
+  if (plan->first_seed > std::numeric_limits<std::uint64_t>::max() - others) {
+    return fmt::format("--first-seed: {} leaves no room for {} seeds; begin with a smaller one",
+                       plan->first_seed, plan->trials);
+  }
+  return {};
+}
+
+// The programs of the clients, and the scripts that they are told to run.
+std::map<std::string, std::string> HashPrograms(const Scenario& scenario) {
+  std::map<std::string, std::string> hashes;
+  for (const RobotSpec& robot : scenario.robots) {
+    for (const ClientSpec& client : robot.clients) {
+      for (const std::string& word : client.command) {
+        const fs::path path = fs::path(client.working_directory) / word;
+        std::error_code error;
+        if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kLargestProgram) {
+          continue;
+        }
+        hashes[path.lexically_normal()] = HashOfFile(path);
+      }
+    }
+  }
+  return hashes;
+}
+
+// Where an address is not this machine's loopback, a network of its own does not have it.
+bool NeedsHostNetwork(const Scenario& scenario) {
+  const auto is_local = [](const UdpEndpoint& endpoint) {
+    return endpoint.host.rfind("127.", 0) == 0 || endpoint.host == "0.0.0.0";
+  };
+  return !std::all_of(scenario.sensors.begin(), scenario.sensors.end(),
+                      [&](const SensorChannelSpec& channel) { return is_local(channel.to); }) ||
+         !std::all_of(scenario.commands.begin(), scenario.commands.end(),
+                      [&](const CommandChannelSpec& channel) { return is_local(channel.listen); });
+}
+
+RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scenario) {
+  RunnerOptions options;
+  const std::vector<HostCpu> cpus = HostCpus();
+  const auto cpu_count = static_cast<int>(cpus.size());
+  options.whole_cores = arguments.options.accounting == "measured";
+  options.at_once = arguments.jobs > 0 ? arguments.jobs : RunsAtOnce(cpus, options.whole_cores);
+  if (options.at_once > cpu_count) {
+    fmt::print(stderr, "tcsim: --jobs {}: each run needs a processor of its own; {} at a time\n",
+               arguments.jobs, cpu_count);
+    options.at_once = cpu_count;
+  }
+  std::string why_not;
+  if (arguments.host_network) return options.at_once = 1, options;
+  if (NeedsHostNetwork(scenario)) {
+    why_not = "a channel's address is not on 127.0.0.1";
+  } else {
+    why_not = WhyNoOwnNetwork();
+  }
+  options.own_networks = why_not.empty();
+  if (!options.own_networks) {
+    fmt::print(stderr,
+               "tcsim: trials run one at a time, in this machine's network, since they cannot have "
+               "networks of their own ({})\n",
+               why_not);
+    options.at_once = 1;
+  }
+  return options;
+}
+
+// "seed 3", "seed 3 with drift=1ms"
+std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
+  const std::string seed = fmt::format("seed {}", trial.seed);
+  return plan.vary.has_value() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
+}
+
+// What each trial came to as it ends: for a log.
+void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress& progress) {
+  const std::string name = NameOf(plan, end.trial);
+  const int ended = progress.done + progress.failed;
+  if (end.outcome.has_value()) {
+    fmt::print("{}: done in {:.3f} s, {:.2f} x real time; {} of {}\n", name,
+               static_cast<double>(end.outcome->real_ns) * 1e-9,
+               static_cast<double>(end.outcome->virtual_ns) /
+                   static_cast<double>(std::max<std::int64_t>(1, end.outcome->real_ns)),
+               ended, progress.total);
+  } else {
+    fmt::print("{}: failed; {} of {}\n", name, ended, progress.total);
+  }
+  std::fflush(stdout);
+}
+
+// Runs what is not done yet, and says what all of it came to.
+int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
+            const std::vector<Scenario>& scenarios) {
+  std::vector<TrialsGroup> groups;
+  for (const std::string& label : GroupLabels(plan)) groups.push_back({label, plan.trials, {}});
+  std::vector<std::int64_t> duration_ns;
+  for (const Scenario& scenario : scenarios) duration_ns.push_back(scenario.duration.ns());
+  const std::string& folder = arguments.out;
+  std::vector<Trial> todo;
+  std::vector<TrialOutcome> earlier;
+  for (const Trial& trial : TrialsOf(plan)) {
+    const auto outcome = ReadOutcome(folder + "/" + trial.folder, trial.seed);
+    if (!outcome.has_value()) {
+      todo.push_back(trial);
+      continue;
+    }
+    earlier.push_back(*outcome);
+    groups[trial.group].done.push_back(*outcome);
+  }
+
+  RunnerReport report;
+  if (!todo.empty()) {
+    if (const std::string error = WhyNoRealTime(); !error.empty()) return Fail(error);
+    const RunnerOptions options = ShareMachine(arguments, scenarios.front());
+    if (!earlier.empty()) {
+      fmt::print("{} of {} trials are done already\n", earlier.size(),
+                 earlier.size() + todo.size());
+      std::fflush(stdout);
+    }
+    TerminalLine line;
+    RunnerEvents events;
+    if (TerminalLine::IsSeen()) {
+      events.on_progress = [&line](const TrialsProgress& progress) {
+        line.Show(ProgressLine(progress, TerminalLine::Columns()));
+      };
+    } else {
+      events.on_end = [&plan](const TrialEnd& end, const TrialsProgress& progress) {
+        PrintEnd(plan, end, progress);
+      };
+    }
+    events.on_stopping = [&line] {
+      line.Clear();
+      fmt::print(stderr, "tcsim: ending the running trials\n");
+    };
+    report = RunTrials(plan, folder, todo, earlier, duration_ns, options, events);
+    line.Clear();
+  }
+
+  int failed = 0;
+  for (const TrialEnd& end : report.ends) {
+    if (end.outcome.has_value()) groups[end.trial.group].done.push_back(*end.outcome);
+    failed += end.outcome.has_value() ? 0 : 1;
+  }
+  fmt::print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
+             TrialsTable(groups), arguments.out);
+  std::fflush(stdout);
+  for (const TrialEnd& end : report.ends) {
+    if (end.outcome.has_value()) continue;
+    fmt::print(stderr, "tcsim: {} failed: {} ({}/{}/tcsim.log)\n", NameOf(plan, end.trial), end.why,
+               arguments.out, end.trial.folder);
+  }
+  if (report.interrupted) {
+    return Fail(fmt::format("interrupted; {} of {} trials are done, and the same call goes on from "
+                            "there",
+                            earlier.size() + report.ends.size() - static_cast<std::size_t>(failed),
+                            earlier.size() + todo.size()),
+                kInterrupted);
+  }
+  return failed > 0 ? kClientFailed : kSucceeded;
+}
+
+}  // namespace
+
+int TrialsCommand(const TrialsArguments& arguments) {
+  const auto all = [&arguments] {
+    TrialsPlan plan;
+    std::vector<Scenario> scenarios;
+    if (const std::string error = MakePlan(arguments, &plan, &scenarios); !error.empty()) {
+      return Fail(error);
+    }
+    ResultFolder folder;
+    const TrialsRecord record{plan, HashOfFile(plan.scenario), HashPrograms(scenarios.front())};
+    if (const std::string error =
+            EnterResultFolder(arguments.out, arguments.restart, record, &folder);
+        !error.empty()) {
+      return Fail(error);
+    }
+    if (folder.has_trials && !folder.changed_program.empty()) {
+      fmt::print(stderr,
+                 "tcsim: warning: {} has changed since the first trials in '{}'; --restart runs "
+                 "them all as it is now\n",
+                 folder.changed_program, arguments.out);
+    }
+    return RunPlan(arguments, plan, scenarios);
+  };
+  return RunGuarded(all, {.stop_within_s = kStopWithinS});
+}
+
+}  // namespace tcs

@@ -1,0 +1,24 @@
+// `tcsim trials`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "coordinator/trials/plan.h"
+
+namespace tcs {
+
+struct TrialsArguments {
+  std::string scenario, out = "trials", name, vary;
+  int trials = 0;
+  int jobs = 0;  // 0: as many as there is room for
+  std::optional<std::uint64_t> first_seed;
+  bool restart = false, host_network = false;
+  TrialOptions options;
+};
+
+// The exit status. Guards itself: whatever dies, no run of it is left.
+int TrialsCommand(const TrialsArguments& arguments);
+
+}  // namespace tcs

@@ -1,0 +1,44 @@
+#include "coordinator/cli/trials_options.h"
+
+#include <CLI/CLI.hpp>
+#include <limits>
+
+namespace tcs {
+
+const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
+  constexpr int kMost = 1'000'000;
+  TrialOptions& options = arguments->options;
+  CLI::App* trials =
+      app->add_subcommand("trials", "run a scenario with many seeds, and again where it ended");
+  trials->add_option("scenario", arguments->scenario, "the YAML file (docs/SCENARIO.md)")
+      ->required();
+  trials->add_option("--trials", arguments->trials, "how many, each with a seed of its own")
+      ->required()
+      ->check(CLI::Range(1, kMost));
+  trials->add_option("--first-seed", arguments->first_seed, "the scenario's unless told");
+  trials->add_option("--out", arguments->out, "folder for all of them (docs/TRIALS.md)")
+      ->capture_default_str();
+  trials
+      ->add_option("--jobs", arguments->jobs,
+                   "how many at once; one for each free processor unless told")
+      ->check(CLI::Range(1, kMost));
+  trials->add_option("--vary", arguments->vary,
+                     "KEY=V1,V2,...: all trials for each of these values of a key of the scenario");
+  trials->add_option("--name", arguments->name, "what the trials are called in a report");
+  trials->add_flag("--restart", arguments->restart, "throw away the trials that the folder has");
+  trials->add_flag("--host-network", arguments->host_network,
+                   "one at a time, in this machine's network, not each in one of its own");
+  trials->add_option("--duration", options.duration, "of virtual time, such as 20s");
+  trials->add_option("--drift", options.drift, "how far progress may drift apart, such as 1ms");
+  trials->add_option("--set", options.set, "KEY=VALUE: another value for a key of the scenario")
+      ->take_all()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  trials->add_option("--sync", options.sync, "as for run")
+      ->check(CLI::IsMember({"consistent", "callback"}));
+  trials->add_option("--accounting", options.accounting, "as for run")
+      ->check(CLI::IsMember({"measured", "fixed"}));
+  return trials;
+}
+
+}  // namespace tcs

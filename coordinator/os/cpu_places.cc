@@ -1,0 +1,64 @@
+#include "coordinator/os/cpu_places.h"
+
+#include <algorithm>
+#include <fstream>
+
+namespace tcs {
+
+namespace {
+
+// One of each core, but not of the first one's; all but the first, if there is no other core. What
+// is left is for runs; without the first, a claim would leave out another one (cpu_claim.h), so it
+// comes along.
+std::vector<int> OneOfEachCore(const std::vector<HostCpu>& cpus) {
+  std::vector<int> chosen;
+  std::vector<std::string> taken{cpus.front().core};
+  for (const HostCpu& cpu : cpus) {
+    if (std::find(taken.begin(), taken.end(), cpu.core) != taken.end()) continue;
+    taken.push_back(cpu.core);
+    chosen.push_back(cpu.number);
+  }
+  if (chosen.empty() && cpus.size() > 1) chosen.push_back(cpus.back().number);
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<HostCpu> HostCpus() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof allowed, &allowed);
+  std::vector<HostCpu> cpus;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &allowed)) continue;
+    const std::string number = std::to_string(cpu);
+    std::ifstream file("/sys/devices/system/cpu/cpu" + number + "/topology/thread_siblings_list");
+    std::string siblings;
+    cpus.push_back({cpu, file >> siblings ? siblings : number});
+  }
+  if (cpus.empty()) cpus.push_back({0, "0"});
+  return cpus;
+}
+
+int RunsAtOnce(const std::vector<HostCpu>& cpus, bool whole_cores) {
+  const std::size_t runs = whole_cores ? OneOfEachCore(cpus).size() : cpus.size() - 1;
+  return static_cast<int>(std::max<std::size_t>(1, runs));
+}
+
+cpu_set_t PlaceOfRun(const std::vector<HostCpu>& cpus, bool whole_cores, int runs, int index) {
+  cpu_set_t place;
+  CPU_ZERO(&place);
+  const auto allow = [&place](int cpu) { CPU_SET(static_cast<std::size_t>(cpu), &place); };
+  const int first = cpus.front().number;
+  allow(first);
+  // The one run too many has the first CPU to itself.
+  if (index + 1 >= static_cast<int>(cpus.size())) return place;
+  if (whole_cores && runs <= RunsAtOnce(cpus, true)) {
+    for (const int cpu : OneOfEachCore(cpus)) allow(cpu);
+  } else {
+    for (const HostCpu& cpu : cpus) allow(cpu.number);
+  }
+  return place;
+}
+
+}  // namespace tcs

@@ -1,0 +1,68 @@
+#include "coordinator/os/files.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace tcs {
+
+namespace {
+
+bool WriteAll(int fd, const std::string& text) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t n = write(fd, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string WriteWhole(const std::string& path, const std::string& text) {
+  const std::string unfinished = path + ".new";
+  const int fd = open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // Without the fsync a power cut may leave the new name with nothing in it.
+  bool done = fd >= 0 && WriteAll(fd, text) && fsync(fd) == 0;
+  done = fd >= 0 && close(fd) == 0 && done;
+  if (done && std::rename(unfinished.c_str(), path.c_str()) == 0) return {};
+  return path + " cannot be written: " + strerror(errno);
+}
+
+std::string MakeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!error && std::filesystem::is_directory(path)) return {};
+  return "the folder '" + path +
+         "' cannot be made: " + (error ? error.message() : "a file has that name") +
+         "; choose another one with --out";
+}
+
+FolderLock::FolderLock(const std::string& path)
+    : fd_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  is_ours_ = fd_ < 0 || flock(fd_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), is_ours_(std::exchange(other.is_ours_, false)) {}
+
+FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(is_ours_, other.is_ours_);
+  return *this;
+}
+
+FolderLock::~FolderLock() {
+  if (fd_ >= 0) close(fd_);
+}
+
+}  // namespace tcs

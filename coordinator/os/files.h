@@ -1,0 +1,34 @@
+// Files and folders that several processes look at.
+#pragma once
+
+#include <string>
+
+namespace tcs {
+
+// Whoever reads `path` finds all of the text or what was there before, whatever dies meanwhile.
+// Empty on success, else one sentence.
+[[nodiscard]] std::string WriteWhole(const std::string& path, const std::string& text);
+
+// Makes the folder and those above it. Empty on success, else one sentence that names --out.
+[[nodiscard]] std::string MakeFolder(const std::string& path);
+
+// A folder that one process at a time works in; free again when its holder ends, however that
+// happens.
+class FolderLock {
+ public:
+  FolderLock() = default;
+  // Does not wait. Where the file system knows no locks, the folder counts as ours.
+  explicit FolderLock(const std::string& path);
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&& other) noexcept;
+  ~FolderLock();
+
+  // False while another process holds it.
+  bool IsOurs() const { return is_ours_; }
+
+ private:
+  int fd_ = -1;
+  bool is_ours_ = false;
+};
+
+}  // namespace tcs

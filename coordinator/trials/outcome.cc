@@ -1,0 +1,56 @@
+#include "coordinator/trials/outcome.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace tcs {
+
+std::optional<TrialOutcome> OutcomeFromJson(const std::string& text, std::uint64_t seed) {
+  try {
+    const auto json = nlohmann::json::parse(text);
+    if (json.at("interrupted").get<bool>() || json.at("seed").get<std::uint64_t>() != seed) {
+      return {};
+    }
+    // A run without clients has none of this.
+    for (const auto& client : json.value("clients", nlohmann::json::object())) {
+      if (client.at("ended_at_ns").get<std::int64_t>() >= 0 &&
+          client.at("wait_status").get<int>() != 0) {
+        return {};
+      }
+    }
+    return TrialOutcome{json.at("virtual_ns"), json.at("real_ns"), json.at("drift_ns"),
+                        json.at("staleness_ns"), json.at("overhead_percent")};
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+}
+
+std::string ReadText(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::optional<TrialOutcome> ReadOutcome(const std::string& folder, std::uint64_t seed) {
+  return OutcomeFromJson(ReadText(folder + "/summary.json"), seed);
+}
+
+std::string LastWords(const std::string& said) {
+  const std::string mark = "tcsim: ", warning = "tcsim: warning: ",
+                    waiting = "tcsim: other runs of tcsim have";
+  std::string sentence, last;
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    last = line;
+    const bool is_sentence = line.compare(0, mark.size(), mark) == 0 &&
+                             line.compare(0, warning.size(), warning) != 0 &&
+                             line.compare(0, waiting.size(), waiting) != 0;
+    if (is_sentence) sentence = line.substr(mark.size());
+  }
+  return sentence.empty() ? last : sentence;
+}
+
+}  // namespace tcs

@@ -1,0 +1,100 @@
+#include "coordinator/trials/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace tcs {
+
+namespace {
+
+// A value as the name of one folder, which is neither hidden nor above.
+std::string FolderOf(const std::string& value) {
+  std::string name = value;
+  for (char& c : name) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
+                          c == '_' || c == '+' || c == '-';
+    if (!is_plain) c = '_';
+  }
+  if (name[0] == '.') name[0] = '_';
+  return name;
+}
+
+std::vector<std::string> Split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Trial> TrialsOf(const TrialsPlan& plan) {
+  std::vector<Trial> trials;
+  const std::size_t groups = plan.vary.has_value() ? plan.vary->values.size() : 1;
+  for (int i = 0; i < plan.trials; ++i) {
+    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
+    for (std::size_t group = 0; group < groups; ++group) {
+      std::string folder = fmt::format("seed-{:04}", seed);
+      if (plan.vary.has_value()) folder = FolderOf(plan.vary->values[group]) + "/" + folder;
+      trials.push_back({seed, group, folder});
+    }
+  }
+  return trials;
+}
+
+std::vector<std::string> GroupLabels(const TrialsPlan& plan) {
+  if (!plan.vary.has_value()) return {plan.name};
+  std::vector<std::string> labels;
+  for (const std::string& value : plan.vary->values) labels.push_back(plan.vary->key + "=" + value);
+  return labels;
+}
+
+std::vector<std::string> SettingsOf(const TrialsPlan& plan, std::size_t group) {
+  std::vector<std::string> settings = plan.options.set;
+  if (plan.vary.has_value()) settings.push_back(GroupLabels(plan)[group]);
+  return settings;
+}
+
+std::vector<std::string> RunArgumentsOf(const TrialsPlan& plan, const Trial& trial) {
+  const TrialOptions& options = plan.options;
+  std::vector<std::string> words{"run", plan.scenario, "--seed", std::to_string(trial.seed)};
+  const auto add = [&words](const std::string& option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--sync", options.sync);
+  add("--accounting", options.accounting);
+  add("--duration", options.duration);
+  add("--drift", options.drift);
+  for (const std::string& setting : SettingsOf(plan, trial.group)) add("--set", setting);
+  return words;
+}
+
+std::string ParseVary(const std::string& text, Vary* vary) {
+  const std::size_t equals = text.find('=');
+  const bool has_key = equals != std::string::npos && equals > 0;
+  if (has_key) *vary = {text.substr(0, equals), Split(text.substr(equals + 1))};
+  if (!has_key || std::count(vary->values.begin(), vary->values.end(), "") > 0) {
+    return "--vary: '" + text + "' is not a key and its values; write it like drift=1ms,10ms";
+  }
+  if (vary->key == "seed") {
+    return "--vary: the seeds are set by --trials and --first-seed; vary another key";
+  }
+  std::vector<std::string> folders;
+  for (const std::string& value : vary->values) {
+    if (std::count(folders.begin(), folders.end(), FolderOf(value)) > 0) {
+      return "--vary: '" + value +
+             "' would have the same folder as a value before it; leave it out";
+    }
+    folders.push_back(FolderOf(value));
+  }
+  return {};
+}
+
+}  // namespace tcs

@@ -1,0 +1,46 @@
+// How far the trials are, and what they came to, in words. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/trials/outcome.h"
+
+namespace tcs {
+
+struct TrialsProgress {
+  struct Running {
+    double seconds = 0.0;   // since its start
+    double fraction = 0.0;  // of its virtual time
+  };
+  int total = 0, done = 0, failed = 0;
+  std::vector<Running> running;
+  std::vector<double> finished_seconds;  // how long the trials took that are done
+  double elapsed_seconds = 0.0;
+  int at_once = 1;
+};
+
+// What is still to be waited for; none while nothing is known.
+std::optional<double> RemainingSeconds(const TrialsProgress& progress);
+
+// One line with a bar, of at most `columns` bytes.
+std::string ProgressLine(const TrialsProgress& progress, std::size_t columns);
+
+// Outcomes of the trials of one value that are done.
+struct TrialsGroup {
+  std::string label;
+  int trials = 0;
+  std::vector<TrialOutcome> done;
+};
+
+// One row for each group, with a head.
+std::string TrialsTable(const std::vector<TrialsGroup>& groups);
+
+// "1:02:03", "12:34", "5 s"
+std::string AsTime(double seconds);
+// "0 ns", "1.000 ms", "168.000 s"
+std::string AsSpan(std::int64_t ns);
+
+}  // namespace tcs

@@ -1,0 +1,23 @@
+// The folder that all trials of a plan go to: DIR/trials.json, DIR/[VALUE/]seed-0001/...
+#pragma once
+
+#include <string>
+
+#include "coordinator/os/files.h"
+#include "coordinator/trials/record.h"
+
+namespace tcs {
+
+struct ResultFolder {
+  FolderLock lock;              // one `tcsim trials` at a time
+  bool has_trials = false;      // of an earlier call, which this one goes on with
+  std::string changed_program;  // since those; empty if none is known to have changed
+};
+
+// Makes or takes up the folder `path` for the trials of `record`, and writes its trials.json; with
+// `restart` trials that it holds are removed, and nothing else. Empty on success, else one
+// sentence, and nothing has changed.
+[[nodiscard]] std::string EnterResultFolder(const std::string& path, bool restart,
+                                            TrialsRecord record, ResultFolder* folder);
+
+}  // namespace tcs

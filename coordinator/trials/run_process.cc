@@ -1,0 +1,111 @@
+#include "coordinator/trials/run_process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/own_network.h"
+
+namespace tcs {
+
+namespace {
+
+// The child's half.
+[[noreturn]] void Become(const RunProcessRequest& request, char** argv, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(127);
+  const int log = open(request.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0666);
+  const int null = open("/dev/null", O_RDONLY);
+  if (log < 0 || null < 0) _exit(127);
+  dup2(null, STDIN_FILENO);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  close(null);
+  close(log);
+  if (request.own_network) {
+    if (const std::string why = EnterOwnNetwork(); !why.empty()) {
+      fprintf(stderr,
+              "tcsim: this trial cannot have a network of its own: %s; try --host-network\n",
+              why.c_str());
+      _exit(2);
+    }
+  }
+  sched_setaffinity(0, sizeof request.cpus, &request.cpus);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv("/proc/self/exe", argv);
+  fprintf(stderr, "tcsim: tcsim itself cannot be started: %s\n", strerror(errno));
+  _exit(2);
+}
+
+}  // namespace
+
+std::string RunProcess::Start(const RunProcessRequest& request, RunProcess* process) {
+  RunProcess started;
+  // Inherited, so without MFD_CLOEXEC: the run sets that itself, before it has clients.
+  started.progress_ = memfd_create("tcs-progress", 0);
+  if (started.progress_ < 0) return strerror(errno);
+  std::vector<std::string> words{"tcsim"};
+  words.insert(words.end(), request.arguments.begin(), request.arguments.end());
+  words.insert(words.end(), {"--progress-fd", std::to_string(started.progress_)});
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  started.pid_ = fork();
+  if (started.pid_ == 0) Become(request, argv.data(), parent);
+  if (started.pid_ < 0) return strerror(errno);
+  // Not for the runs that come after it.
+  fcntl(started.progress_, F_SETFD, FD_CLOEXEC);
+  started.pidfd_ = OpenPidfd(started.pid_);
+  if (started.pidfd_ < 0) return strerror(errno);
+  *process = std::move(started);
+  return {};
+}
+
+RunProcess::RunProcess(RunProcess&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)),
+      pidfd_(std::exchange(other.pidfd_, -1)),
+      progress_(std::exchange(other.progress_, -1)) {}
+
+RunProcess& RunProcess::operator=(RunProcess&& other) noexcept {
+  std::swap(pid_, other.pid_);
+  std::swap(pidfd_, other.pidfd_);
+  std::swap(progress_, other.progress_);
+  return *this;
+}
+
+RunProcess::~RunProcess() {
+  EndInOrder();
+  if (pidfd_ >= 0) close(pidfd_);
+  if (progress_ >= 0) close(progress_);
+}
+
+std::int64_t RunProcess::virtual_ns() const {
+  std::int64_t ns = 0;
+  return pread(progress_, &ns, sizeof ns, 0) == sizeof ns ? ns : 0;
+}
+
+void RunProcess::EndInOrder() const {
+  if (pid_ > 0) kill(pid_, SIGTERM);
+}
+
+int RunProcess::Reap() {
+  int status = -1;
+  while (pid_ > 0 && waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+  return status;
+}
+
+}  // namespace tcs
