@@ -1,0 +1,72 @@
+#include "coordinator/os/files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace tcs {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class FilesTest : public ::testing::Test {
+ protected:
+  FilesTest() {
+    std::string made = ::testing::TempDir() + "files.XXXXXX";
+    folder_ = mkdtemp(made.data());
+  }
+  ~FilesTest() override { fs::remove_all(folder_); }
+  static std::string TextOf(const std::string& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  std::string folder_;
+};
+
+TEST_F(FilesTest, AWholeFileTakesThePlaceOfTheOldOne) {
+  const std::string path = folder_ + "/file";
+  EXPECT_EQ(WriteWhole(path, "a long first text"), "");
+  // Who has it open goes on reading what it was.
+  std::ifstream old(path);
+  EXPECT_EQ(WriteWhole(path, "second"), "");
+  std::ostringstream read;
+  read << old.rdbuf();
+  EXPECT_EQ(read.str(), "a long first text");
+  EXPECT_EQ(TextOf(path), "second");
+  EXPECT_FALSE(fs::exists(path + ".new"));
+}
+
+TEST_F(FilesTest, WhatCannotBeWrittenIsNamed) {
+  EXPECT_THAT(WriteWhole(folder_ + "/none/file", "x"), HasSubstr("/none/file cannot be written"));
+}
+
+TEST_F(FilesTest, AFileInTheWayOfAFolderIsNamed) {
+  EXPECT_EQ(MakeFolder(folder_ + "/a/b"), "");
+  EXPECT_EQ(MakeFolder(folder_ + "/a/b"), "");
+  ASSERT_EQ(WriteWhole(folder_ + "/file", ""), "");
+  EXPECT_THAT(MakeFolder(folder_ + "/file"), HasSubstr("--out"));
+}
+
+TEST_F(FilesTest, AFolderIsHeldByOneUntilItLetsGo) {
+  FolderLock first(folder_);
+  EXPECT_TRUE(first.IsOurs());
+  EXPECT_FALSE(FolderLock(folder_).IsOurs());
+  const FolderLock moved = std::move(first);
+  EXPECT_FALSE(FolderLock(folder_).IsOurs());
+  first = FolderLock(folder_ + "/none");
+  EXPECT_TRUE(moved.IsOurs());
+}
+
+TEST_F(FilesTest, AFolderThatWasLetGoIsFree) {
+  { const FolderLock first(folder_); }
+  EXPECT_TRUE(FolderLock(folder_).IsOurs());
+}
+
+}  // namespace
+}  // namespace tcs

@@ -1,0 +1,100 @@
+#include "coordinator/trials/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tcs {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TrialsPlan ThreeTrials() {
+  TrialsPlan plan;
+  plan.scenario = "/home/me/chase.yaml";
+  plan.name = "chase";
+  plan.trials = 3;
+  return plan;
+}
+
+std::vector<std::string> FoldersOf(const TrialsPlan& plan) {
+  std::vector<std::string> folders;
+  for (const Trial& trial : TrialsOf(plan)) folders.push_back(trial.folder);
+  return folders;
+}
+
+TEST(Plan, TrialsHaveConsecutiveSeeds) {
+  TrialsPlan plan = ThreeTrials();
+  plan.first_seed = 9;
+  EXPECT_THAT(FoldersOf(plan), ElementsAre("seed-0009", "seed-0010", "seed-0011"));
+  EXPECT_EQ(TrialsOf(plan)[2].seed, 11u);
+}
+
+TEST(Plan, TheLargestSeedsFitIntoAName) {
+  TrialsPlan plan = ThreeTrials();
+  plan.trials = 1;
+  plan.first_seed = ~std::uint64_t{0};
+  EXPECT_THAT(FoldersOf(plan), ElementsAre("seed-18446744073709551615"));
+}
+
+TEST(Plan, EachValueHasAllSeedsAndTheValuesTakeTurns) {
+  TrialsPlan plan = ThreeTrials();
+  plan.trials = 2;
+  plan.vary = {"drift", {"1ms", "2ms"}};
+  EXPECT_THAT(FoldersOf(plan),
+              ElementsAre("1ms/seed-0001", "2ms/seed-0001", "1ms/seed-0002", "2ms/seed-0002"));
+  EXPECT_THAT(GroupLabels(plan), ElementsAre("drift=1ms", "drift=2ms"));
+  EXPECT_EQ(TrialsOf(plan)[3].group, 1u);
+}
+
+TEST(Plan, AValueIsAFolderInsideTheResults) {
+  TrialsPlan plan = ThreeTrials();
+  plan.trials = 1;
+  plan.vary = {"key", {"../../etc", ".", "a b", "-1e3"}};
+  EXPECT_THAT(FoldersOf(plan),
+              ElementsAre("_._.._etc/seed-0001", "_/seed-0001", "a_b/seed-0001", "-1e3/seed-0001"));
+}
+
+TEST(Plan, ARunIsToldWhatTheTrialsWere) {
+  TrialsPlan plan = ThreeTrials();
+  plan.options = {"callback", "fixed", "20s", "", {"a=1", "b=2"}};
+  EXPECT_THAT(
+      RunArgumentsOf(plan, TrialsOf(plan)[1]),
+      ElementsAre("run", "/home/me/chase.yaml", "--seed", "2", "--sync", "callback", "--accounting",
+                  "fixed", "--duration", "20s", "--set", "a=1", "--set", "b=2"));
+}
+
+TEST(Plan, ARunIsToldItsValue) {
+  TrialsPlan plan = ThreeTrials();
+  plan.vary = {"robots.predator.cpu.speed", {"0.25", "8"}};
+  const std::vector<std::string> words = RunArgumentsOf(plan, TrialsOf(plan)[1]);
+  EXPECT_EQ(words.back(), "robots.predator.cpu.speed=8");
+  EXPECT_EQ(words[words.size() - 2], "--set");
+}
+
+TEST(Vary, IsAKeyAndItsValues) {
+  Vary vary;
+  ASSERT_EQ(ParseVary("drift=1ms,10ms", &vary), "");
+  EXPECT_EQ(vary.key, "drift");
+  EXPECT_THAT(vary.values, ElementsAre("1ms", "10ms"));
+}
+
+TEST(Vary, AnythingElseIsRefusedWithAnExample) {
+  for (const char* text : {"drift", "drift=", "=1ms", "drift=1ms,", "drift=,1ms", ""}) {
+    Vary vary;
+    EXPECT_THAT(ParseVary(text, &vary), HasSubstr("write it like drift=1ms,10ms")) << text;
+  }
+}
+
+TEST(Vary, TheSeedIsNotVariedTwice) {
+  Vary vary;
+  EXPECT_THAT(ParseVary("seed=1,2", &vary), HasSubstr("--first-seed"));
+}
+
+TEST(Vary, TwoValuesDoNotShareAFolder) {
+  Vary vary;
+  EXPECT_THAT(ParseVary("key=a/b,a:b", &vary), HasSubstr("'a:b' would have the same folder"));
+}
+
+}  // namespace
+}  // namespace tcs
