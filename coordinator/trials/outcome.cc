@@ -40,15 +40,15 @@ std::optional<TrialOutcome> ReadOutcome(const std::string& folder, std::uint64_t
 std::string LastWords(const std::string& said) {
   const std::string mark = "tcsim: ", warning = "tcsim: warning: ",
                     waiting = "tcsim: other runs of tcsim have";
+  const auto begins = [](const std::string& line, const std::string& with) {
+    return line.compare(0, with.size(), with) == 0;
+  };
   std::string sentence, last;
   std::istringstream lines(said);
   for (std::string line; std::getline(lines, line);) {
-    if (line.empty()) continue;
+    if (line.empty() || begins(line, waiting)) continue;
     last = line;
-    const bool is_sentence = line.compare(0, mark.size(), mark) == 0 &&
-                             line.compare(0, warning.size(), warning) != 0 &&
-                             line.compare(0, waiting.size(), waiting) != 0;
-    if (is_sentence) sentence = line.substr(mark.size());
+    if (begins(line, mark) && !begins(line, warning)) sentence = line.substr(mark.size());
   }
   return sentence.empty() ? last : sentence;
 }

@@ -59,5 +59,10 @@ TEST(LastWords, AreTheLastLineWhereThereIsNoSentence) {
   EXPECT_EQ(LastWords(""), "");
 }
 
+TEST(LastWords, ARunThatOnlyWaitedForAProcessorSaidNothing) {
+  EXPECT_EQ(LastWords("tcsim: other runs of tcsim have the processors; waiting for one of them\n"),
+            "");
+}
+
 }  // namespace
 }  // namespace tcs
