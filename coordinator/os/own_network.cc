@@ -3,12 +3,16 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <net/if.h>
+#include <net/route.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <cstdint>
 
 #include "coordinator/os/host.h"
 
@@ -35,15 +39,30 @@ bool MakeNetwork() {
          Put("/proc/self/gid_map", group + " " + group + " 1");
 }
 
-// With it come 127.0.0.1 and its routes.
+// With it come 127.0.0.1 and its routes. Multicast goes there, too: programs that find each other
+// by it have no other interface.
 bool RaiseLoopback() {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return false;
   ifreq request{};
   strcpy(request.ifr_name, "lo");
   bool up = ioctl(fd, SIOCGIFFLAGS, &request) == 0;
-  request.ifr_flags |= IFF_UP;
+  request.ifr_flags = static_cast<short>(request.ifr_flags | IFF_UP | IFF_MULTICAST);
   up = up && ioctl(fd, SIOCSIFFLAGS, &request) == 0;
+  rtentry route{};
+  const auto address = [](std::uint32_t host_order) {
+    sockaddr_in in{};
+    in.sin_family = AF_INET;
+    in.sin_addr.s_addr = htonl(host_order);
+    sockaddr result;
+    memcpy(&result, &in, sizeof result);
+    return result;
+  };
+  route.rt_dst = address(0xe0000000);  // 224.0.0.0/4
+  route.rt_genmask = address(0xf0000000);
+  route.rt_flags = RTF_UP;
+  route.rt_dev = request.ifr_name;
+  up = up && ioctl(fd, SIOCADDRT, &route) == 0;
   close(fd);
   return up;
 }

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,6 +65,25 @@ TEST_F(OwnNetwork, DatagramsArriveByLoopback) {
               const bool sent = sendto(from, "x", 1, 0, reinterpret_cast<sockaddr*>(&address),
                                        sizeof address) == 1;
               return sent && recv(to, &got, 1, MSG_DONTWAIT) == 1 && got == 'x' ? 7 : 8;
+            }),
+            7);
+}
+
+TEST_F(OwnNetwork, MulticastFindsWhoeverJoinsWithoutNamingAnInterface) {
+  EXPECT_EQ(InOwnNetwork([] {
+              const int to = socket(AF_INET, SOCK_DGRAM, 0), from = socket(AF_INET, SOCK_DGRAM, 0);
+              sockaddr_in address{};
+              address.sin_family = AF_INET;
+              address.sin_port = htons(27499);
+              bind(to, reinterpret_cast<sockaddr*>(&address), sizeof address);
+              inet_pton(AF_INET, "239.255.0.1", &address.sin_addr);
+              const ip_mreq group{address.sin_addr, {}};
+              if (setsockopt(to, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) != 0)
+                return 8;
+              char got = 0;
+              const bool sent = sendto(from, "x", 1, 0, reinterpret_cast<sockaddr*>(&address),
+                                       sizeof address) == 1;
+              return sent && recv(to, &got, 1, MSG_DONTWAIT) == 1 && got == 'x' ? 7 : 9;
             }),
             7);
 }
