@@ -1,4 +1,5 @@
 // tcsim: the command line.
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -106,6 +107,8 @@ int main(int argc, char** argv) {
     return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
   }
   if (seeded->count() > 0) arguments.seed = seed;
+  // A trial's run was started as /proc/self/exe, and would be called "exe".
+  if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()

@@ -59,6 +59,7 @@ std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
       return error;
     }
   }
+  if (std::string error = WhatHidesValues(*plan); !error.empty()) return error;
   if (std::string error = LoadGroups(arguments, *plan, scenarios); !error.empty()) return error;
   const Scenario& scenario = scenarios->front();
   plan->scenario = fs::absolute(arguments.scenario).lexically_normal();

@@ -97,4 +97,20 @@ std::string ParseVary(const std::string& text, Vary* vary) {
   return {};
 }
 
+std::string WhatHidesValues(const TrialsPlan& plan) {
+  if (!plan.vary.has_value()) return {};
+  const std::string& key = plan.vary->key;
+  const auto is_key = [&key](const std::string& setting) {
+    return setting.compare(0, key.size() + 1, key + "=") == 0;
+  };
+  const auto& set = plan.options.set;
+  std::string option;
+  if (key == "duration" && !plan.options.duration.empty()) option = "--duration";
+  if (key == "drift" && !plan.options.drift.empty()) option = "--drift";
+  if (std::any_of(set.begin(), set.end(), is_key)) option = "--set";
+  return option.empty() ? ""
+                        : fmt::format("--vary {} and {} set the same thing; leave one of them out",
+                                      key, option);
+}
+
 }  // namespace tcs

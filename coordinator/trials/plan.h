@@ -48,6 +48,9 @@ std::vector<std::string> RunArgumentsOf(const TrialsPlan& plan, const Trial& tri
 // From "KEY=V1,V2"; the sentence if it is not that, or its values cannot tell their folders apart.
 [[nodiscard]] std::string ParseVary(const std::string& text, Vary* vary);
 
+// Where an option would outdo the values; empty if none does.
+[[nodiscard]] std::string WhatHidesValues(const TrialsPlan& plan);
+
 // The KEY=VALUE texts that hold for a group: of the options, and its value.
 std::vector<std::string> SettingsOf(const TrialsPlan& plan, std::size_t group);
 

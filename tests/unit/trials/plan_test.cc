@@ -96,5 +96,18 @@ TEST(Vary, TwoValuesDoNotShareAFolder) {
   EXPECT_THAT(ParseVary("key=a/b,a:b", &vary), HasSubstr("'a:b' would have the same folder"));
 }
 
+TEST(Vary, AnOptionThatWouldOutdoTheValuesIsNamed) {
+  TrialsPlan plan = ThreeTrials();
+  plan.options = {"consistent", "measured", "20s", "", {"seed=3", "drifting=1"}};
+  plan.vary = {"drift", {"1ms"}};
+  EXPECT_EQ(WhatHidesValues(plan), "");
+  plan.options.drift = "2ms";
+  EXPECT_THAT(WhatHidesValues(plan), HasSubstr("--vary drift and --drift set the same"));
+  plan.vary->key = "duration";
+  EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --duration set the same"));
+  plan.vary->key = "seed";
+  EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --set set the same"));
+}
+
 }  // namespace
 }  // namespace tcs
