@@ -35,6 +35,11 @@ refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
 refused 'call-cost.*above 0' "$tcsim" exec --call-cost 0ns -- true
 refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
 
+mkdir "$out/busy"
+flock --no-fork "$out/busy" sleep 60 &
+for _ in $(seq 100); do flock -n "$out/busy" true || break; sleep 0.05; done
+refused "another run writes to the folder '$out/busy'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/busy"
+
 # The rest needs somebody without rights.
 ((EUID == 0)) || exit 0
 install -D -m 755 "$tcsim" "$out/bin/tcsim"
