@@ -137,19 +137,23 @@ std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
   return plan.vary.has_value() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
 }
 
-// What each trial came to as it ends: for a log.
-void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress& progress) {
-  const std::string name = NameOf(plan, end.trial);
-  const int ended = progress.done + progress.failed;
-  if (end.outcome.has_value()) {
-    fmt::print("{}: done in {:.3f} s, {:.2f} x real time; {} of {}\n", name,
-               static_cast<double>(end.outcome->real_ns) * 1e-9,
-               static_cast<double>(end.outcome->virtual_ns) /
-                   static_cast<double>(std::max<std::int64_t>(1, end.outcome->real_ns)),
-               ended, progress.total);
-  } else {
-    fmt::print("{}: failed; {} of {}\n", name, ended, progress.total);
-  }
+// "seed 3 failed: its last words (where the log is)"
+std::string Failure(const TrialsPlan& plan, const TrialEnd& end, const std::string& folder) {
+  return fmt::format("{} failed: {} ({}/{}/tcsim.log)", NameOf(plan, end.trial), end.why, folder,
+                     end.trial.folder);
+}
+
+// What a trial came to, as it ends: for a log.
+void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress& progress,
+              const std::string& folder) {
+  const std::string how =
+      end.outcome.has_value()
+          ? fmt::format("{}: done in {:.3f} s, {:.2f} x real time", NameOf(plan, end.trial),
+                        static_cast<double>(end.outcome->real_ns) * 1e-9,
+                        static_cast<double>(end.outcome->virtual_ns) /
+                            static_cast<double>(std::max<std::int64_t>(1, end.outcome->real_ns)))
+          : Failure(plan, end, folder);
+  fmt::print("{}; {} of {}\n", how, progress.done + progress.failed, progress.total);
   std::fflush(stdout);
 }
 
@@ -188,9 +192,14 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
       events.on_progress = [&line](const TrialsProgress& progress) {
         line.Show(ProgressLine(progress, TerminalLine::Columns()));
       };
+      events.on_end = [&](const TrialEnd& end, const TrialsProgress&) {
+        if (end.outcome.has_value()) return;
+        line.Clear();
+        fmt::print(stderr, "tcsim: {}\n", Failure(plan, end, folder));
+      };
     } else {
-      events.on_end = [&plan](const TrialEnd& end, const TrialsProgress& progress) {
-        PrintEnd(plan, end, progress);
+      events.on_end = [&](const TrialEnd& end, const TrialsProgress& progress) {
+        PrintEnd(plan, end, progress, folder);
       };
     }
     events.on_stopping = [&line] {
@@ -210,9 +219,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
              TrialsTable(groups), arguments.out);
   std::fflush(stdout);
   for (const TrialEnd& end : report.ends) {
-    if (end.outcome.has_value()) continue;
-    fmt::print(stderr, "tcsim: {} failed: {} ({}/{}/tcsim.log)\n", NameOf(plan, end.trial), end.why,
-               arguments.out, end.trial.folder);
+    if (!end.outcome.has_value()) fmt::print(stderr, "tcsim: {}\n", Failure(plan, end, folder));
   }
   if (report.interrupted) {
     return Fail(fmt::format("interrupted; {} of {} trials are done, and the same call goes on from "

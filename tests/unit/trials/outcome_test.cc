@@ -15,7 +15,7 @@ std::string Summary(const char* interrupted, const char* seed, const char* ended
          ended + R"(, "wait_status": )" + status + "}}}";
 }
 
-TEST(Outcome, IsReadFromASummary) {
+TEST(TrialOutcomeTest, IsReadFromASummary) {
   const auto outcome = OutcomeFromJson(Summary("false", "7", "-1", "0"), 7);
   ASSERT_TRUE(outcome.has_value());
   EXPECT_EQ(outcome->virtual_ns, 20);
@@ -25,20 +25,20 @@ TEST(Outcome, IsReadFromASummary) {
   EXPECT_EQ(outcome->overhead_percent, 1.5);
 }
 
-TEST(Outcome, AClientMayEndEarlyIfItEndsWell) {
+TEST(TrialOutcomeTest, AClientMayEndEarlyIfItEndsWell) {
   EXPECT_TRUE(OutcomeFromJson(Summary("false", "7", "5", "0"), 7).has_value());
   EXPECT_FALSE(OutcomeFromJson(Summary("false", "7", "5", "256"), 7).has_value());
 }
 
-TEST(Outcome, ARunThatWasInterruptedIsToBeRunAgain) {
+TEST(TrialOutcomeTest, ARunThatWasInterruptedIsToBeRunAgain) {
   EXPECT_FALSE(OutcomeFromJson(Summary("true", "7", "-1", "0"), 7).has_value());
 }
 
-TEST(Outcome, ASummaryOfAnotherSeedIsNone) {
+TEST(TrialOutcomeTest, ASummaryOfAnotherSeedIsNone) {
   EXPECT_FALSE(OutcomeFromJson(Summary("false", "8", "-1", "0"), 7).has_value());
 }
 
-TEST(Outcome, HalfASummaryIsNone) {
+TEST(TrialOutcomeTest, HalfASummaryIsNone) {
   const std::string whole = Summary("false", "7", "-1", "0");
   EXPECT_FALSE(OutcomeFromJson(whole.substr(0, whole.size() / 2), 7).has_value());
   EXPECT_FALSE(OutcomeFromJson("", 7).has_value());
@@ -46,7 +46,7 @@ TEST(Outcome, HalfASummaryIsNone) {
   EXPECT_FALSE(ReadOutcome("/no/such/folder", 7).has_value());
 }
 
-TEST(LastWords, AreTheSentenceNotTheTable) {
+TEST(TrialLastWords, AreTheSentenceNotTheTable) {
   EXPECT_EQ(LastWords("tcsim: other runs of tcsim have the processors; waiting for one of them\n"
                       "tcsim: r/c ended at 0.1 s with exit status 1\n"
                       "tcsim: warning: something else\n"
@@ -54,12 +54,12 @@ TEST(LastWords, AreTheSentenceNotTheTable) {
             "r/c ended at 0.1 s with exit status 1");
 }
 
-TEST(LastWords, AreTheLastLineWhereThereIsNoSentence) {
+TEST(TrialLastWords, AreTheLastLineWhereThereIsNoSentence) {
   EXPECT_EQ(LastWords("first\nterminate called after\n\n"), "terminate called after");
   EXPECT_EQ(LastWords(""), "");
 }
 
-TEST(LastWords, ARunThatOnlyWaitedForAProcessorSaidNothing) {
+TEST(TrialLastWords, ARunThatOnlyWaitedForAProcessorSaidNothing) {
   EXPECT_EQ(LastWords("tcsim: other runs of tcsim have the processors; waiting for one of them\n"),
             "");
 }

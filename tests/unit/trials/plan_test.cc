@@ -23,21 +23,21 @@ std::vector<std::string> FoldersOf(const TrialsPlan& plan) {
   return folders;
 }
 
-TEST(Plan, TrialsHaveConsecutiveSeeds) {
+TEST(TrialsPlanTest, TrialsHaveConsecutiveSeeds) {
   TrialsPlan plan = ThreeTrials();
   plan.first_seed = 9;
   EXPECT_THAT(FoldersOf(plan), ElementsAre("seed-0009", "seed-0010", "seed-0011"));
   EXPECT_EQ(TrialsOf(plan)[2].seed, 11u);
 }
 
-TEST(Plan, TheLargestSeedsFitIntoAName) {
+TEST(TrialsPlanTest, TheLargestSeedsFitIntoAName) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 1;
   plan.first_seed = ~std::uint64_t{0};
   EXPECT_THAT(FoldersOf(plan), ElementsAre("seed-18446744073709551615"));
 }
 
-TEST(Plan, EachValueHasAllSeedsAndTheValuesTakeTurns) {
+TEST(TrialsPlanTest, EachValueHasAllSeedsAndTheValuesTakeTurns) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 2;
   plan.vary = {"drift", {"1ms", "2ms"}};
@@ -47,7 +47,7 @@ TEST(Plan, EachValueHasAllSeedsAndTheValuesTakeTurns) {
   EXPECT_EQ(TrialsOf(plan)[3].group, 1u);
 }
 
-TEST(Plan, AValueIsAFolderInsideTheResults) {
+TEST(TrialsPlanTest, AValueIsAFolderInsideTheResults) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 1;
   plan.vary = {"key", {"../../etc", ".", "a b", "-1e3"}};
@@ -55,7 +55,7 @@ TEST(Plan, AValueIsAFolderInsideTheResults) {
               ElementsAre("_._.._etc/seed-0001", "_/seed-0001", "a_b/seed-0001", "-1e3/seed-0001"));
 }
 
-TEST(Plan, ARunIsToldWhatTheTrialsWere) {
+TEST(TrialsPlanTest, ARunIsToldWhatTheTrialsWere) {
   TrialsPlan plan = ThreeTrials();
   plan.options = {"callback", "fixed", "20s", "", {"a=1", "b=2"}};
   EXPECT_THAT(
@@ -64,7 +64,7 @@ TEST(Plan, ARunIsToldWhatTheTrialsWere) {
                   "fixed", "--duration", "20s", "--set", "a=1", "--set", "b=2"));
 }
 
-TEST(Plan, ARunIsToldItsValue) {
+TEST(TrialsPlanTest, ARunIsToldItsValue) {
   TrialsPlan plan = ThreeTrials();
   plan.vary = {"robots.predator.cpu.speed", {"0.25", "8"}};
   const std::vector<std::string> words = RunArgumentsOf(plan, TrialsOf(plan)[1]);
@@ -72,31 +72,31 @@ TEST(Plan, ARunIsToldItsValue) {
   EXPECT_EQ(words[words.size() - 2], "--set");
 }
 
-TEST(Vary, IsAKeyAndItsValues) {
+TEST(TrialsVary, IsAKeyAndItsValues) {
   Vary vary;
   ASSERT_EQ(ParseVary("drift=1ms,10ms", &vary), "");
   EXPECT_EQ(vary.key, "drift");
   EXPECT_THAT(vary.values, ElementsAre("1ms", "10ms"));
 }
 
-TEST(Vary, AnythingElseIsRefusedWithAnExample) {
+TEST(TrialsVary, AnythingElseIsRefusedWithAnExample) {
   for (const char* text : {"drift", "drift=", "=1ms", "drift=1ms,", "drift=,1ms", ""}) {
     Vary vary;
     EXPECT_THAT(ParseVary(text, &vary), HasSubstr("write it like drift=1ms,10ms")) << text;
   }
 }
 
-TEST(Vary, TheSeedIsNotVariedTwice) {
+TEST(TrialsVary, TheSeedIsNotVariedTwice) {
   Vary vary;
   EXPECT_THAT(ParseVary("seed=1,2", &vary), HasSubstr("--first-seed"));
 }
 
-TEST(Vary, TwoValuesDoNotShareAFolder) {
+TEST(TrialsVary, TwoValuesDoNotShareAFolder) {
   Vary vary;
   EXPECT_THAT(ParseVary("key=a/b,a:b", &vary), HasSubstr("'a:b' would have the same folder"));
 }
 
-TEST(Vary, AnOptionThatWouldOutdoTheValuesIsNamed) {
+TEST(TrialsVary, AnOptionThatWouldOutdoTheValuesIsNamed) {
   TrialsPlan plan = ThreeTrials();
   plan.options = {"consistent", "measured", "20s", "", {"seed=3", "drifting=1"}};
   plan.vary = {"drift", {"1ms"}};

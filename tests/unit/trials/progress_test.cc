@@ -9,23 +9,23 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(Remaining, IsUnknownBeforeAnythingIsKnown) {
+TEST(TrialsRemaining, IsUnknownBeforeAnythingIsKnown) {
   EXPECT_FALSE(RemainingSeconds({.total = 10}).has_value());
   EXPECT_FALSE(RemainingSeconds({.total = 10, .running = {{5.0, 0.0}}}).has_value());
 }
 
-TEST(Remaining, IsEstimatedFromTheFirstTrialBeforeItIsDone) {
+TEST(TrialsRemaining, IsEstimatedFromTheFirstTrialBeforeItIsDone) {
   // A quarter in 5 s: 20 s each, of which this one has 15 s to go.
   EXPECT_DOUBLE_EQ(*RemainingSeconds({.total = 3, .running = {{5.0, 0.25}}}), 15.0 + 2 * 20.0);
 }
 
-TEST(Remaining, IsSharedAmongThoseThatRunAtOnce) {
+TEST(TrialsRemaining, IsSharedAmongThoseThatRunAtOnce) {
   EXPECT_DOUBLE_EQ(
       *RemainingSeconds({.total = 10, .done = 2, .finished_seconds = {10.0, 10.0}, .at_once = 4}),
       8 * 10.0 / 4);
 }
 
-TEST(Remaining, IsNotLessThanTheLongestOfThoseThatRun) {
+TEST(TrialsRemaining, IsNotLessThanTheLongestOfThoseThatRun) {
   EXPECT_DOUBLE_EQ(*RemainingSeconds({.total = 2,
                                       .done = 1,
                                       .running = {{10.0, 0.1}},
@@ -34,12 +34,12 @@ TEST(Remaining, IsNotLessThanTheLongestOfThoseThatRun) {
                    90.0);
 }
 
-TEST(Remaining, CountsFailedTrialsAsOver) {
+TEST(TrialsRemaining, CountsFailedTrialsAsOver) {
   EXPECT_DOUBLE_EQ(
       *RemainingSeconds({.total = 4, .done = 1, .failed = 2, .finished_seconds = {7.0}}), 7.0);
 }
 
-TEST(Line, SaysHowMuchIsDoneAndForHowLong) {
+TEST(TrialsLine, SaysHowMuchIsDoneAndForHowLong) {
   EXPECT_EQ(ProgressLine({.total = 4,
                           .done = 1,
                           .failed = 1,
@@ -51,16 +51,16 @@ TEST(Line, SaysHowMuchIsDoneAndForHowLong) {
             "[##################......] 1 of 4 done, 2 running, 1 failed  1:15, about 10 s to go");
 }
 
-TEST(Line, FitsIntoTheTerminal) {
+TEST(TrialsLine, FitsIntoTheTerminal) {
   EXPECT_EQ(ProgressLine({.total = 4}, 30), "[........................] 0 o");
 }
 
-TEST(Line, ATrialAheadOfItsEndDoesNotOverflowTheBar) {
+TEST(TrialsLine, ATrialAheadOfItsEndDoesNotOverflowTheBar) {
   EXPECT_THAT(ProgressLine({.total = 1, .running = {{1.0, 1.5}}}, 200),
               HasSubstr("[########################] 0 of 1"));
 }
 
-TEST(Table, HasTheMeanOfTimesAndTheWorstOfDrifts) {
+TEST(TrialsTableTest, HasTheMeanOfTimesAndTheWorstOfDrifts) {
   const std::string table =
       TrialsTable({{"drift=1ms",
                     3,
@@ -75,7 +75,7 @@ TEST(Table, HasTheMeanOfTimesAndTheWorstOfDrifts) {
   EXPECT_THAT(table, Not(HasSubstr("nan")));
 }
 
-TEST(Times, AreWrittenAsPeopleSayThem) {
+TEST(TrialsTimes, AreWrittenAsPeopleSayThem) {
   EXPECT_EQ(AsTime(0.4), "0 s");
   EXPECT_EQ(AsTime(59.4), "59 s");
   EXPECT_EQ(AsTime(59.6), "1:00");

@@ -25,27 +25,27 @@ TrialsRecord SomeRecord() {
   return record;
 }
 
-TEST(Record, ComesBackAsItWasWritten) {
+TEST(TrialsRecordTest, ComesBackAsItWasWritten) {
   const auto read = RecordFromJson(ToJson(SomeRecord()));
   ASSERT_TRUE(std::holds_alternative<TrialsRecord>(read)) << std::get<std::string>(read);
   EXPECT_EQ(ToJson(std::get<TrialsRecord>(read)), ToJson(SomeRecord()));
   EXPECT_EQ(WhatDiffers(SomeRecord(), std::get<TrialsRecord>(read)), "");
 }
 
-TEST(Record, OneWithoutVaryComesBack) {
+TEST(TrialsRecordTest, OneWithoutVaryComesBack) {
   TrialsRecord record = SomeRecord();
   record.plan.vary.reset();
   EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": null"));
   EXPECT_FALSE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.has_value());
 }
 
-TEST(Record, OtherTextIsNone) {
+TEST(TrialsRecordTest, OtherTextIsNone) {
   for (const char* text : {"", "{", "[]", "{}", R"({"scenario": 1})"}) {
     EXPECT_TRUE(std::holds_alternative<std::string>(RecordFromJson(text))) << text;
   }
 }
 
-TEST(Record, MoreTrialsValuesAndANameBelongTogether) {
+TEST(TrialsRecordTest, MoreTrialsValuesAndANameBelongTogether) {
   TrialsRecord now = SomeRecord();
   now.plan.trials = 20;
   now.plan.name = "tcs";
@@ -53,7 +53,7 @@ TEST(Record, MoreTrialsValuesAndANameBelongTogether) {
   EXPECT_EQ(WhatDiffers(SomeRecord(), now), "");
 }
 
-TEST(Record, WhateverDeterminesAnOutcomeIsNamedWhenItDiffers) {
+TEST(TrialsRecordTest, WhateverDeterminesAnOutcomeIsNamedWhenItDiffers) {
   const auto differs = [](auto change) {
     TrialsRecord now = SomeRecord();
     change(&now);
@@ -75,14 +75,14 @@ TEST(Record, WhateverDeterminesAnOutcomeIsNamedWhenItDiffers) {
   EXPECT_THAT(differs([](auto* r) { r->plan.scenario = "/b.yaml"; }), HasSubstr("chase.yaml"));
 }
 
-TEST(Record, AProgramThatChangedIsKnown) {
+TEST(TrialsRecordTest, AProgramThatChangedIsKnown) {
   TrialsRecord now = SomeRecord();
   EXPECT_EQ(ChangedProgram(SomeRecord(), now), "");
   now.programs["/home/me/planner"] = "12";
   EXPECT_EQ(ChangedProgram(SomeRecord(), now), "/home/me/planner");
 }
 
-TEST(Record, AFilesHashDependsOnEachByteOfIt) {
+TEST(TrialsRecordTest, AFilesHashDependsOnEachByteOfIt) {
   std::string path = ::testing::TempDir() + "hashed.XXXXXX";
   const int fd = mkstemp(path.data());
   ASSERT_GE(fd, 0);

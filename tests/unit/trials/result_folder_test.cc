@@ -15,16 +15,16 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class ResultFolderTest : public ::testing::Test {
+class TrialsFolderTest : public ::testing::Test {
  protected:
-  ResultFolderTest() {
+  TrialsFolderTest() {
     std::string made = ::testing::TempDir() + "trials.XXXXXX";
     folder_ = fs::path(mkdtemp(made.data())) / "out";
     record_.plan.scenario = "/s.yaml";
     record_.plan.trials = 2;
     record_.programs = {{"/planner", "11"}};
   }
-  ~ResultFolderTest() override { fs::remove_all(folder_.parent_path()); }
+  ~TrialsFolderTest() override { fs::remove_all(folder_.parent_path()); }
 
   // As one call of tcsim does it.
   std::string Enter(bool restart = false) {
@@ -46,13 +46,13 @@ class ResultFolderTest : public ::testing::Test {
   std::string changed_;
 };
 
-TEST_F(ResultFolderTest, IsMadeWithItsRecord) {
+TEST_F(TrialsFolderTest, IsMadeWithItsRecord) {
   EXPECT_EQ(Enter(), "");
   EXPECT_FALSE(has_trials_);
   EXPECT_EQ(ReadText(folder_ / "trials.json"), ToJson(record_));
 }
 
-TEST_F(ResultFolderTest, IsTakenUpWithMoreTrials) {
+TEST_F(TrialsFolderTest, IsTakenUpWithMoreTrials) {
   ASSERT_EQ(Enter(), "");
   Put("seed-0001/summary.json");
   record_.plan.trials = 3;
@@ -62,7 +62,7 @@ TEST_F(ResultFolderTest, IsTakenUpWithMoreTrials) {
   EXPECT_THAT(ReadText(folder_ / "trials.json"), HasSubstr("\"trials\": 3"));
 }
 
-TEST_F(ResultFolderTest, OfOtherOptionsIsLeftAsItIs) {
+TEST_F(TrialsFolderTest, OfOtherOptionsIsLeftAsItIs) {
   ASSERT_EQ(Enter(), "");
   const std::string before = ReadText(folder_ / "trials.json");
   record_.plan.options.sync = "callback";
@@ -72,7 +72,7 @@ TEST_F(ResultFolderTest, OfOtherOptionsIsLeftAsItIs) {
   EXPECT_EQ(ReadText(folder_ / "trials.json"), before);
 }
 
-TEST_F(ResultFolderTest, RestartThrowsTheTrialsAwayAndNothingElse) {
+TEST_F(TrialsFolderTest, RestartThrowsTheTrialsAwayAndNothingElse) {
   ASSERT_EQ(Enter(), "");
   for (const char* name : {"seed-0001/summary.json", "1ms/seed-0001/x", "notes.txt", "seed-mine/x",
                            "other/seed-1/x", "other/x"}) {
@@ -87,25 +87,25 @@ TEST_F(ResultFolderTest, RestartThrowsTheTrialsAwayAndNothingElse) {
   EXPECT_EQ(ReadText(folder_ / "trials.json"), ToJson(record_));
 }
 
-TEST_F(ResultFolderTest, SomebodyElsesFolderIsRefusedEvenForARestart) {
+TEST_F(TrialsFolderTest, SomebodyElsesFolderIsRefusedEvenForARestart) {
   Put("seed-0001/thesis.tex");
   EXPECT_THAT(Enter(), HasSubstr("holds other things than trials"));
   EXPECT_THAT(Enter(true), HasSubstr("holds other things than trials"));
   EXPECT_TRUE(Has("seed-0001/thesis.tex"));
 }
 
-TEST_F(ResultFolderTest, WhatACallLeftThatWasKilledWhileItWroteIsNoHindrance) {
+TEST_F(TrialsFolderTest, WhatACallLeftThatWasKilledWhileItWroteIsNoHindrance) {
   Put("trials.json.new");
   EXPECT_EQ(Enter(), "");
 }
 
-TEST_F(ResultFolderTest, ABrokenRecordIsNamedAndKept) {
+TEST_F(TrialsFolderTest, ABrokenRecordIsNamedAndKept) {
   Put("trials.json");
   EXPECT_THAT(Enter(), HasSubstr("trials.json is not what tcsim wrote"));
   EXPECT_EQ(ReadText(folder_ / "trials.json"), "text");
 }
 
-TEST_F(ResultFolderTest, ServesOneAtATime) {
+TEST_F(TrialsFolderTest, ServesOneAtATime) {
   ResultFolder held;
   ASSERT_EQ(EnterResultFolder(folder_, false, record_, &held), "");
   EXPECT_THAT(Enter(), HasSubstr("another tcsim trials is at work in"));
@@ -114,7 +114,7 @@ TEST_F(ResultFolderTest, ServesOneAtATime) {
   EXPECT_EQ(Enter(), "");
 }
 
-TEST_F(ResultFolderTest, AProgramThatChangesIsToldOfAtEachCall) {
+TEST_F(TrialsFolderTest, AProgramThatChangesIsToldOfAtEachCall) {
   ASSERT_EQ(Enter(), "");
   record_.programs["/planner"] = "12";
   for (int call = 0; call < 2; ++call) {
