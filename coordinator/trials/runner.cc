@@ -112,6 +112,7 @@ RunnerReport Runner::Run() {
   for (;;) {
     if (!report_.interrupted) StartMore();
     if (running_.empty() || waits_for_nobody_) break;
+    if (events_.on_progress && !report_.interrupted) events_.on_progress(Look());
     Wait();
   }
   close(signals_);
@@ -191,7 +192,6 @@ void Runner::Wait() {
     }
     running = next;
   }
-  if (events_.on_progress) events_.on_progress(Look());
 }
 
 void Runner::TakeSignal() {
