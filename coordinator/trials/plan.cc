@@ -9,13 +9,11 @@ namespace tcs {
 
 namespace {
 
-// A value as the name of one folder, which is neither hidden nor above.
+// A value as the name of one folder, which is neither hidden nor above: nearly always the value.
 std::string FolderOf(const std::string& value) {
   std::string name = value;
   for (char& c : name) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' ||
-                          c == '_' || c == '+' || c == '-';
-    if (!is_plain) c = '_';
+    if (c == '/' || std::iscntrl(static_cast<unsigned char>(c)) != 0) c = '_';
   }
   if (name[0] == '.') name[0] = '_';
   return name;

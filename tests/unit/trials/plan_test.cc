@@ -52,7 +52,7 @@ TEST(TrialsPlanTest, AValueIsAFolderInsideTheResults) {
   plan.trials = 1;
   plan.vary = {"key", {"../../etc", ".", "a b", "-1e3"}};
   EXPECT_THAT(FoldersOf(plan),
-              ElementsAre("_._.._etc/seed-0001", "_/seed-0001", "a_b/seed-0001", "-1e3/seed-0001"));
+              ElementsAre("_._.._etc/seed-0001", "_/seed-0001", "a b/seed-0001", "-1e3/seed-0001"));
 }
 
 TEST(TrialsPlanTest, ARunIsToldWhatTheTrialsWere) {
@@ -93,7 +93,7 @@ TEST(TrialsVary, TheSeedIsNotVariedTwice) {
 
 TEST(TrialsVary, TwoValuesDoNotShareAFolder) {
   Vary vary;
-  EXPECT_THAT(ParseVary("key=a/b,a:b", &vary), HasSubstr("'a:b' would have the same folder"));
+  EXPECT_THAT(ParseVary("key=a/b,a_b", &vary), HasSubstr("'a_b' would have the same folder"));
 }
 
 TEST(TrialsVary, AnOptionThatWouldOutdoTheValuesIsNamed) {
