@@ -14,7 +14,7 @@ struct RunArguments {
   std::string scenario, duration, drift, out = "out";
   std::optional<std::uint64_t> seed;
   std::vector<std::string> set;  // KEY=VALUE
-  int progress_fd = -1;  // a file that gets the virtual time; -1: none
+  int progress_fd = -1;          // a file that gets the virtual time; -1: none
 };
 
 // The exit status. `options` brings accounting, synchronisation and the shim.

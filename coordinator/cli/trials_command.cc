@@ -43,6 +43,7 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
     if (!error.empty()) return error;
   }
   for (std::size_t group = 0; group < GroupLabels(plan).size(); ++group) {
+    overrides.set = SettingsOf(plan, group);
     auto loaded = LoadScenario(arguments.scenario, overrides);
     if (const auto* error = std::get_if<LoadError>(&loaded)) return error->message;
     scenarios->push_back(std::move(std::get<Scenario>(loaded)));

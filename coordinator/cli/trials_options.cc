@@ -31,9 +31,7 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_option("--duration", options.duration, "of virtual time, such as 20s");
   trials->add_option("--drift", options.drift, "how far progress may drift apart, such as 1ms");
   trials->add_option("--set", options.set, "KEY=VALUE: another value for a key of the scenario")
-      ->take_all()
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   trials->add_option("--sync", options.sync, "as for run")
       ->check(CLI::IsMember({"consistent", "callback"}));
   trials->add_option("--accounting", options.accounting, "as for run")
