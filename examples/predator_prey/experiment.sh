@@ -39,6 +39,7 @@ else
   lengths=20s,60s,180s speeds=0.25,0.5,1,2,4,8
 fi
 
+jobs=$(nproc)
 tcsim="$build/bin/tcsim"
 scenario="$build/examples/predator_prey/scenario.yaml"
 speed=robots.predator.cpu.speed
@@ -53,7 +54,7 @@ series() {
   local folder="$out/$1" label=$2 status=0
   shift 2
   printf '\n%s\n' "$label"
-  "$tcsim" trials "$scenario" --out "$folder" --name "$label" "$@" || status=$?
+  "$tcsim" trials "$scenario" --jobs "$jobs" --out "$folder" --name "$label" "$@" || status=$?
   case $status in
     0) ;;
     1) failed+=("$label") ;;  # some trials failed, which it named; the others count
