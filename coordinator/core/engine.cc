@@ -344,10 +344,11 @@ RunReport Engine::Run() {
   report_.coordinating_ns = HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ -
                             (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
-  if (header_ != nullptr) Shutdown();
+  // First: how the clients end is no part of what repeats.
   if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {
     report_.error = error;
   }
+  if (header_ != nullptr) Shutdown();
   return report_;
 }
 
