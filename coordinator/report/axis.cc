@@ -37,6 +37,13 @@ Axis Axis::Linear(double low, double high, int ticks) {
   return Exact(step * std::floor(low / step + 1e-9), step * std::ceil(high / step - 1e-9), ticks);
 }
 
+Axis Axis::Decades(double low, double high) {
+  const auto power = [](double value) { return std::pow(10.0, value); };
+  const double first = std::floor(std::log10(low) + 1e-9);
+  const double last = std::ceil(std::log10(std::max(low, high)) - 1e-9);
+  return Logarithmic(power(first), power(std::max(last, first + 1)));
+}
+
 Axis Axis::Logarithmic(double low, double high) {
   Axis axis;
   axis.logarithmic_ = true;

@@ -12,6 +12,8 @@ class Axis {
   [[nodiscard]] static Axis Linear(double low, double high, int ticks);
   // The same values and no more.
   [[nodiscard]] static Axis Exact(double low, double high, int ticks);
+  // Both above 0; widened to powers of ten.
+  [[nodiscard]] static Axis Decades(double low, double high);
   // Both above 0; widened to 1, 2 or 5 times a power of ten.
   [[nodiscard]] static Axis Logarithmic(double low, double high);
 

@@ -55,7 +55,8 @@ double MeanOver(const System& system, const std::string& name,
 }  // namespace
 
 std::optional<Figure> ResponseTimes(const Results& results) {
-  HistogramPlot plot{"from being asked to being idle, by the client's own clock [s]", "s", {}, {}};
+  HistogramPlot plot{
+      "from being asked to being idle, by the client's own clock [s]", "s", "activation", {}, {}};
   std::vector<std::string> said;
   const std::map<std::string, bool> clients = Clients(results);
   const auto planners = std::count_if(clients.begin(), clients.end(),
@@ -99,14 +100,16 @@ std::optional<Figure> Lateness(const Results& results) {
                             Quantile(late, 0.99), late.back()});
       const double overruns =
           MeanOver(system, name, [](const Client& client) { return client.overruns; });
-      said.push_back(fmt::format("{} in {} up to {} ({} overruns a trial)", name, system.name,
-                                 Seconds(late.back(), 2), Significant(overruns, 2)));
+      said.push_back(
+          fmt::format("{} in {} {}{}", name, system.name,
+                      late.back() > 0 ? "up to " + Seconds(late.back(), 2) : "never",
+                      overruns > 0 ? fmt::format(" ({} overruns a trial)", Plain(overruns)) : ""));
     }
     if (!group.rows.empty()) groups.push_back(std::move(group));
   }
   if (groups.empty()) return {};
   return MakeFigure("lateness", "How late controllers begin",
-                    fmt::format("Late by: {}.", fmt::join(said, "; ")),
+                    fmt::format("They begin late: {}.", fmt::join(said, "; ")),
                     "Periodic clients, from being due to running, in virtual time. The dot is the "
                     "median, the thick line goes to the 99th percentile, the thin one to the most.",
                     [&](int width) { return DrawLateness(groups, width); });
@@ -131,7 +134,7 @@ std::optional<Section> ClientsSection(const Results& results) {
       const double own = mean(&Client::own_clock_ns) * 1e-9;
       const double stolen = mean(&Client::stolen_ns) * 1e-9;
       table.Row({name, system.name, Seconds(charged), own < 0 ? "–" : Seconds(own), Seconds(stolen),
-                 Significant(mean(&Client::activations)), Significant(mean(&Client::overruns))});
+                 Plain(mean(&Client::activations)), Plain(mean(&Client::overruns))});
       const double share = charged > 0 ? stolen / charged : 0;
       most = std::max(most, {share, fmt::format("{} in {}", name, system.name)});
     }

@@ -14,14 +14,18 @@ namespace tcs::report {
 
 namespace {
 
-std::string OrNothing(double seconds) { return seconds < 0 ? "–" : Seconds(seconds); }
+// All in one unit, to be compared.
+std::string InSeconds(double seconds) { return WithUnit(fmt::format("{:.2f}", seconds), "s"); }
 
 void AddPaper(Table* table) {
   for (const paper::Values& of : paper::kSystems) {
-    table->Row({std::string(of.system), "20.0 s", "–", Seconds(of.drift_s), "–",
-                OrNothing(of.coordinating_s), OrNothing(of.clients_s), OrNothing(of.dynamics_s),
-                of.overhead < 0 ? "–" : Percent(of.overhead)},
-               true);
+    std::vector<std::string> cells;
+    for (const std::string_view cell :
+         {of.system, of.virtual_time, std::string_view(), of.drift, std::string_view(),
+          of.coordinating, of.clients, of.dynamics, of.overhead}) {
+      cells.emplace_back(cell.empty() ? "–" : cell);
+    }
+    table->Row(cells, true);
   }
 }
 
@@ -72,9 +76,9 @@ std::optional<Section> CostsSection(const Results& results) {
     table.Row({system.name, Seconds(MeanOf(system, &Run::virtual_ns)),
                Seconds(MeanOf(system, &Run::real_ns)), Seconds(MostOf(system, &Run::drift_ns)),
                Seconds(MostOf(system, &Run::staleness_ns)),
-               Seconds(MeanOf(system, &Run::coordinating_ns)),
-               Seconds(MeanOf(system, &Run::clients_ns)),
-               Seconds(MeanOf(system, &Run::dynamics_ns)), Percent(OverheadOf(system))});
+               InSeconds(MeanOf(system, &Run::coordinating_ns)),
+               InSeconds(MeanOf(system, &Run::clients_ns)),
+               InSeconds(MeanOf(system, &Run::dynamics_ns)), Percent(OverheadOf(system))});
     const double drift = MostOf(system, &Run::drift_ns);
     const double ratio = drift / std::max(1e-9, MeanOf(system, &Run::virtual_ns));
     drifts.push_back(ratio < 1 ? fmt::format("{} in {}", Seconds(drift), system.name)

@@ -15,107 +15,113 @@ namespace tcs::report {
 
 namespace {
 
-std::vector<const System*> SystemsWithTracks(const Results& results) {
-  std::vector<const System*> systems;
-  for (const System& system : results.systems) {
+// Of those that have any distance.
+std::vector<TracksPanel> PanelsOf(const Results& results) {
+  std::vector<TracksPanel> panels;
+  for (std::size_t i = 0; i < results.systems.size(); ++i) {
+    const System& system = results.systems[i];
     const bool any = std::any_of(system.runs.begin(), system.runs.end(),
                                  [](const Run& run) { return !run.track.time_s.empty(); });
-    if (any) systems.push_back(&system);
+    if (any) panels.push_back({&system, static_cast<int>(i)});
   }
-  return systems;
+  return panels;
 }
 
 std::string BetweenBodies(const Results& results) {
   return fmt::format("{} and {}", results.bodies[0], results.bodies[1]);
 }
 
-std::string Metres(double value) { return Significant(value) + " m"; }
+// Which of `medians` is least and which greatest, if that is not the same.
+std::string Extremes(const std::vector<std::pair<double, std::string>>& medians) {
+  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
+  if (least->first == most->first) return {};
+  return fmt::format(" The median is least in {} and greatest in {}.", least->second, most->second);
+}
 
 }  // namespace
 
 Section SystemsSection(const Results& results, const std::vector<double>& marks) {
-  std::vector<Column> columns{{"system", false}, {"trials"},     {"failed"}, {"samples"},
-                              {"mean [m]"},      {"median [m]"}, {"SD [m]"}};
-  for (const double mark : marks) columns.push_back({"below " + Metres(mark)});
-  columns.push_back({"Δ (most)"});
+  std::vector<Column> columns{{"system", false}, {"trials"}, {"failed"}, {"samples"},
+                              {"mean"},          {"median"}, {"SD"}};
+  for (const double mark : marks) columns.push_back({"below " + PlainMetres(mark)});
+  columns.push_back({"Δ"});
   columns.push_back({"overhead"});
-  Table table("Distances are those of all samples of all trials.", columns);
+  const bool has_bodies = !results.bodies[0].empty();
+  Table table(has_bodies
+                  ? fmt::format("The distance between {}, over all samples of all trials; Δ is "
+                                "the most of any trial.",
+                                BetweenBodies(results))
+                  : "Δ is the most of any trial.",
+              columns);
+  std::vector<std::string> counts;
   for (const System& system : results.systems) {
     const std::vector<double> distances = Distances(system);
     const Spread spread = SpreadOf(distances);
     const bool any = spread.count > 0;
+    const auto metres = [any](double value) { return any ? Metres(value) : "–"; };
+    const auto trials = static_cast<std::int64_t>(system.runs.size());
     std::vector<std::string> cells{system.name,
-                                   fmt::format("{}", system.runs.size()),
+                                   fmt::format("{}", trials),
                                    fmt::format("{}", system.failed.size()),
                                    Grouped(spread.count),
-                                   any ? Significant(spread.mean) : "–",
-                                   any ? Significant(spread.median) : "–",
-                                   any ? Significant(spread.deviation) : "–"};
+                                   metres(spread.mean),
+                                   metres(spread.median),
+                                   metres(spread.deviation)};
     for (const double mark : marks) {
       cells.push_back(any ? Percent(ShareBelow(distances, mark)) : "–");
     }
     cells.push_back(Seconds(MostOf(system, &Run::drift_ns)));
     cells.push_back(Percent(OverheadOf(system)));
     table.Row(cells);
-  }
-  std::vector<std::string> counts;
-  for (const System& system : results.systems) {
-    counts.push_back(fmt::format(
-        "{} of {}", Count(static_cast<std::int64_t>(system.runs.size()), "trial"), system.name));
+    counts.push_back(fmt::format("{} of {} ({} each)", Count(trials, "trial"), system.name,
+                                 Seconds(MeanOf(system, &Run::virtual_ns))));
   }
   return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html()};
 }
 
 std::optional<Figure> DistanceHistogram(const Results& results, const std::vector<double>& marks) {
-  const auto systems = SystemsWithTracks(results);
-  if (systems.empty()) return {};
   HistogramPlot plot{
-      fmt::format("distance between {} [m]", BetweenBodies(results)), "m", marks, {}};
+      fmt::format("distance between {} [m]", BetweenBodies(results)), "m", "sample", marks, {}};
   std::vector<std::string> said;
-  std::pair<double, std::string> nearest{1e300, ""}, furthest{-1e300, ""};
-  for (const System* system : systems) {
-    const std::vector<double> distances = Distances(*system);
+  std::vector<std::pair<double, std::string>> medians;
+  for (const TracksPanel& panel : PanelsOf(results)) {
+    const std::string& name = panel.system->name;
+    const std::vector<double> distances = Distances(*panel.system);
     const Spread spread = SpreadOf(distances);
-    std::string text = fmt::format("{}: median {}, standard deviation {}", system->name,
+    std::string text = fmt::format("{}: median {}, standard deviation {}", name,
                                    Metres(spread.median), Metres(spread.deviation));
     for (const double mark : marks) {
       text += fmt::format(", {} of the samples below {}", Percent(ShareBelow(distances, mark)),
-                          Metres(mark));
+                          PlainMetres(mark));
     }
     said.push_back(text);
-    nearest = std::min(nearest, {spread.median, system->name});
-    furthest = std::max(furthest, {spread.median, system->name});
-    plot.panels.push_back(
-        {system->name, static_cast<int>(system - results.systems.data()), distances});
+    medians.emplace_back(spread.median, name);
+    plot.panels.push_back({name, panel.colour, distances});
   }
-  std::string sentence = fmt::format("{}.", fmt::join(said, "; "));
-  if (nearest.first < furthest.first) {
-    sentence += fmt::format(" {} are nearest in {} and furthest apart in {}.",
-                            BetweenBodies(results), nearest.second, furthest.second);
-  }
+  if (plot.panels.empty()) return {};
   return MakeFigure("distances", fmt::format("How far apart {} are", BetweenBodies(results)),
-                    sentence,
+                    fmt::format("{}.{}", fmt::join(said, "; "), Extremes(medians)),
                     "Each panel has a vertical scale of its own; the triangle is the median.",
                     [&](int width) { return DrawHistograms(plot, width); });
 }
 
 std::optional<Figure> DistanceOverTime(const Results& results, const std::vector<double>& marks) {
-  const auto systems = SystemsWithTracks(results);
-  if (systems.empty()) return {};
+  const std::vector<TracksPanel> panels = PanelsOf(results);
+  if (panels.empty()) return {};
   std::vector<std::string> said;
-  for (const System* system : systems) {
-    const Track median = MedianTrack(*system);
+  for (const TracksPanel& panel : panels) {
+    const Track median = MedianTrack(*panel.system);
     if (median.time_s.empty()) continue;
     const std::size_t middle = median.time_s.size() / 2;
-    said.push_back(fmt::format("in {} {} at {} and {} at {}", system->name,
+    said.push_back(fmt::format("in {}, {} at {} and {} at {}", panel.system->name,
                                Metres(median.distance_m[middle]), Seconds(median.time_s[middle]),
                                Metres(median.distance_m.back()), Seconds(median.time_s.back())));
   }
   return MakeFigure(
       "distance-over-time", "Distance over time",
-      fmt::format("The median distance over the trials is {}.", fmt::join(said, "; ")),
+      fmt::format("The median distance over the trials is, {}.", fmt::join(said, "; ")),
       "A thin line per trial, their median in bold; all panels have one scale.",
-      [&](int width) { return DrawTracks(systems, marks, width); });
+      [&](int width) { return DrawTracks(panels, marks, width); });
 }
 
 }  // namespace tcs::report

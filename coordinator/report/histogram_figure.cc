@@ -13,12 +13,12 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 88, kName = 24, kBottom = 40;
+constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 88, kName = 34, kBottom = 40;
 constexpr double kBins = 60;
 
 std::string Legend(const HistogramPanel& panel, const Spread& spread, const std::string& unit,
-                   double pixels) {
-  const std::string samples = Count(spread.count, "value");
+                   const std::string& what, double pixels) {
+  const std::string samples = Count(spread.count, what);
   const std::string all = fmt::format(
       "median {0} {1}, quartiles {2} and {3} {1}, {4}", Significant(spread.median), unit,
       Significant(spread.lower_quartile), Significant(spread.upper_quartile), samples);
@@ -37,7 +37,7 @@ void DrawPanel(Svg* svg, const Frame& frame, const Axis& x, const HistogramPlot&
     return;
   }
   svg->Text(frame.right, frame.top - 8, Svg::Anchor::kEnd,
-            Legend(panel, spread, plot.unit, frame.right - frame.left), "note");
+            Legend(panel, spread, plot.unit, plot.what, frame.right - frame.left), "note");
   const Histogram histogram = HistogramOf(panel.values, x.low(), x.high(), bin_width);
   double most = 0;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
@@ -87,9 +87,9 @@ Drawing DrawHistograms(const HistogramPlot& plot, int width) {
   const Frame whole{kLeft, kTop, right, bottom};
   DrawHorizontalAxis(&svg, whole, x, plot.x_title);
   for (const double mark : plot.marks) {
-    DrawMark(&svg, whole, x.Pixel(mark), fmt::format("{} {}", Significant(mark), plot.unit));
+    DrawMark(&svg, whole, x.Pixel(mark), WithUnit(Plain(mark), plot.unit));
   }
-  svg.Text(6, kTop - 5, Svg::Anchor::kStart, "% of values", "tick");
+  svg.Text(6, kTop - 5, Svg::Anchor::kStart, fmt::format("% of {}s", plot.what), "tick");
   return {width, static_cast<int>(bottom + kBottom), svg.Take()};
 }
 

@@ -16,7 +16,8 @@ struct HistogramPanel {
 
 struct HistogramPlot {
   std::string x_title;  // with its unit
-  std::string unit;     // of the median, at its line
+  std::string unit;
+  std::string what;  // one value is
   std::vector<double> marks;
   std::vector<HistogramPanel> panels;  // at least one has values
 };

@@ -12,7 +12,8 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 12, kRight = 84, kTop = 8, kGroup = 24, kRow = 34, kBottom = 40;
+constexpr double kLeft = 12, kRight = 84, kTop = 8, kGroup = 24, kRow = 34, kBottom = 40,
+                 kZero = 30;
 constexpr double kUs = 1e6;
 
 }  // namespace
@@ -27,13 +28,12 @@ Drawing DrawLateness(const std::vector<LatenessGroup>& groups, int width) {
       }
     }
   }
-  // A logarithm has no zero: what is not late at all is at the left end.
-  least = most > 0 ? std::clamp(least, 0.1, most) : 1;
-  Axis x = Axis::Logarithmic(least, std::max(most, least));
+  // A logarithm has no zero: what is not late at all has a place of its own, left of the axis.
+  Axis x = Axis::Decades(most > 0 ? std::clamp(least, 0.1, most) : 1, std::max(most, 1.0));
   const double right = width - kRight;
-  x.Place(kLeft + 8, right);
+  x.Place(kLeft + kZero, right);
   const auto at = [&](double seconds) {
-    return seconds * kUs < x.low() ? kLeft + 2 : x.Pixel(seconds * kUs);
+    return seconds * kUs < x.low() ? kLeft + 4 : x.Pixel(seconds * kUs);
   };
   Svg svg;
   double y = kTop;
@@ -57,7 +57,8 @@ Drawing DrawLateness(const std::vector<LatenessGroup>& groups, int width) {
   }
   const double bottom = y + 4;
   svg.Text(width - 4, kTop + 10, Svg::Anchor::kEnd, "most", "tick");
-  DrawHorizontalAxis(&svg, {kLeft, kTop, right, bottom}, x, "late by [µs]");
+  svg.Text(kLeft + 4, bottom + 16, Svg::Anchor::kMiddle, "0", "tick");
+  DrawHorizontalAxis(&svg, {kLeft + kZero, kTop, right, bottom}, x, "late by [µs]");
   return {width, static_cast<int>(bottom + kBottom), svg.Take()};
 }
 

@@ -116,7 +116,7 @@ Drawing DrawSweep(const SweepPlot& plot, int width) {
   DrawVerticalAxis(&svg, frame, y);
   for (const double mark : plot.marks) {
     svg.Line(frame.left, y.Pixel(mark), frame.right, y.Pixel(mark), "mark");
-    svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, Significant(mark) + " m", "tick");
+    svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const SweepSeries& series = plot.series[i];

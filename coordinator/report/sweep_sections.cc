@@ -67,9 +67,9 @@ std::string AboutSeries(const SweepSeries& series, const std::string& key,
   const auto median = [](const SweepPoint& point) { return SpreadOf(point.means).median; };
   const SweepPoint &first = series.points.front(), &last = series.points.back();
   std::string text =
-      fmt::format("{}: {} m at {} = {}", series.name, Significant(median(first)), key, first.label);
+      fmt::format("{}: {} at {} = {}", series.name, Metres(median(first)), key, first.label);
   if (series.points.size() > 1) {
-    text += fmt::format(", {} m at {}", Significant(median(last)), last.label);
+    text += fmt::format(", {} at {}", Metres(median(last)), last.label);
   }
   for (const double mark : marks) {
     const bool starts_below = median(first) < mark;
@@ -77,11 +77,11 @@ std::string AboutSeries(const SweepSeries& series, const std::string& key,
         series.points.begin(), series.points.end(),
         [&](const SweepPoint& point) { return (median(point) < mark) != starts_below; });
     if (crossed == series.points.end()) {
-      text += fmt::format(", {} {} m throughout", starts_below ? "below" : "not below",
-                          Significant(mark));
+      text += fmt::format(", {} {} throughout", starts_below ? "below" : "not below",
+                          PlainMetres(mark));
     } else {
-      text += fmt::format(", {} {} m first at {}", starts_below ? "not below" : "below",
-                          Significant(mark), crossed->label);
+      text += fmt::format(", {} {} first at {}", starts_below ? "not below" : "below",
+                          PlainMetres(mark), crossed->label);
     }
   }
   return text;
@@ -121,12 +121,12 @@ std::optional<Figure> SweepFigure(const Results& results, const std::string& key
 
 Section SweepSection(const Results& results, const std::string& key,
                      const std::vector<double>& marks) {
-  std::vector<Column> columns{{"system", false},    {key},          {"trials"},
-                              {"failed"},           {"median [m]"}, {"Δ (most)"},
-                              {"Δ / virtual time"}, {"staleness"},  {"overhead"}};
+  std::vector<Column> columns{{"system", false},    {key},         {"trials"},
+                              {"failed"},           {"median"},    {"Δ"},
+                              {"Δ / virtual time"}, {"staleness"}, {"overhead"}};
   for (const double mark : marks) {
     const auto place = columns.end() - 4;
-    columns.insert(place, {fmt::format("below {} m", Significant(mark))});
+    columns.insert(place, {"below " + PlainMetres(mark)});
   }
   Table table(fmt::format("Per value of {}; distances are those of all samples.", key), columns);
   std::vector<std::string> said;
@@ -143,7 +143,7 @@ Section SweepSection(const Results& results, const std::string& key,
           value.text,
           fmt::format("{}", system.runs.size()),
           fmt::format("{}", system.failed.size()),
-          distances.empty() ? "–" : Significant(SpreadOf(distances).median),
+          distances.empty() ? "–" : Metres(SpreadOf(distances).median),
           Seconds(drift),
           Significant(drift / std::max(1e-9, MeanOf(system, &Run::virtual_ns))),
           Seconds(MostOf(system, &Run::staleness_ns)),

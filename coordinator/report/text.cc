@@ -5,8 +5,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 namespace tcs::report {
+
+namespace {
+
+constexpr std::string_view kNoBreakSpace = "\u00a0";
+
+}  // namespace
 
 std::string Escaped(std::string_view text) {
   std::string escaped;
@@ -56,24 +63,48 @@ std::string Grouped(std::int64_t value) {
   return digits;
 }
 
+std::string Plain(double value) {
+  std::string text = Significant(value);
+  if (text.find('.') == std::string::npos) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string WithUnit(const std::string& number, std::string_view unit) {
+  return fmt::format("{}{}{}", number, kNoBreakSpace, unit);
+}
+
 std::string Seconds(double seconds, int digits) {
-  if (seconds == 0) return "0 s";
+  if (seconds == 0) return WithUnit("0", "s");
   const double size = std::abs(seconds);
   // A unit begins where rounding reaches it.
   const double almost = 1.0 - 0.5 * std::pow(10.0, -digits);
-  if (size >= almost) return Significant(seconds, digits) + " s";
-  if (size >= almost * 1e-3) return Significant(seconds * 1e3, digits) + " ms";
-  if (size >= almost * 1e-6) return Significant(seconds * 1e6, digits) + " µs";
-  return Significant(seconds * 1e9, digits) + " ns";
+  constexpr std::pair<double, std::string_view> kUnits[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "µs"}};
+  for (const auto& [unit, name] : kUnits) {
+    if (size >= almost * unit) return WithUnit(Significant(seconds / unit, digits), name);
+  }
+  return WithUnit(Significant(seconds * 1e9, digits), "ns");
 }
+
+std::string Metres(double value) { return WithUnit(Significant(value), "m"); }
+
+std::string PlainMetres(double value) { return WithUnit(Plain(value), "m"); }
 
 std::string Percent(double share) {
   const double percent = 100.0 * share;
-  if (percent == 0 || percent == 100) return fmt::format("{:.0f} %", percent);
-  // What is not all or nothing does not look like it.
-  if (percent > 99.5) return fmt::format("{:.1f} %", std::min(percent, 99.9));
-  if (percent >= 10) return fmt::format("{:.0f} %", percent);
-  return Significant(std::max(percent, 0.001), percent < 1 ? 1 : 2) + " %";
+  std::string number;
+  if (percent == 0 || percent == 100) {
+    number = fmt::format("{:.0f}", percent);
+  } else if (percent > 99.5) {
+    // What is not all or nothing does not look like it.
+    number = fmt::format("{:.1f}", std::min(percent, 99.9));
+  } else if (percent >= 10) {
+    number = fmt::format("{:.0f}", percent);
+  } else {
+    number = Significant(std::max(percent, 0.001), percent < 1 ? 1 : 2);
+  }
+  return WithUnit(number, "%");
 }
 
 std::string Count(std::int64_t number, std::string_view of_what) {

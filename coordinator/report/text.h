@@ -1,4 +1,5 @@
-// Numbers and names as people read them, and as HTML, SVG and JSON hold them. Text is UTF-8.
+// Numbers and names as people read them, and as HTML, SVG and JSON hold them. Text is UTF-8;
+// between a number and its unit is a space that does not break.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,17 @@ namespace tcs::report {
 // With so many significant digits, but never in powers of ten: "0.0935", "9.06", "168", "20010".
 [[nodiscard]] std::string Significant(double value, int digits = 3);
 
+// At most three significant digits, none of them a zero for show: "5", "0.667", "168".
+[[nodiscard]] std::string Plain(double value);
+
 // Groups of three from 10 000 on.
 [[nodiscard]] std::string Grouped(std::int64_t value);
+
+[[nodiscard]] std::string WithUnit(const std::string& number, std::string_view unit);
+
+// "9.06 m", "5 m".
+[[nodiscard]] std::string Metres(double value);
+[[nodiscard]] std::string PlainMetres(double value);
 
 // "0 s", "62 ns", "1.00 ms", "168 s".
 [[nodiscard]] std::string Seconds(double seconds, int digits = 3);

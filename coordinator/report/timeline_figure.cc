@@ -11,7 +11,7 @@ namespace tcs::report {
 namespace {
 
 constexpr double kTop = 6, kTitle = 24, kRow = 18, kBetween = 6, kNameAbove = 15, kProgress = 56,
-                 kBottom = 40, kRight = 44;
+                 kBottom = 40, kRight = 52;
 // What ran and took none of this axis's time is seen all the same.
 constexpr double kLeastShare = 0.12;
 
@@ -36,84 +36,120 @@ std::vector<double> Busy(const Timeline& timeline, int row, bool real, double en
   return busy;
 }
 
-// The dynamics' progress over the other time.
-Svg::Points Progress(const Timeline& timeline, bool over_real, const Axis& x, const Axis& y) {
-  Svg::Points points;
-  const auto dynamics = std::find(timeline.rows.begin(), timeline.rows.end(), "dynamics");
-  const auto row = static_cast<int>(dynamics - timeline.rows.begin());
-  double last = -1e9;
-  for (const Slice& slice : timeline.slices) {
-    if (dynamics != timeline.rows.end() && slice.row != row) continue;
-    const std::pair<std::int64_t, std::int64_t> edges[] = {{slice.real_start, slice.virtual_start},
-                                                           {slice.real_end, slice.virtual_end}};
-    for (const auto& [real_us, virtual_us] : edges) {
-      const double at = x.Pixel(static_cast<double>(over_real ? real_us : virtual_us) * 1e-6);
-      if (at - last < 0.5) continue;
-      last = at;
-      points.emplace_back(at,
-                          y.Pixel(static_cast<double>(over_real ? virtual_us : real_us) * 1e-6));
+class Picture {
+ public:
+  Picture(const std::vector<Timeline>& timelines, int width)
+      : timelines_(timelines), width_(width), narrow_(width < kWideWidth) {
+    for (const Timeline& timeline : timelines) real_ = real_ && timeline.has_real_times;
+    double names = WidthOf("virtual time [s]");
+    for (const Timeline& timeline : timelines) {
+      end_us_ = std::max(end_us_, EndOf(timeline));
+      for (const std::string& row : timeline.rows) names = std::max(names, WidthOf(row));
+    }
+    left_ = narrow_ ? 8 : std::min(names, 200.0) + 14;
+    right_ = width - kRight;
+    x_ = Axis::Exact(0, end_us_ * 1e-6, narrow_ ? 4 : 8);
+    x_.Place(left_, right_);
+  }
+
+  Drawing Draw() {
+    for (const Timeline& timeline : timelines_) DrawOne(timeline);
+    DrawHorizontalAxis(&svg_, {left_, kTop, right_, y_}, x_,
+                       real_ ? "real time [s]" : "virtual time [s]");
+    return {width_, static_cast<int>(y_ + kBottom), svg_.Take()};
+  }
+
+ private:
+  double EndOf(const Timeline& timeline) const {
+    return static_cast<double>(real_ ? timeline.real_end : timeline.virtual_end);
+  }
+
+  void DrawOne(const Timeline& timeline) {
+    y_ += kTitle;
+    svg_.Text(8, y_ - 8, Svg::Anchor::kStart, timeline.name, "name");
+    for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
+      Label(timeline.rows[row]);
+      DrawRow(timeline, static_cast<int>(row));
+      y_ += kRow + kBetween;
+    }
+    if (!timeline.has_real_times) return;
+    Label(real_ ? "virtual time [s]" : "real time [s]");
+    DrawProgress(timeline);
+    y_ += kProgress + kBetween;
+  }
+
+  void Label(const std::string& name) {
+    if (narrow_) {
+      y_ += kNameAbove;
+      svg_.Text(left_, y_ - 4, Svg::Anchor::kStart, name, "note");
+    } else {
+      svg_.Text(left_ - 6, y_ + 13, Svg::Anchor::kEnd, Fitted(name, left_ - 14), "note");
     }
   }
-  return points;
-}
+
+  void DrawRow(const Timeline& timeline, int row) {
+    svg_.Rect(left_, y_, right_ - left_, kRow, "lane");
+    const auto columns = static_cast<std::size_t>(right_ - left_);
+    const std::vector<double> busy = Busy(timeline, row, real_, end_us_, columns);
+    Svg::Points outline;
+    for (std::size_t i = 0; i < columns; ++i) {
+      const double height = y_ + kRow * (1 - busy[i]);
+      outline.emplace_back(left_ + static_cast<double>(i), height);
+      outline.emplace_back(left_ + static_cast<double>(i + 1), height);
+    }
+    svg_.Area(outline, y_ + kRow, "busy");
+    double ran = 0;
+    for (const Slice& slice : timeline.slices) {
+      if (slice.row != row) continue;
+      ran += static_cast<double>(real_ ? slice.real_end - slice.real_start
+                                       : slice.virtual_end - slice.virtual_start);
+    }
+    const std::string share = Percent(ran / std::max(1.0, EndOf(timeline)));
+    svg_.Text(right_ + 4, y_ + 13, Svg::Anchor::kStart, share, "tick");
+  }
+
+  // How far the world has come in the other time.
+  void DrawProgress(const Timeline& timeline) {
+    const auto end = static_cast<double>(real_ ? timeline.virtual_end : timeline.real_end) * 1e-6;
+    Axis up = Axis::Exact(0, end, 1);
+    up.Place(y_ + kProgress, y_);
+    svg_.Rect(left_, y_, right_ - left_, kProgress, "lane");
+    const auto& rows = timeline.rows;
+    const auto dynamics = std::find(rows.begin(), rows.end(), "dynamics") - rows.begin();
+    const bool any_row = dynamics == static_cast<std::ptrdiff_t>(rows.size());
+    Svg::Points points;
+    for (const Slice& slice : timeline.slices) {
+      if (!any_row && slice.row != dynamics) continue;
+      for (const auto& [real_us, virtual_us] : {std::pair(slice.real_start, slice.virtual_start),
+                                                std::pair(slice.real_end, slice.virtual_end)}) {
+        const std::pair<double, double> point{
+            x_.Pixel(static_cast<double>(real_ ? real_us : virtual_us) * 1e-6),
+            up.Pixel(static_cast<double>(real_ ? virtual_us : real_us) * 1e-6)};
+        // One point a column is enough; the last one stays.
+        if (points.size() > 1 && points.back().first - points[points.size() - 2].first < 0.5) {
+          points.pop_back();
+        }
+        points.push_back(point);
+      }
+    }
+    svg_.Polyline(points, "progress");
+    svg_.Text(right_ + 4, y_ + 10, Svg::Anchor::kStart, Significant(end), "tick");
+    svg_.Text(right_ + 4, y_ + kProgress, Svg::Anchor::kStart, "0", "tick");
+  }
+
+  const std::vector<Timeline>& timelines_;
+  const int width_;
+  const bool narrow_;
+  bool real_ = true;
+  double end_us_ = 1, left_ = 0, right_ = 0, y_ = kTop;
+  Axis x_;
+  Svg svg_;
+};
 
 }  // namespace
 
 Drawing DrawTimelines(const std::vector<Timeline>& timelines, int width) {
-  const bool narrow = width < kWideWidth;
-  bool real = true;
-  for (const Timeline& timeline : timelines) real = real && timeline.has_real_times;
-  double end = 0, other_end = 0, names = 0;
-  for (const Timeline& timeline : timelines) {
-    end = std::max(end, static_cast<double>(real ? timeline.real_end : timeline.virtual_end));
-    other_end = std::max(other_end, static_cast<double>(timeline.virtual_end));
-    for (const std::string& row : timeline.rows) names = std::max(names, WidthOf(row));
-  }
-  const double left = narrow ? 8 : std::min(names, 200.0) + 14, right = width - kRight;
-  Axis x = Axis::Exact(0, end * 1e-6, narrow ? 4 : 8);
-  x.Place(left, right);
-  Svg svg;
-  double y = kTop;
-  for (const Timeline& timeline : timelines) {
-    y += kTitle;
-    svg.Text(8, y - 8, Svg::Anchor::kStart, timeline.name, "name");
-    for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
-      if (narrow) {
-        y += kNameAbove;
-        svg.Text(left, y - 4, Svg::Anchor::kStart, timeline.rows[row], "note");
-      } else {
-        svg.Text(left - 6, y + 13, Svg::Anchor::kEnd, Fitted(timeline.rows[row], left - 14),
-                 "note");
-      }
-      svg.Rect(left, y, right - left, kRow, "lane");
-      const auto columns = static_cast<std::size_t>(right - left);
-      const std::vector<double> busy = Busy(timeline, static_cast<int>(row), real, end, columns);
-      Svg::Points outline;
-      for (std::size_t i = 0; i < columns; ++i) {
-        const double height = y + kRow * (1 - busy[i]);
-        outline.emplace_back(left + static_cast<double>(i), height);
-        outline.emplace_back(left + static_cast<double>(i + 1), height);
-      }
-      svg.Area(outline, y + kRow, "busy");
-      y += kRow + kBetween;
-    }
-    if (!timeline.has_real_times) continue;
-    if (narrow) {
-      y += kNameAbove;
-      svg.Text(left, y - 4, Svg::Anchor::kStart, "virtual time", "note");
-    } else {
-      svg.Text(left - 6, y + 13, Svg::Anchor::kEnd, "virtual time", "note");
-    }
-    Axis up = Axis::Exact(0, other_end * 1e-6, 1);
-    up.Place(y + kProgress, y);
-    svg.Rect(left, y, right - left, kProgress, "lane");
-    svg.Polyline(Progress(timeline, real, x, up), "progress");
-    svg.Text(right + 4, y + 10, Svg::Anchor::kStart, Significant(other_end * 1e-6) + " s", "tick");
-    svg.Text(right + 4, y + kProgress, Svg::Anchor::kStart, "0 s", "tick");
-    y += kProgress + kBetween;
-  }
-  DrawHorizontalAxis(&svg, {left, kTop, right, y}, x, real ? "real time [s]" : "virtual time [s]");
-  return {width, static_cast<int>(y + kBottom), svg.Take()};
+  return Picture(timelines, width).Draw();
 }
 
 }  // namespace tcs::report

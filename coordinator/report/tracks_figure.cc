@@ -13,7 +13,7 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 120, kName = 26, kBottom = 40;
+constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 120, kName = 34, kBottom = 40;
 
 // As many of the samples as one can see, the last one included.
 Svg::Points Thinned(const Track& track, const Axis& x, const Axis& y, double pixels) {
@@ -47,12 +47,12 @@ Track MedianTrack(const System& system) {
   return median;
 }
 
-Drawing DrawTracks(const std::vector<const System*>& systems, const std::vector<double>& marks,
+Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<double>& marks,
                    int width) {
   double last = 0, most = 0;
   for (const double mark : marks) most = std::max(most, mark);
-  for (const System* system : systems) {
-    for (const Run& run : system->runs) {
+  for (const TracksPanel& panel : panels) {
+    for (const Run& run : panel.system->runs) {
       if (run.track.time_s.empty()) continue;
       last = std::max(last, run.track.time_s.back());
       most = std::max(most,
@@ -64,11 +64,11 @@ Drawing DrawTracks(const std::vector<const System*>& systems, const std::vector<
   x.Place(kLeft, right);
   Svg svg;
   const double pitch = kName + kPanel;
-  const double bottom = kTop + pitch * static_cast<double>(systems.size());
+  const double bottom = kTop + pitch * static_cast<double>(panels.size());
   const double points = (right - kLeft) * 0.6;
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    const System& system = *systems[i];
-    const auto colour = static_cast<int>(i);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const System& system = *panels[i].system;
+    const int colour = panels[i].colour;
     const double top = kTop + pitch * static_cast<double>(i) + kName;
     const Frame frame{kLeft, top, right, top + kPanel};
     Axis y = Axis::Linear(0, most, 4);
@@ -76,7 +76,7 @@ Drawing DrawTracks(const std::vector<const System*>& systems, const std::vector<
     DrawVerticalAxis(&svg, frame, y);
     for (const double mark : marks) {
       svg.Line(frame.left, y.Pixel(mark), frame.right, y.Pixel(mark), "mark");
-      svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, Significant(mark) + " m", "tick");
+      svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
     }
     svg.Text(frame.left, frame.top - 8, Svg::Anchor::kStart, system.name,
              "name " + SeriesClass('t', colour));

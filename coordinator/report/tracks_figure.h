@@ -11,7 +11,12 @@ namespace tcs::report {
 // The median over the trials at each of the times at which all of the first trial's samples lie.
 [[nodiscard]] Track MedianTrack(const System& system);
 
-[[nodiscard]] Drawing DrawTracks(const std::vector<const System*>& systems,
+struct TracksPanel {
+  const System* system;
+  int colour;
+};
+
+[[nodiscard]] Drawing DrawTracks(const std::vector<TracksPanel>& panels,
                                  const std::vector<double>& marks, int width);
 
 }  // namespace tcs::report

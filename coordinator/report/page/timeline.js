@@ -56,7 +56,8 @@
   const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
   const text = (x, y, classes, content, anchor = 'start') =>
       `<text class="${classes}" x="${x}" y="${y}" text-anchor="${anchor}">${escaped(content)}</text>`;
-  const percent = share => share === 0 ? '0 %' : share < 0.01 ? '< 1 %' : `${Math.round(share * 100)} %`;
+  const percent = share => share === 0 ? '0\u00a0%' : share < 0.095 ? `${Number((share * 100).toPrecision(share < 0.01 ? 1 : 2))}\u00a0%`
+      : `${Math.round(share * 100)}\u00a0%`;
 
   function ticks(from, to, most) {
     const power = Math.pow(10, Math.floor(Math.log10((to - from) / most)));
@@ -80,7 +81,7 @@
       if (end[i] < view.from || start[i] > view.to) continue;
       ++slices;
       const from = Math.max(start[i], view.from), to = Math.min(end[i], view.to);
-      whole[run.row[i]] += (to - from) / (view.to - view.from);
+      whole[run.row[i]] += to - from;
       const first = Math.min(columns - 1, Math.floor((from - view.from) / width));
       const final = Math.min(columns - 1, Math.floor((to - view.from) / width));
       for (let column = first; column <= final; ++column) {
@@ -90,7 +91,9 @@
         share[at] = Math.max(1e-6, share[at] + Math.max(0, inside) / width);
       }
     }
-    return {share, whole, slices};
+    // Of that part of the view that the run fills.
+    const length = Math.max(1, Math.min(view.to, run[view.axis].last) - view.from);
+    return {share, whole: whole.map(time => time / length), slices};
   }
 
   function bars(share, offset, columns, x, y) {
@@ -122,7 +125,10 @@
         if (points.length === 0 && before) points.push(before);
         const previous = points[points.length - 1];
         if (point[0] > view.to && previous && previous[0] > view.to) return draw(points);
-        if (!previous || (point[0] - previous[0]) * scale >= 0.5 || point[0] > view.to) points.push(point);
+        // One point a column is enough; the last one stays.
+        const before_that = points[points.length - 2];
+        if (before_that && (previous[0] - before_that[0]) * scale < 0.5) points.pop();
+        points.push(point);
       }
     }
     return draw(points);
