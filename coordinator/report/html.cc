@@ -25,7 +25,8 @@ std::string Table::Html() const {
   }
   return fmt::format(
       "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table>"
-      "<caption>{0}</caption><thead><tr>{1}</tr></thead><tbody>\n{2}</tbody></table></div>\n",
+      "<thead><tr>{1}</tr></thead><tbody>\n{2}</tbody></table></div>\n<p "
+      "class=\"caption\">{0}</p>\n",
       Escaped(caption_), head, rows_);
 }
 

@@ -126,7 +126,7 @@ class Picture {
             x_.Pixel(static_cast<double>(real_ ? real_us : virtual_us) * 1e-6),
             up.Pixel(static_cast<double>(real_ ? virtual_us : real_us) * 1e-6)};
         // One point a column is enough; the last one stays.
-        if (points.size() > 1 && points.back().first - points[points.size() - 2].first < 0.5) {
+        if (points.size() > 1 && point.first - points[points.size() - 2].first < 0.5) {
           points.pop_back();
         }
         points.push_back(point);

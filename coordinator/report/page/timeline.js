@@ -127,7 +127,7 @@
         if (point[0] > view.to && previous && previous[0] > view.to) return draw(points);
         // One point a column is enough; the last one stays.
         const before_that = points[points.length - 2];
-        if (before_that && (previous[0] - before_that[0]) * scale < 0.5) points.pop();
+        if (before_that && (point[0] - before_that[0]) * scale < 0.5) points.pop();
         points.push(point);
       }
     }
