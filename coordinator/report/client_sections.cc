@@ -55,8 +55,7 @@ double MeanOver(const System& system, const std::string& name,
 }  // namespace
 
 std::optional<Figure> ResponseTimes(const Results& results) {
-  HistogramPlot plot{
-      "from being asked to being idle, by the client's own clock [s]", "s", "activation", {}, {}};
+  HistogramPlot plot{"response time [s]", "s", "activation", {}, {}};
   std::vector<std::string> said;
   const std::map<std::string, bool> clients = Clients(results);
   const auto planners = std::count_if(clients.begin(), clients.end(),
@@ -78,11 +77,12 @@ std::optional<Figure> ResponseTimes(const Results& results) {
     }
   }
   if (plot.panels.empty()) return {};
-  return MakeFigure("response-times", "How long planners take",
-                    fmt::format("{}.", fmt::join(said, "; ")),
-                    "Best-effort clients. Where the world stands still meanwhile (callback), the "
-                    "client's own clock goes on.",
-                    [&](int width) { return DrawHistograms(plot, width); });
+  return MakeFigure(
+      "response-times", "How long planners take", fmt::format("{}.", fmt::join(said, "; ")),
+      "Best-effort clients, from being woken to being idle again, by their own clocks. Where the "
+      "world stands still meanwhile (callback), "
+      "these go on.",
+      [&](int width) { return DrawHistograms(plot, width); });
 }
 
 std::optional<Figure> Lateness(const Results& results) {

@@ -31,13 +31,6 @@ std::string BetweenBodies(const Results& results) {
   return fmt::format("{} and {}", results.bodies[0], results.bodies[1]);
 }
 
-// Which of `medians` is least and which greatest, if that is not the same.
-std::string Extremes(const std::vector<std::pair<double, std::string>>& medians) {
-  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
-  if (least->first == most->first) return {};
-  return fmt::format(" The median is least in {} and greatest in {}.", least->second, most->second);
-}
-
 }  // namespace
 
 Section SystemsSection(const Results& results, const std::vector<double>& marks) {
@@ -73,8 +66,9 @@ Section SystemsSection(const Results& results, const std::vector<double>& marks)
     cells.push_back(Seconds(MostOf(system, &Run::drift_ns)));
     cells.push_back(Percent(OverheadOf(system)));
     table.Row(cells);
-    counts.push_back(fmt::format("{} of {} ({} each)", Count(trials, "trial"), system.name,
-                                 Seconds(MeanOf(system, &Run::virtual_ns))));
+    counts.push_back(fmt::format("{} of {} ({}{})", Count(trials, "trial"), system.name,
+                                 Seconds(MeanOf(system, &Run::virtual_ns)),
+                                 trials > 1 ? " each" : ""));
   }
   return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html()};
 }
@@ -82,25 +76,24 @@ Section SystemsSection(const Results& results, const std::vector<double>& marks)
 std::optional<Figure> DistanceHistogram(const Results& results, const std::vector<double>& marks) {
   HistogramPlot plot{
       fmt::format("distance between {} [m]", BetweenBodies(results)), "m", "sample", marks, {}};
-  std::vector<std::string> said;
-  std::vector<std::pair<double, std::string>> medians;
+  std::vector<std::string> medians, below;
   for (const TracksPanel& panel : PanelsOf(results)) {
     const std::string& name = panel.system->name;
-    const std::vector<double> distances = Distances(*panel.system);
-    const Spread spread = SpreadOf(distances);
-    std::string text = fmt::format("{}: median {}, standard deviation {}", name,
-                                   Metres(spread.median), Metres(spread.deviation));
-    for (const double mark : marks) {
-      text += fmt::format(", {} of the samples below {}", Percent(ShareBelow(distances, mark)),
-                          PlainMetres(mark));
+    std::vector<double> distances = Distances(*panel.system);
+    medians.push_back(fmt::format("{} in {}", Metres(SpreadOf(distances).median), name));
+    if (!marks.empty()) {
+      below.push_back(fmt::format("{} in {}", Percent(ShareBelow(distances, marks[0])), name));
     }
-    said.push_back(text);
-    medians.emplace_back(spread.median, name);
-    plot.panels.push_back({name, panel.colour, distances});
+    plot.panels.push_back({name, panel.colour, std::move(distances)});
   }
   if (plot.panels.empty()) return {};
+  std::string sentence = fmt::format("The median distance is {}.", Listed(medians));
+  if (!marks.empty()) {
+    sentence += fmt::format(" The share of the samples below {} is {}.", PlainMetres(marks[0]),
+                            Listed(below));
+  }
   return MakeFigure("distances", fmt::format("How far apart {} are", BetweenBodies(results)),
-                    fmt::format("{}.{}", fmt::join(said, "; "), Extremes(medians)),
+                    sentence,
                     "Each panel has a vertical scale of its own; the triangle is the median.",
                     [&](int width) { return DrawHistograms(plot, width); });
 }

@@ -46,7 +46,8 @@ std::string Escaped(std::string_view text) {
 std::string Significant(double value, int digits) {
   if (value == 0 || !std::isfinite(value)) return value == 0 ? "0" : "–";
   // What rounding makes of it decides: 9.996 is 10.0.
-  const double scale = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
+  const double places = digits - 1 - std::floor(std::log10(std::abs(value)));
+  const double scale = std::pow(10.0, std::max(0.0, places));
   const double rounded = std::round(value * scale) / scale;
   const int before_point = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + 1;
   if (before_point >= 5) return Grouped(std::llround(rounded));

@@ -26,9 +26,10 @@ class Builder {
     for (std::size_t i = 1; i < fields.size(); ++i) {
       const auto ns = ToInteger(fields[i]);
       if (!ns || *ns < 0) return false;
-      times[i - 1] = Microseconds(*ns);
+      times[i - 1] = *ns;
     }
     if (times[1] < times[0] || times[3] < times[2]) return false;
+    for (std::int64_t& time : times) time = Microseconds(time);
     timeline_.slices.push_back(
         {RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3]});
     timeline_.virtual_end = std::max(timeline_.virtual_end, times[1]);

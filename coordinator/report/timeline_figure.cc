@@ -83,7 +83,7 @@ class Picture {
       y_ += kNameAbove;
       svg_.Text(left_, y_ - 4, Svg::Anchor::kStart, name, "note");
     } else {
-      svg_.Text(left_ - 6, y_ + 13, Svg::Anchor::kEnd, Fitted(name, left_ - 14), "note");
+      svg_.Text(left_ - 6, y_ + 13, Svg::Anchor::kEnd, Fitted(name, left_ - 8), "note");
     }
   }
 

@@ -83,7 +83,8 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
     const auto trials = static_cast<std::int64_t>(system.runs.size());
     svg.Text(frame.right, frame.top - 8, Svg::Anchor::kEnd, Count(trials, "trial"), "note");
     for (const Run& run : system.runs) {
-      svg.Polyline(Thinned(run.track, x, y, points), "thin " + SeriesClass('s', colour));
+      svg.Polyline(Thinned(run.track, x, y, points),
+                   (trials > 1 ? "thin " : "line ") + SeriesClass('s', colour));
     }
     if (trials > 1) {
       const Svg::Points median = Thinned(MedianTrack(system), x, y, points);
