@@ -216,7 +216,8 @@
     const middle = (from + to) / 2;
     view.from = Math.min(Math.max(0, middle - length / 2), end - length);
     view.to = view.from + length;
-    if (!pending) pending = requestAnimationFrame(() => { pending = 0; draw(); });
+    // Once for all events of one moment.
+    if (!pending) pending = setTimeout(() => { pending = 0; draw(); }, 10);
     clearTimeout(naming);
     naming = setTimeout(nameView, 300);
   }
