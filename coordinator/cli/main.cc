@@ -9,6 +9,7 @@
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/preload_library.h"
+#include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/doctor/doctor.h"
@@ -77,6 +78,25 @@ int main(int argc, char** argv) {
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
+  tcs::ReportArguments report_arguments;
+  CLI::App* report = app.add_subcommand("report", "make one HTML page of result folders");
+  report->add_option("folders", report_arguments.folders, "what run or trials wrote")->required();
+  report->add_option("--out", report_arguments.out, "the page")->capture_default_str();
+  report
+      ->add_option("--figures", report_arguments.figures,
+                   "svg or png: each figure as a file next to the page, too")
+      ->check(CLI::IsMember({"svg", "png"}));
+  report->add_option("--bodies", report_arguments.bodies,
+                     "A,B: whose distance is meant; the first two unless told");
+  report
+      ->add_option("--mark", report_arguments.marks,
+                   "a distance in metres that figures mark and tables count below; may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->check(CLI::NonNegativeNumber);
+  report->add_option("--title", report_arguments.title,
+                     "of the page; the scenario's name unless told");
+
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
   doctor->add_flag("--json", as_json, "for programs");
@@ -99,6 +119,7 @@ int main(int argc, char** argv) {
     fmt::print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
     return tcs::CanRun(findings) ? 0 : 1;
   }
+  if (report->parsed()) return tcs::ReportCommand(report_arguments);
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");

@@ -56,7 +56,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   line.Clear();
   if (!report.error.empty()) return Fail(report.error);
   PrintSummary(scenario, report, arguments.out);
-  if (const std::string error = WriteSummary(scenario, report, arguments.out + "/summary.json");
+  if (const std::string error =
+          WriteSummary(scenario, options, report, arguments.out + "/summary.json");
       !error.empty()) {
     return Fail(error);
   }

@@ -26,6 +26,12 @@ std::int64_t NotOnOurCpu(const RunReport& r) {
   return r.real_ns - r.client_ns - r.dynamics_ns - r.coordinating_ns;
 }
 
+// None where there is no world.
+nlohmann::json EngineOf(const Scenario& scenario) {
+  if (!scenario.world.has_value()) return {};
+  return scenario.world->integrator.engine == EngineKind::kOde ? "ode" : "simbody";
+}
+
 }  // namespace
 
 double OverheadPercent(const RunReport& r) {
@@ -59,8 +65,10 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     fmt::print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
                Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
   }
-  fmt::print("written to {}: summary.json, bodies.csv, trace.json (for ui.perfetto.dev), *.log\n",
-             directory);
+  fmt::print(
+      "written to {}: summary.json, bodies.csv, activations.csv, dispatches.csv, trace.json (for "
+      "ui.perfetto.dev), *.log\n",
+      directory);
   for (const ClientReport& c : r.clients) {
     if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
     std::string base = c.name;
@@ -71,11 +79,18 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   for (const std::string& w : r.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
 }
 
-std::string WriteSummary(const Scenario& scenario, const RunReport& r, const std::string& path) {
+std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
+                         const std::string& path) {
+  const bool fixed = options.accounting == shm::Accounting::kFixed;
+  const bool callback = options.sync == shm::Sync::kCallback;
   nlohmann::ordered_json json{{"scenario", scenario.name},
                               {"seed", scenario.seed},
                               {"set", scenario.set},
+                              {"accounting", fixed ? "fixed" : "measured"},
+                              {"sync", callback ? "callback" : "consistent"},
+                              {"engine", EngineOf(scenario)},
                               {"interrupted", r.interrupted},
+                              {"duration_ns", scenario.duration.ns()},
                               {"virtual_ns", r.virtual_ns},
                               {"real_ns", r.real_ns},
                               {"drift_ns", r.drift_ns},
@@ -89,13 +104,25 @@ std::string WriteSummary(const Scenario& scenario, const RunReport& r, const std
                               {"samples", r.samples},
                               {"commands", r.commands},
                               {"warnings", r.warnings}};
+  for (const RobotSpec& robot : scenario.robots) {
+    json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
+    for (const ClientSpec& client : robot.clients) {
+      const bool periodic = client.client_class == ClientClass::kPeriodic;
+      json["clients"][client.name] = {{"robot", robot.name},
+                                      {"class", periodic ? "periodic" : "best-effort"},
+                                      {"priority", client.priority}};
+    }
+  }
   for (const ClientReport& c : r.clients) {
-    json["clients"][c.name] = {
-        {"charged_ns", c.charged_ns},   {"host_cpu_ns", c.host_cpu_ns},
-        {"stolen_ns", c.stolen_ns},     {"activations", c.activations},
-        {"overruns", c.overruns},       {"ended_at_ns", c.ended_at_ns},
+    json["clients"][c.name].update({
+        {"charged_ns", c.charged_ns},
+        {"host_cpu_ns", c.host_cpu_ns},
+        {"stolen_ns", c.stolen_ns},
+        {"activations", c.activations},
+        {"overruns", c.overruns},
+        {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
-    };
+    });
   }
   return WriteWhole(path, json.dump(2) + "\n");
 }

@@ -17,7 +17,7 @@ bool HasFailedClient(const RunReport& report);
 void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
 
 // Empty on success, else one sentence. Times are nanoseconds.
-[[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunReport& report,
-                                       const std::string& path);
+[[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunOptions& options,
+                                       const RunReport& report, const std::string& path);
 
 }  // namespace tcs

@@ -74,6 +74,7 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
   task.priority = process.priority;
   task.parked = false;
   task.reached_ns = event_ns_;
+  task.activation.release_ns = event_ns_;
   process.robot->tasks.push_back(&task);
   SetState(task, TaskState::kStarting);
   Refresh(*process.robot);
@@ -101,15 +102,16 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   Task* task = AddTask(process, pid);
   // Children have no name of their own; their place in the order is the same in every run.
   const bool is_child = parent != getpid();
-  task->row =
-      trace_.AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
+  task->is_further = is_child;
+  task->row = AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
   return task;
 }
 
 Task* Engine::AddThread(Process& process, pid_t tid) {
   ++process.threads;
   Task* task = AddTask(process, tid);
-  task->row = trace_.AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
+  task->is_further = true;
+  task->row = AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
   return task;
 }
 

@@ -217,6 +217,7 @@ void Engine::Settle(Task& task) {
     task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
     most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
     trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
+    RecordSlice(task.row, start, start, recorded_tsc_);
     return;
   }
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
@@ -233,7 +234,9 @@ void Engine::Settle(Task& task) {
   if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
-  trace_.Slice(task.row, start, slept ? std::min(progress, start + executed) : progress);
+  const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
+  trace_.Slice(task.row, start, busy_until);
+  RecordSlice(task.row, start, busy_until, recorded_tsc_);
 }
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
@@ -325,6 +328,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   Resume(task);
   ++report_.switches;
   StartClock(task);
+  recorded_tsc_ = stop_tsc_;
+  if (task.activation.start_ns < 0) {
+    task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
+  }
   AwaitStop(task);
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;

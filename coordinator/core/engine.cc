@@ -58,6 +58,8 @@ bool Engine::IsRunnable(const Task& task) {
 }
 
 void Engine::SetState(Task& task, TaskState state) {
+  const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
+  if (ends && task.state != TaskState::kWaiting) NoteIdle(task);
   unseen_ += (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
   task.state = state;
   Requeue(task);
@@ -105,6 +107,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
                                             task.waits_for_key || task.awaited_signals != 0);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
+    NoteReleased(task, reason);
     task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
@@ -217,8 +220,11 @@ bool Engine::StepWorld() {
   if (now >= limit && world_.NextOutputNs() > std::min(now, limit)) return false;
   event_ns_ = std::max(event_ns_, now);
   Beat();
+  const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
+  stop_tsc_ = __rdtsc();
   trace_.Slice(world_row_, now, world_.progress_ns());
+  RecordSlice(world_row_, now, world_.progress_ns(), begun_tsc);
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
     event_ns_ = world_.progress_ns();
@@ -326,6 +332,7 @@ RunReport Engine::Run() {
   if (report_.error.empty()) report_.error = StartClients();
   start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);
   start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
+  start_tsc_ = __rdtsc();
   try {
     while (report_.error.empty() && !stop_requested_) {
       if (!Step()) break;
@@ -337,10 +344,11 @@ RunReport Engine::Run() {
   report_.coordinating_ns = HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ -
                             (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
-  if (header_ != nullptr) Shutdown();
-  if (std::string error = trace_.Close(); !error.empty() && report_.error.empty()) {
+  // First: how the clients end is no part of what repeats.
+  if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {
     report_.error = error;
   }
+  if (header_ != nullptr) Shutdown();
   return report_;
 }
 

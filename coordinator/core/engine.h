@@ -14,6 +14,7 @@
 #include "coordinator/core/world.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/trace/dispatch_log.h"
 #include "coordinator/trace/schedule_trace.h"
 
 namespace tcs {
@@ -200,6 +201,14 @@ class Engine {
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
 
+  // What is written about the run (records.cc).
+  std::string OpenRecords();
+  std::string CloseRecords();
+  int AddRow(const std::string& group, const std::string& name);
+  void NoteReleased(Task& task, shm::WakeReason reason);
+  void NoteIdle(Task& task);
+  void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc);
+
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
@@ -217,6 +226,8 @@ class Engine {
   World world_;
   TemporalConsistency root_;
   ScheduleTrace trace_;
+  ActivationLog activation_log_;
+  DispatchLog dispatch_log_;
   int world_row_ = 0;
   std::deque<Robot> robots_;
   std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
@@ -253,8 +264,9 @@ class Engine {
   std::int64_t event_ns_ = 0;  // virtual time of what is being handled
   Task* running_ = nullptr;
   std::int64_t running_horizon_ns_ = 0;
-  std::uint64_t stop_tsc_ = 0;  // when the running thread was last found stopped
-  Task* last_ = nullptr;        // dispatched last; keeps its level until another one is
+  std::uint64_t stop_tsc_ = 0;      // when the running thread was last found stopped
+  std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
+  Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
@@ -264,6 +276,7 @@ class Engine {
   std::int64_t client_host_ns_ = 0;
   std::int64_t most_frozen_ns_ = 0;
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
+  std::uint64_t start_tsc_ = 0;
   std::uint64_t next_progress_tsc_ = 0;
 };
 

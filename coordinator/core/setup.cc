@@ -55,11 +55,9 @@ std::string Engine::Prepare() {
   const std::string& directory = options_.output_directory;
   const std::string csv = directory.empty() ? "" : directory + "/bodies.csv";
   if (std::string error = world_.Open(scenario_, csv); !error.empty()) return error;
-  if (!directory.empty()) {
-    if (std::string error = trace_.Open(directory + "/trace.json"); !error.empty()) return error;
-  }
+  if (std::string error = OpenRecords(); !error.empty()) return error;
   if (world_.present()) {
-    world_row_ = trace_.AddRow("dynamics", "world");
+    world_row_ = AddRow("dynamics", "dynamics");
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   claim_ = ClaimCpu();

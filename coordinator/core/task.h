@@ -15,6 +15,7 @@
 #include "coordinator/os/trap.h"
 #include "coordinator/policy/fixed_priority.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/trace/activation_log.h"
 #include "shm/layout.h"
 #include "shm/virtual_time.h"
 
@@ -94,7 +95,9 @@ struct Task {
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   Level level = Level::kWaiting;
   std::int64_t activations = 0;
-  int row = 0;  // in the schedule trace
+  Activation activation;    // this one, while it does not wait
+  bool is_further = false;  // not the first thread of a client
+  int row = 0;              // in the schedule trace and the log of dispatches
 };
 
 // Times are those of the process's clock, or charged processor time, as its kind says.
@@ -136,6 +139,7 @@ struct Process {
   std::int64_t shown_ns = 0;                    // the furthest that its clock has come
   std::map<std::int64_t, Timer> timers;         // by id
   std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
+  std::int64_t expired_ns = shm::kNeverNs;      // the last one, while nobody has come to wait since
   bool has_cpu_timers = false;                  // some run on processor time
   std::int64_t next_timer_id = shm::kFirstTimerId;
   std::vector<TimerSignal> timer_signals;

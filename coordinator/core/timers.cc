@@ -218,7 +218,10 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
       MakeReady(*task, shm::WakeReason::kDeadline);
     }
     Process& process = *task->process;
-    if (process.next_expiry_ns <= now_ns) wrote |= Expire(process, now_ns);
+    if (process.next_expiry_ns <= now_ns) {
+      process.expired_ns = process.next_expiry_ns;
+      wrote |= Expire(process, now_ns);
+    }
     if (!process.timer_signals.empty()) RouteTimerSignals(process);
   }
   if (wrote) PollEvents(0);

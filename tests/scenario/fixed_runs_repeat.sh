@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# Two deterministic runs of the example write the same bytes: body states and schedule trace.
+# Two deterministic runs of the example write the same bytes: body states, schedule trace,
+# activations and dispatches.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for run in first second; do
@@ -9,8 +10,11 @@ for run in first second; do
 done
 (($(wc -l <"$out/first/bodies.csv") > 600)) || fail "the body states are missing"
 grep -q '"ph":"X"' "$out/first/trace.json" || fail "the trace is empty"
-cmp "$out/first/bodies.csv" "$out/second/bodies.csv" || fail "the body states differ"
-cmp "$out/first/trace.json" "$out/second/trace.json" || fail "the schedules differ"
+for file in bodies.csv trace.json activations.csv dispatches.csv; do
+  cmp "$out/first/$file" "$out/second/$file" || fail "$file differs"
+done
+(($(wc -l <"$out/first/activations.csv") > 600)) || fail "the activations are missing"
+grep -q '^predator/planner,' "$out/first/dispatches.csv" || fail "the dispatches are missing"
 # The bytes agree because nothing was measured, not because nothing happened.
 python3 - "$out/first/summary.json" <<'PY' || fail "$(cat "$out/first.said")"
 import json, sys

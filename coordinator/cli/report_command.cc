@@ -1,0 +1,39 @@
+#include "coordinator/cli/report_command.h"
+
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/report/page.h"
+#include "coordinator/report/read_results.h"
+#include "coordinator/report/text.h"
+#include "coordinator/report/write.h"
+
+namespace tcs {
+
+int ReportCommand(const ReportArguments& arguments) {
+  std::vector<std::string> bodies;
+  if (!arguments.bodies.empty()) {
+    const std::size_t comma = arguments.bodies.find(',');
+    bodies = {arguments.bodies.substr(0, comma),
+              comma == std::string::npos ? "" : arguments.bodies.substr(comma + 1)};
+    if (bodies[0].empty() || bodies[1].empty() || bodies[0] == bodies[1]) {
+      return Fail("--bodies wants two different names, such as --bodies predator,prey, not '" +
+                  arguments.bodies + "'");
+    }
+  }
+  const auto read = report::ReadResults(arguments.folders, bodies);
+  if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
+  const report::Page page =
+      report::MakePage(std::get<report::Results>(read), {arguments.title, arguments.marks});
+  for (const std::string& warning : page.warnings) {
+    fmt::print(stderr, "tcsim: warning: {}\n", warning);
+  }
+  const auto files = arguments.figures == "svg"   ? report::FigureFiles::kSvg
+                     : arguments.figures == "png" ? report::FigureFiles::kPng
+                                                  : report::FigureFiles::kNone;
+  std::vector<std::string> written;
+  const std::string error = report::WritePage(page, arguments.out, files, &written);
+  if (!error.empty()) return Fail(error);
+  fmt::print("written: {}\n", report::Listed(written));
+  return kSucceeded;
+}
+
+}  // namespace tcs

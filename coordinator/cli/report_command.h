@@ -1,0 +1,18 @@
+// `tcsim report`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tcs {
+
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string out = "report.html", figures, bodies, title;
+  std::vector<double> marks;
+};
+
+// The exit status.
+int ReportCommand(const ReportArguments& arguments);
+
+}  // namespace tcs

@@ -1,0 +1,78 @@
+// What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, when clients
+// were activated, and who had the processor when.
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+namespace {
+
+ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
+  if (reason == shm::WakeReason::kDeadline) return ReleaseCause::kTime;
+  if (task.process->expired_ns != shm::kNeverNs) return ReleaseCause::kTime;
+  if (reason == shm::WakeReason::kSignal) return ReleaseCause::kSignal;
+  if (task.trap_wait == TrapWait::kFutex) return ReleaseCause::kThread;
+  return task.waits_for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
+}
+
+}  // namespace
+
+std::string Engine::OpenRecords() {
+  const std::string& directory = options_.output_directory;
+  if (directory.empty()) return {};
+  std::string error = trace_.Open(directory + "/trace.json");
+  if (error.empty()) error = activation_log_.Open(directory + "/activations.csv");
+  if (error.empty()) error = dispatch_log_.Open(directory + "/dispatches.csv", !IsFixed());
+  return error;
+}
+
+std::string Engine::CloseRecords() {
+  const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close()};
+  for (const std::string& error : errors) {
+    if (!error.empty()) return error;
+  }
+  return {};
+}
+
+int Engine::AddRow(const std::string& group, const std::string& name) {
+  dispatch_log_.AddRow(name);
+  return trace_.AddRow(group, name);
+}
+
+// It waits no longer. What was due before the robot could look at it was due then.
+void Engine::NoteReleased(Task& task, shm::WakeReason reason) {
+  Process& process = *task.process;
+  Activation& activation = task.activation;
+  activation.cause = CauseOf(task, reason);
+  const bool by_deadline = reason == shm::WakeReason::kDeadline;
+  const std::int64_t due_ns = by_deadline ? task.deadline_ns : process.expired_ns;
+  activation.release_ns = std::min(event_ns_, due_ns);
+  // A program's clock does not go back to the world's.
+  if (IsCallback()) activation.release_ns = std::max(activation.release_ns, process.shown_ns);
+  activation.start_ns = -1;
+  activation.charged_ns = task.charged_ns;
+}
+
+// It waits again, or has ended.
+void Engine::NoteIdle(Task& task) {
+  const std::int64_t now = task.reached_ns + task.process->frozen_ns;
+  task.process->expired_ns = shm::kNeverNs;
+  if (task.slot < 0) return;  // it never began
+  if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
+  activation_log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
+                        std::max(now, task.activation.start_ns), task.charged_ns);
+}
+
+// `row` was busy up to where the running thread was last found stopped.
+void Engine::RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns,
+                         std::uint64_t since_tsc) {
+  if (!dispatch_log_.is_open()) return;
+  const auto real = [this](std::uint64_t tsc) {
+    return static_cast<std::int64_t>(static_cast<double>(tsc - start_tsc_) / ticks_per_ns_);
+  };
+  dispatch_log_.Slice(row, {start_ns, end_ns}, {real(since_tsc), real(stop_tsc_)});
+  recorded_tsc_ = stop_tsc_;
+}
+
+}  // namespace tcs

@@ -1,0 +1,119 @@
+// What keeping time together costs: Δ, staleness, and who had the processor.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coordinator/report/html.h"
+#include "coordinator/report/over_runs.h"
+#include "coordinator/report/paper_values.h"
+#include "coordinator/report/sections.h"
+#include "coordinator/report/text.h"
+#include "coordinator/report/timeline_figure.h"
+
+namespace tcs::report {
+
+namespace {
+
+// All in one unit, to be compared.
+std::string InSeconds(double seconds) { return WithUnit(fmt::format("{:.2f}", seconds), "s"); }
+
+void AddPaper(Table* table) {
+  for (const paper::Values& of : paper::kSystems) {
+    std::vector<std::string> cells;
+    for (const std::string_view cell :
+         {of.system, of.virtual_time, std::string_view(), of.drift, std::string_view(),
+          of.coordinating, of.clients, of.dynamics, of.overhead}) {
+      cells.emplace_back(cell.empty() ? "–" : cell);
+    }
+    table->Row(cells, true);
+  }
+}
+
+// Of its real time, what each row ran.
+std::string Shares(const Timeline& timeline) {
+  std::vector<std::int64_t> ran(timeline.rows.size());
+  for (const Slice& slice : timeline.slices) {
+    ran[static_cast<std::size_t>(slice.row)] += timeline.has_real_times
+                                                    ? slice.real_end - slice.real_start
+                                                    : slice.virtual_end - slice.virtual_start;
+  }
+  const std::int64_t whole = timeline.has_real_times ? timeline.real_end : timeline.virtual_end;
+  std::vector<std::string> shares;
+  for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
+    const double share =
+        whole > 0 ? static_cast<double>(ran[row]) / static_cast<double>(whole) : 0.0;
+    shares.push_back(fmt::format("{} {}", timeline.rows[row], Percent(share)));
+  }
+  return Listed(shares);
+}
+
+std::string AboutTimeline(const Timeline& timeline) {
+  const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;
+  if (!timeline.has_real_times) {
+    return fmt::format("In {} of virtual time of {} these ran: {}.", Seconds(virtual_s),
+                       timeline.name, Shares(timeline));
+  }
+  const double real_s = static_cast<double>(timeline.real_end) * 1e-6;
+  return fmt::format("{} of virtual time took {} {} of real time, of which these ran: {}.",
+                     Seconds(virtual_s), timeline.name, Seconds(real_s), Shares(timeline));
+}
+
+}  // namespace
+
+std::optional<Section> CostsSection(const Results& results) {
+  if (results.systems.empty()) return {};
+  Table table("Means over the trials; of Δ and staleness the most.", {{"system", false},
+                                                                      {"virtual time"},
+                                                                      {"real time"},
+                                                                      {"Δ"},
+                                                                      {"staleness"},
+                                                                      {"coordinating"},
+                                                                      {"clients"},
+                                                                      {"dynamics"},
+                                                                      {"overhead"}});
+  std::vector<std::string> drifts;
+  for (const System& system : results.systems) {
+    table.Row({system.name, Seconds(MeanOf(system, &Run::virtual_ns)),
+               Seconds(MeanOf(system, &Run::real_ns)), Seconds(MostOf(system, &Run::drift_ns)),
+               Seconds(MostOf(system, &Run::staleness_ns)),
+               InSeconds(MeanOf(system, &Run::coordinating_ns)),
+               InSeconds(MeanOf(system, &Run::clients_ns)),
+               InSeconds(MeanOf(system, &Run::dynamics_ns)), Percent(OverheadOf(system))});
+    const double drift = MostOf(system, &Run::drift_ns);
+    const double ratio = drift / std::max(1e-9, MeanOf(system, &Run::virtual_ns));
+    drifts.push_back(ratio < 1 ? fmt::format("{} in {}", Seconds(drift), system.name)
+                               : fmt::format("{} in {}, {} times its virtual time", Seconds(drift),
+                                             system.name, Significant(ratio)));
+  }
+  std::string explained =
+      "Δ is how far the progress of two parts of the simulation ever came apart; staleness, how "
+      "much "
+      "older than the moment of a read the data was that it was given.";
+  if (results.scenario.starts_with(paper::kScenario)) {
+    AddPaper(&table);
+    explained += " The rows below ours are the paper's own numbers, from its machine.";
+  }
+  return Section{"Δ, staleness and overhead",
+                 fmt::format("Progress came apart by up to {}. {}", Listed(drifts), explained),
+                 table.Html()};
+}
+
+std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines) {
+  if (timelines.empty()) return {};
+  std::vector<std::string> said;
+  std::int64_t merged_us = 0;
+  for (const Timeline& timeline : timelines) {
+    said.push_back(AboutTimeline(timeline));
+    merged_us = std::max(merged_us, timeline.merged_us);
+  }
+  std::string note =
+      "The first trial of each system. A bar's height is the share of the time that the row ran.";
+  if (merged_us > 0) {
+    note += fmt::format(" Slices of a row that are up to {} apart are drawn as one.",
+                        Seconds(static_cast<double>(merged_us) * 1e-6, 2));
+  }
+  return MakeFigure("timeline", "Who ran when", fmt::format("{}", fmt::join(said, " ")), note,
+                    [&](int width) { return DrawTimelines(timelines, width); });
+}
+
+}  // namespace tcs::report

@@ -1,0 +1,120 @@
+// The systems at a glance, and the distance between the two bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coordinator/report/histogram_figure.h"
+#include "coordinator/report/html.h"
+#include "coordinator/report/over_runs.h"
+#include "coordinator/report/sections.h"
+#include "coordinator/report/statistics.h"
+#include "coordinator/report/text.h"
+#include "coordinator/report/tracks_figure.h"
+
+namespace tcs::report {
+
+namespace {
+
+// Of those that have any distance.
+std::vector<TracksPanel> PanelsOf(const Results& results) {
+  std::vector<TracksPanel> panels;
+  for (std::size_t i = 0; i < results.systems.size(); ++i) {
+    const System& system = results.systems[i];
+    const bool any = std::any_of(system.runs.begin(), system.runs.end(),
+                                 [](const Run& run) { return !run.track.time_s.empty(); });
+    if (any) panels.push_back({&system, static_cast<int>(i)});
+  }
+  return panels;
+}
+
+std::string BetweenBodies(const Results& results) {
+  return fmt::format("{} and {}", results.bodies[0], results.bodies[1]);
+}
+
+}  // namespace
+
+Section SystemsSection(const Results& results, const std::vector<double>& marks) {
+  std::vector<Column> columns{{"system", false}, {"trials"}, {"failed"}, {"samples"},
+                              {"mean"},          {"median"}, {"SD"}};
+  for (const double mark : marks) columns.push_back({"below " + PlainMetres(mark)});
+  columns.push_back({"Δ"});
+  columns.push_back({"overhead"});
+  const bool has_bodies = !results.bodies[0].empty();
+  Table table(has_bodies
+                  ? fmt::format("The distance between {}, over all samples of all trials; Δ is "
+                                "the most of any trial.",
+                                BetweenBodies(results))
+                  : "Δ is the most of any trial.",
+              columns);
+  std::vector<std::string> counts;
+  for (const System& system : results.systems) {
+    const std::vector<double> distances = Distances(system);
+    const Spread spread = SpreadOf(distances);
+    const bool any = spread.count > 0;
+    const auto metres = [any](double value) { return any ? Metres(value) : "–"; };
+    const auto trials = static_cast<std::int64_t>(system.runs.size());
+    std::vector<std::string> cells{system.name,
+                                   fmt::format("{}", trials),
+                                   fmt::format("{}", system.failed.size()),
+                                   Grouped(spread.count),
+                                   metres(spread.mean),
+                                   metres(spread.median),
+                                   metres(spread.deviation)};
+    for (const double mark : marks) {
+      cells.push_back(any ? Percent(ShareBelow(distances, mark)) : "–");
+    }
+    cells.push_back(Seconds(MostOf(system, &Run::drift_ns)));
+    cells.push_back(Percent(OverheadOf(system)));
+    table.Row(cells);
+    counts.push_back(fmt::format("{} of {} ({}{})", Count(trials, "trial"), system.name,
+                                 Seconds(MeanOf(system, &Run::virtual_ns)),
+                                 trials > 1 ? " each" : ""));
+  }
+  return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html()};
+}
+
+std::optional<Figure> DistanceHistogram(const Results& results, const std::vector<double>& marks) {
+  HistogramPlot plot{
+      fmt::format("distance between {} [m]", BetweenBodies(results)), "m", "sample", marks, {}};
+  std::vector<std::string> medians, below;
+  for (const TracksPanel& panel : PanelsOf(results)) {
+    const std::string& name = panel.system->name;
+    std::vector<double> distances = Distances(*panel.system);
+    medians.push_back(fmt::format("{} in {}", Metres(SpreadOf(distances).median), name));
+    if (!marks.empty()) {
+      below.push_back(fmt::format("{} in {}", Percent(ShareBelow(distances, marks[0])), name));
+    }
+    plot.panels.push_back({name, panel.colour, std::move(distances)});
+  }
+  if (plot.panels.empty()) return {};
+  std::string sentence = fmt::format("The median distance is {}.", Listed(medians));
+  if (!marks.empty()) {
+    sentence += fmt::format(" The share of the samples below {} is {}.", PlainMetres(marks[0]),
+                            Listed(below));
+  }
+  return MakeFigure("distances", fmt::format("How far apart {} are", BetweenBodies(results)),
+                    sentence,
+                    "Each panel has a vertical scale of its own; the triangle is the median.",
+                    [&](int width) { return DrawHistograms(plot, width); });
+}
+
+std::optional<Figure> DistanceOverTime(const Results& results, const std::vector<double>& marks) {
+  const std::vector<TracksPanel> panels = PanelsOf(results);
+  if (panels.empty()) return {};
+  std::vector<std::string> said;
+  for (const TracksPanel& panel : panels) {
+    const Track median = MedianTrack(*panel.system);
+    if (median.time_s.empty()) continue;
+    const std::size_t middle = median.time_s.size() / 2;
+    said.push_back(fmt::format("in {}, {} at {} and {} at {}", panel.system->name,
+                               Metres(median.distance_m[middle]), Seconds(median.time_s[middle]),
+                               Metres(median.distance_m.back()), Seconds(median.time_s.back())));
+  }
+  return MakeFigure(
+      "distance-over-time", "Distance over time",
+      fmt::format("The median distance over the trials is, {}.", fmt::join(said, "; ")),
+      "A thin line per trial, their median in bold; all panels have one scale.",
+      [&](int width) { return DrawTracks(panels, marks, width); });
+}
+
+}  // namespace tcs::report

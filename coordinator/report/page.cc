@@ -1,0 +1,141 @@
+#include "coordinator/report/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coordinator/report/page_files.h"
+#include "coordinator/report/sections.h"
+#include "coordinator/report/style.h"
+#include "coordinator/report/text.h"
+
+namespace tcs::report {
+
+namespace {
+
+// Of all timelines together: about 11 bytes of the page each.
+constexpr std::size_t kMostSlices = 150'000;
+
+std::string Paragraph(std::string_view classes, const std::string& text) {
+  if (text.empty()) return {};
+  return fmt::format("<p class=\"{}\">{}</p>\n", classes, Escaped(text));
+}
+
+class Builder {
+ public:
+  Builder(const Results& results, const PageOptions& options)
+      : results_(results), options_(options) {
+    page_.warnings = results.warnings;
+  }
+
+  Page Build() {
+    if (!results_.systems.empty()) Add(SystemsSection(results_, options_.marks));
+    AddFailures();
+    Add(DistanceHistogram(results_, options_.marks));
+    Add(DistanceOverTime(results_, options_.marks));
+    Add(CostsSection(results_));
+    AddTimelines();
+    Add(ResponseTimes(results_));
+    Add(Lateness(results_));
+    Add(ClientsSection(results_));
+    for (const std::string& key : VariedKeys(results_)) {
+      Add(SweepFigure(results_, key, options_.marks));
+      Add(SweepSection(results_, key, options_.marks));
+    }
+    page_.html = Whole();
+    return std::move(page_);
+  }
+
+ private:
+  void Add(const Section& section) {
+    body_ += fmt::format("<section>\n<h2>{}</h2>\n{}{}</section>\n", Escaped(section.heading),
+                         Paragraph("says", section.sentence), section.html);
+  }
+  void Add(const std::optional<Section>& section) {
+    if (section) Add(*section);
+  }
+  void Add(const std::optional<Figure>& figure) {
+    if (figure) AddFigure(*figure, "");
+  }
+
+  void AddFigure(const Figure& figure, std::string_view more) {
+    ++figures_;
+    body_ += fmt::format(
+        "<section>\n<h2>{}</h2>\n{}<figure id=\"{}\">\n{}\n{}\n{}<figcaption><b>Figure {}.</b> "
+        "{}</figcaption>\n</figure>\n</section>\n",
+        Escaped(figure.title), Paragraph("says", figure.sentence), figure.id,
+        InlineSvg(figure, figure.wide, "wide"), InlineSvg(figure, figure.narrow, "narrow"), more,
+        figures_, Escaped(figure.note));
+    page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
+  }
+
+  void AddTimelines() {
+    std::vector<Timeline> timelines;
+    for (const System& system : results_.systems) {
+      auto read = ReadTimeline(system.runs.front().folder, system.name,
+                               kMostSlices / results_.systems.size());
+      if (auto* timeline = std::get_if<Timeline>(&read)) {
+        timelines.push_back(std::move(*timeline));
+      } else {
+        page_.warnings.push_back(std::get<LoadError>(read).message +
+                                 "; the timeline goes without it");
+      }
+    }
+    const auto figure = TimelineFigure(timelines);
+    if (!figure) return;
+    std::string more(kTimelineControls);
+    for (const Timeline& timeline : timelines) {
+      more += fmt::format("<script type=\"application/json\" class=\"timeline\">{}</script>\n",
+                          Encoded(timeline));
+    }
+    AddFigure(*figure, more);
+  }
+
+  // What is missing is said on the page, too.
+  void AddFailures() {
+    std::string items;
+    const auto add = [&items](const System& system) {
+      for (const FailedRun& run : system.failed) {
+        items += fmt::format("<li>{}, {}: {}</li>\n", Escaped(system.name), Escaped(run.name),
+                             Escaped(run.why));
+      }
+    };
+    for (const System& system : results_.systems) add(system);
+    for (const Sweep& sweep : results_.sweeps) {
+      for (const SweepValue& value : sweep.values) add(value.system);
+    }
+    for (const std::string& warning : results_.warnings) {
+      items += fmt::format("<li>{}</li>\n", Escaped(warning));
+    }
+    if (items.empty()) return;
+    body_ += "<section class=\"failures\">\n<h2>What is missing</h2>\n<ul>\n" + items +
+             "</ul>\n</section>\n";
+  }
+
+  std::string Whole() const {
+    const std::string title = options_.title.empty() ? results_.scenario : options_.title;
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+        "'unsafe-inline'; script-src 'unsafe-inline'\">\n"
+        "<title>{0}</title>\n<style>\n{1}{2}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{3}"
+        "<footer>Made by tcsim report from result folders of the scenario “{4}”.</footer>\n"
+        "</main>\n<script>\n{5}</script>\n</body>\n</html>\n",
+        Escaped(title), PageStyle(), kReportCss, body_, Escaped(results_.scenario), kTimelineJs);
+  }
+
+  const Results& results_;
+  const PageOptions& options_;
+  Page page_;
+  std::string body_;
+  int figures_ = 0;
+};
+
+}  // namespace
+
+Page MakePage(const Results& results, const PageOptions& options) {
+  return Builder(results, options).Build();
+}
+
+}  // namespace tcs::report

@@ -1,0 +1,26 @@
+// The page: one HTML document that needs nothing else, with script or without.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/report/results.h"
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::report {
+
+struct PageOptions {
+  std::string title;          // empty: the scenario's name
+  std::vector<double> marks;  // distances that figures mark, in metres
+};
+
+struct Page {
+  std::string html;
+  // The figures by themselves, by file name without its extension.
+  std::vector<std::pair<std::string, std::string>> svgs;
+  std::vector<std::string> warnings;  // one sentence each; those of the results among them
+};
+
+[[nodiscard]] Page MakePage(const Results& results, const PageOptions& options);
+
+}  // namespace tcs::report

@@ -1,0 +1,325 @@
+// The zoomable timeline. It replaces the static picture, and draws the same way for any part of it.
+(() => {
+  'use strict';
+  const figure = document.getElementById('timeline');
+  if (!figure) return;
+  const live = figure.querySelector('.live');
+  const output = figure.querySelector('output');
+  const axisButton = figure.querySelector('[data-do=axis]');
+
+  // --- The data: see Encoded() in timeline.cc. Times are microseconds. ---------------------------
+
+  function decode(element) {
+    const run = JSON.parse(element.textContent);
+    const bytes = Uint8Array.from(atob(run.slices), c => c.charCodeAt(0));
+    let at = 0;
+    const number = () => {
+      let value = 0, scale = 1;
+      for (;;) {
+        const byte = bytes[at++];
+        value += (byte & 127) * scale;
+        if (byte < 128) return value;
+        scale *= 128;
+      }
+    };
+    const signed = () => {
+      const value = number();
+      return value % 2 ? -(value + 1) / 2 : value / 2;
+    };
+    run.row = new Uint16Array(run.count);
+    run.virtual = {start: new Float64Array(run.count), end: new Float64Array(run.count), last: run.virtualEnd};
+    run.real = run.real
+        ? {start: new Float64Array(run.count), end: new Float64Array(run.count), last: run.realEnd} : null;
+    let virtual = 0, real = 0;
+    for (let i = 0; i < run.count; ++i) {
+      run.row[i] = number();
+      run.virtual.start[i] = virtual + signed();
+      run.virtual.end[i] = virtual = run.virtual.start[i] + number();
+      if (!run.real) continue;
+      run.real.start[i] = real += number();
+      run.real.end[i] = real + number();
+    }
+    run.dynamics = run.rows.indexOf('dynamics');
+    return run;
+  }
+
+  const runs = [...figure.querySelectorAll('script.timeline')].map(decode);
+  const hasReal = runs.every(run => run.real);
+  const view = {axis: hasReal ? 'real' : 'virtual', from: 0, to: 1};
+  const last = axis => Math.max(...runs.map(run => run[axis].last), 1);
+  view.to = last(view.axis);
+
+  // --- Drawing -----------------------------------------------------------------------------------
+
+  const TITLE = 24, ROW = 18, BETWEEN = 6, NAME_ABOVE = 15, PROGRESS = 56, RIGHT = 52;
+  const LEAST_SHARE = 0.12;
+  const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
+  const text = (x, y, classes, content, anchor = 'start') =>
+      `<text class="${classes}" x="${x}" y="${y}" text-anchor="${anchor}">${escaped(content)}</text>`;
+  const percent = share => share === 0 ? '0\u00a0%' : share < 0.095 ? `${Number((share * 100).toPrecision(share < 0.01 ? 1 : 2))}\u00a0%`
+      : `${Math.round(share * 100)}\u00a0%`;
+
+  function ticks(from, to, most) {
+    const power = Math.pow(10, Math.floor(Math.log10((to - from) / most)));
+    const step = [1, 2, 5, 10].map(f => f * power).find(s => (to - from) / s <= most);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step / 1e6) + 1e-9));
+    const all = [];
+    for (let i = Math.ceil(from / step - 1e-9); i * step <= to + step * 1e-9; ++i) {
+      all.push([i * step, (i * step / 1e6).toFixed(decimals)]);
+    }
+    return all;
+  }
+
+  // Per row and column the share of the time that it ran, and per row that of the whole view.
+  function busy(run, columns) {
+    const {start, end} = run[view.axis];
+    const width = (view.to - view.from) / columns;
+    const share = new Float32Array(run.rows.length * columns);
+    const whole = new Float64Array(run.rows.length);
+    let slices = 0;
+    for (let i = 0; i < run.count; ++i) {
+      if (end[i] < view.from || start[i] > view.to) continue;
+      ++slices;
+      const from = Math.max(start[i], view.from), to = Math.min(end[i], view.to);
+      whole[run.row[i]] += to - from;
+      const first = Math.min(columns - 1, Math.floor((from - view.from) / width));
+      const final = Math.min(columns - 1, Math.floor((to - view.from) / width));
+      for (let column = first; column <= final; ++column) {
+        const left = view.from + column * width;
+        const inside = Math.min(to, left + width) - Math.max(from, left);
+        const at = run.row[i] * columns + column;
+        share[at] = Math.max(1e-6, share[at] + Math.max(0, inside) / width);
+      }
+    }
+    // Of that part of the view that the run fills.
+    const length = Math.max(1, Math.min(view.to, run[view.axis].last) - view.from);
+    return {share, whole: whole.map(time => time / length), slices};
+  }
+
+  function bars(share, offset, columns, x, y) {
+    let path = '', height = 0;
+    for (let column = 0; column <= columns; ++column) {
+      const value = column < columns ? share[offset + column] : 0;
+      const next = value > 0 ? Math.max(LEAST_SHARE, Math.min(1, value)) * ROW : 0;
+      if (Math.abs(next - height) < 0.05) continue;
+      path += path ? `H${x + column}V${(y + ROW - next).toFixed(1)}`
+                   : `M${x + column} ${y + ROW}V${(y + ROW - next).toFixed(1)}`;
+      height = next;
+    }
+    return path && `<path class="busy" d="${path}z"/>`;
+  }
+
+  // How far the world has come in the other time.
+  function progress(run, x, y, scale) {
+    const across = run[view.axis], up = run[view.axis === 'real' ? 'virtual' : 'real'];
+    const points = [];
+    let before = null;
+    for (let i = 0; i < run.count; ++i) {
+      if (run.dynamics >= 0 && run.row[i] !== run.dynamics) continue;
+      for (const edge of ['start', 'end']) {
+        const point = [across[edge][i], up[edge][i]];
+        if (point[0] < view.from) {
+          before = point;
+          continue;
+        }
+        if (points.length === 0 && before) points.push(before);
+        const previous = points[points.length - 1];
+        if (point[0] > view.to && previous && previous[0] > view.to) return draw(points);
+        // One point a column is enough; the last one stays.
+        const before_that = points[points.length - 2];
+        if (before_that && (point[0] - before_that[0]) * scale < 0.5) points.pop();
+        points.push(point);
+      }
+    }
+    return draw(points);
+
+    function draw(all) {
+      if (all.length < 2) return '';
+      const at = time => {  // of the other time
+        let i = 1;
+        while (i < all.length - 1 && all[i][0] < time) ++i;
+        const [a, b] = [all[i - 1], all[i]];
+        const share = b[0] > a[0] ? Math.min(1, Math.max(0, (time - a[0]) / (b[0] - a[0]))) : 1;
+        return a[1] + share * (b[1] - a[1]);
+      };
+      const low = at(view.from), high = Math.max(at(view.to), low + 1);
+      const path = all.map(([a, b]) => {
+        const px = x + (Math.min(view.to, Math.max(view.from, a)) - view.from) * scale;
+        const value = a < view.from ? low : a > view.to ? high : b;
+        return `${px.toFixed(1)} ${(y + PROGRESS * (1 - (value - low) / (high - low))).toFixed(1)}`;
+      });
+      const decimals = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10((high - low) / 1e6))));
+      const right = x + (view.to - view.from) * scale + 4;
+      return `<path class="progress" d="M${path.join('L')}"/>` +
+          text(right, y + 10, 'tick', (high / 1e6).toFixed(decimals)) +
+          text(right, y + PROGRESS, 'tick', (low / 1e6).toFixed(decimals));
+    }
+  }
+
+  let plot = {x: 0, width: 1};  // where the view is in pixels
+
+  function draw() {
+    const width = Math.max(280, Math.floor(live.clientWidth));
+    const narrow = width < 560;
+    const longest = Math.max(...runs.flatMap(run => run.rows.map(name => name.length)), 12);
+    const x = narrow ? 8 : Math.min(longest * 6.4, 200) + 14;
+    const columns = Math.floor(width - RIGHT - x);
+    const scale = columns / (view.to - view.from);
+    plot = {x, width: columns};
+    const other = view.axis === 'real' ? 'virtual time [s]' : 'real time [s]';
+    let y = 6, content = '', slices = 0;
+    const label = (name, row) => {
+      if (!narrow) return text(x - 6, row + 13, 'note', name, 'end');
+      return text(x, row - 4, 'note', name);
+    };
+    for (const run of runs) {
+      y += TITLE;
+      content += text(8, y - 8, 'name', run.name);
+      const ran = busy(run, columns);
+      slices += ran.slices;
+      run.rows.forEach((name, row) => {
+        if (narrow) y += NAME_ABOVE;
+        content += label(name, y) + `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${ROW}"/>` +
+            bars(ran.share, row * columns, columns, x, y) +
+            text(x + columns + 4, y + 13, 'tick', percent(ran.whole[row]));
+        y += ROW + BETWEEN;
+      });
+      if (!run.real) continue;
+      if (narrow) y += NAME_ABOVE;
+      content += label(other, y) +
+          `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${PROGRESS}"/>` +
+          progress(run, x, y, scale);
+      y += PROGRESS + BETWEEN;
+    }
+    content += `<path class="axis" d="M${x} ${y}H${x + columns}"/>`;
+    for (const [at, name] of ticks(view.from, view.to, narrow ? 3 : 7)) {
+      const px = (x + (at - view.from) * scale).toFixed(1);
+      content += `<path class="axis" d="M${px} ${y}v4"/>` + text(px, y + 16, 'tick', name, 'middle');
+    }
+    content += text(x + columns, y + 33, 'tick', `${view.axis} time [s]`, 'end');
+    const seconds = time => (time / 1e6).toFixed(view.to - view.from < 1e4 ? 6 : 3);
+    const said = `${seconds(view.from)} s to ${seconds(view.to)} s of ${view.axis} time, ${slices} slices`;
+    live.innerHTML = `<svg viewBox="0 0 ${width} ${y + 40}" width="${width}" height="${y + 40}" role="img">` +
+        `<title>${escaped(said)}</title>${content}</svg>`;
+    output.textContent = said;
+    axisButton.textContent = view.axis === 'real' ? 'show over virtual time' : 'show over real time';
+  }
+
+  // --- The view and its address ------------------------------------------------------------------
+
+  const LEAST_US = 20;
+  let pending = 0, naming = 0;
+
+  function show(from, to) {
+    const end = last(view.axis);
+    const length = Math.min(end, Math.max(LEAST_US, to - from));
+    const middle = (from + to) / 2;
+    view.from = Math.min(Math.max(0, middle - length / 2), end - length);
+    view.to = view.from + length;
+    // Once for all events of one moment.
+    if (!pending) pending = setTimeout(() => { pending = 0; draw(); }, 10);
+    clearTimeout(naming);
+    naming = setTimeout(nameView, 300);
+  }
+
+  function nameView() {
+    const whole = view.from <= 0 && view.to >= last(view.axis);
+    const key = view.axis === 'real' ? 'real' : 't';
+    const hash = `#${key}=${(view.from / 1e6).toFixed(6)}-${(view.to / 1e6).toFixed(6)}`;
+    if (whole && !location.hash) return;
+    try {
+      history.replaceState(null, '', hash);
+    } catch (error) {
+      // Some browsers do not let files do that; the view is there all the same.
+    }
+  }
+
+  function followAddress() {
+    const named = /^#(t|real)=([0-9.]+)-([0-9.]+)$/.exec(location.hash);
+    if (!named) return;
+    const [from, to] = [Number(named[2]) * 1e6, Number(named[3]) * 1e6];
+    if (!(to > from) || (named[1] === 'real' && !hasReal)) return;
+    view.axis = named[1] === 'real' ? 'real' : 'virtual';
+    show(from, to);
+  }
+
+  const zoom = (factor, at = (view.from + view.to) / 2) =>
+      show(at - (at - view.from) * factor, at + (view.to - at) * factor);
+  const move = share => {
+    const by = (view.to - view.from) * share;
+    show(view.from + by, view.to + by);
+  };
+  const timeAt = clientX =>
+      view.from + (clientX - live.getBoundingClientRect().left - plot.x) / plot.width * (view.to - view.from);
+
+  // The same part of the first run in the other time.
+  function changeAxis() {
+    if (!hasReal) return;
+    const [run, before] = [runs[0], view.axis];
+    const after = before === 'real' ? 'virtual' : 'real';
+    const whole = view.from <= 0 && view.to >= last(before);
+    const translated = time => {
+      for (let i = 0; i < run.count; ++i) {
+        if (run.dynamics >= 0 && run.row[i] !== run.dynamics) continue;
+        if (run[before].end[i] >= time) return run[after].end[i];
+      }
+      return run[after].last;
+    };
+    const [from, to] = whole ? [0, last(after)] : [translated(view.from), translated(view.to)];
+    view.axis = after;
+    show(from, to);
+  }
+
+  const actions = {
+    in: () => zoom(0.5), out: () => zoom(2), left: () => move(-0.25), right: () => move(0.25),
+    whole: () => show(0, last(view.axis)), axis: changeAxis,
+  };
+  const keys = {'+': 'in', '=': 'in', '-': 'out', ArrowLeft: 'left', ArrowRight: 'right', '0': 'whole',
+                Home: 'whole', v: 'axis'};
+
+  figure.querySelectorAll('[data-do]').forEach(button =>
+      button.addEventListener('click', () => actions[button.dataset.do]()));
+  live.addEventListener('keydown', event => {
+    if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    actions[keys[event.key]]();
+  });
+  // The wheel alone scrolls the page, unless the timeline was clicked.
+  live.addEventListener('wheel', event => {
+    if (!event.ctrlKey && document.activeElement !== live) return;
+    event.preventDefault();
+    zoom(Math.pow(1.002, event.deltaY), timeAt(event.clientX));
+  }, {passive: false});
+  live.addEventListener('dblclick', event => zoom(0.4, timeAt(event.clientX)));
+
+  const fingers = new Map();
+  live.addEventListener('pointerdown', event => {
+    if (event.button !== 0) return;
+    fingers.set(event.pointerId, event.clientX);
+    live.setPointerCapture(event.pointerId);
+  });
+  live.addEventListener('pointermove', event => {
+    if (!fingers.has(event.pointerId)) return;
+    const before = [...fingers.values()];
+    fingers.set(event.pointerId, event.clientX);
+    const after = [...fingers.values()];
+    const perPixel = (view.to - view.from) / plot.width;
+    if (fingers.size === 1) {
+      show(view.from - (after[0] - before[0]) * perPixel, view.to - (after[0] - before[0]) * perPixel);
+    } else if (fingers.size === 2 && Math.abs(after[0] - after[1]) > 8) {
+      const factor = Math.abs(before[0] - before[1]) / Math.abs(after[0] - after[1]);
+      zoom(Math.min(4, Math.max(0.25, factor)), timeAt((after[0] + after[1]) / 2));
+    }
+  });
+  for (const over of ['pointerup', 'pointercancel']) {
+    live.addEventListener(over, event => fingers.delete(event.pointerId));
+  }
+
+  figure.classList.add('is-live');
+  figure.querySelectorAll('.controls, .live, .hint').forEach(element => { element.hidden = false; });
+  axisButton.hidden = !hasReal;
+  draw();
+  followAddress();
+  addEventListener('hashchange', followAddress);
+  new ResizeObserver(() => draw()).observe(live);
+})();

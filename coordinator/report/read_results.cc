@@ -1,0 +1,239 @@
+#include "coordinator/report/read_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/report/csv.h"
+#include "coordinator/report/read_run.h"
+#include "coordinator/report/text.h"
+#include "coordinator/scenario/duration.h"
+
+namespace tcs::report {
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+// What trials.json says.
+struct Plan {
+  std::string name;
+  std::int64_t first_seed = 1, trials = 0;
+  std::string key;  // empty: no sweep
+  std::vector<std::string> values;
+};
+
+std::string TextOf(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+LoadResult<Plan> ReadPlan(const std::string& folder) {
+  const std::string path = folder + "/trials.json";
+  const std::optional<std::string> text = ReadFile(path);
+  if (!text) return LoadError{path + " cannot be read"};
+  try {
+    const Json json = Json::parse(*text);
+    Plan plan;
+    plan.name = json.value("name", "");
+    json.at("first_seed").get_to(plan.first_seed);
+    json.at("trials").get_to(plan.trials);
+    if (json.contains("vary") && json.at("vary").is_object()) {
+      json.at("vary").at("key").get_to(plan.key);
+      for (const Json& value : json.at("vary").at("values")) plan.values.push_back(TextOf(value));
+    }
+    return plan;
+  } catch (const Json::exception&) {
+    return LoadError{path + " is damaged; make the trials again"};
+  }
+}
+
+std::string FolderName(const std::string& folder) {
+  fs::path path = fs::path(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  const std::string name = path.filename().string();
+  if (!name.empty() && name != "." && name != "..") return name;
+  std::error_code error;
+  return fs::weakly_canonical(folder, error).filename().string();
+}
+
+// What tcsim said last about a trial that has no summary.
+std::string LastWords(const std::string& folder) {
+  const std::optional<std::string> log = ReadFile(folder + "/tcsim.log");
+  if (!log) return fs::exists(folder) ? "it did not end" : "it was not made";
+  std::string last;
+  for (std::size_t from = 0; from < log->size();) {
+    const std::size_t end = std::min(log->find('\n', from), log->size());
+    const std::string line = log->substr(from, end - from);
+    if (line.starts_with("tcsim: ") && !line.starts_with("tcsim: warning")) last = line.substr(7);
+    from = end + 1;
+  }
+  return last.empty() ? "it did not end" : last;
+}
+
+std::optional<double> NumberOf(const std::string& value) {
+  if (const auto number = ToReal(value)) return number;
+  const auto duration = ParseDuration(value);
+  if (const auto* parsed = std::get_if<VirtualDuration>(&duration)) return parsed->seconds();
+  return {};
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::vector<std::string>& bodies) : bodies_(bodies) {}
+
+  // One sentence, or empty.
+  std::string Add(const std::string& folder) {
+    if (!fs::is_directory(folder)) {
+      return fmt::format("there is no folder '{}'; give one that tcsim run or tcsim trials wrote",
+                         folder);
+    }
+    if (fs::exists(folder + "/trials.json")) return AddTrials(folder);
+    if (fs::exists(folder + "/summary.json") || fs::exists(folder + "/trace.json")) {
+      System system{FolderName(folder), {}, {}};
+      std::string error = AddRun(folder, FolderName(folder), &system);
+      if (error.empty()) Keep(folder, std::move(system));
+      return error;
+    }
+    return fmt::format(
+        "'{}' is no result folder: it has neither summary.json nor trials.json; give one that "
+        "tcsim run or tcsim trials wrote",
+        folder);
+  }
+
+  Results Take() {
+    MakeNamesDiffer();
+    return std::move(results_);
+  }
+
+ private:
+  std::string AddTrials(const std::string& folder) {
+    const auto read = ReadPlan(folder);
+    if (const auto* error = std::get_if<LoadError>(&read)) {
+      results_.warnings.push_back(error->message + "; it is left out");
+      return {};
+    }
+    const Plan& plan = std::get<Plan>(read);
+    const std::string name = plan.name.empty() ? FolderName(folder) : plan.name;
+    if (plan.key.empty()) {
+      System system{name, {}, {}};
+      std::string error = AddSeeds(folder, plan, &system);
+      if (error.empty()) Keep(folder, std::move(system));
+      return error;
+    }
+    Sweep sweep{name, plan.key, {}};
+    for (const std::string& value : plan.values) {
+      SweepValue point{value, NumberOf(value), {name + " at " + value, {}, {}}};
+      if (std::string error = AddSeeds(folder + "/" + value, plan, &point.system); !error.empty()) {
+        return error;
+      }
+      if (point.system.runs.empty()) {
+        results_.warnings.push_back(
+            fmt::format("{}/{} has no trial that went to its end{}; it is "
+                        "left out",
+                        folder, value, WhyOf(point.system)));
+      } else {
+        sweep.values.push_back(std::move(point));
+      }
+    }
+    if (!sweep.values.empty()) results_.sweeps.push_back(std::move(sweep));
+    return {};
+  }
+
+  std::string AddSeeds(const std::string& folder, const Plan& plan, System* system) {
+    for (std::int64_t i = 0; i < std::min<std::int64_t>(plan.trials, 100'000); ++i) {
+      const std::string name = fmt::format("seed-{:04}", plan.first_seed + i);
+      if (std::string error = AddRun(folder + "/" + name, name, system); !error.empty()) {
+        return error;
+      }
+    }
+    return {};
+  }
+
+  std::string AddRun(const std::string& folder, const std::string& name, System* system) {
+    if (!fs::exists(folder + "/summary.json")) {
+      system->failed.push_back({name, LastWords(folder)});
+      return {};
+    }
+    auto read = ReadRun(folder, bodies_, &results_.warnings);
+    if (const auto* error = std::get_if<LoadError>(&read)) {
+      // A wrong name is the caller's mistake, not the run's.
+      if (error->message.starts_with("there is no body")) return error->message;
+      system->failed.push_back({name, error->message});
+      return {};
+    }
+    Run& run = std::get<Run>(read);
+    if (results_.scenario.empty()) {
+      results_.scenario = run.scenario;
+      first_folder_ = folder;
+    }
+    if (run.scenario != results_.scenario) {
+      return fmt::format(
+          "{} is of scenario '{}', but {} is of '{}'; a report compares runs of one scenario: make "
+          "one for each",
+          folder, run.scenario, first_folder_, results_.scenario);
+    }
+    if (results_.bodies[0].empty() && run.bodies.size() >= 2) {
+      results_.bodies[0] = bodies_.empty() ? run.bodies[0] : bodies_[0];
+      results_.bodies[1] = bodies_.empty() ? run.bodies[1] : bodies_[1];
+    }
+    system->runs.push_back(std::move(run));
+    return {};
+  }
+
+  static std::string WhyOf(const System& system) {
+    if (system.failed.empty()) return {};
+    return fmt::format(" ({}: {})", system.failed.front().name, system.failed.front().why);
+  }
+
+  void Keep(const std::string& folder, System system) {
+    if (!system.runs.empty()) {
+      results_.systems.push_back(std::move(system));
+      return;
+    }
+    results_.warnings.push_back(
+        fmt::format("{} has no run that went to its end{}; it is left out", folder, WhyOf(system)));
+  }
+
+  void MakeNamesDiffer() {
+    for (std::size_t i = 0; i < results_.systems.size(); ++i) {
+      int same = 1;
+      for (std::size_t before = 0; before < i; ++before) {
+        same += results_.systems[before].name == results_.systems[i].name;
+      }
+      if (same > 1) results_.systems[i].name += fmt::format(" ({})", same);
+    }
+  }
+
+  const std::vector<std::string> bodies_;
+  Results results_;
+  std::string first_folder_;
+};
+
+}  // namespace
+
+std::vector<double> Distances(const System& system) {
+  std::vector<double> all;
+  for (const Run& run : system.runs) {
+    all.insert(all.end(), run.track.distance_m.begin(), run.track.distance_m.end());
+  }
+  return all;
+}
+
+LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
+                                const std::vector<std::string>& bodies) {
+  Reader reader(bodies);
+  for (const std::string& folder : folders) {
+    if (std::string error = reader.Add(folder); !error.empty()) return LoadError{error};
+  }
+  Results results = reader.Take();
+  if (results.systems.empty() && results.sweeps.empty()) {
+    return LoadError{results.warnings.empty() ? "there is nothing to report"
+                                              : results.warnings.front()};
+  }
+  return results;
+}
+
+}  // namespace tcs::report

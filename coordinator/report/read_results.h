@@ -1,0 +1,19 @@
+// Reading of the folders that `tcsim run` and `tcsim trials` leave.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/report/results.h"
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::report {
+
+// Each folder is a run's (a system with one run), that of several trials (a system), or that of
+// trials over several values (a sweep). Runs that did not go to their end are named in their
+// system; a folder without any good run is left out with a warning. One sentence if nothing is
+// left, if a folder is none of these, or if not all are of one scenario.
+[[nodiscard]] LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
+                                              const std::vector<std::string>& bodies);
+
+}  // namespace tcs::report

@@ -1,0 +1,193 @@
+#include "coordinator/report/read_run.h"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "coordinator/report/csv.h"
+#include "coordinator/report/text.h"
+
+namespace tcs::report {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// None, or why the run is no good: a client of it failed.
+std::optional<std::string> FailureOf(const Json& clients) {
+  for (const auto& [name, client] : clients.items()) {
+    const auto status = client.at("wait_status").get<int>();
+    const auto ended_ns = client.at("ended_at_ns").get<std::int64_t>();
+    if (ended_ns < 0 || status == 0) continue;
+    const std::string how = WIFEXITED(status) ? fmt::format("exit status {}", WEXITSTATUS(status))
+                                              : fmt::format("signal {}", WTERMSIG(status));
+    return fmt::format("{} ended at {} with {}", name,
+                       Seconds(static_cast<double>(ended_ns) * 1e-9), how);
+  }
+  return {};
+}
+
+LoadResult<Run> FromSummary(const std::string& folder) {
+  const std::string path = folder + "/summary.json";
+  const std::optional<std::string> text = ReadFile(path);
+  if (!text) return LoadError{folder + " has no summary.json: the run did not end"};
+  Run run;
+  run.folder = folder;
+  try {
+    const Json json = Json::parse(*text);
+    if (json.at("interrupted").get<bool>()) return LoadError{folder + " was interrupted"};
+    run.scenario = json.at("scenario").get<std::string>();
+    // Runs of earlier versions did not say.
+    run.sync = json.value("sync", "");
+    run.accounting = json.value("accounting", "");
+    json.at("virtual_ns").get_to(run.virtual_ns);
+    json.at("real_ns").get_to(run.real_ns);
+    json.at("drift_ns").get_to(run.drift_ns);
+    json.at("drift_bound_ns").get_to(run.drift_bound_ns);
+    json.at("staleness_ns").get_to(run.staleness_ns);
+    json.at("coordinating_ns").get_to(run.coordinating_ns);
+    json.at("clients_ns").get_to(run.clients_ns);
+    json.at("dynamics_ns").get_to(run.dynamics_ns);
+    run.overhead = json.at("overhead_percent").get<double>() / 100.0;
+    const Json& clients = json.at("clients");
+    if (const auto failure = FailureOf(clients)) return LoadError{folder + ": " + *failure};
+    for (const auto& [name, entry] : clients.items()) {
+      Client& client = run.clients[name];
+      client.robot = entry.value("robot", "");
+      client.is_periodic = entry.value("class", "") == "periodic";
+      entry.at("charged_ns").get_to(client.charged_ns);
+      entry.at("host_cpu_ns").get_to(client.own_clock_ns);
+      entry.at("stolen_ns").get_to(client.stolen_ns);
+      entry.at("activations").get_to(client.activations);
+      entry.at("overruns").get_to(client.overruns);
+    }
+  } catch (const Json::exception&) {
+    return LoadError{path + " is damaged; make the run again"};
+  }
+  return run;
+}
+
+struct Point {
+  double x = 0, y = 0, z = 0;
+};
+
+std::optional<Point> PointOf(const CsvFields& fields) {
+  const auto x = ToReal(fields[2]), y = ToReal(fields[3]), z = ToReal(fields[4]);
+  if (!x || !y || !z) return {};
+  return Point{*x, *y, *z};
+}
+
+// Pairs the states of the two bodies that have the same time.
+class TrackBuilder {
+ public:
+  TrackBuilder(Run* run, std::vector<std::string> wanted)
+      : run_(*run), wanted_(std::move(wanted)) {}
+
+  bool Take(const CsvFields& fields) {
+    const auto time = ToReal(fields[0]);
+    const auto point = PointOf(fields);
+    if (!time || !point) return false;
+    NoteBody(fields[1]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (wanted_.size() <= i || fields[1] != wanted_[i]) continue;
+      points_[i] = *point;
+      times_[i] = *time;
+    }
+    if (times_[0] != times_[1] || times_[0] == last_) return true;
+    last_ = times_[0];
+    run_.track.time_s.push_back(last_);
+    run_.track.distance_m.push_back(std::hypot(
+        points_[0].x - points_[1].x, points_[0].y - points_[1].y, points_[0].z - points_[1].z));
+    return true;
+  }
+
+ private:
+  void NoteBody(std::string_view name) {
+    const bool known = std::find(run_.bodies.begin(), run_.bodies.end(), name) != run_.bodies.end();
+    if (known) return;
+    run_.bodies.emplace_back(name);
+    if (takes_first_ && wanted_.size() < 2) wanted_.emplace_back(name);
+  }
+
+  Run& run_;
+  std::vector<std::string> wanted_;
+  const bool takes_first_ = wanted_.empty();
+  Point points_[2];
+  double times_[2] = {-1, -2}, last_ = -1;
+};
+
+// The activations of the client's first thread; a best-effort client's go on while it waits for
+// threads.
+class ActivationBuilder {
+ public:
+  explicit ActivationBuilder(Run* run) : run_(*run) {}
+
+  bool Take(const CsvFields& fields) {
+    const auto client = run_.clients.find(std::string(fields[0]));
+    const auto thread = ToInteger(fields[1]);
+    const auto release = ToInteger(fields[3]), start = ToInteger(fields[4]),
+               end = ToInteger(fields[5]), charged = ToInteger(fields[6]);
+    if (client == run_.clients.end() || !thread || !release || !start || !end || !charged) {
+      return false;
+    }
+    if (*thread != 0 || fields[2] == "start") return true;
+    ActivationTimes& times = client->second.times;
+    const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
+    if (fields[2] == "thread" && !client->second.is_periodic && !times.response_s.empty()) {
+      times.response_s.back() = seconds(*end - released_ns_[&client->second]);
+      times.computed_s.back() += seconds(*charged);
+      return true;
+    }
+    released_ns_[&client->second] = *release;
+    times.lateness_s.push_back(seconds(*start - *release));
+    times.response_s.push_back(seconds(*end - *release));
+    times.computed_s.push_back(seconds(*charged));
+    return true;
+  }
+
+ private:
+  Run& run_;
+  std::map<const Client*, std::int64_t> released_ns_;
+};
+
+void WarnOfLines(const std::string& path, std::int64_t lines, std::vector<std::string>* warnings) {
+  if (lines == 0) return;
+  warnings->push_back(fmt::format("{} has {} of no use, left out", path, Count(lines, "line")));
+}
+
+}  // namespace
+
+LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string>& bodies,
+                        std::vector<std::string>* warnings) {
+  LoadResult<Run> result = FromSummary(folder);
+  Run* run = std::get_if<Run>(&result);
+  if (run == nullptr) return result;
+
+  // Without dynamics there are no bodies; runs of earlier versions have no activations.
+  if (const std::string path = folder + "/bodies.csv"; ReadFile(path)) {
+    TrackBuilder track(run, bodies);
+    const auto read = ReadCsv(path, {"time_s", "body", "x_m", "y_m", "z_m"},
+                              [&](const CsvFields& fields) { return track.Take(fields); });
+    if (const auto* error = std::get_if<LoadError>(&read)) return *error;
+    WarnOfLines(path, std::get<std::int64_t>(read), warnings);
+  }
+  for (const std::string& body : bodies) {
+    if (std::find(run->bodies.begin(), run->bodies.end(), body) != run->bodies.end()) continue;
+    return LoadError{fmt::format("there is no body '{}' in {}; it has {}", body, folder,
+                                 run->bodies.empty() ? "none" : Listed(run->bodies))};
+  }
+  if (const std::string path = folder + "/activations.csv"; ReadFile(path)) {
+    ActivationBuilder activations(run);
+    const auto read = ReadCsv(
+        path, {"client", "thread", "cause", "release_ns", "start_ns", "end_ns", "charged_ns"},
+        [&](const CsvFields& fields) { return activations.Take(fields); });
+    if (const auto* error = std::get_if<LoadError>(&read)) return *error;
+    WarnOfLines(path, std::get<std::int64_t>(read), warnings);
+  }
+  return result;
+}
+
+}  // namespace tcs::report

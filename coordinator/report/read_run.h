@@ -1,0 +1,19 @@
+// Reading of one run's folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/report/results.h"
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::report {
+
+// The distance is that between `bodies`, or, if those are empty, between the first two that
+// bodies.csv names. Lines that are of no use are left out with a warning. The sentence of an error
+// names the folder.
+[[nodiscard]] LoadResult<Run> ReadRun(const std::string& folder,
+                                      const std::vector<std::string>& bodies,
+                                      std::vector<std::string>* warnings);
+
+}  // namespace tcs::report

@@ -1,0 +1,79 @@
+// What result folders hold (docs/RESULTS.md), as a report needs it. ReadResults (read_results.h)
+// fills it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tcs::report {
+
+// Of a client's activations, in one run.
+struct ActivationTimes {
+  std::vector<double> lateness_s;  // from being made ready to its first processor time
+  std::vector<double> response_s;  // from being made ready to being idle
+  std::vector<double> computed_s;  // charged in between
+};
+
+struct Client {
+  std::string robot;
+  bool is_periodic = false;
+  std::int64_t charged_ns = 0, own_clock_ns = 0, stolen_ns = 0;
+  std::int64_t activations = 0, overruns = 0;
+  ActivationTimes times;
+};
+
+// The distance between the two bodies.
+struct Track {
+  std::vector<double> time_s, distance_m;
+};
+
+// One run that went to its end.
+struct Run {
+  std::string folder, scenario, sync, accounting;
+  std::vector<std::string> bodies;
+  std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0, drift_bound_ns = 0, staleness_ns = 0;
+  std::int64_t coordinating_ns = 0, clients_ns = 0, dynamics_ns = 0;
+  double overhead = 0;  // share of the real time
+  std::map<std::string, Client> clients;
+  Track track;
+};
+
+// One that did not, and why.
+struct FailedRun {
+  std::string name, why;
+};
+
+// Runs that differ in nothing but their seeds.
+struct System {
+  std::string name;
+  std::vector<Run> runs;
+  std::vector<FailedRun> failed;
+};
+
+struct SweepValue {
+  std::string text;
+  std::optional<double> number;  // durations in seconds
+  System system;
+};
+
+// The same system over several values of one key.
+struct Sweep {
+  std::string name, key;
+  std::vector<SweepValue> values;
+};
+
+struct Results {
+  std::string scenario;
+  std::string bodies[2];  // whose distance is meant; empty without
+  std::vector<System> systems;
+  std::vector<Sweep> sweeps;
+  std::vector<std::string> warnings;  // one sentence each
+};
+
+// Those of all runs of a system, one after the other.
+[[nodiscard]] std::vector<double> Distances(const System& system);
+
+}  // namespace tcs::report

@@ -1,0 +1,92 @@
+#include "coordinator/report/style.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace tcs::report {
+
+namespace {
+
+struct Colour {
+  std::string_view name, light, dark;
+};
+
+// Okabe and Ito's palette, which people of all kinds of colour vision can tell apart, darkened or
+// lightened until each has enough contrast as a text, too.
+constexpr Colour kColours[] = {
+    {"paper", "#ffffff", "#14171a"}, {"ink", "#1b1f23", "#e4e7ea"},
+    {"faint", "#59636e", "#9aa4ae"}, {"grid", "#e6e9ec", "#2a2f35"},
+    {"panel", "#f6f7f8", "#1c2024"}, {"link", "#005a9c", "#6cb8ff"},
+    {"s0", "#b84e00", "#ff9d5c"},    {"s1", "#0072b2", "#5cb8f0"},
+    {"s2", "#00795a", "#3ecfa5"},    {"s3", "#a8487f", "#e39ac4"},
+    {"s4", "#8a6d00", "#e8c547"},    {"s5", "#5b4fc7", "#b0a8ff"},
+    {"s6", "#4f5862", "#b6bec6"},
+};
+
+// {…} is a colour.
+constexpr std::string_view kRules = R"(
+text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif;fill:{ink}}
+text.tick,text.note{fill:{faint}}
+text.name{font-weight:600}
+path,rect,circle{fill:none;stroke:none}
+path.grid{stroke:{grid};stroke-width:1}
+path.axis{stroke:{faint};stroke-width:1}
+path.mark{stroke:{ink};stroke-width:1;stroke-dasharray:4 3}
+path.thin{stroke-width:1;stroke-opacity:.45;stroke-linejoin:round}
+path.line{stroke-width:1.5;stroke-linejoin:round}
+path.bold{stroke-width:2.5;stroke-linejoin:round;stroke-linecap:round}
+path.halo{stroke:{paper};stroke-width:5;stroke-linejoin:round}
+.band{fill-opacity:.16}
+.fill{fill-opacity:.3}
+.dot{fill-opacity:.7}
+path.busy{fill:{ink};fill-opacity:.75}
+rect.lane{fill:{panel}}
+path.progress{stroke:{s1};stroke-width:1.5}
+)";
+
+std::string WithColours(std::string_view rules, bool as_variables) {
+  std::string text(rules);
+  for (const Colour& colour : kColours) {
+    const std::string token = fmt::format("{{{}}}", colour.name);
+    const std::string value =
+        as_variables ? fmt::format("var(--{})", colour.name) : std::string(colour.light);
+    for (std::size_t at = text.find(token); at != std::string::npos; at = text.find(token, at)) {
+      text.replace(at, token.size(), value);
+    }
+  }
+  return text;
+}
+
+std::string Rules(bool as_variables) {
+  std::string rules(kRules);
+  for (int i = 0; i < kSeriesColours; ++i) {
+    rules += fmt::format(
+        ".s{0}{{stroke:{{s{0}}}}}.f{0}{{fill:{{s{0}}}}}text.t{0}{{fill:{{s{0}}}}}\n", i);
+  }
+  return WithColours(rules, as_variables);
+}
+
+}  // namespace
+
+std::string StandaloneStyle() {
+  return WithColours("svg{background:{paper}}", false) + Rules(false);
+}
+
+std::string PageStyle() {
+  std::string light, dark;
+  for (const Colour& colour : kColours) {
+    light += fmt::format("--{}:{};", colour.name, colour.light);
+    dark += fmt::format("--{}:{};", colour.name, colour.dark);
+  }
+  return fmt::format(
+      ":root{{color-scheme:light dark;{}}}\n"
+      "@media screen and (prefers-color-scheme:dark){{:root{{{}}}}}\n{}",
+      light, dark, Rules(true));
+}
+
+std::string SeriesClass(char kind, int series) {
+  return fmt::format("{}{}", kind, series % kSeriesColours);
+}
+
+}  // namespace tcs::report

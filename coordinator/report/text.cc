@@ -1,0 +1,125 @@
+#include "coordinator/report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+namespace tcs::report {
+
+namespace {
+
+constexpr std::string_view kNoBreakSpace = "\u00a0";
+
+}  // namespace
+
+std::string Escaped(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        // Control characters are no part of XML.
+        escaped += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
+    }
+  }
+  return escaped;
+}
+
+std::string Significant(double value, int digits) {
+  if (value == 0 || !std::isfinite(value)) return value == 0 ? "0" : "–";
+  // What rounding makes of it decides: 9.996 is 10.0.
+  const double places = digits - 1 - std::floor(std::log10(std::abs(value)));
+  const double scale = std::pow(10.0, std::max(0.0, places));
+  const double rounded = std::round(value * scale) / scale;
+  const int before_point = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + 1;
+  if (before_point >= 5) return Grouped(std::llround(rounded));
+  return fmt::format("{:.{}f}", rounded, std::clamp(digits - before_point, 0, 12));
+}
+
+std::string Grouped(std::int64_t value) {
+  std::string digits = fmt::format("{}", value);
+  const std::size_t sign = value < 0 ? 1 : 0;
+  if (digits.size() - sign < 5) return digits;
+  for (std::size_t at = digits.size() - 3; at > sign; at -= std::min<std::size_t>(3, at)) {
+    digits.insert(at, "\u202f");
+  }
+  return digits;
+}
+
+std::string Plain(double value) {
+  std::string text = Significant(value);
+  if (text.find('.') == std::string::npos) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string WithUnit(const std::string& number, std::string_view unit) {
+  return fmt::format("{}{}{}", number, kNoBreakSpace, unit);
+}
+
+std::string Seconds(double seconds, int digits) {
+  if (seconds == 0) return WithUnit("0", "s");
+  const double size = std::abs(seconds);
+  // A unit begins where rounding reaches it.
+  const double almost = 1.0 - 0.5 * std::pow(10.0, -digits);
+  constexpr std::pair<double, std::string_view> kUnits[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "µs"}};
+  for (const auto& [unit, name] : kUnits) {
+    if (size >= almost * unit) return WithUnit(Significant(seconds / unit, digits), name);
+  }
+  return WithUnit(Significant(seconds * 1e9, digits), "ns");
+}
+
+std::string Metres(double value) { return WithUnit(Significant(value), "m"); }
+
+std::string PlainMetres(double value) { return WithUnit(Plain(value), "m"); }
+
+std::string Percent(double share) {
+  const double percent = 100.0 * share;
+  std::string number;
+  if (percent == 0 || percent == 100) {
+    number = fmt::format("{:.0f}", percent);
+  } else if (percent > 99.5) {
+    // What is not all or nothing does not look like it.
+    number = fmt::format("{:.1f}", std::min(percent, 99.9));
+  } else if (percent >= 10) {
+    number = fmt::format("{:.0f}", percent);
+  } else {
+    number = Significant(std::max(percent, 0.001), percent < 1 ? 1 : 2);
+  }
+  return WithUnit(number, "%");
+}
+
+std::string Count(std::int64_t number, std::string_view of_what) {
+  return fmt::format("{} {}{}", Grouped(number), of_what, number == 1 ? "" : "s");
+}
+
+std::string FileName(std::string_view text) {
+  std::string name(text);
+  for (char& c : name) {
+    const bool plain =
+        std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
+    if (!plain) c = '-';
+  }
+  return name;
+}
+
+}  // namespace tcs::report

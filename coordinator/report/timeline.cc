@@ -1,0 +1,178 @@
+#include "coordinator/report/timeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "coordinator/report/csv.h"
+
+namespace tcs::report {
+
+namespace {
+
+std::int64_t Microseconds(std::int64_t ns) { return (ns + 500) / 1000; }
+
+// "predator/planner #7" is a thread of "predator/planner".
+std::string_view ClientOf(std::string_view row) { return row.substr(0, row.find(" #")); }
+
+class Builder {
+ public:
+  explicit Builder(Timeline* timeline) : timeline_(*timeline) {}
+
+  bool Take(const CsvFields& fields) {
+    std::int64_t times[4] = {0, 0, 0, 0};
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      const auto ns = ToInteger(fields[i]);
+      if (!ns || *ns < 0) return false;
+      times[i - 1] = *ns;
+    }
+    if (times[1] < times[0] || times[3] < times[2]) return false;
+    for (std::int64_t& time : times) time = Microseconds(time);
+    timeline_.slices.push_back(
+        {RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3]});
+    timeline_.virtual_end = std::max(timeline_.virtual_end, times[1]);
+    timeline_.real_end = std::max(timeline_.real_end, times[3]);
+    return true;
+  }
+
+ private:
+  int RowOf(std::string_view name) {
+    auto& rows = timeline_.rows;
+    const auto place = std::find(rows.begin(), rows.end(), name) - rows.begin();
+    if (place == static_cast<std::ptrdiff_t>(rows.size())) rows.emplace_back(name);
+    return static_cast<int>(place);
+  }
+
+  Timeline& timeline_;
+};
+
+// The dynamics first, the rest by name.
+void SortRows(Timeline* timeline) {
+  std::vector<std::string> sorted = timeline->rows;
+  std::sort(sorted.begin(), sorted.end(), [](const std::string& a, const std::string& b) {
+    return std::make_tuple(a != "dynamics", a) < std::make_tuple(b != "dynamics", b);
+  });
+  std::vector<int> place(sorted.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const auto at = std::find(sorted.begin(), sorted.end(), timeline->rows[i]);
+    place[i] = static_cast<int>(at - sorted.begin());
+  }
+  for (Slice& slice : timeline->slices) slice.row = place[static_cast<std::size_t>(slice.row)];
+  timeline->rows = std::move(sorted);
+}
+
+void SortSlices(std::vector<Slice>* slices) {
+  std::stable_sort(slices->begin(), slices->end(), [](const Slice& a, const Slice& b) {
+    return std::tie(a.real_start, a.virtual_start) < std::tie(b.real_start, b.virtual_start);
+  });
+}
+
+// Whole numbers in as few bytes as they need, seven bits each, the lowest first.
+void PutNumber(std::string* bytes, std::uint64_t value) {
+  for (; value >= 0x80; value >>= 7) *bytes += static_cast<char>(value | 0x80);
+  *bytes += static_cast<char>(value);
+}
+
+// Those that may be negative, the sign in the lowest bit.
+void PutSigned(std::string* bytes, std::int64_t value) {
+  PutNumber(bytes,
+            (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
+}
+
+std::string Base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(bytes.size() * 4 / 3 + 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t j = 0; j < 3; ++j) {
+      three = three << 8 | (j < here ? static_cast<unsigned char>(bytes[i + j]) : 0u);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      text += j <= here ? kDigits[three >> (18 - 6 * j) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us) {
+  std::vector<Slice> merged;
+  std::vector<std::size_t> last;  // of each row, in `merged`, one more than its place; 0: none yet
+  for (const Slice& slice : slices) {
+    const auto row = static_cast<std::size_t>(slice.row);
+    if (last.size() <= row) last.resize(row + 1);
+    if (last[row] != 0) {
+      Slice& before = merged[last[row] - 1];
+      if (slice.virtual_start - before.virtual_end <= gap_us &&
+          slice.real_start - before.real_end <= gap_us) {
+        before.virtual_end = std::max(before.virtual_end, slice.virtual_end);
+        before.real_end = std::max(before.real_end, slice.real_end);
+        continue;
+      }
+    }
+    merged.push_back(slice);
+    last[row] = merged.size();
+  }
+  return merged;
+}
+
+LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name,
+                                  std::size_t most_slices) {
+  Timeline timeline;
+  timeline.name = name;
+  Builder builder(&timeline);
+  const auto take = [&](const CsvFields& fields) { return builder.Take(fields); };
+  const std::string path = folder + "/dispatches.csv";
+  // Deterministic runs have no real times.
+  std::vector<std::string_view> columns{"row", "virtual_start_ns", "virtual_end_ns",
+                                        "real_start_ns", "real_end_ns"};
+  auto read = ReadCsv(path, columns, take);
+  timeline.has_real_times = std::holds_alternative<std::int64_t>(read);
+  if (!timeline.has_real_times) {
+    columns.resize(3);
+    read = ReadCsv(path, columns, take);
+  }
+  if (const auto* error = std::get_if<LoadError>(&read)) return *error;
+  if (timeline.slices.empty()) return LoadError{path + " has no dispatches"};
+  SortRows(&timeline);
+  SortSlices(&timeline.slices);
+  for (std::int64_t gap_us = 20; timeline.slices.size() > most_slices; gap_us *= 2) {
+    timeline.slices = Merged(timeline.slices, gap_us);
+    timeline.merged_us = gap_us;
+  }
+  SortSlices(&timeline.slices);
+  return timeline;
+}
+
+std::string Encoded(const Timeline& timeline) {
+  std::string bytes;
+  std::int64_t virtual_end = 0, real_start = 0;
+  for (const Slice& slice : timeline.slices) {
+    PutNumber(&bytes, static_cast<std::uint64_t>(slice.row));
+    PutSigned(&bytes, slice.virtual_start - virtual_end);
+    PutNumber(&bytes, static_cast<std::uint64_t>(slice.virtual_end - slice.virtual_start));
+    virtual_end = slice.virtual_end;
+    if (!timeline.has_real_times) continue;
+    PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_start - real_start));
+    PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_end - slice.real_start));
+    real_start = slice.real_start;
+  }
+  const nlohmann::ordered_json json{
+      {"name", timeline.name},           {"rows", timeline.rows},
+      {"real", timeline.has_real_times}, {"virtualEnd", timeline.virtual_end},
+      {"realEnd", timeline.real_end},    {"count", timeline.slices.size()},
+      {"slices", Base64(bytes)}};
+  // "</script>" in a name must not end the element that holds this.
+  std::string text = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+}  // namespace tcs::report

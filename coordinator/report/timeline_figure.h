@@ -1,0 +1,16 @@
+// The picture of timelines that needs no script: the whole of each run. page/timeline.js draws the
+// same for any part of it.
+#pragma once
+
+#include <vector>
+
+#include "coordinator/report/figure.h"
+#include "coordinator/report/timeline.h"
+
+namespace tcs::report {
+
+// Of each row the share of each column's time that it ran. Over real time where all runs have it,
+// else over virtual time.
+[[nodiscard]] Drawing DrawTimelines(const std::vector<Timeline>& timelines, int width);
+
+}  // namespace tcs::report

@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# Real runs, their page, and what a browser makes of it: every figure is there, nothing is asked of
+# anybody else, nothing is wider than a telephone, and the timeline shows the part that its address
+# names.
+command -v chromium >/dev/null || fail "chromium is not installed (cmake/packages.txt)"
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+example=$build/examples/predator_prey/scenario.yaml
+
+plan() { printf '{"name": "%s", "first_seed": 1, "trials": %s, "vary": %s}' "$2" "$3" "$4" >"$1/trials.json"; }
+fly() { "$tcsim" run "$example" --out "$out/$1" "${@:2}" >>"$out/said"; }
+fly tcs/seed-0001 --duration 1.2s --seed 1
+fly tcs/seed-0002 --duration 1.2s --seed 2
+mkdir "$out/tcs/seed-0003"
+echo 'tcsim: predator/planner cannot be started: <gone>' >"$out/tcs/seed-0003/tcsim.log"
+plan "$out/tcs" 'tcs & co' 3 null
+fly callback --duration 0.15s --sync callback
+fly sweep/0.5s/seed-0001 --duration 0.5s --accounting fixed
+fly sweep/1s/seed-0001 --duration 1s --accounting fixed
+plan "$out/sweep" 'tcs & co' 1 '{"key": "duration", "values": ["0.5s", "1s"]}'
+# Planning for 1 s is what the example does.
+python3 - "$out/tcs/seed-0001" <<'PY' || fail "the activations of a run are not what it did"
+import csv, json, sys
+rows = list(csv.DictReader(open(sys.argv[1] + "/activations.csv")))
+summary = json.load(open(sys.argv[1] + "/summary.json"))
+plans = [row for row in rows if row["client"] == "predator/planner" and row["cause"] == "input"]
+took = [int(row["end_ns"]) - int(row["release_ns"]) for row in plans]
+assert took and all(0.9e9 < ns < 1.2e9 for ns in took), took
+controls = [row for row in rows if row["client"] == "prey/controller" and row["cause"] != "start"]
+counted = summary["clients"]["prey/controller"]["activations"]
+assert abs(len(controls) - counted) <= 1, (len(controls), counted)
+for row in rows:
+    assert 0 <= int(row["release_ns"]) <= int(row["start_ns"]) <= int(row["end_ns"]), row
+slices = list(csv.DictReader(open(sys.argv[1] + "/dispatches.csv")))
+real = [(int(s["real_start_ns"]), int(s["real_end_ns"])) for s in slices]
+assert all(a <= b for a, b in real), "a slice ends before it begins"
+assert all(before[1] <= after[0] for before, after in zip(real, real[1:])), "one CPU carries all"
+ran = sum(b - a for a, b in real)
+assert 0.7 * summary["real_ns"] < ran <= summary["real_ns"], (ran, summary["real_ns"])
+PY
+
+"$tcsim" report "$out/callback" "$out/tcs" "$out/sweep" --mark 5 --out "$out/page.html" --figures png \
+  >"$out/said" || fail "$(cat "$out/said")"
+for figure in distances distance-over-time timeline response-times lateness sweep-duration; do
+  [[ $(head -c 4 "$out/page-$figure.png") == $'\x89PNG' ]] || fail "there is no picture $figure"
+done
+(($(stat -c %s "$out/page.html") < 1000000)) || fail "the page of three seconds is large"
+
+# The page tells what happened in it.
+python3 - "$out" <<'PY'
+import sys
+folder = sys.argv[1]
+page = open(folder + "/page.html", encoding="utf-8").read()
+before = """<script>
+const seen = {errors: [], refused: []};
+addEventListener('error', event => seen.errors.push(String(event.message)));
+addEventListener('unhandledrejection', event => seen.errors.push(String(event.reason)));
+addEventListener('securitypolicyviolation', event => seen.refused.push(event.blockedURI));
+console.error = console.warn = (...words) => seen.errors.push(words.join(' '));
+</script>"""
+after = """<script>
+addEventListener('load', () => setTimeout(() => {
+  const live = document.querySelector('#timeline .live');
+  const shown = element => element.getBoundingClientRect().width > 0;
+  seen.figures = [...document.querySelectorAll('figure')].map(figure =>
+      ({id: figure.id, pictures: [...figure.querySelectorAll('svg')].filter(shown).length}));
+  seen.unnamed = [...document.querySelectorAll('svg[role=img]')].filter(svg => !svg.querySelector('title')).length;
+  seen.width = document.scrollingElement.scrollWidth;
+  seen.window = innerWidth;
+  seen.resources = performance.getEntriesByType('resource').map(entry => entry.name);
+  seen.view = document.querySelector('#timeline output').textContent;
+  const press = key => live.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
+  const text = () => document.querySelector('#timeline output').textContent;
+  const views = async before => {
+    for (let turn = 0; turn < 100 && text() === before; ++turn) await new Promise(done => setTimeout(done, 20));
+    return text();
+  };
+  (async () => {
+    seen.views = [];
+    for (const key of ['+', '+', 'ArrowRight', '-', 'v', '0']) {
+      const before = text();
+      press(key);
+      seen.views.push(await views(before));
+    }
+    const everything = text();
+    live.dispatchEvent(new WheelEvent('wheel', {deltaY: -300, ctrlKey: true, clientX: 200, bubbles: true, cancelable: true}));
+    seen.views.push(await views(everything));
+    await new Promise(done => setTimeout(done, 400));
+    seen.address = location.hash;
+    parent.postMessage(JSON.stringify(seen), "*");
+  })();
+}, 200));
+</script>"""
+open(folder + "/probe.html", "w", encoding="utf-8").write(
+    page.replace("<title>", before + "<title>", 1).replace("</main>", "</main>" + after, 1))
+# In a frame, for no window is as narrow as a telephone.
+for name, part in ("whole", ""), ("part", "#t=0.4-0.5"):
+    open(f"{folder}/frame-{name}.html", "w").write(
+        "<script>onmessage = event => { document.title = event.data; };</script>"
+        f"<iframe src='probe.html{part}' width=400 height=800 style='border:0'></iframe>")
+PY
+look() {
+  timeout 60 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
+    --user-data-dir="$out/browser" --window-size=600,900 --virtual-time-budget=8000 --dump-dom "file://$out/frame-$1.html" \
+    >"$out/$1.html" 2>"$out/$1.err" || fail "chromium: $(tail -3 "$out/$1.err")"
+}
+look whole
+look part
+python3 - "$out" <<'PY' || fail "the page is not as it should be"
+import html, json, re, sys
+def seen(name):
+    dom = open(f"{sys.argv[1]}/{name}.html", encoding="utf-8").read()
+    return json.loads(html.unescape(re.search(r"<title>(\{.*?\})</title>", dom, re.S).group(1)))
+whole, part = seen("whole"), seen("part")
+for page in whole, part:
+    assert page["errors"] == [] and page["refused"] == [] and page["resources"] == [], page
+    assert page["width"] <= page["window"] == 400, (page["width"], page["window"])
+    assert page["unnamed"] == 0
+    ids = [figure["id"] for figure in page["figures"]]
+    assert ids == ["distances", "distance-over-time", "timeline", "response-times", "lateness",
+                   "sweep-duration"], ids
+    assert all(figure["pictures"] == 1 for figure in page["figures"]), page["figures"]
+assert whole["view"].startswith("0.000 s to ") and "of real time" in whole["view"], whole["view"]
+assert part["view"].startswith("0.400 s to 0.500 s of virtual time"), part["view"]
+slices = lambda view: int(view.split(", ")[1].split()[0])
+assert 0 < slices(part["view"]) < slices(whole["view"]) / 3, (part["view"], whole["view"])
+def span(view):
+    return tuple(map(float, re.match(r"([0-9.]+) s to ([0-9.]+) s", view).groups()))
+length = lambda view: span(view)[1] - span(view)[0]
+near = lambda a, b: abs(a - b) < 0.002
+closer, closest, right, back, other_axis, everything, wheel = whole["views"]
+assert near(2 * length(closer), length(whole["view"])), whole["views"]
+assert near(2 * length(closest), length(closer)) and near(length(right), length(closest)), whole["views"]
+assert span(right)[0] > span(closest)[0] and near(length(back), length(closer)), whole["views"]
+assert "of virtual time" in other_axis and span(everything) == (0, 1.2), whole["views"]
+assert length(wheel) < 0.8 * length(everything), whole["views"]
+assert re.fullmatch(r"#t=[0-9.]+-[0-9.]+", whole["address"]), whole["address"]
+PY
+page=$(cat "$out/page.html")
+[[ $page == *'tcs &amp; co, seed-0003: predator/planner cannot be started: &lt;gone&gt;'* ]] || fail "the failed trial is not named"

@@ -1,0 +1,133 @@
+#include "coordinator/report/page.h"
+
+#include <algorithm>
+
+#include "coordinator/report/read_results.h"
+#include "coordinator/report/write.h"
+#include "tests/unit/report/result_folder.h"
+
+namespace tcs::report {
+namespace {
+
+class PageTest : public ResultFolderTest {
+ protected:
+  Page Make(const std::vector<std::string>& names, const PageOptions& options = {"", {5}}) {
+    std::vector<std::string> paths;
+    for (const std::string& name : names) paths.push_back(Path(name));
+    auto read = ReadResults(paths, {});
+    const auto* error = std::get_if<LoadError>(&read);
+    EXPECT_EQ(error, nullptr) << error->message;
+    return error == nullptr ? MakePage(std::get<Results>(read), options) : Page{};
+  }
+  static bool Has(const Page& page, const std::string& text) {
+    return page.html.find(text) != std::string::npos;
+  }
+  static bool HasFigure(const Page& page, const std::string& name) {
+    return std::any_of(page.svgs.begin(), page.svgs.end(),
+                       [&](const auto& svg) { return svg.first == name; });
+  }
+};
+
+TEST_F(PageTest, SaysWhatItsDataSay) {
+  WriteRun("near", 4, 4);
+  WriteRun("far", 6, 4);
+  const Page page = Make({"near", "far"});
+  EXPECT_TRUE(Has(page, "The median distance is 4.00\u00a0m in near and 6.00\u00a0m in far."));
+  EXPECT_TRUE(Has(
+      page, "The share of the samples below 5\u00a0m is 100\u00a0% in near and 0\u00a0% in far."));
+  EXPECT_TRUE(Has(page, "r/planner in near: 1 activation, median 1.00\u00a0ms"));
+  for (const char* name :
+       {"distances", "distance-over-time", "timeline", "response-times", "lateness"}) {
+    EXPECT_TRUE(HasFigure(page, name)) << name;
+  }
+  EXPECT_TRUE(page.warnings.empty());
+}
+
+TEST_F(PageTest, ThePapersNumbersStandOnlyBesideItsScenario) {
+  WriteRun("one");
+  EXPECT_FALSE(Has(Make({"one"}), "the paper"));
+  auto summary = Summary();
+  summary["scenario"] = "predator_prey";
+  Write("one/summary.json", summary.dump());
+  EXPECT_TRUE(Has(Make({"one"}), "the paper: callback"));
+}
+
+TEST_F(PageTest, NamesAreNoMarkup) {
+  WriteRun("one");
+  Write("trials/trials.json",
+        R"({"name": "<img src=x>&\"</script>", "first_seed": 1, "trials": 2})");
+  WriteRun("trials/seed-0001");
+  Write("trials/seed-0002/tcsim.log", "tcsim: <script>alert(1)</script>\n");
+  const Page page = Make({"trials"}, {"<h1>", {}});
+  EXPECT_FALSE(Has(page, "<img"));
+  EXPECT_FALSE(Has(page, "<script>alert"));
+  EXPECT_TRUE(Has(page, "<title>&lt;h1&gt;</title>"));
+  EXPECT_TRUE(Has(page, "&lt;img src=x&gt;&amp;&quot;&lt;/script&gt;"));
+}
+
+TEST_F(PageTest, NeedsNothingButItself) {
+  WriteRun("one");
+  const Page page = Make({"one"});
+  for (const char* outside : {"http://", "https://", "src=", "href=", "@import", "url("}) {
+    EXPECT_FALSE(Has(page, outside)) << outside;
+  }
+}
+
+TEST_F(PageTest, OneSampleIsEnough) {
+  WriteRun("one", 5, 1);
+  const Page page = Make({"one"});
+  EXPECT_TRUE(Has(page, "The median distance is 5.00\u00a0m in one."));
+  EXPECT_FALSE(Has(page, "nan"));
+  EXPECT_FALSE(Has(page, "inf"));
+}
+
+TEST_F(PageTest, ARunWithoutBodiesActivationsAndDispatchesStillHasItsCosts) {
+  WriteRun("one");
+  for (const char* name : {"bodies.csv", "activations.csv", "dispatches.csv"}) {
+    std::filesystem::remove(Path("one") + "/" + name);
+  }
+  const Page page = Make({"one"});
+  EXPECT_TRUE(Has(page, "Progress came apart by up to 1.00\u00a0ms in one."));
+  EXPECT_TRUE(page.svgs.empty());
+  ASSERT_EQ(page.warnings.size(), 1u);
+  EXPECT_NE(page.warnings[0].find("the timeline goes without it"), std::string::npos);
+}
+
+TEST_F(PageTest, EmptyTablesAreNoValues) {
+  WriteRun("one");
+  Write("one/bodies.csv", "time_s,body,x_m,y_m,z_m\n");
+  Write("one/activations.csv", "client,thread,cause,release_ns,start_ns,end_ns,charged_ns\n");
+  EXPECT_FALSE(HasFigure(Make({"one"}), "distances"));
+}
+
+TEST_F(PageTest, ASweepHasAFigureAndItsTable) {
+  Write("sweep/trials.json",
+        R"({"name": "tcs", "first_seed": 1, "trials": 2,
+            "vary": {"key": "robots.r.cpu.speed", "values": [0.5, 1, 2]}})");
+  for (const char* seed : {"seed-0001", "seed-0002"}) {
+    WriteRun(std::string("sweep/0.5/") + seed, 9);
+    WriteRun(std::string("sweep/1/") + seed, 6);
+    WriteRun(std::string("sweep/2/") + seed, 3);
+  }
+  const Page page = Make({"sweep"});
+  EXPECT_TRUE(HasFigure(page, "sweep-robots.r.cpu.speed"));
+  EXPECT_TRUE(Has(page,
+                  "tcs: 9.00\u00a0m at robots.r.cpu.speed = 0.5, 3.00\u00a0m at 2, below 5\u00a0m "
+                  "first at 2."));
+  EXPECT_TRUE(Has(page, "1.00\u00a0ms at each value in tcs"));
+}
+
+TEST_F(PageTest, IsWrittenWithItsFiguresOrSaysWhyNot) {
+  WriteRun("one");
+  const Page page = Make({"one"});
+  std::vector<std::string> written;
+  EXPECT_EQ(WritePage(page, Path("page.html"), FigureFiles::kSvg, &written), "");
+  EXPECT_EQ(written.size(), 1 + page.svgs.size());
+  EXPECT_TRUE(std::filesystem::exists(Path("page-distances.svg")));
+  EXPECT_NE(WritePage(page, Path("no/folder/page.html"), FigureFiles::kNone, &written)
+                .find("page.html cannot be written"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace tcs::report

@@ -1,0 +1,153 @@
+#include "coordinator/report/read_results.h"
+
+#include "tests/unit/report/result_folder.h"
+
+namespace tcs::report {
+namespace {
+
+class ReadResultsTest : public ResultFolderTest {
+ protected:
+  Results Read(const std::vector<std::string>& names, const std::vector<std::string>& bodies = {}) {
+    auto read = ReadResults(Paths(names), bodies);
+    const auto* error = std::get_if<LoadError>(&read);
+    EXPECT_EQ(error, nullptr) << error->message;
+    return error == nullptr ? std::get<Results>(read) : Results{};
+  }
+  std::string Refused(const std::vector<std::string>& names,
+                      const std::vector<std::string>& bodies = {}) {
+    const auto read = ReadResults(Paths(names), bodies);
+    const auto* error = std::get_if<LoadError>(&read);
+    return error == nullptr ? "" : error->message;
+  }
+  std::vector<std::string> Paths(const std::vector<std::string>& names) {
+    std::vector<std::string> paths;
+    for (const std::string& name : names) paths.push_back(Path(name));
+    return paths;
+  }
+};
+
+TEST_F(ReadResultsTest, ARunIsASystemWithOneTrial) {
+  WriteRun("one", 5, 3);
+  const Results results = Read({"one/"});
+  ASSERT_EQ(results.systems.size(), 1u);
+  EXPECT_EQ(results.systems[0].name, "one");
+  EXPECT_EQ(results.scenario, "chase");
+  EXPECT_EQ(results.bodies[0], "a");
+  EXPECT_EQ(results.bodies[1], "b");
+  EXPECT_EQ(Distances(results.systems[0]), (std::vector<double>{5, 5, 5}));
+  EXPECT_DOUBLE_EQ(results.systems[0].runs[0].overhead, 0.025);
+}
+
+TEST_F(ReadResultsTest, OtherBodiesCanBeMeant) {
+  WriteRun("one", 5, 1);
+  EXPECT_EQ(Distances(Read({"one"}, {"c", "a"}).systems[0]), (std::vector<double>{1}));
+  EXPECT_NE(Refused({"one"}, {"a", "d"}).find("no body 'd'"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, APlannersActivationGoesOnWhileItWaitsForThreads) {
+  WriteRun("one");
+  const Results results = Read({"one"});
+  const auto& run = results.systems[0].runs[0];
+  const ActivationTimes& planner = run.clients.at("r/planner").times;
+  ASSERT_EQ(planner.response_s.size(), 1u) << "neither the start nor another thread's";
+  EXPECT_DOUBLE_EQ(planner.lateness_s[0], 1e-6);
+  EXPECT_DOUBLE_EQ(planner.response_s[0], 1e-3);
+  EXPECT_DOUBLE_EQ(planner.computed_s[0], 0.7e-3);
+  EXPECT_DOUBLE_EQ(run.clients.at("r/controller").times.lateness_s.at(0), 7e-6);
+}
+
+TEST_F(ReadResultsTest, TrialsThatFailedAreNamed) {
+  Write("trials/trials.json", R"({"name": "tcs", "first_seed": 7, "trials": 5, "vary": null})");
+  WriteRun("trials/seed-0007", 4);
+  WriteRun("trials/seed-0008", 6);
+  Write("trials/seed-0009/tcsim.log",
+        "drift 1 ms\ntcsim: r/planner cannot be started: No such file\ntcsim: warning: x\n");
+  WriteRun("trials/seed-0010");
+  auto summary = Summary();
+  summary["clients"]["r/planner"]["wait_status"] = 256;
+  summary["clients"]["r/planner"]["ended_at_ns"] = 1'500'000'000;
+  Write("trials/seed-0010/summary.json", summary.dump());
+  const Results results = Read({"trials"});
+  const System& system = results.systems.at(0);
+  EXPECT_EQ(system.name, "tcs");
+  EXPECT_EQ(system.runs.size(), 2u);
+  ASSERT_EQ(system.failed.size(), 3u);
+  EXPECT_EQ(system.failed[0].name, "seed-0009");
+  EXPECT_EQ(system.failed[0].why, "r/planner cannot be started: No such file");
+  EXPECT_NE(system.failed[1].why.find("r/planner ended at 1.50\u00a0s with exit status 1"),
+            std::string::npos);
+  EXPECT_EQ(system.failed[2].name, "seed-0011");
+  EXPECT_EQ(system.failed[2].why, "it was not made");
+}
+
+TEST_F(ReadResultsTest, ASweepHasASystemPerValue) {
+  Write("sweep/trials.json",
+        R"({"first_seed": 1, "trials": 1, "vary": {"key": "duration", "values": ["20s", 60]}})");
+  WriteRun("sweep/20s/seed-0001");
+  WriteRun("sweep/60/seed-0001");
+  const Results results = Read({"sweep"});
+  EXPECT_TRUE(results.systems.empty());
+  const Sweep& sweep = results.sweeps.at(0);
+  EXPECT_EQ(sweep.name, "sweep");
+  EXPECT_EQ(sweep.key, "duration");
+  ASSERT_EQ(sweep.values.size(), 2u);
+  EXPECT_EQ(sweep.values[0].number, 20.0);
+  EXPECT_EQ(sweep.values[1].text, "60");
+}
+
+TEST_F(ReadResultsTest, AFolderWithoutAGoodRunIsLeftOutIfThereAreOthers) {
+  WriteRun("good");
+  Write("damaged/summary.json", R"({"scenario": "chase", "interrupted": )");
+  Write("odd/summary.json", R"({"scenario": 7})");
+  Write("stopped/summary.json", R"({"interrupted": true})");
+  Write("unfinished/trace.json", "{");
+  Write("broken/trials.json", "[]");
+  const Results results = Read({"damaged", "odd", "good", "stopped", "unfinished", "broken"});
+  EXPECT_EQ(results.systems.size(), 1u);
+  ASSERT_EQ(results.warnings.size(), 5u);
+  EXPECT_NE(results.warnings[0].find("damaged/summary.json is damaged"), std::string::npos);
+  EXPECT_NE(results.warnings[2].find("stopped was interrupted"), std::string::npos);
+  EXPECT_NE(Refused({"damaged"}).find("damaged"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, WhatIsNoResultIsRefusedWithASentence) {
+  EXPECT_NE(Refused({"nowhere"}).find("there is no folder"), std::string::npos);
+  Write("other/notes.txt", "x");
+  EXPECT_NE(Refused({"other"}).find("neither summary.json nor trials.json"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, DifferentScenariosAreNotCompared) {
+  WriteRun("one");
+  WriteRun("two");
+  auto summary = Summary();
+  summary["scenario"] = "other";
+  Write("two/summary.json", summary.dump());
+  EXPECT_NE(Refused({"one", "two"}).find("is of scenario 'other'"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, ASystemGivenTwiceHasTwoNames) {
+  WriteRun("one");
+  const Results results = Read({"one", "one"});
+  EXPECT_EQ(results.systems[0].name, "one");
+  EXPECT_EQ(results.systems[1].name, "one (2)");
+}
+
+TEST_F(ReadResultsTest, LinesOfNoUseAreLeftOutWithAWarning) {
+  WriteRun("one");
+  Write("one/bodies.csv", Bodies(5, 2) + "0.02,a,x,0,0,0\n0.02,b\n0.02,a,1");
+  const Results results = Read({"one"});
+  EXPECT_EQ(Distances(results.systems[0]).size(), 2u);
+  ASSERT_EQ(results.warnings.size(), 1u);
+  EXPECT_NE(results.warnings[0].find("bodies.csv has 3 lines of no use"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, ARunWithoutBodiesHasNoDistances) {
+  WriteRun("one");
+  std::filesystem::remove(Path("one/bodies.csv"));
+  const Results results = Read({"one"});
+  EXPECT_TRUE(Distances(results.systems[0]).empty());
+  EXPECT_EQ(results.bodies[0], "");
+}
+
+}  // namespace
+}  // namespace tcs::report
