@@ -210,16 +210,6 @@ void Engine::Settle(Task& task) {
   client_host_ns_ +=
       static_cast<std::int64_t>(static_cast<double>(executed) * task.process->robot->speed);
   task.charged_ns = charged;
-  if (IsCallback()) {
-    // The world stood still meanwhile: only the program's own clock has moved.
-    task.frozen_ns = frozen + std::max<std::int64_t>(0, reached - start);
-    task.process->frozen_ns = task.frozen_ns;
-    task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
-    most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
-    trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
-    RecordSlice(task.row, start, start, recorded_tsc_);
-    return;
-  }
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
   const std::int64_t shown = page.last_shown_ns.load() - frozen;
   std::int64_t progress =
@@ -229,6 +219,16 @@ void Engine::Settle(Task& task) {
   }
   task.debt_ns = reached - progress;
   if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
+  if (IsCallback()) {
+    // The world stood still meanwhile: only the program's own clock has moved.
+    task.frozen_ns = frozen + progress - start;
+    task.process->frozen_ns = task.frozen_ns;
+    task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
+    most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
+    trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
+    RecordSlice(task.row, start, start, recorded_tsc_);
+    return;
+  }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
   if (IsRunnable(task)) Requeue(task);

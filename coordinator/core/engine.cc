@@ -74,6 +74,12 @@ void Engine::Requeue(Task& task) {
   }
 }
 
+// Whether the wait is over by time: the world's, or, where others of its process compute while the
+// world stands still, that of the process's own clock.
+bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) {
+  return task.deadline_ns <= now_ns || task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
+}
+
 // A core without a turn acts when somebody's wait ends by itself: one core is enough for that.
 void Engine::Refresh(Robot& robot) {
   progress_.clear();
@@ -87,7 +93,10 @@ void Engine::Refresh(Robot& robot) {
   std::int64_t due = shm::kNeverNs;
   if (idle != nullptr) {
     for (const Task* task : robot.tasks) {
-      if (task->state == TaskState::kWaiting) due = std::min(due, task->deadline_ns);
+      if (task->state == TaskState::kWaiting) {
+        due = std::min(due,
+                       HasRunOut(*task, idle->progress_ns) ? idle->progress_ns : task->deadline_ns);
+      }
       if (task->process->next_expiry_ns != shm::kNeverNs) {
         due = std::min(due, task->process->next_expiry_ns);
       }
@@ -134,7 +143,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const Robot& robot = *cpu.robot;
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
-  if (IsCallback()) return furthest;
+  if (IsCallback()) return std::min(furthest, HorizonWhileWorldStands(task));
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
     limit = std::min(limit, cpu.progress_ns + left);
@@ -172,9 +181,37 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   return limit;
 }
 
+// Only those who share the running thread's clock can become due.
+std::int64_t Engine::HorizonWhileWorldStands(const Task& task) const {
+  const VirtualCpu& cpu = *task.cpu;
+  const std::int64_t turn_end =
+      task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
+  std::int64_t limit = cpu.robot->ready.HasWaitingEqual(cpu.core) ? turn_end : shm::kNeverNs;
+  for (const Task* other : cpu.robot->tasks) {
+    if (other->process != task.process || other->state != TaskState::kWaiting) continue;
+    if (other->deadline_ns == shm::kNeverNs || other->priority < task.priority) continue;
+    const std::int64_t due = other->deadline_ns + other->frozen_ns - task.process->frozen_ns;
+    limit = std::min(limit, other->priority > task.priority ? due : std::max(due, turn_end));
+  }
+  return limit;
+}
+
 // A program's clock stands while it waits, for as long as it is ahead of the world's.
 void Engine::LetWorldCatchUp(Process& process, std::int64_t now_ns) {
   process.frozen_ns = std::max<std::int64_t>(0, process.shown_ns - now_ns);
+}
+
+// Its clock has shown so much of the time to come already: it passes without the thread.
+void Engine::PayDebt(Task& task, std::int64_t ns) {
+  task.debt_ns -= ns;
+  if (IsCallback()) {
+    Process& process = *task.process;
+    task.frozen_ns = process.frozen_ns += ns;
+    process.shown_ns = std::max(process.shown_ns, task.cpu->progress_ns + process.frozen_ns);
+    return;
+  }
+  task.cpu->progress_ns += std::max<std::int64_t>(0, ns);
+  task.reached_ns = task.cpu->progress_ns;
 }
 
 void Engine::StepCpu(VirtualCpu& cpu) {
@@ -193,17 +230,15 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
-  const std::int64_t start = cpu.progress_ns;
+  const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
   const std::int64_t horizon = HorizonFor(task, &idle_until);
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
-    task.debt_ns -= horizon - start;
-    cpu.progress_ns = std::max(start, horizon);
-    task.reached_ns = cpu.progress_ns;
+    PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
-  task.turn_ns += cpu.progress_ns - start;
+  task.turn_ns += cpu.progress_ns - start + task.process->frozen_ns - frozen;
   if (task.turn_ns >= QuantumOf(task)) {
     task.turn_ns = 0;
     robot.ready.Rotate(task.order);

@@ -49,6 +49,8 @@ class Engine {
   bool Step();
   bool AwaitDeaths();
   static void LetWorldCatchUp(Process& process, std::int64_t now_ns);
+  std::int64_t HorizonWhileWorldStands(const Task& task) const;
+  void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   bool HasJumpedOver();
@@ -61,6 +63,7 @@ class Engine {
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
+  static bool HasRunOut(const Task& task, std::int64_t now_ns);
   void SetState(Task& task, TaskState state);
   void Requeue(Task& task);
   void Refresh(Robot& robot);

@@ -212,7 +212,7 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   event_ns_ = now_ns;
   bool wrote = false;
   for (Task* task : robot.tasks) {
-    if (task->state == TaskState::kWaiting && task->deadline_ns <= now_ns) {
+    if (task->state == TaskState::kWaiting && HasRunOut(*task, now_ns)) {
       Process& woken = *task->process;
       woken.shown_ns = std::max(woken.shown_ns, task->deadline_ns + task->frozen_ns);
       MakeReady(*task, shm::WakeReason::kDeadline);
