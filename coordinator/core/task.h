@@ -125,7 +125,7 @@ struct Process {
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;
-  std::int64_t call_cost_ns = 0;
+  std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
   bool patch_vdso = false;
   // What its clock is ahead of the virtual CPU's: computed while the world stood still. 0 unless
   // --sync callback.
