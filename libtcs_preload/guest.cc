@@ -58,10 +58,10 @@ GuestThread* CurrentSlow() {
   return &t_thread;
 }
 
-void ChargeCall(shm::ClockPage& page) {
+void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
   std::uint64_t word = page.executed_adjust.load(std::memory_order_relaxed);
   while (!page.executed_adjust.compare_exchange_weak(
-      word, shm::PackAdjust(word, shm::AdjustValue(word) + page.call_cost_ns))) {
+      word, shm::PackAdjust(word, shm::AdjustValue(word) + cost_ns))) {
   }
 }
 

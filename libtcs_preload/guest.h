@@ -52,14 +52,14 @@ inline GuestThread* Current() {
   return CurrentSlow();
 }
 
-// Charges the set cost of a call.
-void ChargeCall(shm::ClockPage& page);
+// Charges a set cost: of a call, or of an allocation.
+void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
 // The same for an interposed call: under fixed accounting it also charges the call.
 inline GuestThread* Enter() {
   GuestThread* t = Current();
   if (t != nullptr && __builtin_expect(t->slot->clock.call_cost_ns != 0, 0)) {
-    ChargeCall(t->slot->clock);
+    Charge(t->slot->clock, t->slot->clock.call_cost_ns);
   }
   return t;
 }

@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::uint32_t kVersion = 6;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -142,10 +142,13 @@ struct ClockPage {
   std::int64_t children_cpu_ns;      // charged to the process's ended children
   // Written by the thread: the furthest that a read went beyond what was safe.
   std::atomic<std::int64_t> staleness_ns;
-  std::uint64_t reserved[4];
+  // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
+  std::int64_t allocation_cost_ns;
+  std::uint64_t reserved[3];
 };
 static_assert(sizeof(ClockPage) == 192);
 static_assert(offsetof(ClockPage, staleness_ns) == 152);
+static_assert(offsetof(ClockPage, allocation_cost_ns) == 160);
 static_assert(offsetof(ClockPage, executed_adjust) == 64);
 static_assert(offsetof(ClockPage, last_shown_ns) == 80);
 

@@ -8,9 +8,11 @@
 
 namespace tcs {
 
-// A duration above 0 from the option `--name`; an empty text sets nothing. The sentence, if it is
-// not one.
+enum class Zero { kRefused, kAllowed };
+
+// A duration above 0, or one of 0 where that is allowed, from the option `--name`; an empty text
+// sets nothing. The sentence, if it is not one.
 std::string TakeDuration(const std::string& name, const std::string& text,
-                         std::optional<VirtualDuration>* to);
+                         std::optional<VirtualDuration>* to, Zero zero = Zero::kRefused);
 
 }  // namespace tcs

@@ -12,8 +12,13 @@ namespace tcs {
 
 int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   const std::vector<std::string>& command = arguments.command;
-  std::optional<VirtualDuration> call_cost;
+  std::optional<VirtualDuration> call_cost, allocation_cost;
   if (const std::string error = TakeDuration("call-cost", arguments.call_cost, &call_cost);
+      !error.empty()) {
+    return Fail(error);
+  }
+  if (const std::string error = TakeDuration("allocation-cost", arguments.allocation_cost,
+                                             &allocation_cost, Zero::kAllowed);
       !error.empty()) {
     return Fail(error);
   }
@@ -32,6 +37,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   client.command = command;
   client.patch_vdso = arguments.patch_vdso;
   if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
+  if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);

@@ -75,6 +75,10 @@ int main(int argc, char** argv) {
   std::string call_cost;
   exec->add_option("--call-cost", call_cost,
                    "of one call under --accounting fixed; 1us unless told");
+  std::string allocation_cost;
+  exec->add_option(
+      "--allocation-cost", allocation_cost,
+      "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -113,6 +117,7 @@ int main(int argc, char** argv) {
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
+  options.allocation_library = tcs::AllocationLibrary();
   if (doctor->parsed()) {
     const auto findings = tcs::Examine(options.preload_library);
     const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
@@ -124,8 +129,10 @@ int main(int argc, char** argv) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");
   }
-  if (access(options.preload_library.c_str(), R_OK) != 0) {
-    return tcs::Fail("the shim is missing: " + options.preload_library + "; build it again");
+  for (const std::string& library : {options.preload_library, options.allocation_library}) {
+    if (access(library.c_str(), R_OK) != 0) {
+      return tcs::Fail("the shim is missing: " + library + "; build it again");
+    }
   }
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
@@ -133,7 +140,8 @@ int main(int argc, char** argv) {
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()
-               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost}, options)
+               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost},
+                                  options)
                : tcs::RunCommand(arguments, options);
   });
 }

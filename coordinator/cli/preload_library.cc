@@ -5,10 +5,18 @@
 
 namespace tcs {
 
-std::string PreloadLibrary() {
+namespace {
+
+std::string Library(const char* name) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return self.parent_path().parent_path() / "lib" / "libtcs_preload.so";
+  return self.parent_path().parent_path() / "lib" / name;
 }
+
+}  // namespace
+
+std::string PreloadLibrary() { return Library("libtcs_preload.so"); }
+
+std::string AllocationLibrary() { return Library("libtcs_allocations.so"); }
 
 }  // namespace tcs

@@ -7,4 +7,7 @@ namespace tcs {
 // The shim that belongs to this tcsim: ../lib/libtcs_preload.so beside its own folder.
 std::string PreloadLibrary();
 
+// The library that charges allocations under fixed accounting, beside the shim.
+std::string AllocationLibrary();
+
 }  // namespace tcs

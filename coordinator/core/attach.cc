@@ -92,6 +92,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   process.pidfd = OpenPidfd(pid);
   if (const Process* maker = LivingProcess(parent); maker != nullptr) {
     process.call_cost_ns = maker->call_cost_ns;
+    process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
     process.frozen_ns = maker->frozen_ns;
     process.shown_ns = maker->shown_ns;

@@ -29,6 +29,7 @@ struct RunOptions {
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   std::string preload_library;
+  std::string allocation_library;  // preloaded besides under fixed accounting
   // Called about five times a real second, if set; what it takes is the coordinator's.
   std::function<void(const RunProgress&)> on_progress;
 };

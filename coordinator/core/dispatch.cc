@@ -7,6 +7,7 @@
 #include <x86intrin.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/guardian.h"
@@ -63,6 +64,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       IsFixed() ? ~std::uint64_t{0}
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
   page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
+  page.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended_cpu_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
@@ -242,6 +244,8 @@ void Engine::Settle(Task& task) {
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, silent_turns = 0;
+  std::int64_t silent_at_ns =
+      task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     if (!first) ContinueClock(task);
@@ -259,6 +263,13 @@ void Engine::AwaitStop(Task& task) {
       return;
     }
     if (IsFixed()) {
+      // Calls and allocations move its clock, whether it comes to its horizon by them or not.
+      const std::int64_t now = shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+      if (std::exchange(silent_at_ns, now) != now) {
+        task.spins = false;
+        silent_turns = 0;
+        continue;
+      }
       if (!task.spins && ++silent_turns < kSilentTurns) continue;
       task.spins = preempted_ = true;
       return;
@@ -282,7 +293,8 @@ void Engine::StepAside(Task& task) {
     return;
   }
   Warn(task.process->name +
-       " has computed for 5 s without a call: under --accounting fixed that counts as waiting for "
+       " has computed for 5 s without a call or an allocation: under --accounting fixed that "
+       "counts as waiting for "
        "what others do, and depends on the host; run it with --accounting measured");
   SetState(task, TaskState::kWaiting);
   task.deadline_ns = shm::kNeverNs;

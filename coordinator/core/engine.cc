@@ -241,6 +241,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   task.turn_ns += cpu.progress_ns - start + task.process->frozen_ns - frozen;
   if (task.turn_ns >= QuantumOf(task)) {
     task.turn_ns = 0;
+    // Who is due by now does not wait for another turn.
+    FireDue(robot, cpu.progress_ns);
     robot.ready.Rotate(task.order);
   }
   Requeue(task);

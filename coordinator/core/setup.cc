@@ -158,7 +158,9 @@ std::string Engine::StartClients() {
       request.command = client.command;
       request.working_directory = client.working_directory;
       request.environment = client.environment;
-      request.environment["LD_PRELOAD"] = options_.preload_library;
+      const bool charges_allocations = IsFixed() && client.fixed_allocation_cost.ns() > 0;
+      request.environment["LD_PRELOAD"] =
+          options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
       request.environment["TCS_SOCKET"] = socket_name_;
       request.fixed_layout = IsFixed();
       if (!options_.output_directory.empty()) {
@@ -180,6 +182,7 @@ std::string Engine::StartClients() {
       Task* task = NewTask(pid, getpid(), &computer, client.name, client.priority);
       task->process->is_client = true;
       task->process->call_cost_ns = client.fixed_call_cost.ns();
+      task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
       task->process->patch_vdso = client.patch_vdso;
     }
   }

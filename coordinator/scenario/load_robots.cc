@@ -72,8 +72,8 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
                       const std::string& folder, const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly(
-      {"command", "class", "priority", "body", "environment", "fixed_call_cost", "patch_vdso"});
+  map.AllowOnly({"command", "class", "priority", "body", "environment", "fixed_call_cost",
+                 "fixed_allocation_cost", "patch_vdso"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
   client.working_directory = folder;
@@ -89,6 +89,9 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   }
   if (const YamlValue* v = map.Find("fixed_call_cost")) {
     client.fixed_call_cost = v->AsPositiveDuration();
+  }
+  if (const YamlValue* v = map.Find("fixed_allocation_cost")) {
+    client.fixed_allocation_cost = v->AsDuration();
   }
   if (const YamlValue* v = map.Find("patch_vdso")) client.patch_vdso = v->AsBoolean();
   return client;

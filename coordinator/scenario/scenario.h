@@ -29,6 +29,8 @@ struct ClientSpec {
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
+  // The same of one memory allocation; 0: none.
+  VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
   bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
 };
 

@@ -40,6 +40,7 @@ robots:
         body: predator
         environment: {MODE: fast}
         fixed_call_cost: 3us
+        fixed_allocation_cost: 50ns
       planner: {command: [sh, -c, "true"], patch_vdso: true}
 channels:
   eyes:

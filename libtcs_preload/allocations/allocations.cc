@@ -1,0 +1,95 @@
+// Preloaded behind the shim under fixed accounting only: each allocation is charged a set cost.
+//
+// A planner computes for seconds without a call that the shim sees; without this its time would
+// stand still. Allocating is what all such programs do, in numbers that repeat from run to run.
+// The allocation itself is left to whoever provides it: the C library, jemalloc, tcmalloc. free is
+// theirs alone, so nothing may be handed out here that they do not know.
+#include <dlfcn.h>
+#include <malloc.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+// The shim's. Absent where this library was preloaded without it.
+extern "C" void tcs_charge_allocation() noexcept __attribute__((weak));
+
+// The C library's own, for what dlsym may allocate while it looks for the next one.
+extern "C" void* __libc_malloc(size_t size) noexcept;
+extern "C" void* __libc_calloc(size_t count, size_t size) noexcept;
+extern "C" void* __libc_realloc(void* block, size_t size) noexcept;
+
+namespace {
+
+__thread bool t_looking __attribute__((tls_model("initial-exec"))) = false;
+
+template <class F>
+F* Next(F*& cache, const char* name, F* meanwhile) {
+  F* found = __atomic_load_n(&cache, __ATOMIC_RELAXED);
+  if (found != nullptr) return found;
+  if (t_looking) return meanwhile;
+  t_looking = true;
+  found = reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+  t_looking = false;
+  __atomic_store_n(&cache, found, __ATOMIC_RELAXED);
+  return found;
+}
+
+// The definition behind this one. dlsym never allocates by `name` itself where there is no
+// `meanwhile`.
+#define TCS_NEXT(name, meanwhile)                             \
+  ([] {                                                       \
+    static __typeof__(&::name) cache;                         \
+    return Next<__typeof__(::name)>(cache, #name, meanwhile); \
+  }())
+
+void Charge() {
+  if (tcs_charge_allocation != nullptr && !t_looking) tcs_charge_allocation();
+}
+
+}  // namespace
+
+#define TCS_EXPORT extern "C" __attribute__((visibility("default")))
+
+TCS_EXPORT void* malloc(size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(malloc, __libc_malloc)(size);
+}
+
+TCS_EXPORT void* calloc(size_t count, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(calloc, __libc_calloc)(count, size);
+}
+
+TCS_EXPORT void* realloc(void* block, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(realloc, __libc_realloc)(block, size);
+}
+
+TCS_EXPORT void* reallocarray(void* block, size_t count, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(reallocarray, nullptr)(block, count, size);
+}
+
+TCS_EXPORT int posix_memalign(void** block, size_t alignment, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(posix_memalign, nullptr)(block, alignment, size);
+}
+
+TCS_EXPORT void* aligned_alloc(size_t alignment, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(aligned_alloc, nullptr)(alignment, size);
+}
+
+TCS_EXPORT void* memalign(size_t alignment, size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(memalign, nullptr)(alignment, size);
+}
+
+TCS_EXPORT void* valloc(size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(valloc, nullptr)(size);
+}
+
+TCS_EXPORT void* pvalloc(size_t size) noexcept {
+  Charge();
+  return TCS_NEXT(pvalloc, nullptr)(size);
+}
