@@ -65,10 +65,8 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     fmt::print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
                Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
   }
-  fmt::print(
-      "written to {}: summary.json, bodies.csv, activations.csv, dispatches.csv, trace.json (for "
-      "ui.perfetto.dev), *.log\n",
-      directory);
+  fmt::print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n",
+             directory);
   for (const ClientReport& c : r.clients) {
     if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
     std::string base = c.name;

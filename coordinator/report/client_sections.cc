@@ -56,41 +56,45 @@ double MeanOver(const System& system, const std::string& name,
 
 std::optional<Figure> ResponseTimes(const Results& results) {
   HistogramPlot plot{"response time [s]", "s", "activation", {}, {}};
-  std::vector<std::string> said;
+  std::vector<std::string> sentences;
   const std::map<std::string, bool> clients = Clients(results);
   const auto planners = std::count_if(clients.begin(), clients.end(),
                                       [](const auto& client) { return !client.second; });
   for (const auto& [name, is_periodic] : clients) {
     if (is_periodic) continue;
+    std::vector<std::string> medians, longest;
     for (std::size_t i = 0; i < results.systems.size(); ++i) {
       const System& system = results.systems[i];
       std::vector<double> response = All(system, name, &ActivationTimes::response_s);
       if (response.empty()) continue;
       const Spread spread = SpreadOf(response);
-      said.push_back(
-          fmt::format("{} in {}: {}, median {} (computing {}), longest {}", name, system.name,
-                      Count(spread.count, "activation"), Seconds(spread.median),
-                      Seconds(SpreadOf(All(system, name, &ActivationTimes::computed_s)).median),
-                      Seconds(spread.most)));
+      const Spread computed = SpreadOf(All(system, name, &ActivationTimes::computed_s));
+      medians.push_back(fmt::format("{} in {} ({} of computing)", Seconds(spread.median),
+                                    system.name, Seconds(computed.median)));
+      longest.push_back(Seconds(spread.most));
       plot.panels.push_back({planners > 1 ? fmt::format("{}: {}", system.name, name) : system.name,
                              static_cast<int>(i), std::move(response)});
     }
+    if (medians.empty()) continue;
+    sentences.push_back(fmt::format("The median activation of {} takes {}; the longest {} {}.",
+                                    name, Listed(medians), longest.size() > 1 ? "take" : "takes",
+                                    Listed(longest)));
   }
   if (plot.panels.empty()) return {};
-  return MakeFigure(
-      "response-times", "How long planners take", fmt::format("{}.", fmt::join(said, "; ")),
-      "Best-effort clients, from being woken to being idle again, by their own clocks. Where the "
-      "world stands still meanwhile (callback), "
-      "these go on.",
-      [&](int width) { return DrawHistograms(plot, width); });
+  return MakeFigure("response-times", "How long planners take",
+                    fmt::format("{}", fmt::join(sentences, " ")),
+                    "Best-effort clients, from being woken to being idle again, by their own "
+                    "clocks. Where the world stands still meanwhile (callback), these go on.",
+                    [&](int width) { return DrawHistograms(plot, width); });
 }
 
 std::optional<Figure> Lateness(const Results& results) {
   std::vector<LatenessGroup> groups;
-  std::vector<std::string> said;
+  std::vector<std::string> sentences, overruns;
   for (const auto& [name, is_periodic] : Clients(results)) {
     if (!is_periodic) continue;
     LatenessGroup group{name, {}};
+    std::vector<std::string> late_by;
     for (std::size_t i = 0; i < results.systems.size(); ++i) {
       const System& system = results.systems[i];
       std::vector<double> late = All(system, name, &ActivationTimes::lateness_s);
@@ -98,18 +102,25 @@ std::optional<Figure> Lateness(const Results& results) {
       std::sort(late.begin(), late.end());
       group.rows.push_back({system.name, static_cast<int>(i), Quantile(late, 0.5),
                             Quantile(late, 0.99), late.back()});
-      const double overruns =
-          MeanOver(system, name, [](const Client& client) { return client.overruns; });
-      said.push_back(
-          fmt::format("{} in {} {}{}", name, system.name,
-                      late.back() > 0 ? "up to " + Seconds(late.back(), 2) : "never",
-                      overruns > 0 ? fmt::format(" ({} overruns a trial)", Plain(overruns)) : ""));
+      if (late.back() > 0) {
+        late_by.push_back(fmt::format("{} in {}", Seconds(late.back(), 2), system.name));
+      }
+      const double missed = MeanOver(system, name, [](const Client& of) { return of.overruns; });
+      if (missed > 0) {
+        overruns.push_back(fmt::format("{} of {} in {}", Plain(missed), name, system.name));
+      }
     }
-    if (!group.rows.empty()) groups.push_back(std::move(group));
+    if (group.rows.empty()) continue;
+    sentences.push_back(late_by.empty()
+                            ? fmt::format("{} never begins late.", name)
+                            : fmt::format("{} begins up to {} late.", name, Listed(late_by)));
+    groups.push_back(std::move(group));
   }
   if (groups.empty()) return {};
+  sentences.push_back(overruns.empty() ? "No activation overran the next one."
+                                       : fmt::format("Overruns in a trial: {}.", Listed(overruns)));
   return MakeFigure("lateness", "How late controllers begin",
-                    fmt::format("They begin late: {}.", fmt::join(said, "; ")),
+                    fmt::format("{}", fmt::join(sentences, " ")),
                     "Periodic clients, from being due to running, in virtual time. The dot is the "
                     "median, the thick line goes to the 99th percentile, the thin one to the most.",
                     [&](int width) { return DrawLateness(groups, width); });

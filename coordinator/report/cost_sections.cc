@@ -81,9 +81,9 @@ std::optional<Section> CostsSection(const Results& results) {
                InSeconds(MeanOf(system, &Run::dynamics_ns)), Percent(OverheadOf(system))});
     const double drift = MostOf(system, &Run::drift_ns);
     const double ratio = drift / std::max(1e-9, MeanOf(system, &Run::virtual_ns));
-    drifts.push_back(ratio < 1 ? fmt::format("{} in {}", Seconds(drift), system.name)
-                               : fmt::format("{} in {}, {} times its virtual time", Seconds(drift),
-                                             system.name, Significant(ratio)));
+    std::string text = fmt::format("{} in {}", Seconds(drift), system.name);
+    if (ratio >= 1) text += fmt::format(" ({} times its virtual time)", Significant(ratio));
+    drifts.push_back(std::move(text));
   }
   std::string explained =
       "Δ is how far the progress of two parts of the simulation ever came apart; staleness, how "

@@ -14,7 +14,7 @@ namespace tcs::report {
 namespace {
 
 constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 88, kName = 34, kBottom = 40;
-constexpr double kBins = 60;
+constexpr double kBins = 100;
 
 std::string Legend(const HistogramPanel& panel, const Spread& spread, const std::string& unit,
                    const std::string& what, double pixels) {

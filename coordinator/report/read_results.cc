@@ -59,6 +59,13 @@ std::string FolderName(const std::string& folder) {
   return fs::weakly_canonical(folder, error).filename().string();
 }
 
+// As tcsim trials calls it.
+std::string FolderOf(std::string value) {
+  std::replace(value.begin(), value.end(), '/', '_');
+  if (value.starts_with('.')) value[0] = '_';
+  return value;
+}
+
 // What tcsim said last about a trial that has no summary.
 std::string LastWords(const std::string& folder) {
   const std::optional<std::string> log = ReadFile(folder + "/tcsim.log");
@@ -126,7 +133,8 @@ class Reader {
     Sweep sweep{name, plan.key, {}};
     for (const std::string& value : plan.values) {
       SweepValue point{value, NumberOf(value), {name + " at " + value, {}, {}}};
-      if (std::string error = AddSeeds(folder + "/" + value, plan, &point.system); !error.empty()) {
+      if (std::string error = AddSeeds(folder + "/" + FolderOf(value), plan, &point.system);
+          !error.empty()) {
         return error;
       }
       if (point.system.runs.empty()) {

@@ -67,9 +67,9 @@ std::string AboutSeries(const SweepSeries& series, const std::string& key,
   const auto median = [](const SweepPoint& point) { return SpreadOf(point.means).median; };
   const SweepPoint &first = series.points.front(), &last = series.points.back();
   std::string text =
-      fmt::format("{}: {} at {} = {}", series.name, Metres(median(first)), key, first.label);
+      fmt::format("“{}”: {} at {} = {}", series.name, Metres(median(first)), key, first.label);
   if (series.points.size() > 1) {
-    text += fmt::format(", {} at {}", Metres(median(last)), last.label);
+    text += fmt::format(" and {} at {}", Metres(median(last)), last.label);
   }
   for (const double mark : marks) {
     const bool starts_below = median(first) < mark;

@@ -35,7 +35,9 @@ TEST_F(PageTest, SaysWhatItsDataSay) {
   EXPECT_TRUE(Has(page, "The median distance is 4.00\u00a0m in near and 6.00\u00a0m in far."));
   EXPECT_TRUE(Has(
       page, "The share of the samples below 5\u00a0m is 100\u00a0% in near and 0\u00a0% in far."));
-  EXPECT_TRUE(Has(page, "r/planner in near: 1 activation, median 1.00\u00a0ms"));
+  EXPECT_TRUE(Has(page,
+                  "The median activation of r/planner takes 1.00\u00a0ms in near (700\u00a0µs of "
+                  "computing) and 1.00\u00a0ms in far"));
   for (const char* name :
        {"distances", "distance-over-time", "timeline", "response-times", "lateness"}) {
     EXPECT_TRUE(HasFigure(page, name)) << name;
@@ -111,9 +113,10 @@ TEST_F(PageTest, ASweepHasAFigureAndItsTable) {
   }
   const Page page = Make({"sweep"});
   EXPECT_TRUE(HasFigure(page, "sweep-robots.r.cpu.speed"));
-  EXPECT_TRUE(Has(page,
-                  "tcs: 9.00\u00a0m at robots.r.cpu.speed = 0.5, 3.00\u00a0m at 2, below 5\u00a0m "
-                  "first at 2."));
+  EXPECT_TRUE(
+      Has(page,
+          "“tcs”: 9.00\u00a0m at robots.r.cpu.speed = 0.5 and 3.00\u00a0m at 2, below 5\u00a0m "
+          "first at 2."));
   EXPECT_TRUE(Has(page, "1.00\u00a0ms at each value in tcs"));
 }
 

@@ -81,16 +81,18 @@ TEST_F(ReadResultsTest, TrialsThatFailedAreNamed) {
 }
 
 TEST_F(ReadResultsTest, ASweepHasASystemPerValue) {
-  Write("sweep/trials.json",
-        R"({"first_seed": 1, "trials": 1, "vary": {"key": "duration", "values": ["20s", 60]}})");
+  Write(
+      "sweep/trials.json",
+      R"({"first_seed": 1, "trials": 1, "vary": {"key": "duration", "values": ["20s", 60, "../x"]}})");
   WriteRun("sweep/20s/seed-0001");
   WriteRun("sweep/60/seed-0001");
+  WriteRun("sweep/_._x/seed-0001");
   const Results results = Read({"sweep"});
   EXPECT_TRUE(results.systems.empty());
   const Sweep& sweep = results.sweeps.at(0);
   EXPECT_EQ(sweep.name, "sweep");
   EXPECT_EQ(sweep.key, "duration");
-  ASSERT_EQ(sweep.values.size(), 2u);
+  ASSERT_EQ(sweep.values.size(), 3u);
   EXPECT_EQ(sweep.values[0].number, 20.0);
   EXPECT_EQ(sweep.values[1].text, "60");
 }
