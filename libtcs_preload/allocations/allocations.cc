@@ -2,8 +2,9 @@
 //
 // A planner computes for seconds without a call that the shim sees; without this its time would
 // stand still. Allocating is what all such programs do, in numbers that repeat from run to run.
-// The allocation itself is left to whoever provides it: the C library, jemalloc, tcmalloc. free is
-// theirs alone, so nothing may be handed out here that they do not know.
+// reallocarray needs no word: it calls realloc. The allocation itself is left to whoever provides
+// it: the C library, jemalloc, tcmalloc. free is theirs alone, so nothing may be handed out here
+// that they do not know.
 #include <dlfcn.h>
 #include <malloc.h>
 #include <stddef.h>
@@ -62,11 +63,6 @@ TCS_EXPORT void* calloc(size_t count, size_t size) noexcept {
 TCS_EXPORT void* realloc(void* block, size_t size) noexcept {
   Charge();
   return TCS_NEXT(realloc, __libc_realloc)(block, size);
-}
-
-TCS_EXPORT void* reallocarray(void* block, size_t count, size_t size) noexcept {
-  Charge();
-  return TCS_NEXT(reallocarray, nullptr)(block, count, size);
 }
 
 TCS_EXPORT int posix_memalign(void** block, size_t alignment, size_t size) noexcept {

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# Jobs, traps and timeouts of bash, and what people write in pipelines.
+# Jobs, traps and timeouts of bash, and what people write in pipelines. Allocations cost nothing,
+# so that a shell does what it does next before its child has begun.
 expect() {
   local wanted=$1 said accounting
   for accounting in measured fixed; do
-    said=$("$tcsim" exec --accounting "$accounting" -- bash -c "$2" 2>&1 | grep -v 'tcsim: other runs')
+    said=$("$tcsim" exec --accounting "$accounting" --allocation-cost 0 -- bash -c "$2" 2>&1 | grep -v 'tcsim: other runs')
     [[ $said == "$wanted" ]] || fail "$accounting: '$2' says '$said' instead of '$wanted'"
   done
 }
