@@ -348,6 +348,11 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   event_ns_ = task.cpu->progress_ns;
+  if (event_ns_ >= running_horizon_ns_) {
+    ++task.used_up;
+  } else if (notified_ || trapped_.has_value()) {
+    task.used_up = 0;
+  }
   ExpireCpuTimers(task);
   if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {

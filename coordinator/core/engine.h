@@ -53,6 +53,7 @@ class Engine {
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
+  std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   bool IsSafe(const Task& task) const;
