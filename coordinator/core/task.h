@@ -63,6 +63,7 @@ struct Task {
   std::uint64_t awaited_signals = 0;      // its wait ends when one of them is pending
   std::vector<int> watched;               // descriptors in the coordinator's epoll set
   bool watches_terminal = false;          // among the watched
+  std::uint32_t wait_number = 0;          // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
