@@ -218,9 +218,10 @@ void Engine::Settle(Task& task) {
         static_cast<std::int64_t>(static_cast<double>(ours) * task.process->robot->speed);
   }
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
-  task.recent_run_ns = std::max(executed, task.recent_run_ns - task.recent_run_ns / kForgetRuns);
-  client_host_ns_ +=
+  const auto host_ns =
       static_cast<std::int64_t>(static_cast<double>(executed) * task.process->robot->speed);
+  client_host_ns_ += host_ns;
+  task.recent_run_ns = std::max(host_ns, task.recent_run_ns - task.recent_run_ns / kForgetRuns);
   task.charged_ns = charged;
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
   const std::int64_t shown = page.last_shown_ns.load() - frozen;

@@ -87,7 +87,7 @@ struct Task {
   std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
   int unchecked_slices = 0;                 // by the coordinator
   std::int64_t turn_ns = 0;                 // had since its equals last had a turn
-  std::int64_t recent_run_ns = 10'000'000;  // the longest dispatch of late; at first it may be long
+  std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
   int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
