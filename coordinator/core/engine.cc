@@ -25,6 +25,7 @@ constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr int kDeathTurns = 25;  // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
 std::int64_t QuantumOf(const Task& task) {
   if (task.policy == SCHED_FIFO) return shm::kNeverNs;
@@ -231,7 +232,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
-  const std::int64_t horizon = HorizonFor(task, &idle_until);
+  const std::int64_t horizon = KeepWorldNear(task, HorizonFor(task, &idle_until));
+  idle_until = std::min(idle_until, horizon);
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
   } else {
@@ -249,13 +251,15 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   Refresh(robot);
 }
 
-// Advances the dynamics to where the virtual CPUs are. False if they are there.
+// Advances the dynamics where the virtual CPUs have come to what is due there, or have left them
+// behind. False if neither is so.
 bool Engine::StepWorld() {
   if (!world_.present()) return false;
   const std::int64_t limit = std::min(root_.Least(), end_ns_);
   const std::int64_t now = world_.progress_ns();
-  if (now >= limit && world_.NextOutputNs() > std::min(now, limit)) return false;
-  event_ns_ = std::max(event_ns_, now);
+  const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
+  if (limit - now <= lag && world_.NextStopNs() > limit) return false;
+  event_ns_ = std::max(event_ns_, std::min(now, limit));
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
@@ -269,6 +273,28 @@ bool Engine::StepWorld() {
     PollEvents(0);
   }
   return true;
+}
+
+// Every stop of the dynamics costs a step of the integrator, and every horizon a context switch. So
+// they may lag behind while threads act for short, and where a thread computes on and on they lead:
+// within the drift bound on either side its slices are twice as long. Returns how far the thread
+// may run.
+std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
+  if (!world_.present() || IsCallback()) return horizon_ns;
+  const std::int64_t bound = std::min(scenario_.drift_bound.ns(), shm::kMaxDispatchNs);
+  const std::int64_t now = task.cpu->progress_ns, world = world_.progress_ns();
+  const bool computes = task.used_up >= kComputes;
+  const std::int64_t room = computes ? horizon_ns : std::min(horizon_ns, now + bound / 2);
+  if (world + bound < room) {
+    const std::int64_t to = std::clamp(horizon_ns - bound, now, computes ? now + bound : now);
+    const std::uint64_t begun_tsc = __rdtsc();
+    world_.Lead(now, std::min(to, world_.NextStopNs()));
+    stop_tsc_ = __rdtsc();
+    trace_.Slice(world_row_, world, world_.progress_ns());
+    RecordSlice(world_row_, world, world_.progress_ns(), begun_tsc);
+    root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+  }
+  return std::min(horizon_ns, root_.DynamicsHorizon());
 }
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.

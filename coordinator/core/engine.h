@@ -53,6 +53,7 @@ class Engine {
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
+  std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   bool IsSafe(const Task& task) const;
@@ -192,6 +193,11 @@ class Engine {
   void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
+  // What epoll gives back: `number` tells an event of this wait from those of earlier ones.
+  static std::uint64_t EventData(Tag tag, std::uint32_t index, std::uint32_t number) {
+    return (static_cast<std::uint64_t>(tag) << 56) | (std::uint64_t{number & 0xffffff} << 32) |
+           index;
+  }
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority);
   Task& PlaceForTask();
   Process& PlaceForProcess();
@@ -253,6 +259,7 @@ class Engine {
   int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t futex_counter_ = 0, key_counter_ = 0;
+  std::uint32_t wait_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;

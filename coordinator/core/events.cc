@@ -32,7 +32,7 @@ constexpr std::uint64_t kKilled = std::uint64_t{1} << (SIGKILL - 1);
 void Engine::Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index) {
   epoll_event event{};
   event.events = events;
-  event.data.u64 = (static_cast<std::uint64_t>(tag) << 32) | index;
+  event.data.u64 = EventData(tag, index, 0);
   epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event);
 }
 
@@ -119,7 +119,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
   bool stop = false, blocked = false;
   if (running_ != nullptr) event_ns_ = WrittenAt();
   for (int i = 0; i < n; ++i) {
-    const auto tag = static_cast<Tag>(events[i].data.u64 >> 32);
+    const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
     switch (tag) {
       case Tag::kPipe: {
@@ -153,11 +153,12 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         external_event_ = true;
         break;
       case Tag::kAwaited:
-        if (Task& task = tasks_[index]; task.state == TaskState::kWaiting) {
+        if (Task& task = tasks_[index];
+            task.state == TaskState::kWaiting && task.waits_for_fds &&
+            EventData(tag, index, task.wait_number) == events[i].data.u64) {
           MakeReady(task, shm::WakeReason::kGo);
-          external_event_ = true;
+          external_event_ = stop = true;
         }
-        stop = true;
         break;
       case Tag::kTrap:
         if ((events[i].events & EPOLLIN) == 0) {

@@ -12,12 +12,15 @@
 
 namespace tcs {
 
-namespace {}  // namespace
-
+// The client shares the open file, so closing our descriptor leaves it in the epoll set until the
+// client closes it, too. That is what we want: the next wait for it, under the same number of ours,
+// only has to arm it again. What fires meanwhile is of a wait that is over (Tag::kAwaited). But a
+// client's epoll set with a signalfd in it must not be polled by us when its wait is over: we have
+// other signals, and it would forget that there is one.
 void Engine::EndWatches(Task& task) {
+  const bool forgets = task.watches_terminal || task.awaited_signals != 0;
   for (const int fd : task.watched) {
-    // The client shares the open file, so closing alone would leave it in the epoll set.
-    epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+    if (forgets) epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
     close(fd);
   }
   task.watched.clear();
@@ -28,16 +31,19 @@ void Engine::EndWatches(Task& task) {
 void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   SetState(task, TaskState::kWaiting);
   task.waits_for_fds = true;
-  const auto index = static_cast<std::uint32_t>(task.order);
+  task.wait_number = ++wait_counter_;
   for (std::size_t i = 0; i < count; ++i) {
     const int fd = DuplicateFd(task.process->pidfd, fds[i].fd);
     if (fd < 0) continue;
     epoll_event event{};
     event.events = fds[i].events | EPOLLONESHOT;
-    event.data.u64 = (static_cast<std::uint64_t>(Tag::kAwaited) << 32) | index;
-    if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
+    event.data.u64 =
+        EventData(Tag::kAwaited, static_cast<std::uint32_t>(task.order), task.wait_number);
+    if (epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event) == 0) {
       task.watched.push_back(fd);
-      NoteTerminal(task, fd);
+    } else if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
+      task.watched.push_back(fd);
+      NoteTerminal(task, fd);  // never left in the set, so it always comes this way
     } else {
       close(fd);
     }

@@ -63,6 +63,7 @@ struct Task {
   std::uint64_t awaited_signals = 0;      // its wait ends when one of them is pending
   std::vector<int> watched;               // descriptors in the coordinator's epoll set
   bool watches_terminal = false;          // among the watched
+  std::uint32_t wait_number = 0;          // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
@@ -82,10 +83,12 @@ struct Task {
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
-  std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
-  std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch
-  int unchecked_slices = 0;           // by the coordinator
-  std::int64_t turn_ns = 0;           // had since its equals last had a turn
+  std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
+  std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
+  int unchecked_slices = 0;                 // by the coordinator
+  std::int64_t turn_ns = 0;                 // had since its equals last had a turn
+  std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
+  int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
   int cpu_clock_fd = -1;  // where its CPU clock is read, if it is not its process's

@@ -37,7 +37,6 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   for (const SensorChannelSpec& spec : scenario.sensors) {
     sensors_.push_back({spec, 0, {}});
   }
-  FindNextOutput();
   for (const CommandChannelSpec& spec : scenario.commands) {
     auto socket = UdpSocket::Bind(spec.listen);
     if (auto* error = std::get_if<SocketError>(&socket)) return error->message;
@@ -51,16 +50,19 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
     csv_.open(csv_path);
     csv_ << "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
   }
+  FindNextStop();
   return {};
 }
 
-void World::FindNextOutput() {
+void World::FindNextStop() {
   next_output_ns_ = shm::kNeverNs;
+  next_stop_ns_ = csv_.is_open() ? next_csv_ns_ : shm::kNeverNs;
   for (const Sensor& sensor : sensors_) {
     const std::int64_t arrival = sensor.on_the_way.empty()
                                      ? sensor.next_ns + sensor.spec.latency.ns()
                                      : sensor.on_the_way.front().first;
     next_output_ns_ = std::min(next_output_ns_, arrival);
+    next_stop_ns_ = std::min({next_stop_ns_, arrival, sensor.next_ns});
   }
 }
 
@@ -100,16 +102,10 @@ bool World::SendDue(Sensor& sensor) {
   return sent;
 }
 
-std::int64_t World::NextStop(std::int64_t limit_ns) const {
-  std::int64_t stop = std::min(limit_ns, next_output_ns_);
-  for (const Sensor& sensor : sensors_) stop = std::min(stop, sensor.next_ns);
-  if (csv_.is_open() && next_csv_ns_ >= progress_ns_) stop = std::min(stop, next_csv_ns_);
-  return std::max(stop, progress_ns_);
-}
-
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
-  progress_ns_ = NextStop(limit_ns);
+  checkpoint_.reset();
+  progress_ns_ = settled_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
   dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
   WriteCsv();
   bool sent = false;
@@ -117,8 +113,29 @@ bool World::Advance(std::int64_t limit_ns) {
     if (sensor.next_ns <= progress_ns_) Sample(sensor);
     sent |= SendDue(sensor);
   }
-  FindNextOutput();
+  FindNextStop();
   return sent;
+}
+
+void World::Lead(std::int64_t settled_ns, std::int64_t to_ns) {
+  const Spent spent(&host_ns_);
+  settled_ns_ = settled_ns;
+  since_checkpoint_.clear();
+  checkpoint_ = to_ns > settled_ns ? dynamics_->Save() : nullptr;
+  progress_ns_ = to_ns;
+  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
+}
+
+void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
+  if (checkpoint_ != nullptr) since_checkpoint_.push_back({at_ns, body, wrench});
+  if (at_ns >= progress_ns_) {
+    return dynamics_->Apply(body, wrench, VirtualTime::FromNanoseconds(at_ns));
+  }
+  dynamics_->Restore(*checkpoint_);
+  for (const TimedCommand& command : since_checkpoint_) {
+    dynamics_->Apply(command.body, command.wrench, VirtualTime::FromNanoseconds(command.at_ns));
+  }
+  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
 }
 
 void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
@@ -133,8 +150,7 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
       fmt::print(stderr, "tcsim: channel {}: {}\n", spec.name, error->message);
       continue;
     }
-    const std::int64_t at = std::max(now_ns, progress_ns_) + spec.latency.ns();
-    dynamics_->Apply(spec.body, std::get<Wrench>(wrench), VirtualTime::FromNanoseconds(at));
+    Apply(std::max(now_ns, settled_ns_) + spec.latency.ns(), spec.body, std::get<Wrench>(wrench));
     ++commands_;
   }
 }

@@ -23,9 +23,15 @@ class World {
   std::int64_t progress_ns() const { return progress_ns_; }
   // Nothing leaves the dynamics before this.
   std::int64_t NextOutputNs() const { return next_output_ns_; }
-  // Advances to the earliest of `limit_ns`, the next sample and the next output, which it then
-  // sends. True if something was sent.
+  // When somebody looks at the state next: a sample, an output, a line of the CSV.
+  std::int64_t NextStopNs() const { return next_stop_ns_; }
+  // Advances to the earliest of `limit_ns` and the next stop, and carries out what is due there. No
+  // command for an earlier time comes any more. True if something was sent.
   bool Advance(std::int64_t limit_ns);
+  // Integrates to `to_ns`, at most the next stop, though commands for times from `settled_ns` on
+  // may still come. One that does is applied at its time: everything since is taken back and done
+  // again.
+  void Lead(std::int64_t settled_ns, std::int64_t to_ns);
 
   const std::vector<int>& command_fds() const { return command_fds_; }
   // Applies what has arrived on command channel `index` at virtual time `now_ns`.
@@ -45,12 +51,23 @@ class World {
   void WriteCsv();
   void Sample(Sensor& sensor);
   bool SendDue(Sensor& sensor);
-  void FindNextOutput();
-  std::int64_t NextStop(std::int64_t limit_ns) const;
+  void FindNextStop();
+  void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
-  std::int64_t progress_ns_ = 0, next_output_ns_ = 0;
+  std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
+  // Commands for earlier times do not come any more.
+  std::int64_t settled_ns_ = 0;
+  // Where the dynamics lead: the state from which commands can be applied, and those that came
+  // since.
+  struct TimedCommand {
+    std::int64_t at_ns;
+    int body;
+    Wrench wrench;
+  };
+  std::unique_ptr<Dynamics::Checkpoint> checkpoint_;
+  std::vector<TimedCommand> since_checkpoint_;
   std::vector<Sensor> sensors_;
   std::vector<UdpSocket> command_sockets_;
   std::vector<int> command_fds_;

@@ -69,9 +69,11 @@ std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
 }
 
 std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
-  std::int64_t horizon = std::min(end_ns_, After(LeastOther(leaf), drift_bound_ns_));
-  if (has_dynamics_) horizon = std::min(horizon, After(dynamics_ns_, drift_bound_ns_));
-  return horizon;
+  return std::min(end_ns_, After(LeastOther(leaf), drift_bound_ns_));
+}
+
+std::int64_t TemporalConsistency::DynamicsHorizon() const {
+  return has_dynamics_ ? After(dynamics_ns_, drift_bound_ns_) : shm::kNeverNs;
 }
 
 std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {

@@ -34,8 +34,10 @@ class TemporalConsistency {
   std::int64_t Least() const;
   Leaf First() const;
 
-  // How far the leaf may run: the drift bound beyond the slowest other leaf, and the run's end.
+  // How far the leaf may run: the drift bound beyond the slowest other virtual CPU, and the run's
+  // end; and beyond the dynamics.
   std::int64_t Horizon(Leaf leaf) const;
+  std::int64_t DynamicsHorizon() const;
   // Nothing that the leaf could read is produced before this any more. What the dynamics send at an
   // instant is there for a read at that instant.
   std::int64_t ReadSafe(Leaf leaf) const;

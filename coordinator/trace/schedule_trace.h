@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tcs {
@@ -40,7 +41,7 @@ class ScheduleTrace {
     bool has_slice = false;  // not written yet, for more may follow without a gap
     std::int64_t start_ns = 0, end_ns = 0;
   };
-  void Event(const std::string& json);
+  void Event(std::string_view json);
   void Write(int row);
 
   std::FILE* file_ = nullptr;

@@ -54,8 +54,9 @@ TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) 
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf();
   root.Update(predator, 7'000'000, 7'000'000);
+  EXPECT_EQ(root.DynamicsHorizon(), kNever);
   root.UpdateDynamics(7'000'000, 10'000'000);
-  EXPECT_EQ(root.Horizon(predator), 7'000'000 + kDrift);
+  EXPECT_EQ(root.DynamicsHorizon(), 7'000'000 + kDrift);
 }
 
 TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
@@ -96,6 +97,7 @@ TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
   root.Update(predator, 1, 1);
   root.UpdateDynamics(1, kNever);
   EXPECT_EQ(root.Horizon(predator), kEnd);
+  EXPECT_EQ(root.DynamicsHorizon(), kNever);
 }
 
 }  // namespace
