@@ -33,9 +33,8 @@ void AddPaper(Table* table) {
 std::string Shares(const Timeline& timeline) {
   std::vector<std::int64_t> ran(timeline.rows.size());
   for (const Slice& slice : timeline.slices) {
-    ran[static_cast<std::size_t>(slice.row)] += timeline.has_real_times
-                                                    ? slice.real_end - slice.real_start
-                                                    : slice.virtual_end - slice.virtual_start;
+    ran[static_cast<std::size_t>(slice.row)] +=
+        timeline.has_real_times ? slice.real_ran : slice.virtual_ran;
   }
   const std::int64_t whole = timeline.has_real_times ? timeline.real_end : timeline.virtual_end;
   std::vector<std::string> shares;
@@ -50,12 +49,12 @@ std::string Shares(const Timeline& timeline) {
 std::string AboutTimeline(const Timeline& timeline) {
   const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;
   if (!timeline.has_real_times) {
-    return fmt::format("In {} of virtual time of {} these ran: {}.", Seconds(virtual_s),
-                       timeline.name, Shares(timeline));
+    return fmt::format("{} of virtual time of {}: {}.", Seconds(virtual_s), timeline.name,
+                       Shares(timeline));
   }
   const double real_s = static_cast<double>(timeline.real_end) * 1e-6;
-  return fmt::format("{} of virtual time took {} {} of real time, of which these ran: {}.",
-                     Seconds(virtual_s), timeline.name, Seconds(real_s), Shares(timeline));
+  return fmt::format("{} of virtual time took {} {} of real time: {}.", Seconds(virtual_s),
+                     timeline.name, Seconds(real_s), Shares(timeline));
 }
 
 }  // namespace
@@ -107,7 +106,9 @@ std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines) {
     merged_us = std::max(merged_us, timeline.merged_us);
   }
   std::string note =
-      "The first trial of each system. A bar's height is the share of the time that the row ran.";
+      "The first trial of each system. A bar's height is the share of the time that the row ran, "
+      "the "
+      "number beside it the share of the whole.";
   if (merged_us > 0) {
     note += fmt::format(" Slices of a row that are up to {} apart are drawn as one.",
                         Seconds(static_cast<double>(merged_us) * 1e-6, 2));

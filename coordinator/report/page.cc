@@ -14,7 +14,7 @@ namespace tcs::report {
 namespace {
 
 // Of all timelines together: about 11 bytes of the page each.
-constexpr std::size_t kMostSlices = 150'000;
+constexpr std::size_t kMostSlices = 200'000;
 
 std::string Paragraph(std::string_view classes, const std::string& text) {
   if (text.empty()) return {};
@@ -72,8 +72,7 @@ class Builder {
   void AddTimelines() {
     std::vector<Timeline> timelines;
     for (const System& system : results_.systems) {
-      auto read = ReadTimeline(system.runs.front().folder, system.name,
-                               kMostSlices / results_.systems.size());
+      auto read = ReadTimeline(system.runs.front().folder, system.name);
       if (auto* timeline = std::get_if<Timeline>(&read)) {
         timelines.push_back(std::move(*timeline));
       } else {
@@ -81,6 +80,7 @@ class Builder {
                                  "; the timeline goes without it");
       }
     }
+    Shorten(&timelines, kMostSlices);
     const auto figure = TimelineFigure(timelines);
     if (!figure) return;
     std::string more(kTimelineControls);

@@ -30,8 +30,8 @@ class Builder {
     }
     if (times[1] < times[0] || times[3] < times[2]) return false;
     for (std::int64_t& time : times) time = Microseconds(time);
-    timeline_.slices.push_back(
-        {RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3]});
+    timeline_.slices.push_back({RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3],
+                                times[1] - times[0], times[3] - times[2]});
     timeline_.virtual_end = std::max(timeline_.virtual_end, times[1]);
     timeline_.real_end = std::max(timeline_.real_end, times[3]);
     return true;
@@ -112,6 +112,8 @@ std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us)
           slice.real_start - before.real_end <= gap_us) {
         before.virtual_end = std::max(before.virtual_end, slice.virtual_end);
         before.real_end = std::max(before.real_end, slice.real_end);
+        before.virtual_ran += slice.virtual_ran;
+        before.real_ran += slice.real_ran;
         continue;
       }
     }
@@ -121,8 +123,7 @@ std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us)
   return merged;
 }
 
-LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name,
-                                  std::size_t most_slices) {
+LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name) {
   Timeline timeline;
   timeline.name = name;
   Builder builder(&timeline);
@@ -141,32 +142,51 @@ LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& 
   if (timeline.slices.empty()) return LoadError{path + " has no dispatches"};
   SortRows(&timeline);
   SortSlices(&timeline.slices);
-  for (std::int64_t gap_us = 20; timeline.slices.size() > most_slices; gap_us *= 2) {
-    timeline.slices = Merged(timeline.slices, gap_us);
-    timeline.merged_us = gap_us;
-  }
-  SortSlices(&timeline.slices);
   return timeline;
+}
+
+void Shorten(std::vector<Timeline>* timelines, std::size_t most_slices) {
+  const auto total = [timelines] {
+    std::size_t slices = 0;
+    for (const Timeline& timeline : *timelines) slices += timeline.slices.size();
+    return slices;
+  };
+  while (!timelines->empty() && total() > most_slices) {
+    Timeline& longest = *std::max_element(
+        timelines->begin(), timelines->end(),
+        [](const Timeline& a, const Timeline& b) { return a.slices.size() < b.slices.size(); });
+    longest.merged_us = std::max<std::int64_t>(20, 2 * longest.merged_us);
+    longest.slices = Merged(longest.slices, longest.merged_us);
+    SortSlices(&longest.slices);
+    // Nothing is left to merge: each row is one slice.
+    if (longest.slices.size() <= longest.rows.size()) return;
+  }
 }
 
 std::string Encoded(const Timeline& timeline) {
   std::string bytes;
   std::int64_t virtual_end = 0, real_start = 0;
+  const bool merged = timeline.merged_us > 0;
   for (const Slice& slice : timeline.slices) {
     PutNumber(&bytes, static_cast<std::uint64_t>(slice.row));
     PutSigned(&bytes, slice.virtual_start - virtual_end);
     PutNumber(&bytes, static_cast<std::uint64_t>(slice.virtual_end - slice.virtual_start));
     virtual_end = slice.virtual_end;
+    if (merged) PutNumber(&bytes, static_cast<std::uint64_t>(slice.virtual_ran));
     if (!timeline.has_real_times) continue;
     PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_start - real_start));
     PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_end - slice.real_start));
     real_start = slice.real_start;
+    if (merged) PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_ran));
   }
-  const nlohmann::ordered_json json{
-      {"name", timeline.name},           {"rows", timeline.rows},
-      {"real", timeline.has_real_times}, {"virtualEnd", timeline.virtual_end},
-      {"realEnd", timeline.real_end},    {"count", timeline.slices.size()},
-      {"slices", Base64(bytes)}};
+  const nlohmann::ordered_json json{{"name", timeline.name},
+                                    {"rows", timeline.rows},
+                                    {"real", timeline.has_real_times},
+                                    {"merged", merged},
+                                    {"virtualEnd", timeline.virtual_end},
+                                    {"realEnd", timeline.real_end},
+                                    {"count", timeline.slices.size()},
+                                    {"slices", Base64(bytes)}};
   // "</script>" in a name must not end the element that holds this.
   std::string text = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {

@@ -14,6 +14,8 @@ struct Slice {
   int row = 0;
   std::int64_t virtual_start = 0, virtual_end = 0;
   std::int64_t real_start = 0, real_end = 0;  // both 0 in runs without real times
+  // How much of that the row ran: all, but for slices that were made of several.
+  std::int64_t virtual_ran = 0, real_ran = 0;
 };
 
 struct Timeline {
@@ -25,12 +27,16 @@ struct Timeline {
   std::int64_t merged_us = 0;  // slices of a row that are closer than this are one
 };
 
-// From a run's dispatches.csv. A client's threads share its row. At most about `most_slices`.
-[[nodiscard]] LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name,
-                                                std::size_t most_slices);
+// From a run's dispatches.csv. A client's threads share its row.
+[[nodiscard]] LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name);
 
-// Slices of a row become one where the gap between them is at most `gap_us` in each time.
+// Slices of a row become one where the gap between them is at most `gap_us` in each time. What each
+// row ran stays the same.
 [[nodiscard]] std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us);
+
+// Merges slices that are closer and closer to each other until all timelines together have at most
+// `most_slices`. Those with few keep all of theirs.
+void Shorten(std::vector<Timeline>* timelines, std::size_t most_slices);
 
 // As page/timeline.js reads it: an object of JSON, the slices in it as base64 of bytes.
 [[nodiscard]] std::string Encoded(const Timeline& timeline);

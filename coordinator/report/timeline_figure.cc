@@ -24,12 +24,14 @@ std::vector<double> Busy(const Timeline& timeline, int row, bool real, double en
     if (slice.row != row) continue;
     const auto from = static_cast<double>(real ? slice.real_start : slice.virtual_start);
     const auto to = static_cast<double>(real ? slice.real_end : slice.virtual_end);
+    const auto ran = static_cast<double>(real ? slice.real_ran : slice.virtual_ran);
+    const double density = to > from ? ran / (to - from) : 1.0;
     const auto first = std::min(columns - 1, static_cast<std::size_t>(from / width));
     const auto last = std::min(columns - 1, static_cast<std::size_t>(to / width));
     for (std::size_t i = first; i <= last; ++i) {
       const double left = static_cast<double>(i) * width;
-      const double share = (std::min(to, left + width) - std::max(from, left)) / width;
-      busy[i] = std::max(1e-6, busy[i] + std::max(0.0, share));
+      const double inside = std::min(to, left + width) - std::max(from, left);
+      busy[i] = std::max(1e-6, busy[i] + density * std::max(0.0, inside) / width);
     }
   }
   for (double& share : busy) share = share > 0 ? std::clamp(share, kLeastShare, 1.0) : 0.0;
@@ -101,8 +103,7 @@ class Picture {
     double ran = 0;
     for (const Slice& slice : timeline.slices) {
       if (slice.row != row) continue;
-      ran += static_cast<double>(real_ ? slice.real_end - slice.real_start
-                                       : slice.virtual_end - slice.virtual_start);
+      ran += static_cast<double>(real_ ? slice.real_ran : slice.virtual_ran);
     }
     const std::string share = Percent(ran / std::max(1.0, EndOf(timeline)));
     svg_.Text(right_ + 4, y_ + 13, Svg::Anchor::kStart, share, "tick");

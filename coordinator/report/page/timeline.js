@@ -26,18 +26,25 @@
       const value = number();
       return value % 2 ? -(value + 1) / 2 : value / 2;
     };
+    // `density`: how much of a slice the row ran; 1 but for those that were made of several.
+    const times = last => ({start: new Float64Array(run.count), end: new Float64Array(run.count),
+                            density: new Float32Array(run.count).fill(1), last});
+    const ran = (time, i) => {
+      if (run.merged) time.density[i] = number() / Math.max(1, time.end[i] - time.start[i]);
+    };
     run.row = new Uint16Array(run.count);
-    run.virtual = {start: new Float64Array(run.count), end: new Float64Array(run.count), last: run.virtualEnd};
-    run.real = run.real
-        ? {start: new Float64Array(run.count), end: new Float64Array(run.count), last: run.realEnd} : null;
+    run.virtual = times(run.virtualEnd);
+    run.real = run.real ? times(run.realEnd) : null;
     let virtual = 0, real = 0;
     for (let i = 0; i < run.count; ++i) {
       run.row[i] = number();
       run.virtual.start[i] = virtual + signed();
       run.virtual.end[i] = virtual = run.virtual.start[i] + number();
+      ran(run.virtual, i);
       if (!run.real) continue;
       run.real.start[i] = real += number();
       run.real.end[i] = real + number();
+      ran(run.real, i);
     }
     run.dynamics = run.rows.indexOf('dynamics');
     return run;
@@ -72,7 +79,7 @@
 
   // Per row and column the share of the time that it ran, and per row that of the whole view.
   function busy(run, columns) {
-    const {start, end} = run[view.axis];
+    const {start, end, density} = run[view.axis];
     const width = (view.to - view.from) / columns;
     const share = new Float32Array(run.rows.length * columns);
     const whole = new Float64Array(run.rows.length);
@@ -81,12 +88,12 @@
       if (end[i] < view.from || start[i] > view.to) continue;
       ++slices;
       const from = Math.max(start[i], view.from), to = Math.min(end[i], view.to);
-      whole[run.row[i]] += to - from;
+      whole[run.row[i]] += density[i] * (to - from);
       const first = Math.min(columns - 1, Math.floor((from - view.from) / width));
       const final = Math.min(columns - 1, Math.floor((to - view.from) / width));
       for (let column = first; column <= final; ++column) {
         const left = view.from + column * width;
-        const inside = Math.min(to, left + width) - Math.max(from, left);
+        const inside = density[i] * (Math.min(to, left + width) - Math.max(from, left));
         const at = run.row[i] * columns + column;
         share[at] = Math.max(1e-6, share[at] + Math.max(0, inside) / width);
       }

@@ -8,9 +8,9 @@ namespace {
 
 class TimelineTest : public ResultFolderTest {
  protected:
-  Timeline Read(const std::string& csv, std::size_t most = 1000) {
+  Timeline Read(const std::string& csv) {
     Write("run/dispatches.csv", csv);
-    auto read = ReadTimeline(Path("run"), "system", most);
+    auto read = ReadTimeline(Path("run"), "system");
     const auto* error = std::get_if<LoadError>(&read);
     EXPECT_EQ(error, nullptr) << error->message;
     return error == nullptr ? std::get<Timeline>(read) : Timeline{};
@@ -44,16 +44,34 @@ TEST_F(TimelineTest, ManySlicesBecomeFewWithoutLosingWhoRan) {
     csv += fmt::format("r/a,{0},{1},{0},{1}\ndynamics,{0},{1},{1},{2}\n", i * 100'000,
                        i * 100'000 + 90'000, i * 100'000 + 95'000);
   }
-  const Timeline timeline = Read(csv, 100);
-  EXPECT_LE(timeline.slices.size(), 100u);
+  std::vector<Timeline> timelines{Read(csv), Read(std::string(kHeader) + "r/a,0,1,0,1\n")};
+  const auto ran = [](const Timeline& timeline, int row) {
+    std::int64_t sum = 0;
+    for (const Slice& slice : timeline.slices) sum += slice.row == row ? slice.real_ran : 0;
+    return sum;
+  };
+  const std::int64_t dynamics = ran(timelines[0], 0), client = ran(timelines[0], 1);
+  Shorten(&timelines, 100);
+  const Timeline& timeline = timelines[0];
+  EXPECT_LT(timeline.slices.size(), 100u);
   EXPECT_GT(timeline.merged_us, 0);
-  EXPECT_EQ(timeline.rows.size(), 2u);
+  EXPECT_EQ(ran(timeline, 0), dynamics);
+  EXPECT_EQ(ran(timeline, 1), client);
   EXPECT_EQ(timeline.slices.front().virtual_start, 0);
-  EXPECT_EQ(timeline.slices.back().real_end, 49'995);
+  EXPECT_EQ(timeline.virtual_end, 49'990);
+  EXPECT_EQ(timelines[1].merged_us, 0) << "it was short already";
+}
+
+TEST_F(TimelineTest, NothingCanBeShorterThanASliceARow) {
+  std::vector<Timeline> timelines{Read(std::string(kHeader) + "r/a,0,9,0,9\nr/b,0,9,9,18\n")};
+  Shorten(&timelines, 1);
+  EXPECT_EQ(timelines[0].slices.size(), 2u);
+  timelines.clear();
+  Shorten(&timelines, 0);
 }
 
 TEST_F(TimelineTest, SlicesThatAreCloseInOneTimeOnlyStayApart) {
-  const std::vector<Slice> slices{{0, 0, 10, 0, 10}, {0, 10, 20, 5000, 5010}};
+  const std::vector<Slice> slices{{0, 0, 10, 0, 10, 10, 10}, {0, 10, 20, 5000, 5010, 10, 10}};
   EXPECT_EQ(Merged(slices, 100).size(), 2u);
   EXPECT_EQ(Merged(slices, 5000).size(), 1u);
 }
@@ -78,10 +96,10 @@ TEST_F(TimelineTest, ANameCannotEndTheScript) {
 
 TEST_F(TimelineTest, AFileOfNoUseIsSaid) {
   Write("run/dispatches.csv", std::string(kHeader) + "r/a,5,1,0,1\nr/a,-5,1,0,1\nr/a,x,1,0,1\n");
-  const auto read = ReadTimeline(Path("run"), "system", 10);
+  const auto read = ReadTimeline(Path("run"), "system");
   ASSERT_TRUE(std::holds_alternative<LoadError>(read));
   EXPECT_NE(std::get<LoadError>(read).message.find("no dispatches"), std::string::npos);
-  EXPECT_TRUE(std::holds_alternative<LoadError>(ReadTimeline(Path("none"), "system", 10)));
+  EXPECT_TRUE(std::holds_alternative<LoadError>(ReadTimeline(Path("none"), "system")));
 }
 
 }  // namespace
