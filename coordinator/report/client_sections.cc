@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 
 #include "coordinator/report/histogram_figure.h"
@@ -39,14 +38,13 @@ std::map<std::string, bool> Clients(const Results& results) {
   return clients;
 }
 
-double MeanOver(const System& system, const std::string& name,
-                const std::function<std::int64_t(const Client&)>& value) {
+double MeanOver(const System& system, const std::string& name, std::int64_t Client::*member) {
   double sum = 0;
   int runs = 0;
   for (const Run& run : system.runs) {
     const auto found = run.clients.find(name);
     if (found == run.clients.end()) continue;
-    sum += static_cast<double>(value(found->second));
+    sum += static_cast<double>(found->second.*member);
     ++runs;
   }
   return runs == 0 ? 0 : sum / runs;
@@ -105,7 +103,7 @@ std::optional<Figure> Lateness(const Results& results) {
       if (late.back() > 0) {
         late_by.push_back(fmt::format("{} in {}", Seconds(late.back(), 2), system.name));
       }
-      const double missed = MeanOver(system, name, [](const Client& of) { return of.overruns; });
+      const double missed = MeanOver(system, name, &Client::overruns);
       if (missed > 0) {
         overruns.push_back(fmt::format("{} of {} in {}", Plain(missed), name, system.name));
       }
@@ -139,7 +137,7 @@ std::optional<Section> ClientsSection(const Results& results) {
   for (const auto& [name, is_periodic] : Clients(results)) {
     for (const System& system : results.systems) {
       const auto mean = [&, &client = name](std::int64_t Client::*member) {
-        return MeanOver(system, client, [member](const Client& of) { return of.*member; });
+        return MeanOver(system, client, member);
       };
       const double charged = mean(&Client::charged_ns) * 1e-9;
       const double own = mean(&Client::own_clock_ns) * 1e-9;
