@@ -11,34 +11,64 @@ namespace tcs::report {
 
 namespace {
 
-constexpr std::string_view kNoBreakSpace = "\u00a0";
+constexpr std::string_view kNoBreakSpace = "\u00a0", kReplacement = "\ufffd";
+
+// Bytes of the first character of `text`, which is not empty; 0 if that is no UTF-8.
+std::size_t LengthOfCharacter(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::size_t length = byte(0) < 0x80                      ? 1
+                             : byte(0) >= 0xC2 && byte(0) < 0xE0 ? 2
+                             : byte(0) >= 0xE0 && byte(0) < 0xF0 ? 3
+                             : byte(0) >= 0xF0 && byte(0) < 0xF5 ? 4
+                                                                 : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  // Too long for what they say, halves of pairs, and beyond the last character.
+  if ((byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xED && byte(1) > 0x9F) ||
+      (byte(0) == 0xF0 && byte(1) < 0x90) || (byte(0) == 0xF4 && byte(1) > 0x8F)) {
+    return 0;
+  }
+  return length;
+}
+
+// Empty for what may stand as it is.
+std::string_view EntityFor(char c) {
+  switch (c) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return "&#39;";
+    default:
+      return {};
+  }
+}
 
 }  // namespace
 
 std::string Escaped(std::string_view text) {
   std::string escaped;
   escaped.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        // Control characters are no part of XML.
-        escaped += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = LengthOfCharacter(text.substr(i));
+    const char c = text[i];
+    if (length == 0) {
+      escaped += kReplacement;
+    } else if (const std::string_view entity = EntityFor(c); !entity.empty()) {
+      escaped += entity;
+    } else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') {
+      escaped += ' ';  // control characters are no part of XML
+    } else {
+      escaped += text.substr(i, length);
     }
+    i += std::max<std::size_t>(1, length);
   }
   return escaped;
 }

@@ -17,6 +17,17 @@ TEST(Escaping, WhatXmlCannotHoldBecomesASpace) {
   EXPECT_EQ(Escaped(std::string("a\x01\x1b[31mb", 8)), "a  [31mb");
 }
 
+TEST(Escaping, WhatIsNoUtf8IsReplaced) {
+  EXPECT_EQ(Escaped("Δ = 3 µs, \xf0\x9f\xa6\x8a"), "Δ = 3 µs, \xf0\x9f\xa6\x8a");
+  EXPECT_EQ(Escaped("a\xff"
+                    "b\xe8"),
+            "a\ufffdb\ufffd");
+  EXPECT_EQ(Escaped("\xc0\xbc"
+                    "script"),
+            "\ufffd\ufffdscript");
+  EXPECT_EQ(Escaped("\xed\xa0\x80"), "\ufffd\ufffd\ufffd");
+}
+
 TEST(Numbers, SignificantDigitsWithoutPowersOfTen) {
   EXPECT_EQ(Significant(0), "0");
   EXPECT_EQ(Significant(9.0649), "9.06");
