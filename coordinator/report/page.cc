@@ -94,10 +94,10 @@ class Builder {
   // What is missing is said on the page, too.
   void AddFailures() {
     std::string items;
-    const auto add = [&items](const System& system) {
-      for (const FailedRun& run : system.failed) {
-        items += fmt::format("<li>{}, {}: {}</li>\n", Escaped(system.name), Escaped(run.name),
-                             Escaped(run.why));
+    const auto add = [&](const System& system) {
+      for (const std::string& failure : Failures(system)) {
+        items += fmt::format("<li>{}</li>\n", Escaped(failure));
+        page_.warnings.push_back(failure);
       }
     };
     for (const System& system : results_.systems) add(system);

@@ -169,7 +169,9 @@ class Reader {
     if (const auto* error = std::get_if<LoadError>(&read)) {
       // A wrong name is the caller's mistake, not the run's.
       if (error->message.starts_with("there is no body")) return error->message;
-      system->failed.push_back({name, error->message});
+      const std::string place = folder + ": ";
+      const bool has_place = error->message.starts_with(place);
+      system->failed.push_back({name, error->message.substr(has_place ? place.size() : 0)});
       return {};
     }
     Run& run = std::get<Run>(read);
@@ -228,6 +230,29 @@ std::vector<double> Distances(const System& system) {
     all.insert(all.end(), run.track.distance_m.begin(), run.track.distance_m.end());
   }
   return all;
+}
+
+std::vector<std::string> Failures(const System& system) {
+  constexpr std::size_t kMostNames = 5;
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const FailedRun& run : system.failed) {
+    const auto known = std::find_if(reasons.begin(), reasons.end(),
+                                    [&](const auto& reason) { return reason.first == run.why; });
+    if (known == reasons.end()) {
+      reasons.push_back({run.why, {run.name}});
+    } else {
+      known->second.push_back(run.name);
+    }
+  }
+  std::vector<std::string> sentences;
+  for (auto& [why, names] : reasons) {
+    if (const std::size_t all = names.size(); all > kMostNames) {
+      names.resize(kMostNames - 1);
+      names.push_back(fmt::format("{} more", all - names.size()));
+    }
+    sentences.push_back(fmt::format("{}, {}: {}", system.name, Listed(names), why));
+  }
+  return sentences;
 }
 
 LoadResult<Results> ReadResults(const std::vector<std::string>& folders,

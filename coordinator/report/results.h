@@ -76,4 +76,7 @@ struct Results {
 // Those of all runs of a system, one after the other.
 [[nodiscard]] std::vector<double> Distances(const System& system);
 
+// What failed, a sentence per reason: "tcs, seed-0003 and seed-0007: it did not end".
+[[nodiscard]] std::vector<std::string> Failures(const System& system);
+
 }  // namespace tcs::report

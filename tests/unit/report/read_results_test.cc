@@ -74,10 +74,19 @@ TEST_F(ReadResultsTest, TrialsThatFailedAreNamed) {
   ASSERT_EQ(system.failed.size(), 3u);
   EXPECT_EQ(system.failed[0].name, "seed-0009");
   EXPECT_EQ(system.failed[0].why, "r/planner cannot be started: No such file");
-  EXPECT_NE(system.failed[1].why.find("r/planner ended at 1.50\u00a0s with exit status 1"),
-            std::string::npos);
+  EXPECT_EQ(system.failed[1].why, "r/planner ended at 1.50\u00a0s with exit status 1");
   EXPECT_EQ(system.failed[2].name, "seed-0011");
   EXPECT_EQ(system.failed[2].why, "it was not made");
+}
+
+TEST_F(ReadResultsTest, FailuresOfOneKindAreOneSentence) {
+  System system{"tcs", {}, {}};
+  for (int i = 1; i <= 7; ++i)
+    system.failed.push_back({fmt::format("seed-{}", i), "it did not end"});
+  system.failed.push_back({"seed-8", "it was not made"});
+  EXPECT_EQ(Failures(system), (std::vector<std::string>{
+                                  "tcs, seed-1, seed-2, seed-3, seed-4 and 3 more: it did not end",
+                                  "tcs, seed-8: it was not made"}));
 }
 
 TEST_F(ReadResultsTest, ASweepHasASystemPerValue) {
