@@ -80,15 +80,15 @@ Drawing DrawHistograms(const HistogramPlot& plot, int width) {
   Svg svg;
   const double pitch = kName + kPanel;
   const double bottom = kTop + pitch * static_cast<double>(plot.panels.size());
+  const Frame whole{kLeft, kTop, right, bottom};
+  for (const double mark : plot.marks) {
+    DrawMark(&svg, whole, x.Pixel(mark), WithUnit(Plain(mark), plot.unit));
+  }
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
     const double top = kTop + pitch * static_cast<double>(i) + kName;
     DrawPanel(&svg, {kLeft, top, right, top + kPanel}, x, plot, plot.panels[i], bin_width);
   }
-  const Frame whole{kLeft, kTop, right, bottom};
   DrawHorizontalAxis(&svg, whole, x, plot.x_title);
-  for (const double mark : plot.marks) {
-    DrawMark(&svg, whole, x.Pixel(mark), WithUnit(Plain(mark), plot.unit));
-  }
   svg.Text(6, kTop - 5, Svg::Anchor::kStart, fmt::format("% of {}s", plot.what), "tick");
   return {width, static_cast<int>(bottom + kBottom), svg.Take()};
 }

@@ -26,7 +26,7 @@ constexpr Colour kColours[] = {
 
 // {…} is a colour.
 constexpr std::string_view kRules = R"(
-text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif;fill:{ink}}
+text{font:12px system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif;fill:{ink};paint-order:stroke;stroke:{paper};stroke-width:3px;stroke-linejoin:round}
 text.tick,text.note{fill:{faint}}
 text.name{font-weight:600}
 path,rect,circle{fill:none;stroke:none}

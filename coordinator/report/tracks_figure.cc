@@ -76,7 +76,6 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
     DrawVerticalAxis(&svg, frame, y);
     for (const double mark : marks) {
       svg.Line(frame.left, y.Pixel(mark), frame.right, y.Pixel(mark), "mark");
-      svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
     }
     svg.Text(frame.left, frame.top - 8, Svg::Anchor::kStart, system.name,
              "name " + SeriesClass('t', colour));
@@ -90,6 +89,9 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
       const Svg::Points median = Thinned(MedianTrack(system), x, y, points);
       svg.Polyline(median, "halo");
       svg.Polyline(median, "bold " + SeriesClass('s', colour));
+    }
+    for (const double mark : marks) {
+      svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
     }
     svg.Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
   }

@@ -201,7 +201,7 @@
     content += `<path class="axis" d="M${x} ${y}H${x + columns}"/>`;
     for (const [at, name] of ticks(view.from, view.to, narrow ? 3 : 7)) {
       const px = (x + (at - view.from) * scale).toFixed(1);
-      content += `<path class="axis" d="M${px} ${y}v4"/>` + text(px, y + 16, 'tick', name, 'middle');
+      content += `<path class="axis" d="M${px} ${y}v4"/>` + text(px, y + 16, 'tick', name, px < 20 ? 'start' : 'middle');
     }
     content += text(x + columns, y + 33, 'tick', `${view.axis} time [s]`, 'end');
     const seconds = time => (time / 1e6).toFixed(view.to - view.from < 1e4 ? 6 : 3);
