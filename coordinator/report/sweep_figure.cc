@@ -14,7 +14,7 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 24, kTop = 26, kHeight = 280, kBottom = 44, kLegend = 18;
+constexpr double kLeft = 44, kRight = 32, kTop = 26, kHeight = 280, kBottom = 44, kLegend = 18;
 // Dots of one value lie beside each other.
 constexpr double kBetweenDots = 2.5;
 
@@ -116,7 +116,7 @@ Drawing DrawSweep(const SweepPlot& plot, int width) {
   DrawVerticalAxis(&svg, frame, y);
   for (const double mark : plot.marks) {
     svg.Line(frame.left, y.Pixel(mark), frame.right, y.Pixel(mark), "mark");
-    svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
+    svg.Text(frame.right + 4, y.Pixel(mark) + 4, Svg::Anchor::kStart, PlainMetres(mark), "tick");
   }
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const SweepSeries& series = plot.series[i];

@@ -13,7 +13,7 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 12, kTop = 20, kPanel = 120, kName = 34, kBottom = 40;
+constexpr double kLeft = 44, kRight = 32, kTop = 20, kPanel = 120, kName = 34, kBottom = 40;
 
 // As many of the samples as one can see, the last one included.
 Svg::Points Thinned(const Track& track, const Axis& x, const Axis& y, double pixels) {
@@ -76,6 +76,7 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
     DrawVerticalAxis(&svg, frame, y);
     for (const double mark : marks) {
       svg.Line(frame.left, y.Pixel(mark), frame.right, y.Pixel(mark), "mark");
+      svg.Text(frame.right + 4, y.Pixel(mark) + 4, Svg::Anchor::kStart, PlainMetres(mark), "tick");
     }
     svg.Text(frame.left, frame.top - 8, Svg::Anchor::kStart, system.name,
              "name " + SeriesClass('t', colour));
@@ -89,9 +90,6 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
       const Svg::Points median = Thinned(MedianTrack(system), x, y, points);
       svg.Polyline(median, "halo");
       svg.Polyline(median, "bold " + SeriesClass('s', colour));
-    }
-    for (const double mark : marks) {
-      svg.Text(frame.right, y.Pixel(mark) - 4, Svg::Anchor::kEnd, PlainMetres(mark), "tick");
     }
     svg.Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
   }
