@@ -26,11 +26,11 @@ bodies:
 robots:
   robot:
     clients:
-      client: {command: [python3, client.py, "47391"], body: body, fixed_call_cost: 100us}
+      client: {command: [python3, client.py, "27391"], body: body, fixed_call_cost: 100us, fixed_allocation_cost: 0s}
 channels:
   commands:
     type: udp_json
-    commands: {body: body, listen: "127.0.0.1:47391"}
+    commands: {body: body, listen: "127.0.0.1:27391"}
 YAML
 for accounting in measured fixed; do
   "$tcsim" run "$out/scenario.yaml" --accounting "$accounting" --out "$out/$accounting" >"$out/said"
