@@ -136,7 +136,7 @@ const Mistake kRobotMistakes[] = {
     {"DuplicateClient", "      planner:", "      controller:", 28, {"twice", "line 21"}},
     {"MisspeltClients", "    clients:", "    client:", 20, {"unknown key 'client'", "'clients'?"}},
     {"ClientIsAText",
-     "{command: [sh, -c, \"true\"], patch_vdso: true}",
+     "{command: [sh, -c, \"true\"], patch_vdso: true, fixed_allocation_cost: 50ns}",
      "sh",
      28,
      {"planner is not a map"}},

@@ -81,14 +81,14 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_EQ(controller.body, 0);
   EXPECT_THAT(controller.environment, ElementsAre(Pair("MODE", "fast")));
   EXPECT_EQ(controller.fixed_call_cost, VirtualDuration::Microseconds(3));
-  EXPECT_EQ(controller.fixed_allocation_cost, VirtualDuration::Nanoseconds(50));
+  EXPECT_EQ(controller.fixed_allocation_cost, VirtualDuration::Microseconds(2));
   const ClientSpec& planner = robot.clients[1];
   EXPECT_EQ(planner.name, "hunter/planner");
   EXPECT_EQ(planner.client_class, ClientClass::kBestEffort);
   EXPECT_EQ(planner.priority, 0);
   EXPECT_EQ(planner.body, std::nullopt);
   EXPECT_EQ(planner.fixed_call_cost, VirtualDuration::Microseconds(1));
-  EXPECT_EQ(planner.fixed_allocation_cost, VirtualDuration::Microseconds(2));
+  EXPECT_EQ(planner.fixed_allocation_cost, VirtualDuration::Nanoseconds(50));
   EXPECT_TRUE(planner.patch_vdso);
   EXPECT_FALSE(controller.patch_vdso);
 }

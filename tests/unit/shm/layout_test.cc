@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionFiveHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 5u);
+TEST(Layout, VersionSixHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 6u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -20,6 +20,7 @@ TEST(Layout, VersionFiveHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
+  EXPECT_EQ(offsetof(ClockPage, allocation_cost_ns), 160u);
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
