@@ -32,7 +32,7 @@ int ReportCommand(const ReportArguments& arguments) {
   std::vector<std::string> written;
   const std::string error = report::WritePage(page, arguments.out, files, &written);
   if (!error.empty()) return Fail(error);
-  fmt::print("written: {}\n", report::Listed(written));
+  fmt::print("{}\nwritten: {}\n", page.text, report::Listed(written));
   return kSucceeded;
 }
 

@@ -5,10 +5,10 @@
 #include <map>
 
 #include "coordinator/report/histogram_figure.h"
-#include "coordinator/report/html.h"
 #include "coordinator/report/lateness_figure.h"
 #include "coordinator/report/sections.h"
 #include "coordinator/report/statistics.h"
+#include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
 
 namespace tcs::report {
@@ -158,7 +158,7 @@ std::optional<Section> ClientsSection(const Results& results) {
       sentence +
           " Charged is what moved a program's clock; stolen went to others while it ran, "
           "and moved nothing.",
-      table.Html()};
+      table.Html(), table.Text()};
 }
 
 }  // namespace tcs::report

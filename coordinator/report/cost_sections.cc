@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "coordinator/report/html.h"
 #include "coordinator/report/over_runs.h"
 #include "coordinator/report/paper_values.h"
 #include "coordinator/report/sections.h"
+#include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
 #include "coordinator/report/timeline_figure.h"
 
@@ -94,7 +94,7 @@ std::optional<Section> CostsSection(const Results& results) {
   }
   return Section{"Δ, staleness and overhead",
                  fmt::format("Progress came apart by up to {}. {}", Listed(drifts), explained),
-                 table.Html()};
+                 table.Html(), table.Text()};
 }
 
 std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines) {

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "coordinator/report/histogram_figure.h"
-#include "coordinator/report/html.h"
 #include "coordinator/report/over_runs.h"
 #include "coordinator/report/sections.h"
 #include "coordinator/report/statistics.h"
+#include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
 #include "coordinator/report/tracks_figure.h"
 
@@ -70,7 +70,8 @@ Section SystemsSection(const Results& results, const std::vector<double>& marks)
                                  Seconds(MeanOf(system, &Run::virtual_ns)),
                                  trials > 1 ? " each" : ""));
   }
-  return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html()};
+  return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html(),
+          table.Text()};
 }
 
 std::optional<Figure> DistanceHistogram(const Results& results, const std::vector<double>& marks) {

@@ -29,7 +29,7 @@ class Builder {
   }
 
   Page Build() {
-    if (!results_.systems.empty()) Add(SystemsSection(results_, options_.marks));
+    if (!results_.systems.empty()) AddFirst(SystemsSection(results_, options_.marks));
     AddFailures();
     Add(DistanceHistogram(results_, options_.marks));
     Add(DistanceOverTime(results_, options_.marks));
@@ -40,7 +40,7 @@ class Builder {
     Add(ClientsSection(results_));
     for (const std::string& key : VariedKeys(results_)) {
       Add(SweepFigure(results_, key, options_.marks));
-      Add(SweepSection(results_, key, options_.marks));
+      AddFirst(SweepSection(results_, key, options_.marks));
     }
     page_.html = Whole();
     return std::move(page_);
@@ -50,6 +50,12 @@ class Builder {
   void Add(const Section& section) {
     body_ += fmt::format("<section>\n<h2>{}</h2>\n{}{}</section>\n", Escaped(section.heading),
                          Paragraph("says", section.sentence), section.html);
+  }
+  // One that a terminal shows, too.
+  void AddFirst(const Section& section) {
+    Add(section);
+    page_.text +=
+        fmt::format("{}{}:\n{}", page_.text.empty() ? "" : "\n", section.heading, section.text);
   }
   void Add(const std::optional<Section>& section) {
     if (section) Add(*section);

@@ -1,4 +1,4 @@
-// What the paper reports of its own systems, for comparison: M. Taylor, E. Drumwright, G. Parmer,
+// What the paper reports of its own systems, for comparison: Taylor, Drumwright, Parmer,
 // "Making Time Make Sense in Robotic Simulation", section 4.2, trials of 20 s of simulated time.
 // Only reports on that scenario show them.
 #pragma once

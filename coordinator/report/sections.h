@@ -12,9 +12,9 @@
 
 namespace tcs::report {
 
-// A table under a heading.
+// A table under a heading; `text` is the table alone, for a terminal.
 struct Section {
-  std::string heading, sentence, html;
+  std::string heading, sentence, html, text;
 };
 
 // None where the results have nothing of the kind.

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "coordinator/report/html.h"
 #include "coordinator/report/over_runs.h"
 #include "coordinator/report/sections.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/sweep_figure.h"
+#include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
 
 namespace tcs::report {
@@ -159,7 +159,7 @@ Section SweepSection(const Results& results, const std::string& key,
                        : fmt::format("{} to {} in {}", Seconds(least), Seconds(most), sweep->name));
   }
   return {fmt::format("Δ and overhead against {}", key), fmt::format("Δ was {}.", Listed(said)),
-          table.Html()};
+          table.Html(), table.Text()};
 }
 
 }  // namespace tcs::report

@@ -1,4 +1,4 @@
-// Tables of a page.
+// Tables, for the page and for a terminal.
 #pragma once
 
 #include <string>
@@ -11,19 +11,25 @@ struct Column {
   bool is_number = true;
 };
 
-// All texts are plain: they are escaped here.
+// All texts are plain.
 class Table {
  public:
   explicit Table(std::string caption, std::vector<Column> columns)
       : caption_(std::move(caption)), columns_(std::move(columns)) {}
   // As many cells as there are columns. A quiet row is one to compare with.
-  void Row(const std::vector<std::string>& cells, bool is_quiet = false);
+  void Row(std::vector<std::string> cells, bool is_quiet = false);
   [[nodiscard]] std::string Html() const;
+  // One line for each row, under a line of titles; numbers stand to the right.
+  [[nodiscard]] std::string Text() const;
 
  private:
+  struct Cells {
+    std::vector<std::string> texts;
+    bool is_quiet = false;
+  };
   std::string caption_;
   std::vector<Column> columns_;
-  std::string rows_;
+  std::vector<Cells> rows_;
 };
 
 }  // namespace tcs::report
