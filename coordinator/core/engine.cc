@@ -77,8 +77,9 @@ void Engine::Requeue(Task& task) {
 
 // Whether the wait is over by time: the world's, or, where others of its process compute while the
 // world stands still, that of the process's own clock.
-bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) {
-  return task.deadline_ns <= now_ns || task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
+bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
+  if (task.deadline_ns <= now_ns) return true;
+  return IsCallback() && task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
 }
 
 // A core without a turn acts when somebody's wait ends by itself: one core is enough for that.

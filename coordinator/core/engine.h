@@ -64,7 +64,7 @@ class Engine {
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
-  static bool HasRunOut(const Task& task, std::int64_t now_ns);
+  bool HasRunOut(const Task& task, std::int64_t now_ns) const;
   void SetState(Task& task, TaskState state);
   void Requeue(Task& task);
   void Refresh(Robot& robot);
