@@ -7,7 +7,7 @@ usage() {
   cat <<'END'
 usage: ./dev experiment [--quick] [--out DIR]
 
-  --quick     fewer, shorter trials: the same picture in minutes instead of an hour or two
+  --quick     fewer, shorter trials: the same picture in minutes instead of an hour
   --out DIR   where results and report.html go; out/experiment (with --quick out/experiment-quick) unless told
 
 Call it again after an interruption: it goes on where it was.
@@ -43,8 +43,13 @@ jobs=$(nproc)
 tcsim="$build/bin/tcsim"
 scenario="$build/examples/predator_prey/scenario.yaml"
 speed=robots.predator.cpu.speed
+client=robots.predator.clients
+# Plans are executed as they are: feedback would lead back to where the ship was when its plan was asked
+# for, at any speed.
+as_planned="$client.controller.command=[./predator_controller, --sensors-port, '27010', --commands-port, '27011',
+  --planner-port, '27012', --kp, '0', --kd, '0']"
 # As much thinking for each plan as fits into a second or so at speed 1, however long it takes.
-same_work='robots.predator.clients.planner.command=[./predator_planner, --port, "27012", --iterations, "50000", --seed, "${seed}"]'
+same_work="$client.planner.command=[./predator_planner, --port, '27012', --iterations, '50000', --seed, '\${seed}']"
 
 failed=()
 results=()
@@ -70,9 +75,9 @@ series callback-simbody "callback on Simbody" --trials "$trials" --duration "$ca
   --sync callback
 series lengths "tcs, longer and longer" --trials 1 --vary "duration=$lengths"
 series speeds "a second for each plan" --trials "$sweep_trials" --duration "$sweep_duration" \
-  --vary "$speed=$speeds"
+  --set "$as_planned" --vary "$speed=$speeds"
 series speeds-same-work "the same work for each plan" --trials "$sweep_trials" \
-  --duration "$sweep_duration" --set "$same_work" --vary "$speed=$speeds"
+  --duration "$sweep_duration" --set "$as_planned" --set "$same_work" --vary "$speed=$speeds"
 
 printf '\nWhat a stock OMPL planner explores in one second of its own clock\n'
 explored="$out/explored.txt"
