@@ -48,8 +48,8 @@ client=robots.predator.clients
 # for, at any speed.
 as_planned="$client.controller.command=[./predator_controller, --sensors-port, '27010', --commands-port, '27011',
   --planner-port, '27012', --kp, '0', --kd, '0']"
-# As much thinking for each plan as fits into a second or so at speed 1, however long it takes.
-same_work="$client.planner.command=[./predator_planner, --port, '27012', --iterations, '50000', --seed, '\${seed}']"
+# As much thinking for each plan as fits into some half a second at speed 1, however long it takes.
+same_work="$client.planner.command=[./predator_planner, --port, '27012', --iterations, '20000', --seed, '\${seed}']"
 
 failed=()
 results=()
