@@ -78,8 +78,7 @@ int main(int argc, char** argv) {
   std::string allocation_cost;
   exec->add_option(
       "--allocation-cost", allocation_cost,
-      "of one memory allocation under --accounting fixed, and a hundredth of it for taking a lock; "
-      "2us unless told, 0 for none");
+      "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 

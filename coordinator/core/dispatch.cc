@@ -274,8 +274,7 @@ void Engine::AwaitStop(Task& task) {
       return;
     }
     if (IsFixed()) {
-      // Calls, allocations and locks move its clock, whether it comes to its horizon by them or
-      // not.
+      // Calls and allocations move its clock, whether it comes to its horizon by them or not.
       const std::int64_t now = shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
       if (std::exchange(silent_at_ns, now) != now) {
         task.spins = false;
@@ -305,8 +304,7 @@ void Engine::StepAside(Task& task) {
     return;
   }
   Warn(task.process->name +
-       " has computed for 5 s without a call, an allocation or a lock: under --accounting fixed "
-       "that "
+       " has computed for 5 s without a call or an allocation: under --accounting fixed that "
        "counts as waiting for "
        "what others do, and depends on the host; run it with --accounting measured");
   SetState(task, TaskState::kWaiting);

@@ -21,8 +21,6 @@ inline Mode g_mode = Mode::kNative;
 constexpr std::int64_t kMs = 1'000'000, kSecond = 1'000'000'000;
 // What an intercepted call costs under `tcsim exec --accounting fixed`.
 constexpr std::int64_t kCallNs = 1'000;
-// And taking a lock, free or not.
-constexpr std::int64_t kLockNs = 20;
 
 __attribute__((format(printf, 1, 2))) [[noreturn]] inline void Fail(const char* format, ...) {
   va_list arguments;

@@ -50,7 +50,6 @@ struct Carrier {
   // Of the receiver: from its waking to its reading of the clock; if it needs not wait.
   int calls_to_wake = 0, calls_to_take = 1;
   bool woken_goes_first = false;  // before the sender's next call, on one core
-  bool locks = false;             // both begin by taking a lock
 };
 
 template <class T>
@@ -96,10 +95,7 @@ void Check(const Carrier& carrier, const Round* rounds) {
   // The sender's send, the receiver's look at the clock, and where they share a core the call that
   // the sender then waits in.
   const bool in_turn = g_cores == 1 && !carrier.woken_goes_first;
-  const std::int64_t lock = carrier.locks ? kLockNs : 0;
-  const std::int64_t way = (2 + in_turn + carrier.calls_to_wake) * kCallNs + lock;
-  // Where the sender then waits in a receive, that begins with a lock, too.
-  const std::int64_t way_in_turn = way + in_turn * lock;
+  const std::int64_t way = (2 + in_turn + carrier.calls_to_wake) * kCallNs;
   for (int i = 0; i < kRounds; ++i) {
     const Round& r = rounds[i];
     EXPECT(r.got >= r.sent, "%s, round %d: got %lld ns early", carrier.name, i,
@@ -119,15 +115,15 @@ void Check(const Carrier& carrier, const Round* rounds) {
              carrier.name, i, (long long)(r.back - r.returned));
     }
     if (g_mode == Mode::kFixed) {
-      EXPECT(r.got - r.sent == (i % 2 == 0 ? way_in_turn : way), "%s, round %d: got after %lld ns",
-             carrier.name, i, (long long)(r.got - r.sent));
+      EXPECT(r.got - r.sent == way, "%s, round %d: got after %lld ns", carrier.name, i,
+             (long long)(r.got - r.sent));
       EXPECT(r.returned - r.got == kSlept + 2 * kCallNs, "%s, round %d: slept %lld ns",
              carrier.name, i, (long long)(r.returned - r.got));
       // In the odd rounds the token is there before it is waited for.
       const int partners = g_cores == 1 && carrier.woken_goes_first ? 2 : 0;
       const int calls = 3 + carrier.calls_to_take + partners;
       const std::int64_t back =
-          i % 2 == 0 ? way_in_turn : r.sent + kComputed + calls * kCallNs + 2 * lock - r.returned;
+          i % 2 == 0 ? way : r.sent + kComputed + calls * kCallNs - r.returned;
       EXPECT(r.back - r.returned == back, "%s, round %d: back after %lld ns, not %lld",
              carrier.name, i, (long long)(r.back - r.returned), (long long)back);
     }
@@ -318,7 +314,7 @@ void SharedConditions() {
           // One who has waited does not know that nobody else does, and wakes them.
           pthread_mutex_unlock(&table->mutex);
         },
-        1, 0, false, true});
+        1, 0});
 }
 
 void RawFutexes() {

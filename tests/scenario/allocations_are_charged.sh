@@ -1,20 +1,17 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Under fixed accounting each allocation costs what it is said to, whatever function makes it and in
-# each thread, and each lock a hundredth of that; computing costs nothing. 1000 of them stand between two readings of the clock, the
+# each thread; computing costs nothing. 1000 of them stand between two readings of the clock, the
 # second of which costs 1 us; a thread that has just begun may owe one more, or have paid it.
 costs() {
   local each=$1 said names
   shift
   said=$("$tcsim" exec --accounting fixed "$@" -- "$build/bin/allocating")
   names=$(awk -v each="$each" '{
-      cost = each
-      if ($1 ~ /lock$/ && each > 0) cost = each < 200 ? 1 : int(each / 100)
-      if ($1 == "computing") cost = 0
-      rest = $2 - 1000 * cost
+      rest = $2 - 1000 * ($1 == "computing" ? 0 : each)
       if (rest == 1000 || ($1 == "thread" && rest >= 0 && rest <= 2000)) print $1
     }' <<<"$said")
-  [[ $(wc -w <<<"$names") == 20 ]] || fail "$*: not $each ns for each allocation, or a lock is not a hundredth: $said"
+  [[ $(wc -w <<<"$names") == 10 ]] || fail "$*: not $each ns for each allocation: $said"
 }
 costs 2000
 costs 150 --allocation-cost 150ns

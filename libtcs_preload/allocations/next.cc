@@ -1,7 +1,0 @@
-#include "libtcs_preload/allocations/next.h"
-
-namespace tcs::preload {
-
-__thread bool t_looking = false;
-
-}  // namespace tcs::preload
