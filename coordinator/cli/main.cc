@@ -79,6 +79,12 @@ int main(int argc, char** argv) {
   exec->add_option(
       "--allocation-cost", allocation_cost,
       "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
+  std::string dds = "endpoints";
+  exec->add_option(
+          "--dds", dds,
+          "how programs that use Cyclone DDS reach each other; endpoints: in shared memory "
+          "(default); sockets: by their own protocol")
+      ->check(CLI::IsMember({"endpoints", "sockets"}));
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -118,6 +124,7 @@ int main(int argc, char** argv) {
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
   options.allocation_library = tcs::AllocationLibrary();
+  options.dds_library = tcs::DdsLibrary();
   if (doctor->parsed()) {
     const auto findings = tcs::Examine(options.preload_library);
     const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
@@ -140,7 +147,9 @@ int main(int argc, char** argv) {
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()
-               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost},
+               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
+                                   dds == "sockets" ? tcs::DdsTransport::kSockets
+                                                    : tcs::DdsTransport::kEndpoints},
                                   options)
                : tcs::RunCommand(arguments, options);
   });

@@ -192,6 +192,7 @@ void Engine::Attach(int connection) {
     new (&Slot(task)) shm::ThreadSlot{};
   } else {
     DeletePosixTimers(*task.process);  // it has executed another program
+    LeaveDds(*task.process);
   }
   shm::ThreadSlot& slot = Slot(task);
   slot.pid = task.process->pid;
@@ -240,6 +241,7 @@ void Engine::LeaveWait(Task& task) {
   waiting_for_child_ -= task.waits_for_child;
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
+  task.waits_for_messages = task.waits_for_deliverer = false;
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
   task.deadline_ns = shm::kNeverNs;
@@ -260,6 +262,7 @@ void Engine::EndTask(Task& task) {
     report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
+  if (process.deliverer == &task) process.deliverer = nullptr;
   LeaveWait(task);
   SetState(task, TaskState::kDead);
   --living_;
@@ -307,6 +310,7 @@ void Engine::ProcessEnded(std::size_t index) {
   }
   if (parent != nullptr) WakeForSignals(*parent);
   WakeEveryKey();
+  LeaveDds(process);
   // Our own children, and those who lost their parent, are reaped here.
   if (!process.is_client) ended_processes_.push_back(&process);
   int status = 0;

@@ -162,6 +162,9 @@ std::string Engine::StartClients() {
       request.environment["LD_PRELOAD"] =
           options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
       request.environment["TCS_SOCKET"] = socket_name_;
+      if (client.dds == DdsTransport::kEndpoints) {
+        request.environment["TCS_DDS"] = options_.dds_library;
+      }
       request.fixed_layout = IsFixed();
       if (!options_.output_directory.empty()) {
         std::string base = client.name;
