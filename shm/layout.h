@@ -199,8 +199,9 @@ struct alignas(64) ThreadSlot {
   std::uint32_t cores;  // of the robot
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
-  std::uint32_t patch_vdso;  // 1: calls of the vDSO are to be led to the shim
-  std::uint8_t reserved[460];
+  std::uint32_t patch_vdso;     // 1: calls of the vDSO are to be led to the shim
+  std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
+  std::uint8_t reserved[456];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);

@@ -124,7 +124,6 @@ int main(int argc, char** argv) {
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
   options.allocation_library = tcs::AllocationLibrary();
-  options.dds_library = tcs::DdsLibrary();
   if (doctor->parsed()) {
     const auto findings = tcs::Examine(options.preload_library);
     const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
@@ -136,7 +135,8 @@ int main(int argc, char** argv) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");
   }
-  for (const std::string& library : {options.preload_library, options.allocation_library}) {
+  for (const std::string& library :
+       {options.preload_library, options.allocation_library, tcs::DdsLibrary()}) {
     if (access(library.c_str(), R_OK) != 0) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }

@@ -94,6 +94,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.call_cost_ns = maker->call_cost_ns;
     process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
+    process.dds_endpoints = maker->dds_endpoints;
     process.frozen_ns = maker->frozen_ns;
     process.shown_ns = maker->shown_ns;
   }
@@ -200,6 +201,7 @@ void Engine::Attach(int connection) {
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
+  slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.gate.store(shm::kGateClosed);
   LeaveWait(task);
   task.early_trap.reset();

@@ -30,7 +30,6 @@ struct RunOptions {
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   std::string preload_library;
   std::string allocation_library;  // preloaded besides under fixed accounting
-  std::string dds_library;         // what the shim loads into programs that use Cyclone DDS
   // Called about five times a real second, if set; what it takes is the coordinator's.
   std::function<void(const RunProgress&)> on_progress;
 };

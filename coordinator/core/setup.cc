@@ -162,9 +162,6 @@ std::string Engine::StartClients() {
       request.environment["LD_PRELOAD"] =
           options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
       request.environment["TCS_SOCKET"] = socket_name_;
-      if (client.dds == DdsTransport::kEndpoints) {
-        request.environment["TCS_DDS"] = options_.dds_library;
-      }
       request.fixed_layout = IsFixed();
       if (!options_.output_directory.empty()) {
         std::string base = client.name;
@@ -187,6 +184,7 @@ std::string Engine::StartClients() {
       task->process->call_cost_ns = client.fixed_call_cost.ns();
       task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
       task->process->patch_vdso = client.patch_vdso;
+      task->process->dds_endpoints = client.dds == DdsTransport::kEndpoints;
     }
   }
   return {};

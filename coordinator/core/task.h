@@ -137,7 +137,7 @@ struct Process {
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
-  bool patch_vdso = false;
+  bool patch_vdso = false, dds_endpoints = false;
   // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the
   // world stood still. While it waits the world catches up, but its clock never goes back, nor
   // behind the end of a wait that is over by time.

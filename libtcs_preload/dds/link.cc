@@ -2,6 +2,7 @@
 // the two of them share.
 #include "libtcs_preload/dds/link.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -115,5 +116,20 @@ std::int64_t NowOfThread() {
 namespace tcs::preload {
 
 const dds::Link kDdsLink{Join, Send, Wait, Sync, NowOfThread};
+
+const char* DdsLibrary(char (&path)[kDdsPathSize]) {
+  static const char kName[] = "libtcs_dds.so";
+  GuestThread* t = Current();
+  Dl_info self{};
+  if (t == nullptr || t->slot->dds_endpoints == 0) return nullptr;
+  if (dladdr(reinterpret_cast<const void*>(&kDdsLink), &self) == 0) return nullptr;
+  const char* const slash = strrchr(self.dli_fname, '/');
+  const std::size_t folder =
+      slash == nullptr ? 0 : static_cast<std::size_t>(slash + 1 - self.dli_fname);
+  if (folder + sizeof kName > kDdsPathSize) return nullptr;
+  memcpy(path, self.dli_fname, folder);
+  memcpy(path + folder, kName, sizeof kName);
+  return path;
+}
 
 }  // namespace tcs::preload
