@@ -258,7 +258,7 @@ class Engine {
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
-  DdsHub hub_;
+  dds::Hub hub_;
   std::vector<Process*> dds_processes_;  // that have joined it
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead

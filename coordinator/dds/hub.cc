@@ -12,7 +12,7 @@
 #include <new>
 #include <utility>
 
-namespace tcs {
+namespace tcs::dds {
 
 namespace {
 
@@ -22,8 +22,8 @@ using shm::DdsMessage;
 // What may wait for one process. Whoever lets more wait has stopped taking it.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
 
-DdsHub::Guid GuidOf(const std::uint8_t* bytes) {
-  DdsHub::Guid guid;
+Hub::Guid GuidOf(const std::uint8_t* bytes) {
+  Hub::Guid guid;
   std::copy_n(bytes, guid.size(), guid.begin());
   return guid;
 }
@@ -38,28 +38,28 @@ bool IsKnownKind(DdsKind kind) {
 
 }  // namespace
 
-DdsHub::~DdsHub() {
+Hub::~Hub() {
   for (const Member& member : members_) {
     if (member.area != nullptr) munmap(member.area, shm::kDdsAreaSize);
   }
   if (fd_ >= 0) close(fd_);
 }
 
-void DdsHub::Member::ShowDue() const {
+void Hub::Member::ShowDue() const {
   shown().due_ns.store(queue.empty() ? shm::kNeverNs : queue.begin()->first);
 }
 
-DdsHub::Member* DdsHub::Find(Number number) {
+Hub::Member* Hub::Find(Number number) {
   return const_cast<Member*>(std::as_const(*this).Find(number));
 }
 
-const DdsHub::Member* DdsHub::Find(Number number) const {
+const Hub::Member* Hub::Find(Number number) const {
   if (number == 0 || number > members_.size()) return nullptr;
   const Member& member = members_[number - 1];
   return member.area == nullptr ? nullptr : &member;
 }
 
-DdsHub::Number DdsHub::Join(std::int64_t now_ns) {
+Hub::Number Hub::Join(std::int64_t now_ns) {
   if (fd_ < 0) {
     fd_ = memfd_create("tcs-dds", MFD_CLOEXEC);
     if (fd_ < 0 || fchmod(fd_, 0600) != 0) return 0;
@@ -83,7 +83,7 @@ DdsHub::Number DdsHub::Join(std::int64_t now_ns) {
 }
 
 // Its number is not given again: others may still hear from it. But its memory goes back.
-void DdsHub::Leave(Number number, std::int64_t now_ns) {
+void Hub::Leave(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return;
   munmap(member->area, shm::kDdsAreaSize);
@@ -115,7 +115,7 @@ void DdsHub::Leave(Number number, std::int64_t now_ns) {
   }
 }
 
-std::string DdsHub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
+std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const Member* member = Find(from);
   if (member == nullptr) return "it has not joined";
   if (bytes > shm::kDdsBoxSize) return "its messages are longer than its outbox";
@@ -139,18 +139,40 @@ std::string DdsHub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
     memcpy(copy.data(), at, header.size);
     memcpy(copy.data(), &header, sizeof header);
     at += header.size;
-    const auto message = std::make_shared<const Bytes>(std::move(copy));
-    Remember(header, message);
-    if (header.to == shm::kDdsEverybody) {
-      QueueForOthers(from, now_ns, message);
-    } else {
-      Queue(header.to, now_ns, message);
-    }
+    Enter(header, std::move(copy));
   }
   return {};
 }
 
-void DdsHub::Remember(const DdsMessage& header, const Message& message) {
+void Hub::SendOwn(DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns) {
+  header.payload_size = static_cast<std::uint32_t>(payload.size());
+  header.size = shm::DdsMessageSize(header.payload_size);
+  header.from = shm::kDdsCoordinator;
+  header.time_ns = due_ns;
+  Bytes bytes(header.size);
+  memcpy(bytes.data(), &header, sizeof header);
+  std::copy(payload.begin(), payload.end(), bytes.begin() + sizeof header);
+  Enter(header, std::move(bytes));
+}
+
+std::optional<Hub::Bytes> Hub::TakeOwn(std::int64_t now_ns) {
+  if (own_.empty() || own_.begin()->first > now_ns) return std::nullopt;
+  const Message message = own_.begin()->second;
+  own_.erase(own_.begin());
+  return *message;
+}
+
+void Hub::Enter(const DdsMessage& header, Bytes bytes) {
+  const auto message = std::make_shared<const Bytes>(std::move(bytes));
+  Remember(header, message);
+  if (header.to == shm::kDdsEverybody) {
+    QueueForOthers(header.from, header.time_ns, message);
+  } else {
+    Queue(header.to, header.time_ns, message);
+  }
+}
+
+void Hub::Remember(const DdsMessage& header, const Message& message) {
   if (header.kind != DdsKind::kParticipant && header.kind != DdsKind::kEndpoint) return;
   const Guid subject = GuidOf(header.subject);
   if ((header.flags & shm::kDdsGone) != 0) {
@@ -172,13 +194,14 @@ void DdsHub::Remember(const DdsMessage& header, const Message& message) {
   }
 }
 
-void DdsHub::QueueForOthers(Number from, std::int64_t due_ns, const Message& message) {
-  for (Number to = 1; to <= count(); ++to) {
+void Hub::QueueForOthers(Number from, std::int64_t due_ns, const Message& message) {
+  for (Number to = shm::kDdsCoordinator; to <= count(); ++to) {
     if (to != from) Queue(to, due_ns, message);
   }
 }
 
-void DdsHub::Queue(Number to, std::int64_t due_ns, const Message& message) {
+void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
+  if (to == shm::kDdsCoordinator && tells_own_) own_.emplace(due_ns, message);
   Member* member = Find(to);
   if (member == nullptr) return;
   DdsMessage header;
@@ -193,12 +216,12 @@ void DdsHub::Queue(Number to, std::int64_t due_ns, const Message& message) {
   member->ShowDue();
 }
 
-std::int64_t DdsHub::DueNs(Number number) const {
+std::int64_t Hub::DueNs(Number number) const {
   const Member* member = Find(number);
   return member == nullptr || member->queue.empty() ? shm::kNeverNs : member->queue.begin()->first;
 }
 
-std::size_t DdsHub::Deliver(Number number, std::int64_t now_ns) {
+std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return 0;
   std::size_t filled = 0;
@@ -216,16 +239,16 @@ std::size_t DdsHub::Deliver(Number number, std::int64_t now_ns) {
   return filled;
 }
 
-void DdsHub::CameBack(Number number) {
+void Hub::CameBack(Number number) {
   Member* member = Find(number);
   if (member == nullptr) return;
   member->delivers = false;
   member->shown().delivers.store(0);
 }
 
-bool DdsHub::IsDelivering(Number number) const {
+bool Hub::IsDelivering(Number number) const {
   const Member* member = Find(number);
   return member != nullptr && member->delivers;
 }
 
-}  // namespace tcs
+}  // namespace tcs::dds

@@ -11,25 +11,27 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "shm/dds_exchange.h"
 #include "shm/layout.h"
 
-namespace tcs {
+namespace tcs::dds {
 
-class DdsHub {
+class Hub {
  public:
-  using Number = std::uint32_t;  // of a process, from 1 on; 0 for none
+  using Number = std::uint32_t;  // of a process, from 1 on; 0: the coordinator
   using Guid = std::array<std::uint8_t, 16>;
   // A whole message with its header, as shm/dds_exchange.h says.
   using Bytes = std::vector<std::byte>;
 
-  DdsHub() = default;
-  ~DdsHub();
-  DdsHub(const DdsHub&) = delete;
-  DdsHub& operator=(const DdsHub&) = delete;
+  Hub() = default;
+  ~Hub();
+  Hub(const Hub&) = delete;
+  Hub& operator=(const Hub&) = delete;
 
   // A new process, to which all that is there is reported. 0, with errno, if there is no room.
   Number Join(std::int64_t now_ns);
@@ -47,6 +49,14 @@ class DdsHub {
   std::size_t Deliver(Number number, std::int64_t now_ns);
   void CameBack(Number number);
   bool IsDelivering(Number number) const;
+
+  // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
+  // left to be filled in.
+  void SendOwn(shm::DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns);
+  // The earliest message for the coordinator, if it is from before or at `now_ns`. Participants,
+  // endpoints and what is addressed to it; kept only once it has asked to be told.
+  void TellOwn() { tells_own_ = true; }
+  std::optional<Bytes> TakeOwn(std::int64_t now_ns);
 
   // How many processes have joined so far: the largest number.
   Number count() const { return static_cast<Number>(members_.size()); }
@@ -79,6 +89,7 @@ class DdsHub {
     Message message;
   };
 
+  void Enter(const shm::DdsMessage& header, Bytes bytes);
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);
@@ -86,9 +97,11 @@ class DdsHub {
   void Remember(const shm::DdsMessage& header, const Message& message);
 
   int fd_ = -1;
-  std::vector<Member> members_;  // of number i + 1
-  std::vector<Known> known_;     // in the order in which they came
+  bool tells_own_ = false;
+  std::multimap<std::int64_t, Message> own_;  // for the coordinator
+  std::vector<Member> members_;               // of number i + 1
+  std::vector<Known> known_;                  // in the order in which they came
   std::uint64_t dropped_ = 0;
 };
 
-}  // namespace tcs
+}  // namespace tcs::dds

@@ -8,17 +8,17 @@
 #include <string>
 #include <vector>
 
-namespace tcs {
+namespace tcs::dds {
 namespace {
 
 using shm::DdsKind;
 using shm::DdsMessage;
-using Number = DdsHub::Number;
+using Number = Hub::Number;
 
 // A process's side: its area mapped once more.
 class Peer {
  public:
-  Peer(DdsHub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
+  Peer(Hub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
     void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED, hub.fd(),
                     static_cast<off_t>((number_ - 1) * shm::kDdsAreaSize));
     area_ = static_cast<char*>(at);
@@ -56,7 +56,7 @@ class Peer {
   }
 
  private:
-  DdsHub& hub_;
+  Hub& hub_;
   Number number_;
   char* area_;
 };
@@ -72,7 +72,7 @@ DdsMessage Message(DdsKind kind, std::uint8_t subject, std::uint32_t to = shm::k
 }
 
 TEST(DdsHub, DeliversAtTheTimeOfSendingAndNotBefore) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0);
   EXPECT_EQ(a.Send(700, {Message(DdsKind::kSample, 1)}), "");
   EXPECT_EQ(hub.DueNs(b.number()), 700);
@@ -87,7 +87,7 @@ TEST(DdsHub, DeliversAtTheTimeOfSendingAndNotBefore) {
 }
 
 TEST(DdsHub, KeepsTheOrderOfTimesWhoeverSpeaksFirst) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0), reader(hub, 0);
   EXPECT_EQ(a.Send(900, {Message(DdsKind::kSample, 1), Message(DdsKind::kSample, 2)}), "");
   EXPECT_EQ(b.Send(800, {Message(DdsKind::kSample, 3)}), "");
@@ -98,7 +98,7 @@ TEST(DdsHub, KeepsTheOrderOfTimesWhoeverSpeaksFirst) {
 }
 
 TEST(DdsHub, AddressedMessagesAreForOneOnly) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0), c(hub, 0);
   EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1, c.number())}), "");
   EXPECT_TRUE(b.Take(1).empty());
@@ -106,7 +106,7 @@ TEST(DdsHub, AddressedMessagesAreForOneOnly) {
 }
 
 TEST(DdsHub, WhoJoinsLaterIsToldOfWhatIsThere) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0);
   DdsMessage writer = Message(DdsKind::kEndpoint, 2);
   writer.other[0] = 1;
@@ -123,7 +123,7 @@ TEST(DdsHub, WhoJoinsLaterIsToldOfWhatIsThere) {
 }
 
 TEST(DdsHub, AParticipantThatEndsTakesItsEndpointsAlong) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0);
   DdsMessage writer = Message(DdsKind::kEndpoint, 2);
   writer.other[0] = 1;
@@ -135,7 +135,7 @@ TEST(DdsHub, AParticipantThatEndsTakesItsEndpointsAlong) {
 }
 
 TEST(DdsHub, TheDeadAreMissedWhenTheirLeasesAreOver) {
-  DdsHub hub;
+  Hub hub;
   Peer b(hub, 0);
   {
     Peer a(hub, 0);
@@ -166,7 +166,7 @@ TEST(DdsHub, TheDeadAreMissedWhenTheirLeasesAreOver) {
 }
 
 TEST(DdsHub, SaysWhatIsWrongWithAMessageAndKeepsThoseBefore) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage wrong = Message(DdsKind::kSample, 2);
   wrong.kind = static_cast<DdsKind>(77);
@@ -186,7 +186,7 @@ TEST(DdsHub, SaysWhatIsWrongWithAMessageAndKeepsThoseBefore) {
 }
 
 TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage large = Message(DdsKind::kSample, 1);
   large.payload_size = shm::kDdsMostPayload / 3;
@@ -198,7 +198,7 @@ TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
 }
 
 TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage large = Message(DdsKind::kSample, 1);
   large.payload_size = shm::kDdsMostPayload;
@@ -209,8 +209,34 @@ TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   EXPECT_EQ(hub.dropped(), 4u) << "who is there is never dropped";
 }
 
+TEST(DdsHub, TheCoordinatorIsOneOfThem) {
+  Hub hub;
+  hub.TellOwn();
+  Peer a(hub, 0);
+  EXPECT_EQ(a.Send(400, {Message(DdsKind::kParticipant, 1), Message(DdsKind::kSample, 2, 0)}), "");
+  EXPECT_FALSE(hub.TakeOwn(399).has_value());
+  ASSERT_TRUE(hub.TakeOwn(400).has_value());
+  const auto sample = hub.TakeOwn(400);
+  ASSERT_TRUE(sample.has_value());
+  DdsMessage header;
+  memcpy(&header, sample->data(), sizeof header);
+  EXPECT_EQ(header.subject[0], 2);
+  EXPECT_FALSE(hub.TakeOwn(400).has_value());
+
+  const std::byte payload[5] = {};
+  hub.SendOwn(Message(DdsKind::kEndpoint, 3), payload, 500);
+  EXPECT_TRUE(a.Take(499).empty());
+  const auto taken = a.Take(500);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].from, 0u);
+  EXPECT_EQ(taken[0].payload_size, 5u);
+  EXPECT_EQ(Peer(hub, 600).Take(600).size(), 2u)
+      << "the participant and the coordinator's endpoint";
+  EXPECT_FALSE(hub.TakeOwn(1000).has_value()) << "its own messages are not for it";
+}
+
 TEST(DdsHub, WhoeverHandsOverIsDeliveringUntilItComesBack) {
-  DdsHub hub;
+  Hub hub;
   Peer a(hub, 0), b(hub, 0);
   EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1)}), "");
   hub.Deliver(b.number(), 1);
@@ -222,4 +248,4 @@ TEST(DdsHub, WhoeverHandsOverIsDeliveringUntilItComesBack) {
 }
 
 }  // namespace
-}  // namespace tcs
+}  // namespace tcs::dds
