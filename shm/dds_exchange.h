@@ -50,11 +50,11 @@ static_assert(sizeof(DdsArea) == 64);
 enum class DdsKind : std::uint16_t {
   kParticipant = 1,  // subject: its GUID; payload: DdsQos
   kEndpoint = 2,     // subject: its GUID; other: its participant's; payload: dds_endpoint.h
-  kSample = 3,       // subject: the writer's GUID; other: the reader's, or zeros for all that match;
-                     // payload: CDR with its encapsulation header
-  kHistoryEnd = 4,   // subject: a writer's GUID, other: a reader's: this one has been sent all that
-                     // the writer had when they met
-  kLiveliness = 5,   // subject: a writer's or a participant's GUID: asserted, or with kDdsGone lost
+  kSample = 3,      // subject: the writer's GUID; other: the reader's, or zeros for all that match;
+                    // payload: CDR with its encapsulation header
+  kHistoryEnd = 4,  // subject: a writer's GUID, other: a reader's: this one has been sent all that
+                    // the writer had when they met
+  kLiveliness = 5,  // subject: a writer's or a participant's GUID: asserted, or with kDdsGone lost
 };
 
 // DdsMessage::flags.
@@ -67,8 +67,8 @@ struct DdsMessage {
   std::uint32_t size;  // of all, a multiple of 8: this, the payload, zeros
   DdsKind kind;
   std::uint16_t flags;
-  std::uint32_t from;  // set by the coordinator
-  std::uint32_t to;    // a process's number, or kDdsEverybody but the sender
+  std::uint32_t from;    // set by the coordinator
+  std::uint32_t to;      // a process's number, or kDdsEverybody but the sender
   std::int64_t time_ns;  // virtual, when it was sent; set by the coordinator
   std::uint8_t subject[16];
   std::uint8_t other[16];

@@ -184,6 +184,7 @@ std::string Engine::StartClients() {
       task->process->call_cost_ns = client.fixed_call_cost.ns();
       task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
       task->process->patch_vdso = client.patch_vdso;
+      task->process->dds_endpoints = client.dds == DdsTransport::kEndpoints;
     }
   }
   return {};

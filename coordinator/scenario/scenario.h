@@ -19,6 +19,10 @@ enum class ClientClass {
   kBestEffort,  // a planner: computes whenever nothing more urgent wants the processor
 };
 
+// How a client that speaks DDS reaches others: samples handed from endpoint to endpoint in shared
+// memory (Cyclone DDS only), or its own sockets.
+enum class DdsTransport { kEndpoints, kSockets };
+
 struct ClientSpec {
   std::string name;  // unique in the scenario: "ROBOT/CLIENT" as written in the YAML
   std::vector<std::string> command;  // argv; command[0] is an absolute path after loading
@@ -31,6 +35,7 @@ struct ClientSpec {
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
   // The same of one memory allocation; 0: none.
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
+  DdsTransport dds = DdsTransport::kEndpoints;
   bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
 };
 

@@ -25,8 +25,8 @@ struct Link {
   std::size_t (*wait)(const std::byte** messages);
 
   // Before the calling thread looks at what has come: returns once all that was sent before its
-  // own time is in Cyclone's hands. Nothing for the deliverer. Not with a lock that the deliverer or
-  // its listeners need.
+  // own time is in Cyclone's hands. Nothing for the deliverer. Not with a lock that the deliverer
+  // or its listeners need.
   void (*sync)();
 
   // The calling thread's virtual time, ns since the run's start.
