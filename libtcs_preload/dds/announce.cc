@@ -18,8 +18,8 @@ void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
 template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   const dds_qos_t& qos = *entity.xqos;
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kEndpoint, entity.e.gv->config.domainId,
-                                      Guid::Of(entity.e.guid));
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kEndpoint, entity.e.gv->config.domainId, Guid::Of(entity.e.guid));
   Guid::Of(entity.c.pp->e.guid).To(message.other);
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
@@ -40,9 +40,8 @@ void EndHistories(const ddsi_writer& writer) {
 }  // namespace
 
 void AnnounceParticipant(const ddsi_participant& participant) {
-  shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kParticipant, participant.e.gv->config.domainId,
-                Guid::Of(participant.e.guid));
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, participant.e.gv->config.domainId,
+                                      Guid::Of(participant.e.guid));
   SetLease(message, participant.lease_duration);
   Send(message, EncodeParticipant(&participant.plist->qos));
 }

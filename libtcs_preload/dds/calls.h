@@ -13,23 +13,23 @@
 
 // Those that make, change and end what other processes see. The ones that begin with ddsi_ and
 // rtps_ are libddsc's own inner seams: libddsc calls them through its PLT.
-#define TCS_DDS_CHANGING_CALLS(X) \
-  X(dds_create_topic_sertype)     \
-  X(dds_delete)                   \
-  X(dds_assert_liveliness)        \
-  X(dds_lookup_participant)       \
-  X(dds_reader_data_available_cb) \
-  X(ddsi_new_participant)         \
-  X(ddsi_delete_participant)      \
+#define TCS_DDS_CHANGING_CALLS(X)  \
+  X(dds_create_topic_sertype)      \
+  X(dds_delete)                    \
+  X(dds_assert_liveliness)         \
+  X(dds_lookup_participant)        \
+  X(dds_reader_data_available_cb)  \
+  X(ddsi_new_participant)          \
+  X(ddsi_delete_participant)       \
   X(ddsi_update_participant_plist) \
-  X(ddsi_new_writer)              \
-  X(ddsi_delete_writer)           \
-  X(ddsi_update_writer_qos)       \
-  X(ddsi_new_reader)              \
-  X(ddsi_delete_reader)           \
-  X(ddsi_update_reader_qos)       \
-  X(ddsi_iid_gen)                 \
-  X(ddsrt_prng_makeseed)          \
+  X(ddsi_new_writer)               \
+  X(ddsi_delete_writer)            \
+  X(ddsi_update_writer_qos)        \
+  X(ddsi_new_reader)               \
+  X(ddsi_delete_reader)            \
+  X(ddsi_update_reader_qos)        \
+  X(ddsi_iid_gen)                  \
+  X(ddsrt_prng_makeseed)           \
   X(rtps_config_prep)
 
 // Those that look at what has come.

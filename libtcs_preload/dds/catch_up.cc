@@ -25,9 +25,8 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
            ddsi_tkmap_instance* instance);
 
 Cover* CoverOf(ddsi_rhc* rhc) {
-  return rhc->ops->store == Store
-             ? const_cast<Cover*>(reinterpret_cast<const Cover*>(rhc->ops))
-             : nullptr;
+  return rhc->ops->store == Store ? const_cast<Cover*>(reinterpret_cast<const Cover*>(rhc->ops))
+                                  : nullptr;
 }
 
 bool HasHistory(const ddsi_domaingv& gv, const ddsi_guid_t& guid) {

@@ -18,11 +18,11 @@ constexpr char kFile[] = "libddsc.so." DDS_VERSION;
 RealCalls g_real;
 
 bool FindAll(void* library) {
-#define TCS_DDS_FIND(name)                                                       \
-  g_real.name = reinterpret_cast<decltype(g_real.name)>(dlsym(library, #name));      \
-  if (g_real.name == nullptr) {                                                  \
-    Say("the program's %s has no %s, and DDS uses sockets", kLibrary, #name);    \
-    return false;                                                                \
+#define TCS_DDS_FIND(name)                                                      \
+  g_real.name = reinterpret_cast<decltype(g_real.name)>(dlsym(library, #name)); \
+  if (g_real.name == nullptr) {                                                 \
+    Say("the program's %s has no %s, and DDS uses sockets", kLibrary, #name);   \
+    return false;                                                               \
   }
   TCS_DDS_CALLS(TCS_DDS_FIND)
 #undef TCS_DDS_FIND

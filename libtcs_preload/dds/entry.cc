@@ -1,10 +1,10 @@
 // The shim's doors into Cyclone DDS: each name of calls.h jumps to wherever its slot says, so that
 // nothing here knows what its arguments are.
 //
-// A slot first leads to Resolve, which decides: without TCS_DDS in the environment, or where
-// mechanism E refuses, to libddsc; else to the hooks of libtcs_dds.so, which is loaded when the
-// program makes its first participant or domain. Nothing here refers to a symbol of libddsc: the
-// shim is in programs that do not have it, too.
+// A slot first leads to tcs_dds_resolve, which decides: where DDS is to use sockets, or mechanism E
+// refuses, to libddsc; else to the hooks of libtcs_dds.so, which is loaded when the program makes
+// its first participant or domain. Nothing here refers to a symbol of libddsc: the shim is in
+// programs that do not have it, too.
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -51,14 +51,14 @@ __asm__(
     ".popsection\n");
 
 // None of these functions has a floating-point argument: tcs_dds_first does not keep any.
-#define TCS_DDS_DOOR(name)                                                     \
-  TCS_EXPORT __attribute__((naked)) void name();                               \
-  TCS_EXPORT __attribute__((naked)) void name() {                              \
-    __asm__(                                                                   \
-        "endbr64\n\tmovq tcs_dds_slots+%c0(%%rip), %%r11\n\t"                  \
-        "testq %%r11, %%r11\n\tjz 1f\n\tjmp *%%r11\n"                          \
+#define TCS_DDS_DOOR(name)                                                            \
+  TCS_EXPORT __attribute__((naked)) void name();                                      \
+  TCS_EXPORT __attribute__((naked)) void name() {                                     \
+    __asm__(                                                                          \
+        "endbr64\n\tmovq tcs_dds_slots+%c0(%%rip), %%r11\n\t"                         \
+        "testq %%r11, %%r11\n\tjz 1f\n\tjmp *%%r11\n"                                 \
         "1:\tmovl %1, %%r11d\n\tjmp tcs_dds_first" ::"i"(8 * tcs::dds::kCall_##name), \
-        "i"(tcs::dds::kCall_##name));                                          \
+        "i"(tcs::dds::kCall_##name));                                                 \
   }
 TCS_DDS_CALLS(TCS_DDS_DOOR)
 
@@ -79,7 +79,8 @@ const dds::Hook* g_hooks;
 pthread_once_t g_start = PTHREAD_ONCE_INIT;
 
 void Say(const char* text) {
-  RawSyscall(SYS_write, STDERR_FILENO, reinterpret_cast<long>(text), static_cast<long>(strlen(text)));
+  RawSyscall(SYS_write, STDERR_FILENO, reinterpret_cast<long>(text),
+             static_cast<long>(strlen(text)));
 }
 
 [[noreturn]] void DieWithout(const char* name) {
@@ -114,14 +115,14 @@ const dds::Hook* Load(const char* path) {
     return kNoHooks;
   }
   auto start = reinterpret_cast<dds::Start>(dlsym(hooks, dds::kStartSymbol));
-  const dds::Hook* table = start != nullptr ? start(DdsLink()) : nullptr;
+  const dds::Hook* table = start != nullptr ? start(kDdsLink) : nullptr;
   return table != nullptr ? table : kNoHooks;
 }
 
 void Start() {
-  const char* path = getenv("TCS_DDS");
-  const dds::Hook* hooks =
-      path != nullptr && path[0] != '\0' && Current() != nullptr ? Load(path) : kNoHooks;
+  char buffer[kDdsPathSize];
+  const char* path = DdsLibrary(buffer);
+  const dds::Hook* hooks = path != nullptr ? Load(path) : kNoHooks;
   __atomic_store_n(&g_hooks, hooks, __ATOMIC_RELEASE);
 }
 

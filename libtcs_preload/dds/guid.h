@@ -38,9 +38,8 @@ static_assert(sizeof(ddsi_guid_t) == sizeof(Guid));
 
 struct GuidHash {
   std::size_t operator()(const Guid& guid) const {
-    return static_cast<std::size_t>((guid.halves[0] ^ (guid.halves[1] * 0x9e3779b97f4a7c15u)) *
-                                    0xff51afd7ed558ccdu >>
-                                    8);
+    return static_cast<std::size_t>(
+        (guid.halves[0] ^ (guid.halves[1] * 0x9e3779b97f4a7c15u)) * 0xff51afd7ed558ccdu >> 8);
   }
 };
 

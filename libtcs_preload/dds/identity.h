@@ -17,7 +17,8 @@ class MakingShadow {
   MakingShadow& operator=(const MakingShadow&) = delete;
 };
 
-// The next entity of a shadow participant gets this one's last four bytes if it is of the same kind.
+// The next entity of a shadow participant gets this one's last four bytes if it is of the same
+// kind.
 void SetNextEntity(ddsi_domaingv* gv, const Guid& participant, const Guid& entity);
 // Or, for topics, which have no counterpart elsewhere, some that no endpoint has.
 void SetNextEntityOutOfTheWay(ddsi_domaingv* gv, const Guid& participant);

@@ -56,8 +56,7 @@ dds_return_t AssertLiveliness(dds_entity_t entity) {
   if (result < 0 || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return result;
   dds_domainid_t domain = 0;
   dds_get_domainid(entity, &domain);
-  shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kLiveliness, domain, Guid::FromBytes(guid.v));
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kLiveliness, domain, Guid::FromBytes(guid.v));
   Send(message, {});
   return result;
 }

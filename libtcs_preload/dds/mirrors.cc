@@ -185,8 +185,7 @@ void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
   AddShadow(guid);
   const Qos qos(DecodeQos(participant.payload, true));
   const MakingShadow making(guid);
-  participant.shadow =
-      Real().dds_create_participant(participant.domain, qos.get(), nullptr);
+  participant.shadow = Real().dds_create_participant(participant.domain, qos.get(), nullptr);
   if (participant.shadow <= 0) {
     RemoveShadow(guid);
     Say("cannot mirror a DDS participant of another program: %s",
@@ -260,8 +259,8 @@ void Mirrors::MakeWriter(Endpoint& endpoint, dds_entity_t participant, dds_entit
 
 void Mirrors::MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv,
                          dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos) {
-  Tap* tap = NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic,
-                    CatchesUp(qos));
+  Tap* tap =
+      NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic, CatchesUp(qos));
   {
     const Matching matching(tap);
     endpoint.shadow = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
@@ -284,9 +283,9 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
   if (gv == nullptr) return;
 
   const ddsrt_iovec_t bytes{const_cast<std::byte*>(payload), message.payload_size};
-  ddsi_serdata* sample = ddsi_serdata_from_ser_iov(
-      endpoint.type, static_cast<ddsi_serdata_kind>(message.sample_kind), 1, &bytes,
-      message.payload_size);
+  ddsi_serdata* sample =
+      ddsi_serdata_from_ser_iov(endpoint.type, static_cast<ddsi_serdata_kind>(message.sample_kind),
+                                1, &bytes, message.payload_size);
   if (sample == nullptr) {
     if (!endpoint.warned) {
       Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ",

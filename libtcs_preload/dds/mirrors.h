@@ -1,5 +1,5 @@
-// Other processes' participants and endpoints, each with a shadow in this process that Cyclone takes
-// for local: so matching, incompatible QoS and all statuses are Cyclone's own.
+// Other processes' participants and endpoints, each with a shadow in this process that Cyclone
+// takes for local: so matching, incompatible QoS and all statuses are Cyclone's own.
 //
 // A shadow participant is there while the program has a participant in the domain; a shadow
 // endpoint once the program has its topic and type. Shadow writers write what their originals have

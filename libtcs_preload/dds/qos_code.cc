@@ -128,10 +128,10 @@ void EncodeNumbers(const dds_qos_t* qos, DdsQos& to) {
     if (present) to.present |= bit;
   };
   have(dds_qget_durability(qos, &As<dds_durability_kind_t>(to.durability)), shm::kDdsDurability);
-  have(dds_qget_durability_service(
-           qos, &to.service_cleanup_ns, &As<dds_history_kind_t>(to.service_history),
-           &to.service_history_depth, &to.service_max_samples, &to.service_max_instances,
-           &to.service_max_samples_per_instance),
+  have(dds_qget_durability_service(qos, &to.service_cleanup_ns,
+                                   &As<dds_history_kind_t>(to.service_history),
+                                   &to.service_history_depth, &to.service_max_samples,
+                                   &to.service_max_instances, &to.service_max_samples_per_instance),
        shm::kDdsDurabilityService);
   have(dds_qget_history(qos, &As<dds_history_kind_t>(to.history), &to.history_depth),
        shm::kDdsHistory);

@@ -1,5 +1,5 @@
-// Looking at what has come at virtual time v sees all that was sent before v: each reading call waits
-// for that first.
+// Looking at what has come at virtual time v sees all that was sent before v: each reading call
+// waits for that first.
 #pragma once
 
 #include "libtcs_preload/dds/calls.h"

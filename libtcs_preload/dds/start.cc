@@ -24,26 +24,26 @@ Hook HookOf(const char* name, Function RealCalls::*, Function hook) {
 const Hook* Hooks() {
 #define TCS_DDS_HOOK(name, hook) HookOf(#name, &RealCalls::name, hook)
 #define TCS_DDS_READING_HOOK(name) {#name, ReadingHook(kCall_##name)},
-  static const auto* hooks = new std::vector<Hook>{
-      TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
-      TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
-      TCS_DDS_HOOK(dds_delete, Delete),
-      TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
-      TCS_DDS_HOOK(dds_lookup_participant, LookUpParticipants),
-      TCS_DDS_HOOK(dds_reader_data_available_cb, DataAvailable),
-      TCS_DDS_HOOK(ddsi_new_participant, NewParticipant),
-      TCS_DDS_HOOK(ddsi_delete_participant, DeleteParticipant),
-      TCS_DDS_HOOK(ddsi_update_participant_plist, UpdateParticipant),
-      TCS_DDS_HOOK(ddsi_new_writer, NewWriter),
-      TCS_DDS_HOOK(ddsi_delete_writer, DeleteWriter),
-      TCS_DDS_HOOK(ddsi_update_writer_qos, UpdateWriter),
-      TCS_DDS_HOOK(ddsi_new_reader, NewReader),
-      TCS_DDS_HOOK(ddsi_delete_reader, DeleteReader),
-      TCS_DDS_HOOK(ddsi_update_reader_qos, UpdateReader),
-      TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
-      TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
-      TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),
-      TCS_DDS_READING_CALLS(TCS_DDS_READING_HOOK){nullptr, nullptr}};
+  static const auto* hooks =
+      new std::vector<Hook>{TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
+                            TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
+                            TCS_DDS_HOOK(dds_delete, Delete),
+                            TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
+                            TCS_DDS_HOOK(dds_lookup_participant, LookUpParticipants),
+                            TCS_DDS_HOOK(dds_reader_data_available_cb, DataAvailable),
+                            TCS_DDS_HOOK(ddsi_new_participant, NewParticipant),
+                            TCS_DDS_HOOK(ddsi_delete_participant, DeleteParticipant),
+                            TCS_DDS_HOOK(ddsi_update_participant_plist, UpdateParticipant),
+                            TCS_DDS_HOOK(ddsi_new_writer, NewWriter),
+                            TCS_DDS_HOOK(ddsi_delete_writer, DeleteWriter),
+                            TCS_DDS_HOOK(ddsi_update_writer_qos, UpdateWriter),
+                            TCS_DDS_HOOK(ddsi_new_reader, NewReader),
+                            TCS_DDS_HOOK(ddsi_delete_reader, DeleteReader),
+                            TCS_DDS_HOOK(ddsi_update_reader_qos, UpdateReader),
+                            TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
+                            TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
+                            TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),
+                            TCS_DDS_READING_CALLS(TCS_DDS_READING_HOOK){nullptr, nullptr}};
 #undef TCS_DDS_READING_HOOK
 #undef TCS_DDS_HOOK
   return hooks->data();

@@ -76,16 +76,15 @@ dds_return_t Associate(dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) 
   return DDS_RETCODE_OK;
 }
 
-constexpr dds_rhc_ops kOperations = {
-    {Store, UnregisterWriter, RelinquishOwnership, SetQos, Free},
-    ReadNothing,
-    ReadNothing,
-    ReadNoCdr,
-    ReadNoCdr,
-    AddCondition,
-    RemoveCondition,
-    LockSamples,
-    Associate};
+constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnership, SetQos, Free},
+                                     ReadNothing,
+                                     ReadNothing,
+                                     ReadNoCdr,
+                                     ReadNoCdr,
+                                     AddCondition,
+                                     RemoveCondition,
+                                     LockSamples,
+                                     Associate};
 
 }  // namespace
 
