@@ -27,12 +27,11 @@ void CheckOrder(const std::vector<Received>& samples) {
 
 }  // namespace
 
-std::vector<Received> All(dds_entity_t from, How how, std::uint32_t states) {
+std::vector<Received> All(dds_entity_t from, How how) {
   void* samples[kMost] = {};
   dds_sample_info_t infos[kMost];
-  const int count =
-      OK(how == How::kTake ? dds_take_mask(from, samples, infos, kMost, kMost, states)
-                           : dds_read_mask(from, samples, infos, kMost, kMost, states));
+  const int count = OK(how == How::kTake ? dds_take(from, samples, infos, kMost, kMost)
+                                         : dds_read(from, samples, infos, kMost, kMost));
   std::vector<Received> all;
   for (int i = 0; i < count; i++)
     all.push_back({*static_cast<const dds_test_Sample*>(samples[i]), infos[i]});

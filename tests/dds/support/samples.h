@@ -48,8 +48,7 @@ enum class How { kRead, kTake };
 
 // All there is (or all that the condition lets through), by key, the samples of one in the order of
 // the reader's cache. Fails if source timestamps of a writer go back.
-std::vector<Received> All(dds_entity_t reader_or_condition, How how = How::kTake,
-                          std::uint32_t states = DDS_ANY_STATE);
+std::vector<Received> All(dds_entity_t reader_or_condition, How how = How::kTake);
 
 // One line each, markers left out; "nothing" if there is none.
 void Tell(const char* who, const std::vector<Received>& samples);
