@@ -13,10 +13,16 @@ if [[ $variant != native ]]; then
   [[ ${TCS_DDS_CHOICE:-0} == 1 ]] && how=(--dds "$variant")
   command=("$build/bin/tcsim" exec --cores 2 "${how[@]}" -- "${command[@]}")
 fi
-status=0
-told=$("$build/bin/in_own_network" "${command[@]}") || status=$?
-if [[ ${TCS_DDS_RECORD:-} ]]; then
-  printf '%s\n' "$told" >"$here/expected/$name.txt"
-fi
-diff -u "$here/expected/$name.txt" - <<<"$told" || status=1
-((status == 0)) || { echo "FAILED: $name ($variant): the events differ, or status $status" >&2; exit 1; }
+# Natively the machine may stall for longer than a lease or a lifespan: another try.
+tries=1
+[[ $variant == native ]] && tries=3
+for ((try = 1; try <= tries; try++)); do
+  status=0
+  told=$("$build/bin/in_own_network" "${command[@]}") || status=$?
+  # For who adds a scenario; to be read before it is believed.
+  [[ -n ${TCS_DDS_RECORD:-} ]] && printf '%s\n' "$told" >"$here/expected/$name.txt"
+  diff -u "$here/expected/$name.txt" - <<<"$told" || continue
+  ((status == 0)) && exit 0
+done
+echo "FAILED: $name ($variant): the events differ from what is expected, or the status, $status, is not 0" >&2
+exit 1

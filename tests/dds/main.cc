@@ -5,6 +5,7 @@
 //   dds_scenario NAME native|sockets|endpoints writer|reader FD
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,7 @@ int Play(const Scenario& scenario, Under under, Role role, int socket) {
   Process process{OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr)), peer, under};
   (role == Role::kWriter ? scenario.writer_role : scenario.reader_role)(process);
   // Nobody sees the other leave while it is still looking.
-  peer.Meet("end");
+  if (scenario.end == End::kOrderly) peer.Meet("end");
   OK(dds_delete(process.participant));
   return 0;
 }
@@ -61,7 +62,12 @@ void Copy(int words) {
     fwrite(buffer, 1, static_cast<std::size_t>(got), stdout);
 }
 
-int StartBoth(char** argv) {
+bool EndedAsExpected(int status, bool killed) {
+  return killed ? WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL
+                : WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+int StartBoth(const Scenario& scenario, char** argv) {
   int sockets[2], words[2];
   pid_t pids[2];
   if (socketpair(AF_UNIX, SOCK_STREAM, 0, sockets) != 0) Fail("socketpair: %s", strerror(errno));
@@ -78,7 +84,7 @@ int StartBoth(char** argv) {
     int status;
     while (waitpid(pids[i], &status, 0) < 0 && errno == EINTR) {
     }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    if (!EndedAsExpected(status, i == 0 && scenario.end == End::kWriterKilled)) {
       fprintf(stderr, "the %s ended with status 0x%x\n", kRoles[i], status);
       result = 1;
     }
@@ -105,7 +111,7 @@ int Main(int argc, char** argv) {
                 atoi(argv[4]));
   }
   if (under != Under::kNative) ProveVirtualTime();
-  return StartBoth(argv);
+  return StartBoth(*scenario, argv);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 using namespace dds_test;
 
-constexpr dds_duration_t kLease = DDS_MSECS(200);
+constexpr dds_duration_t kLease = DDS_MSECS(400);
 
 void Writer(Process& self) {
   const dds_entity_t writer = self.Writer(

@@ -8,8 +8,13 @@ namespace {
 const Scenario* g_scenarios = nullptr;
 }
 
-Scenario::Scenario(const char* scenario_name, void (*writer)(Process&), void (*reader)(Process&))
-    : name(scenario_name), writer_role(writer), reader_role(reader), next(g_scenarios) {
+Scenario::Scenario(const char* scenario_name, void (*writer)(Process&), void (*reader)(Process&),
+                   End how_it_ends)
+    : name(scenario_name),
+      writer_role(writer),
+      reader_role(reader),
+      end(how_it_ends),
+      next(g_scenarios) {
   g_scenarios = this;
 }
 

@@ -31,19 +31,23 @@ struct Process {
   dds_entity_t Reader(dds_entity_t topic, const Qos& qos = Plain()) const;
 };
 
+// Whether the writer's process ends as it should, or kills itself.
+enum class End { kOrderly, kWriterKilled };
+
 struct Scenario {
-  Scenario(const char* scenario_name, void (*writer)(Process&), void (*reader)(Process&));
+  Scenario(const char* scenario_name, void (*writer)(Process&), void (*reader)(Process&),
+           End how_it_ends = End::kOrderly);
 
   const char* name;
   void (*writer_role)(Process&);
   void (*reader_role)(Process&);
+  End end;
   const Scenario* next;
 };
 
 // Null if there is none of that name.
 const Scenario* FindScenario(const char* name);
 
-#define TCS_DDS_SCENARIO(name, writer, reader) \
-  const ::dds_test::Scenario scenario_##name(#name, writer, reader)
+#define TCS_DDS_SCENARIO(name, ...) const ::dds_test::Scenario scenario_##name(#name, __VA_ARGS__)
 
 }  // namespace dds_test
