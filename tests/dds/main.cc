@@ -3,6 +3,8 @@
 // starts both, and waits for them; it calls itself for each with its role and the descriptor of
 // their socket:
 //   dds_scenario NAME native|sockets|endpoints writer|reader FD
+// The variable TCS_DDS_DOMAIN is the domain to use, 0 without it; the one after it must be free,
+// too.
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -25,7 +27,10 @@ constexpr const char* kRoles[] = {"writer", "reader"};
 
 int Play(const Scenario& scenario, Under under, Role role, int socket) {
   Peer peer(socket);
-  Process process{OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr)), peer, under};
+  const char* domain = getenv("TCS_DDS_DOMAIN");
+  Process process{domain == nullptr ? 0u : static_cast<dds_domainid_t>(atoi(domain)), 0, peer,
+                  under};
+  process.participant = process.Participant();
   (role == Role::kWriter ? scenario.writer_role : scenario.reader_role)(process);
   // Nobody sees the other leave while it is still looking.
   if (scenario.end == End::kOrderly) peer.Meet("end");

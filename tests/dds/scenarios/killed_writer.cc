@@ -1,5 +1,6 @@
-// A writer's process is killed: when its lease is over the reader sees the writer not alive, and its
-// instance disposed (it was its only writer), and keeps the sample. Another writer goes on as before.
+// A writer's process is killed: when its lease is over the reader sees the writer not alive, and
+// its instance disposed (it was its only writer), and keeps the sample. Another writer goes on as
+// before.
 #include <signal.h>
 
 #include "tests/dds/support/process.h"
