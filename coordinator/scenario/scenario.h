@@ -39,7 +39,6 @@ struct ClientSpec {
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
   // The same of one memory allocation; 0: none.
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
-  DdsTransport dds = DdsTransport::kEndpoints;
   bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
   DdsTransport dds = DdsTransport::kEndpoints;
 };
