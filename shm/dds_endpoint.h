@@ -4,9 +4,10 @@
 //   kParticipant: DdsQos, then its texts.
 //   kEndpoint:    DdsEndpoint, then its texts.
 //
-// Texts and lists lie behind the structure; a DdsBytes says where, counted from the payload's start.
-// Numbers of policies are those of the DDS C API's enumerations (dds_public_qosdefs.h) and, for kinds,
-// of the DDS specification: 0 volatile, 1 transient local, …; durations are ns, INT64_MAX for ever.
+// Texts and lists lie behind the structure; a DdsBytes says where, counted from the payload's
+// start. Numbers of policies are those of the DDS C API's enumerations (dds_public_qosdefs.h) and,
+// for kinds, of the DDS specification: 0 volatile, 1 transient local, …; durations are ns,
+// INT64_MAX for ever.
 //
 // An endpoint's GUID belongs to its participant: its first 12 bytes are the participant's, its last
 // byte says what it is (kDds…Id). Who owns a transient-local writer must answer the news of a
@@ -62,17 +63,17 @@ struct DdsQos {
   DdsBytes user_data;
   DdsBytes topic_data;
   DdsBytes group_data;
-  DdsBytes entity_name;            // no zero at the end
-  DdsBytes partition;              // names, a zero after each
-  DdsBytes properties;             // name, zero, value, zero, name, …
-  DdsBytes binary_properties;      // name, zero, the value's size as 4 bytes, value, name, …
-  DdsBytes data_representation;    // std::int16_t each: 0 XCDR1, 2 XCDR2
+  DdsBytes entity_name;          // no zero at the end
+  DdsBytes partition;            // names, a zero after each
+  DdsBytes properties;           // name, zero, value, zero, name, …
+  DdsBytes binary_properties;    // name, zero, the value's size as 4 bytes, value, name, …
+  DdsBytes data_representation;  // std::int16_t each: 0 XCDR1, 2 XCDR2
   std::int64_t lifespan_ns;
   std::int64_t deadline_ns;
   std::int64_t latency_budget_ns;
   std::int64_t liveliness_lease_ns;
   std::int64_t time_based_filter_ns;
-  std::int64_t max_blocking_ns;    // of reliability
+  std::int64_t max_blocking_ns;  // of reliability
   std::int64_t purge_no_writer_ns;
   std::int64_t purge_disposed_ns;
   std::int64_t service_cleanup_ns;
@@ -81,23 +82,23 @@ struct DdsQos {
   std::int32_t service_max_samples;
   std::int32_t service_max_instances;
   std::int32_t service_max_samples_per_instance;
-  std::int32_t history;            // 0 keep last, 1 keep all
+  std::int32_t history;  // 0 keep last, 1 keep all
   std::int32_t history_depth;
-  std::int32_t max_samples;        // -1 without limit, as the following
+  std::int32_t max_samples;  // -1 without limit, as the following
   std::int32_t max_instances;
   std::int32_t max_samples_per_instance;
   std::int32_t presentation_scope;
-  std::int32_t ownership;          // 0 shared, 1 exclusive
+  std::int32_t ownership;  // 0 shared, 1 exclusive
   std::int32_t ownership_strength;
-  std::int32_t liveliness;         // 0 automatic, 1 manual by participant, 2 manual by topic
-  std::int32_t reliability;        // 0 best effort, 1 reliable
+  std::int32_t liveliness;   // 0 automatic, 1 manual by participant, 2 manual by topic
+  std::int32_t reliability;  // 0 best effort, 1 reliable
   std::int32_t transport_priority;
   std::int32_t destination_order;  // 0 by reception, 1 by source timestamp
   std::int32_t ignore_local;
   std::int32_t type_consistency;
   std::uint8_t coherent_access;
   std::uint8_t ordered_access;
-  std::uint8_t autodispose;        // of the writer's data lifecycle
+  std::uint8_t autodispose;  // of the writer's data lifecycle
   std::uint8_t ignore_sequence_bounds;
   std::uint8_t ignore_string_bounds;
   std::uint8_t ignore_member_names;
@@ -117,7 +118,7 @@ struct DdsEndpoint {
   std::uint32_t kind;     // kDdsReader, kDdsWriter
   std::uint32_t keyless;  // 1: its type has no key
   DdsBytes topic;
-  DdsBytes type;          // no zero at the end, as with topic
+  DdsBytes type;  // no zero at the end, as with topic
   DdsQos qos;
 };
 static_assert(sizeof(DdsEndpoint) == 256);

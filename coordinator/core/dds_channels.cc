@@ -69,8 +69,7 @@ int DdsChannels::WriteDue(std::int64_t now_ns, const std::function<BodyState(int
     sensor.next_ns += sensor.spec->period.ns();
     std::vector<BodyState> states;
     for (const int body : sensor.spec->bodies) states.push_back(read(body));
-    const auto cdr =
-        sensor.encoder.Encode(VirtualTime::FromNanoseconds(now_ns), stamp_ns, states);
+    const auto cdr = sensor.encoder.Encode(VirtualTime::FromNanoseconds(now_ns), stamp_ns, states);
     ends_.Write(sensor.writer, cdr, stamp_ns, now_ns + sensor.spec->latency.ns());
     ++written;
   }

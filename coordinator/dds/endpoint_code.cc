@@ -73,8 +73,8 @@ Qos FromShared(const DdsQos& shared, EndpointKind kind) {
   const auto has = [&shared](std::uint32_t policy) { return (shared.present & policy) != 0; };
   Qos qos;
   // DDS's defaults, not ROS 2's.
-  const bool reliable = has(shm::kDdsReliability) ? shared.reliability != 0
-                                                  : kind == EndpointKind::kWriter;
+  const bool reliable =
+      has(shm::kDdsReliability) ? shared.reliability != 0 : kind == EndpointKind::kWriter;
   qos.reliability = reliable ? Reliability::kReliable : Reliability::kBestEffort;
   qos.depth = has(shm::kDdsHistory) ? std::max(1, shared.history_depth) : 1;
   if (has(shm::kDdsHistory) && shared.history != 0) qos.history = History::kKeepAll;

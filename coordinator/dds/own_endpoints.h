@@ -39,7 +39,7 @@ class OwnEndpoints {
 
   struct Sample {
     std::vector<Index> readers;  // all of its topic
-    std::int64_t at_ns;  // when it was written
+    std::int64_t at_ns;          // when it was written
     std::vector<std::byte> cdr;
   };
   // The next sample that was written by `now_ns` to one of the readers. Takes notice of who reads

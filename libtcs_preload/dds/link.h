@@ -33,10 +33,17 @@ struct Link {
   std::int64_t (*now)();
 };
 
+// One function of libddsc (calls.h) that libtcs_dds.so does otherwise. A table of them ends with
+// nulls.
+struct Hook {
+  const char* name;
+  void* function;
+};
+
 // What libtcs_dds.so exports: called once per process, before anything else of it. Null and one
 // line on stderr if it cannot work here (another version of Cyclone): the program then uses
-// sockets.
+// sockets. Null and no line outside tcs.
 inline constexpr char kStartSymbol[] = "tcs_dds_start";
-using Start = bool (*)(const Link& link);
+using Start = const Hook* (*)(const Link& link);
 
 }  // namespace tcs::dds
