@@ -263,6 +263,10 @@ void Engine::StepCpu(VirtualCpu& cpu) {
 bool Engine::StepWorld() {
   if (!world_.present()) return false;
   const std::int64_t limit = std::min(root_.Least(), end_ns_);
+  if (hub_.OwnDueNs() <= limit) {
+    world_.TakeDdsCommands(limit);
+    ShowDeliverersTheirDeadlines();
+  }
   const std::int64_t now = world_.progress_ns();
   const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
   if (limit - now <= lag && world_.NextStopNs() > limit) return false;
@@ -277,6 +281,7 @@ bool Engine::StepWorld() {
   if (sent) {
     event_ns_ = world_.progress_ns();
     trace_.Instant(world_row_, "sensors", event_ns_);
+    ShowDeliverersTheirDeadlines();
     PollEvents(0);
   }
   return true;

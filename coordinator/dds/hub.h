@@ -57,6 +57,7 @@ class Hub {
   // endpoints and what is addressed to it; kept only once it has asked to be told.
   void TellOwn() { tells_own_ = true; }
   std::optional<Bytes> TakeOwn(std::int64_t now_ns);
+  std::int64_t OwnDueNs() const { return own_.empty() ? shm::kNeverNs : own_.begin()->first; }
 
   // How many processes have joined so far: the largest number.
   Number count() const { return static_cast<Number>(members_.size()); }
