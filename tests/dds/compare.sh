@@ -10,8 +10,7 @@ export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General>
 </General></Domain></CycloneDDS>"
 program=("$build/bin/dds_scenario" "$name" "$variant")
 own_network=$build/bin/in_own_network
-dds=()
-[[ ${TCS_DDS_CHOICE:-0} == 1 ]] && dds=(--dds "$variant")
+dds=(--dds "$variant")
 
 # agrees COMMAND...
 agrees() {

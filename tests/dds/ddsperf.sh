@@ -9,8 +9,7 @@ trap 'rm -rf "$work"' EXIT
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General>
   <Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>
 </General></Domain></CycloneDDS>'
-dds=""
-[[ ${TCS_DDS_CHOICE:-0} == 1 ]] && dds=", dds: $variant"
+dds=", dds: $variant"
 
 # between SECONDS 'ARGUMENTS OF THE FIRST' 'OF THE SECOND': their words come into $first and $second.
 between() {
