@@ -23,7 +23,7 @@ void Reader(Process& self) {
   self.peer.Meet("matched");
   WaitForSample<1>(reader);
   const dds_time_t written = All(reader, How::kRead).at(0).info.source_timestamp;
-  while (!All(reader, How::kRead).empty()) dds_sleepfor(DDS_USECS(500));
+  while (!All(reader, How::kRead).empty()) dds_sleepfor(DDS_USECS(200));
   const dds_time_t gone = dds_time();
   CheckOwnDue(self, "the end of a lifespan", gone, written + kLifespan);
   Event("the sample was there for its lifespan");
