@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# The predator's programs are Cyclone DDS programs like any other: natively, over the real network,
+# they find a robot and each other, plan, and follow their plans.
+export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
+  <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
+example=$build/examples/predator_prey
+out=$(mktemp -d)
+# Nobody else's topics, whatever else runs on this machine.
+names=(--domain 87 --namespace "predator_$$")
+started=()
+stop() { for pid in "$@"; do kill "$pid" && wait "$pid" || true; done 2>/dev/null; }
+trap 'stop "${started[@]}"; rm -rf "$out"' EXIT
+
+start() { "${@:2}" "${names[@]}" >>"$out/$1" 2>&1 & started+=($!); last=$!; }
+fly() {
+  start robot "$build/bin/predator_robot" --prey-namespace "prey_$$" --plans "$1"
+  local robot=$last
+  start planner "$example/predator_planner" --budget 0.2
+  wait "$robot" || fail "$(tail "$out"/*)"
+  stop "$last"
+}
+start controller "$example/predator_controller" --prey-namespace "prey_$$" --request-timeout 1 --kp 0 --kd 0
+fly 3
+fly 2  # the controller goes on with another planner, and another robot
+[[ $(grep -c 'commands to coast' "$out/robot") == 2 ]] || fail "$(cat "$out/robot")"
+grep -q 'plan 3: 0.[0-9]* s, [0-9]* states' "$out/planner" || fail "$(cat "$out/planner")"
