@@ -25,3 +25,21 @@ fly 3
 fly 2  # the controller goes on with another planner, and another robot
 [[ $(grep -c 'commands to coast' "$out/robot") == 2 ]] || fail "$(cat "$out/robot")"
 grep -q 'plan 3: 0.[0-9]* s, [0-9]* states' "$out/planner" || fail "$(cat "$out/planner")"
+stop "${started[@]}"
+started=()
+
+# In virtual time they do the same, and a plan takes what it takes: three of 0.2 s, each executed for
+# 0.1 s, and a little for finding each other and for waiting for the next tick.
+cat >"$out/all" <<END
+date +%s%N
+$build/bin/predator_robot ${names[*]} --plans 3 & robot=\$!
+$example/predator_controller ${names[*]} --kp 0 --kd 0 & controller=\$!
+$example/predator_planner ${names[*]} --budget 0.2 2>>$out/planner & planner=\$!
+wait \$robot || exit
+date +%s%N
+kill \$controller \$planner
+END
+"$tcsim" exec --accounting fixed -- bash "$out/all" >"$out/said" 2>"$out/errors" || fail "$(cat "$out/said" "$out/errors")"
+[[ $(sed -n 2p "$out/said") == '3 plans asked for, 3 followed, '* ]] || fail "$(cat "$out/said" "$out/errors")"
+took_ms=$((($(sed -n 3p "$out/said") - $(sed -n 1p "$out/said")) / 1000000))
+((took_ms > 900 && took_ms < 1200)) || fail "three plans took $took_ms ms: $(cat "$out/said")"
