@@ -11,6 +11,7 @@
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
@@ -101,6 +102,12 @@ int main(int argc, char** argv) {
   report->add_option("--title", report_arguments.title,
                      "of the page; the scenario's name unless told");
 
+  tcs::TopicsArguments topics_arguments;
+  CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
+  topics->add_option("folder", topics_arguments.folder, "what run wrote")->required();
+  topics->add_flag("--qos", topics_arguments.with_qos,
+                   "the quality of service of each endpoint, too");
+
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
   doctor->add_flag("--json", as_json, "for programs");
@@ -125,6 +132,7 @@ int main(int argc, char** argv) {
     return tcs::CanRun(findings) ? 0 : 1;
   }
   if (report->parsed()) return tcs::ReportCommand(report_arguments);
+  if (topics->parsed()) return tcs::TopicsCommand(topics_arguments);
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");

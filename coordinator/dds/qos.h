@@ -34,4 +34,8 @@ struct Qos {
 [[nodiscard]] std::string NameOf(Durability durability);
 [[nodiscard]] std::string NameOf(Liveliness liveliness);
 
+// Why a reader that asks for `wanted` gets nothing of a writer that offers `offered`, as the rest
+// of a sentence about the reader; none if they match. DDS's own rules.
+[[nodiscard]] std::optional<std::string> WhatDoesNotMatch(const Qos& wanted, const Qos& offered);
+
 }  // namespace tcs::dds

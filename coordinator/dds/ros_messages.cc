@@ -70,14 +70,6 @@ Angles ToAngles(const BodyState& state) {
   return angles;
 }
 
-template <class Sequence>
-void SetGuids(Sequence* sequence, const std::vector<Guid>& guids) {
-  Resize(sequence, guids.size());
-  for (std::size_t i = 0; i < guids.size(); ++i) {
-    std::copy(guids[i].begin(), guids[i].end(), sequence->_buffer[i].data);
-  }
-}
-
 }  // namespace
 
 TimeMessage ToTime(std::int64_t stamp_ns) {
@@ -167,20 +159,6 @@ std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message) {
     return MessageError{"has a torque that is not finite"};
   }
   return wrench;
-}
-
-Owned<ParticipantMessage> ToParticipant(const Guid& participant, std::span<const Node> nodes) {
-  Owned<ParticipantMessage> info;
-  std::copy(participant.begin(), participant.end(), info->gid.data);
-  Resize(&info->node_entities_info_seq, nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    auto& node = info->node_entities_info_seq._buffer[i];
-    SetText(&node.node_namespace, nodes[i].name_space);
-    SetText(&node.node_name, nodes[i].name);
-    SetGuids(&node.reader_gid_seq, nodes[i].readers);
-    SetGuids(&node.writer_gid_seq, nodes[i].writers);
-  }
-  return info;
 }
 
 void SetText(char** field, std::string_view text) {

@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "coordinator/dds/ros_types.h"
 #include "shm/virtual_time.h"
@@ -68,17 +67,5 @@ class InertialSensor {
 // Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
 // where they are not finite.
 [[nodiscard]] std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message);
-
-// One node of a process, and the GUIDs (as DDS sends them) of its endpoints.
-using Guid = std::array<std::uint8_t, 16>;
-struct Node {
-  std::string name_space = "/";
-  std::string name;
-  std::vector<Guid> readers, writers;
-};
-
-// What a participant tells graph tools on the topic `ros_discovery_info`.
-[[nodiscard]] Owned<ParticipantMessage> ToParticipant(const Guid& participant,
-                                                      std::span<const Node> nodes);
 
 }  // namespace tcs::dds

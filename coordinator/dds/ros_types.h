@@ -14,6 +14,7 @@
 #include "geometry_msgs.h"
 #include "nav_msgs.h"
 #include "rmw_dds_common.h"
+#include "rmw_dds_common_iron.h"
 #include "rosgraph_msgs.h"
 #include "sensor_msgs.h"
 #include "shm/check.h"
@@ -30,7 +31,8 @@ using OdometryMessage = nav_msgs_msg_dds__Odometry_;
 using ImuMessage = sensor_msgs_msg_dds__Imu_;
 using JointStateMessage = sensor_msgs_msg_dds__JointState_;
 using ClockMessage = rosgraph_msgs_msg_dds__Clock_;
-using ParticipantMessage = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
+using HumbleParticipantMessage = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
+using IronParticipantMessage = rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_;
 
 // clang-format off
 template <> inline const dds_topic_descriptor_t& DescriptorOf<HeaderMessage>() { return std_msgs_msg_dds__Header__desc; }
@@ -40,7 +42,8 @@ template <> inline const dds_topic_descriptor_t& DescriptorOf<OdometryMessage>()
 template <> inline const dds_topic_descriptor_t& DescriptorOf<ImuMessage>() { return sensor_msgs_msg_dds__Imu__desc; }
 template <> inline const dds_topic_descriptor_t& DescriptorOf<JointStateMessage>() { return sensor_msgs_msg_dds__JointState__desc; }
 template <> inline const dds_topic_descriptor_t& DescriptorOf<ClockMessage>() { return rosgraph_msgs_msg_dds__Clock__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<ParticipantMessage>() { return rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc; }
+template <> inline const dds_topic_descriptor_t& DescriptorOf<HumbleParticipantMessage>() { return rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc; }
+template <> inline const dds_topic_descriptor_t& DescriptorOf<IronParticipantMessage>() { return rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo__desc; }
 // clang-format on
 
 // A string field's new value; the field must be null.

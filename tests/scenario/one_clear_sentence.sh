@@ -34,6 +34,9 @@ refused '\{measured,fixed\}' "$tcsim" exec --accounting guessed -- true
 refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
 refused 'call-cost.*above 0' "$tcsim" exec --call-cost 0ns -- true
 refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
+refused "no folder '$out/nowhere'" "$tcsim" topics "$out/nowhere"
+mkdir "$out/no-topics"
+refused "'$out/no-topics' has no topics.json" "$tcsim" topics "$out/no-topics"
 
 mkdir "$out/busy"
 flock --no-fork "$out/busy" sleep 60 &

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 
+#include "coordinator/dds/participant_info.h"
 #include "coordinator/dds/ros_messages.h"
 
 namespace tcs::dds {
@@ -133,8 +134,8 @@ TEST(Cdr, WhatIsCutOffIsRefusedWhereverItIsCut) {
       ToCdr(ToJointState(1, bodies, std::vector{Flying(), Flying()})));
   ExpectNoPrefixIsAMessage<WrenchMessage>(ToCdr(Owned<WrenchMessage>()));
   ExpectNoPrefixIsAMessage<ClockMessage>(ToCdr(ToClock(5)));
-  ExpectNoPrefixIsAMessage<ParticipantMessage>(
-      ToCdr(ToParticipant({1}, std::vector<Node>{{"/", "n", {{2}, {3}}, {{4}}}})));
+  ExpectNoPrefixIsAMessage<HumbleParticipantMessage>(
+      EncodeParticipant({{1}, {{"/", "n", {{2}, {3}}, {{4}}}}}, GidForm::kHumble));
 }
 
 // What was accepted is a message: it can be written again, and read again.
@@ -168,11 +169,11 @@ TEST(Cdr, ForeignBytesNeverCrash) {
   std::mt19937_64 random(1);
   const std::vector<std::string> bodies = {"one", "another"};
   const Bytes joints = ToCdr(ToJointState(1, bodies, std::vector{Flying(), Flying()}));
-  const Bytes info = ToCdr(ToParticipant({1}, std::vector<Node>{{"/", "n", {{2}, {3}}, {{4}}}}));
+  const Bytes info = EncodeParticipant({{1}, {{"/", "n", {{2}, {3}}, {{4}}}}}, GidForm::kHumble);
   const Bytes odometry = ToCdr(ToOdometry(7, "hunter", Flying()));
   // Some are messages with other numbers in them, else nothing was tried but the checks.
   EXPECT_GT(AcceptedOf<JointStateMessage>(joints, &random), 100);
-  EXPECT_GT(AcceptedOf<ParticipantMessage>(info, &random), 100);
+  EXPECT_GT(AcceptedOf<HumbleParticipantMessage>(info, &random), 100);
   EXPECT_GT(AcceptedOf<OdometryMessage>(odometry, &random), 100);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "coordinator/dds/participant_info.h"
 #include "coordinator/dds/ros_messages.h"
 #include "coordinator/dds/ros_names.h"
 
@@ -96,9 +97,10 @@ TEST_F(Cyclone, WritesTheSameWrench) {
 }
 
 TEST_F(Cyclone, WritesTheSameParticipant) {
-  ExpectTheSameBytes("ros_discovery_info",
-                     ToParticipant({1, 2, 3}, std::vector<Node>{{"/", "tcs", {{4}}, {{5}, {6}}},
-                                                                {"/a", "b", {}, {}}}));
+  const ParticipantInfo info{{1, 2, 3}, {{"/", "tcs", {{4}}, {{5}, {6}}}, {"/a", "b", {}, {}}}};
+  const auto message = FromCdr<HumbleParticipantMessage>(EncodeParticipant(info, GidForm::kHumble));
+  ASSERT_TRUE(std::holds_alternative<Owned<HumbleParticipantMessage>>(message));
+  ExpectTheSameBytes("ros_discovery_info", std::get<0>(message));
 }
 
 TEST_F(Cyclone, ReadsWhatWeWrite) {
@@ -130,7 +132,7 @@ TEST_F(Cyclone, KnowsTheTypesByRosNames) {
   EXPECT_EQ(DescriptorOf<TwistMessage>().m_typename, DdsType("geometry_msgs/msg/Twist"));
   EXPECT_EQ(DescriptorOf<WrenchMessage>().m_typename, DdsType("geometry_msgs/msg/Wrench"));
   EXPECT_EQ(DescriptorOf<ClockMessage>().m_typename, DdsType(kClockMessageName));
-  EXPECT_EQ(DescriptorOf<ParticipantMessage>().m_typename,
+  EXPECT_EQ(DescriptorOf<HumbleParticipantMessage>().m_typename,
             DdsType("rmw_dds_common/msg/ParticipantEntitiesInfo"));
 }
 

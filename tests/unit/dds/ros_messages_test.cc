@@ -215,21 +215,5 @@ TEST(SensorEncoder, SaysWhatItsMessageSays) {
   EXPECT_EQ(encode(SensorMessage::kImu), ToCdr(sensor.Sample(VirtualTime{}, kStamp, states[0])));
 }
 
-TEST(Participant, NamesItsNodesAndTheirEndpoints) {
-  const Guid reader = {1, 2}, writer = {3, 4};
-  const auto info =
-      ToParticipant({9}, std::vector<Node>{{"/robots", "hunter", {reader}, {writer}}});
-  EXPECT_EQ(info->gid.data[0], 9);
-  ASSERT_EQ(info->node_entities_info_seq._length, 1u);
-  const auto& node = info->node_entities_info_seq._buffer[0];
-  EXPECT_STREQ(node.node_namespace, "/robots");
-  EXPECT_STREQ(node.node_name, "hunter");
-  ASSERT_EQ(node.reader_gid_seq._length, 1u);
-  EXPECT_EQ(node.reader_gid_seq._buffer[0].data[1], 2);
-  EXPECT_EQ(node.reader_gid_seq._buffer[0].data[16], 0);
-  ASSERT_EQ(node.writer_gid_seq._length, 1u);
-  EXPECT_EQ(node.writer_gid_seq._buffer[0].data[0], 3);
-}
-
 }  // namespace
 }  // namespace tcs::dds
