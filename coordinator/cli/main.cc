@@ -80,6 +80,12 @@ int main(int argc, char** argv) {
   exec->add_option(
       "--allocation-cost", allocation_cost,
       "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
+  std::string dds = "endpoints";
+  exec->add_option(
+          "--dds", dds,
+          "how programs that use Cyclone DDS reach each other; endpoints: in shared memory "
+          "(default); sockets: by their own protocol")
+      ->check(CLI::IsMember({"endpoints", "sockets"}));
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -137,7 +143,8 @@ int main(int argc, char** argv) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");
   }
-  for (const std::string& library : {options.preload_library, options.allocation_library}) {
+  for (const std::string& library :
+       {options.preload_library, options.allocation_library, tcs::DdsLibrary()}) {
     if (access(library.c_str(), R_OK) != 0) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }
@@ -148,7 +155,9 @@ int main(int argc, char** argv) {
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()
-               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost},
+               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
+                                   dds == "sockets" ? tcs::DdsTransport::kSockets
+                                                    : tcs::DdsTransport::kEndpoints},
                                   options)
                : tcs::RunCommand(arguments, options);
   });

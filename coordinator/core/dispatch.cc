@@ -346,6 +346,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     SendTimerSignalsTo(task);
+    HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
   Resume(task);

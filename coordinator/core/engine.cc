@@ -64,6 +64,10 @@ void Engine::SetState(Task& task, TaskState state) {
   unseen_ += (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
   task.state = state;
   Requeue(task);
+  // A deliverer that waits for something else must not be waited for: it may need what those hold.
+  if (task.is_deliverer && !IsRunnable(task) && !task.waits_for_messages) {
+    ReleaseThoseAwaitingDeliverer(*task.process);
+  }
 }
 
 void Engine::Requeue(Task& task) {
@@ -113,9 +117,9 @@ void Engine::Refresh(Robot& robot) {
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  const bool reads =
-      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child ||
-                                            task.waits_for_key || task.awaited_signals != 0);
+  const bool reads = task.state == TaskState::kWaiting &&
+                     (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
+                      task.awaited_signals != 0 || task.waits_for_messages);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
@@ -123,6 +127,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max(task.reached_ns, event_ns_);
+  if (task.waits_for_messages) task.messages_until_ns = std::max(event_ns_, task.deadline_ns);
   if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
   LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.
@@ -172,6 +177,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
     if (!other->waits_for_fds && !other->waits_for_key && other->awaited_signals == 0 &&
+        !other->waits_for_messages &&
         !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
       continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
@@ -257,6 +263,10 @@ void Engine::StepCpu(VirtualCpu& cpu) {
 bool Engine::StepWorld() {
   if (!world_.present()) return false;
   const std::int64_t limit = std::min(root_.Least(), end_ns_);
+  if (hub_.OwnDueNs() <= limit) {
+    world_.TakeDdsCommands(limit);
+    ShowDeliverersTheirDeadlines();
+  }
   const std::int64_t now = world_.progress_ns();
   const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
   if (limit - now <= lag && world_.NextStopNs() > limit) return false;
@@ -271,6 +281,7 @@ bool Engine::StepWorld() {
   if (sent) {
     event_ns_ = world_.progress_ns();
     trace_.Instant(world_row_, "sensors", event_ns_);
+    ShowDeliverersTheirDeadlines();
     PollEvents(0);
   }
   return true;

@@ -12,6 +12,7 @@
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
+#include "coordinator/dds/hub.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/dispatch_log.h"
@@ -154,6 +155,16 @@ class Engine {
   void NoteTerminal(Task& task, int fd);
   void FlushTerminals();
 
+  // Programs that speak DDS (dds.cc).
+  void HandleDds(Task& task, const shm::Notification& note);
+  void JoinDds(Task& task);
+  void LeaveDds(Process& process);
+  void AwaitMessages(Task& task);
+  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
+  void ReleaseThoseAwaitingDeliverer(const Process& process);
+  void ShowDeliverersTheirDeadlines();
+  void HandMessagesOver(Task& task);
+
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
@@ -247,6 +258,8 @@ class Engine {
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
+  dds::Hub hub_;
+  std::vector<Process*> dds_processes_;  // that have joined it
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen

@@ -13,9 +13,12 @@ namespace {
 
 // What asks for SCHED_FIFO or SCHED_RR precedes all others, what asks for SCHED_IDLE follows them.
 constexpr int kRealTimeBand = 1'000'000, kIdleBand = -1'000'000;
+// What has come for a program is there before any of the robot's threads looks.
+constexpr int kDeliverer = 2'000'000;
 constexpr int kMostOwners = 64;  // in a chain of who waits for whom; a circle ends there
 
 int OwnPriority(const Task& task) {
+  if (task.is_deliverer) return kDeliverer;
   if (task.policy == SCHED_FIFO || task.policy == SCHED_RR) {
     return kRealTimeBand + task.posix_priority;
   }

@@ -58,12 +58,15 @@ struct Task {
   std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
   std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
   std::uint64_t key_order = 0;            // of waiting
-  bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
-  std::uint64_t wait_mask = 0;            // this one; bit 0 is signal 1
-  std::uint64_t awaited_signals = 0;      // its wait ends when one of them is pending
-  std::vector<int> watched;               // descriptors in the coordinator's epoll set
-  bool watches_terminal = false;          // among the watched
-  std::uint32_t wait_number = 0;          // of its last wait for descriptors
+  // Of programs that speak DDS (dds.cc).
+  bool is_deliverer = false, waits_for_messages = false, waits_for_deliverer = false;
+  std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
+  bool has_wait_mask = false;           // it waits with a signal mask of its own (sigsuspend):
+  std::uint64_t wait_mask = 0;          // this one; bit 0 is signal 1
+  std::uint64_t awaited_signals = 0;    // its wait ends when one of them is pending
+  std::vector<int> watched;             // descriptors in the coordinator's epoll set
+  bool watches_terminal = false;        // among the watched
+  std::uint32_t wait_number = 0;        // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
@@ -134,7 +137,7 @@ struct Process {
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
-  bool patch_vdso = false;
+  bool patch_vdso = false, dds_endpoints = false;
   // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the
   // world stood still. While it waits the world catches up, but its clock never goes back, nor
   // behind the end of a wait that is over by time.
@@ -151,6 +154,8 @@ struct Process {
   std::int64_t children_ended = 0;  // how many
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
+  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  Task* deliverer = nullptr;     // its thread that takes what is for it
   bool dead = false;
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will

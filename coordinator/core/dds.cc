@@ -1,0 +1,108 @@
+// Programs that speak DDS: who has joined, what they send each other, and the thread of each that
+// takes what is for it (shm/dds_exchange.h).
+#include <errno.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+void Engine::HandleDds(Task& task, const shm::Notification& note) {
+  Process& process = *task.process;
+  switch (note.kind) {
+    case shm::NotificationKind::kDdsJoin:
+      JoinDds(task);
+      break;
+    case shm::NotificationKind::kDdsSend:
+      if (const std::string wrong =
+              hub_.Send(process.dds_number, static_cast<std::size_t>(note.args[0]), event_ns_);
+          !wrong.empty()) {
+        Warn(
+            fmt::format("{} sends DDS messages that are not as they must be ({}): they are lost; "
+                        "is its libtcs_dds.so of another version?",
+                        process.name, wrong));
+      }
+      ShowDeliverersTheirDeadlines();
+      break;
+    case shm::NotificationKind::kDdsWait:
+      AwaitMessages(task);
+      break;
+    default:
+      if (!IsDelivering(process, task.reached_ns)) break;
+      task.waits_for_deliverer = true;
+      SetState(task, TaskState::kWaiting);
+  }
+}
+
+void Engine::JoinDds(Task& task) {
+  Process& process = *task.process;
+  LeaveDds(process);
+  process.dds_number = hub_.Join(event_ns_);
+  task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
+  task.reply[1] = hub_.fd();
+  if (process.dds_number != 0) dds_processes_.push_back(&process);
+}
+
+// It has died, or executes another program.
+void Engine::LeaveDds(Process& process) {
+  if (process.dds_number == 0) return;
+  process.deliverer = nullptr;
+  std::erase(dds_processes_, &process);
+  hub_.Leave(std::exchange(process.dds_number, 0), event_ns_);
+  ShowDeliverersTheirDeadlines();
+}
+
+// The deliverer has nothing more to hand over, and waits until something is due.
+void Engine::AwaitMessages(Task& task) {
+  Process& process = *task.process;
+  if (process.deliverer != &task) {
+    process.deliverer = &task;
+    task.is_deliverer = true;
+    task.allowed_cores = FixedPriority::kEveryCore;
+    FindPriority(task);
+  }
+  hub_.CameBack(process.dds_number);
+  task.waits_for_messages = true;
+  task.deadline_ns = hub_.DueNs(process.dds_number);
+  SetState(task, TaskState::kWaiting);
+  ReleaseThoseAwaitingDeliverer(process);
+}
+
+// Whether what is due at `now_ns` is being handed over, or is about to be.
+bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
+  const Task* deliverer = process.deliverer;
+  if (deliverer == nullptr) return false;
+  if (deliverer->waits_for_messages) return hub_.DueNs(process.dds_number) <= now_ns;
+  return IsRunnable(*deliverer);
+}
+
+void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
+  const std::vector<Task*> tasks = process.robot->tasks;
+  for (Task* task : tasks) {
+    if (task->process != &process || !task->waits_for_deliverer) continue;
+    if (!IsDelivering(process, task->reached_ns)) MakeReady(*task, shm::WakeReason::kGo);
+  }
+}
+
+void Engine::ShowDeliverersTheirDeadlines() {
+  for (const Process* process : dds_processes_) {
+    Task* deliverer = process->deliverer;
+    if (deliverer == nullptr || !deliverer->waits_for_messages) continue;
+    const std::int64_t due = hub_.DueNs(process->dds_number);
+    if (std::exchange(deliverer->deadline_ns, due) != due) Refresh(*process->robot);
+  }
+}
+
+// At the dispatch of a deliverer whose wait is over.
+void Engine::HandMessagesOver(Task& task) {
+  const std::int64_t until = std::exchange(task.messages_until_ns, -1);
+  if (until < 0) return;
+  const std::size_t bytes =
+      hub_.Deliver(task.process->dds_number, std::max(until, task.cpu->progress_ns));
+  task.reply[0] = static_cast<std::int64_t>(bytes);
+}
+
+}  // namespace tcs

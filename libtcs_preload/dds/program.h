@@ -1,0 +1,68 @@
+// What the program has: its participants, topics and endpoints, as the hooks see them come and go.
+//
+// Those of other processes are mirrored by *shadows* in here (mirrors.h), which Cyclone takes for
+// the program's own. They pass through the same hooks and are told apart by their participant.
+//
+// Thread-safe, by a lock that is held for look-ups only: everything here may be called from inside
+// Cyclone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libtcs_preload/dds/guid.h"
+
+namespace tcs::dds {
+
+struct Tap;
+
+// Shadow participants, by the first part of their GUIDs.
+void AddShadow(const Guid& participant);
+void RemoveShadow(const Guid& participant);
+bool IsShadow(const ddsi_guid_t& entity);
+
+// Domains.
+void SetDomain(std::uint32_t domain, ddsi_domaingv* gv);
+ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
+void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
+void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
+bool IsParticipant(const Guid& guid);
+bool IsLastParticipant(const Guid& guid);
+std::vector<std::uint32_t> Domains();
+
+// The types of its topics. A type is held until the domain's last participant is about to go:
+// Cyclone aborts if it is held any longer.
+void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type);
+ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type);
+void ReleaseTypes(std::uint32_t domain);
+
+// Writers. False: known already.
+bool AddWriter(const ddsi_writer& writer);
+void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid);
+bool IsWriter(const Guid& guid);
+// The transient-local writers of a topic.
+std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& topic);
+
+// Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
+// process the first that sees it. Keeps the sample's instance alive, since Cyclone would otherwise
+// make and collect one for each write. Kind of writer: unknown, to be announced first.
+enum class Carries { kNo, kYes, kUnknownWriter };
+Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
+                      ddsi_tkmap_instance* instance);
+
+// Readers.
+void AddReader(const ddsi_reader& reader);
+bool RemoveReader(const Guid& guid);
+std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic);
+
+// The shadow readers to which writers of the program owe their history's end.
+void AddTap(const Tap* tap);
+void RemoveTap(const Tap* tap);
+struct LateReader {
+  Guid guid;
+  std::uint32_t process;
+};
+std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic);
+
+}  // namespace tcs::dds

@@ -1,0 +1,117 @@
+#include "libtcs_preload/dds/tap.h"
+
+#include "libtcs_preload/dds/announce.h"
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+thread_local bool t_matching;
+thread_local const Tap* t_matching_tap;
+
+Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
+
+void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample, bool addressed) {
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kSample, tap.domain, Guid::Of(writer));
+  message.to = tap.process;
+  if (addressed) tap.reader.To(message.other);
+  message.source_timestamp_ns = sample.timestamp.v;
+  message.status_info = sample.statusinfo;
+  message.sample_kind = sample.kind;
+  SendSample(message, sample, tap.topic);
+}
+
+// The program's listener may write while its writer is still being made: others have to know the
+// writer first.
+bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
+  const ddsi_writer* writer = entidx_lookup_writer_guid(tap.gv->entity_index, &guid);
+  if (writer == nullptr) return false;
+  AnnounceWriter(*writer);
+  return true;
+}
+
+bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
+           ddsi_tkmap_instance* instance) {
+  const Tap& tap = TapOf(rhc);
+  if (t_matching && (t_matching_tap == nullptr || t_matching_tap == &tap)) {
+    if (tap.catches_up && !IsShadow(info->guid)) Ship(tap, info->guid, *sample, true);
+    return true;
+  }
+  Carries carries = CarriesSample(info->guid, tap, sample, instance);
+  if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
+    carries = CarriesSample(info->guid, tap, sample, instance);
+  }
+  if (carries == Carries::kYes) {
+    Ship(tap, info->guid, *sample, false);
+  }
+  if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
+    Ship(tap, info->guid, *sample, true);
+  }
+  return true;
+}
+
+void UnregisterWriter(ddsi_rhc*, const ddsi_writer_info*) {}
+void RelinquishOwnership(ddsi_rhc*, const std::uint64_t) {}
+void SetQos(ddsi_rhc*, const dds_qos_t*) {}
+
+void Free(ddsi_rhc* rhc) {
+  Tap* tap = &TapOf(rhc);
+  RemoveTap(tap);
+  delete tap;
+}
+
+std::int32_t ReadNothing(dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
+                         dds_instance_handle_t, dds_readcond*) {
+  return 0;
+}
+std::int32_t ReadNoCdr(dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t,
+                       std::uint32_t, std::uint32_t, std::uint32_t, dds_instance_handle_t) {
+  return 0;
+}
+bool AddCondition(dds_rhc*, dds_readcond*) { return true; }
+void RemoveCondition(dds_rhc*, dds_readcond*) {}
+std::uint32_t LockSamples(dds_rhc*) { return 0; }
+dds_return_t Associate(dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) {
+  return DDS_RETCODE_OK;
+}
+
+constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnership, SetQos, Free},
+                                     ReadNothing,
+                                     ReadNothing,
+                                     ReadNoCdr,
+                                     ReadNoCdr,
+                                     AddCondition,
+                                     RemoveCondition,
+                                     LockSamples,
+                                     Associate};
+
+}  // namespace
+
+Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
+            const std::string& topic, bool catches_up) {
+  Tap* tap = new Tap{{}, gv, domain, process, reader, topic, catches_up, {catches_up}};
+  tap->rhc.common.ops = &kOperations;
+  AddTap(tap);
+  return tap;
+}
+
+Matching::Matching(const Tap* tap) : was_matching_(t_matching), was_(t_matching_tap) {
+  t_matching = true;
+  t_matching_tap = tap;
+}
+
+Matching::~Matching() {
+  t_matching = was_matching_;
+  t_matching_tap = was_;
+}
+
+void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
+                    std::uint32_t process) {
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, domain, writer);
+  message.to = process;
+  reader.To(message.other);
+  Send(message, {});
+}
+
+}  // namespace tcs::dds
