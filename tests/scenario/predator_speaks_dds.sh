@@ -40,7 +40,11 @@ wait \$robot || exit
 date +%s%N
 kill \$controller \$planner
 END
-"$tcsim" exec --accounting fixed -- bash "$out/all" >"$out/said" 2>"$out/errors" || fail "$(cat "$out/said" "$out/errors")"
-[[ $(sed -n 2p "$out/said") == '3 plans asked for, 3 followed, '* ]] || fail "$(cat "$out/said" "$out/errors")"
-took_ms=$((($(sed -n 3p "$out/said") - $(sed -n 1p "$out/said")) / 1000000))
-((took_ms >= 820 && took_ms < 1100)) || fail "three plans took $took_ms ms: $(cat "$out/said")"
+for transport in endpoints sockets; do
+  "$tcsim" exec --dds "$transport" --accounting fixed -- bash "$out/all" >"$out/said" 2>"$out/errors" ||
+    fail "by $transport: $(cat "$out/said" "$out/errors")"
+  [[ $(sed -n 2p "$out/said") == '3 plans asked for, 3 followed, '* ]] || fail "by $transport: $(cat "$out/said")"
+  took_ms=$((($(sed -n 3p "$out/said") - $(sed -n 1p "$out/said")) / 1000000))
+  ((took_ms >= 820 && took_ms < 1100)) ||
+    fail "three plans by $transport took $took_ms ms: $(cat "$out/said" "$out/errors")"
+done
