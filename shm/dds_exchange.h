@@ -13,10 +13,11 @@
 // To send, a process writes whole messages into its outbox and notifies (kDdsSend): they carry the
 // virtual time of that notification. The coordinator copies them out, checks them, and keeps them
 // in the order of their times. One thread of each process, the *deliverer*, waits for what is due
-// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox, and lets
-// it go before all other threads of its robot. A thread that is about to look at what has come
-// first waits until nobody can send anything before its own time any more (kRead), and then until
-// the deliverer is done (kDdsSync).
+// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox. It runs as
+// the robot's scheduler lets it, as a middleware's threads do, for the program's listeners run on
+// it. A thread that is about to look at what has come first waits until nobody can send anything
+// before its own time any more (kRead), and then until the deliverer is done (kDdsSync): meanwhile
+// it lends it its priority.
 //
 // The coordinator remembers participants and endpoints: who joins later is told of them, and when a
 // process dies its participants are reported as gone once their leases are over. It trusts nothing

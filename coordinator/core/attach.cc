@@ -243,7 +243,10 @@ void Engine::LeaveWait(Task& task) {
   waiting_for_child_ -= task.waits_for_child;
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
-  task.waits_for_messages = task.waits_for_deliverer = false;
+  task.waits_for_messages = false;
+  if (std::exchange(task.waits_for_deliverer, false) && task.process->deliverer != nullptr) {
+    FindPriority(*task.process->deliverer);
+  }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
   task.deadline_ns = shm::kNeverNs;

@@ -34,6 +34,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       if (!IsDelivering(process, task.reached_ns)) break;
       task.waits_for_deliverer = true;
       SetState(task, TaskState::kWaiting);
+      FindPriority(*process.deliverer);
   }
 }
 
@@ -61,8 +62,6 @@ void Engine::AwaitMessages(Task& task) {
   if (process.deliverer != &task) {
     process.deliverer = &task;
     task.is_deliverer = true;
-    task.allowed_cores = FixedPriority::kEveryCore;
-    FindPriority(task);
   }
   hub_.CameBack(process.dds_number);
   task.waits_for_messages = true;

@@ -13,12 +13,9 @@ namespace {
 
 // What asks for SCHED_FIFO or SCHED_RR precedes all others, what asks for SCHED_IDLE follows them.
 constexpr int kRealTimeBand = 1'000'000, kIdleBand = -1'000'000;
-// What has come for a program is there before any of the robot's threads looks.
-constexpr int kDeliverer = 2'000'000;
 constexpr int kMostOwners = 64;  // in a chain of who waits for whom; a circle ends there
 
 int OwnPriority(const Task& task) {
-  if (task.is_deliverer) return kDeliverer;
   if (task.policy == SCHED_FIFO || task.policy == SCHED_RR) {
     return kRealTimeBand + task.posix_priority;
   }
@@ -44,13 +41,16 @@ void Engine::InheritScheduling(Task& task, const Task& creator) {
   FindPriority(task);
 }
 
-// Those who wait for its locks lend it theirs, and it lends to whom it waits for.
+// Those who wait for its locks, or for it to deliver, lend it theirs, and it lends to whom it waits
+// for.
 void Engine::FindPriority(Task& task) {
   Task* next = &task;
   for (int i = 0; next != nullptr && i < kMostOwners; ++i) {
     int priority = OwnPriority(*next);
     for (const Task& waiter : tasks_) {
-      if (waiter.lock_owner == next) priority = std::max(priority, waiter.priority);
+      const bool lends = waiter.lock_owner == next || (waiter.waits_for_deliverer &&
+                                                       waiter.process->deliverer == next);
+      if (lends) priority = std::max(priority, waiter.priority);
     }
     if (priority != next->priority) {
       next->priority = priority;

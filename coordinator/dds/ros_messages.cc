@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tcs::dds {
 namespace {
@@ -159,13 +158,6 @@ std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message) {
     return MessageError{"has a torque that is not finite"};
   }
   return wrench;
-}
-
-void SetText(char** field, std::string_view text) {
-  TCS_CHECK(*field == nullptr);
-  *field = static_cast<char*>(dds_alloc(text.size() + 1));
-  text.copy(*field, text.size());
-  (*field)[text.size()] = '\0';
 }
 
 }  // namespace tcs::dds

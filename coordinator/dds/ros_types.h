@@ -34,17 +34,22 @@ using ClockMessage = rosgraph_msgs_msg_dds__Clock_;
 using HumbleParticipantMessage = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
 using IronParticipantMessage = rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_;
 
-// clang-format off
-template <> inline const dds_topic_descriptor_t& DescriptorOf<HeaderMessage>() { return std_msgs_msg_dds__Header__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<TwistMessage>() { return geometry_msgs_msg_dds__Twist__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<WrenchMessage>() { return geometry_msgs_msg_dds__Wrench__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<OdometryMessage>() { return nav_msgs_msg_dds__Odometry__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<ImuMessage>() { return sensor_msgs_msg_dds__Imu__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<JointStateMessage>() { return sensor_msgs_msg_dds__JointState__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<ClockMessage>() { return rosgraph_msgs_msg_dds__Clock__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<HumbleParticipantMessage>() { return rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc; }
-template <> inline const dds_topic_descriptor_t& DescriptorOf<IronParticipantMessage>() { return rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo__desc; }
-// clang-format on
+// idlc calls the table of the type X X_desc.
+#define TCS_DESCRIBED_BY(Message, Type)                          \
+  template <>                                                    \
+  inline const dds_topic_descriptor_t& DescriptorOf<Message>() { \
+    return Type##_desc;                                          \
+  }
+TCS_DESCRIBED_BY(HeaderMessage, std_msgs_msg_dds__Header_)
+TCS_DESCRIBED_BY(TwistMessage, geometry_msgs_msg_dds__Twist_)
+TCS_DESCRIBED_BY(WrenchMessage, geometry_msgs_msg_dds__Wrench_)
+TCS_DESCRIBED_BY(OdometryMessage, nav_msgs_msg_dds__Odometry_)
+TCS_DESCRIBED_BY(ImuMessage, sensor_msgs_msg_dds__Imu_)
+TCS_DESCRIBED_BY(JointStateMessage, sensor_msgs_msg_dds__JointState_)
+TCS_DESCRIBED_BY(ClockMessage, rosgraph_msgs_msg_dds__Clock_)
+TCS_DESCRIBED_BY(HumbleParticipantMessage, rmw_dds_common_msg_dds__ParticipantEntitiesInfo_)
+TCS_DESCRIBED_BY(IronParticipantMessage, rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_)
+#undef TCS_DESCRIBED_BY
 
 // A string field's new value; the field must be null.
 void SetText(char** field, std::string_view text);

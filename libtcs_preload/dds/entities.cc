@@ -3,6 +3,7 @@
 #include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/catch_up.h"
 #include "libtcs_preload/dds/identity.h"
+#include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/listening.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
@@ -10,28 +11,6 @@
 
 namespace tcs::dds {
 namespace {
-
-// Shadows are in the same process as what they are to match, so "ignore what is in my process"
-// becomes "ignore what is in my participant".
-class MatchableQos {
- public:
-  explicit MatchableQos(const dds_qos_t* qos) : qos_(qos) {
-    dds_ignorelocal_kind_t kind{};
-    if (!dds_qget_ignorelocal(qos, &kind) || kind != DDS_IGNORELOCAL_PROCESS) return;
-    changed_ = ddsi_xqos_dup(qos);
-    dds_qset_ignorelocal(changed_, DDS_IGNORELOCAL_PARTICIPANT);
-  }
-  ~MatchableQos() {
-    if (changed_ != nullptr) dds_delete_qos(changed_);
-  }
-  MatchableQos(const MatchableQos&) = delete;
-  MatchableQos& operator=(const MatchableQos&) = delete;
-  const dds_qos_t* get() const { return changed_ != nullptr ? changed_ : qos_; }
-
- private:
-  const dds_qos_t* qos_;
-  dds_qos_t* changed_ = nullptr;
-};
 
 // Built-in topics are each process's own.
 bool IsBuiltin(const ddsi_participant& participant, const ddsi_sertype* type) {
@@ -79,11 +58,14 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
     return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, qos, cache, status,
                                   argument);
   }
-  const MatchableQos matchable(qos);
+  ddsi_domaingv* gv = participant->e.gv;
+  OwnMatches matches(gv, qos, ReadersOf(gv->config.domainId, topic));
   const dds_return_t result =
-      Real().ddsi_new_writer(writer, guid, group, participant, topic, type, matchable.get(), cache,
+      Real().ddsi_new_writer(writer, guid, group, participant, topic, type, matches.qos(), cache,
                              ListeningWriterStatus(status), argument);
-  if (result >= 0 && !IsBuiltin(*participant, type)) AnnounceWriter(**writer);
+  if (result < 0) return result;
+  matches.Made(*guid);
+  if (!IsBuiltin(*participant, type)) AnnounceWriter(**writer);
   return result;
 }
 
@@ -92,6 +74,7 @@ dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const dds_return_t result = Real().ddsi_delete_writer(gv, guid);
   if (IsWriter(key)) {
     RemoveWriter(gv, key);
+    ForgetIgnoring(key);
     AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
   }
   return result;
@@ -102,10 +85,9 @@ void UpdateWriter(ddsi_writer* writer, const dds_qos_t* qos) {
     Real().ddsi_update_writer_qos(writer, qos);
     return;
   }
-  const MatchableQos matchable(qos);
   {
     const Matching matching(nullptr);
-    Real().ddsi_update_writer_qos(writer, matchable.get());
+    Real().ddsi_update_writer_qos(writer, qos);
   }
   AnnounceChange(*writer);
 }
@@ -118,23 +100,29 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
     return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, qos, cache, status,
                                   argument);
   }
+  ddsi_domaingv* gv = participant->e.gv;
   const bool builtin = IsBuiltin(*participant, type);
-  const MatchableQos matchable(qos);
-  if (!builtin) CoverHistoryCache(cache, participant->e.gv, *qos);
+  if (!builtin) CoverHistoryCache(cache, gv, *qos);
+  OwnMatches matches(gv, qos, WritersOf(gv->config.domainId, topic));
   dds_return_t result;
   {
     const MakingReader making;
-    result = Real().ddsi_new_reader(reader, guid, group, participant, topic, type, matchable.get(),
+    result = Real().ddsi_new_reader(reader, guid, group, participant, topic, type, matches.qos(),
                                     cache, ListeningReaderStatus(status), argument);
   }
-  if (result >= 0 && !builtin) AnnounceReader(**reader);
+  if (result < 0) return result;
+  matches.Made(*guid);
+  if (!builtin) AnnounceReader(**reader);
   return result;
 }
 
 dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = Guid::Of(*guid);
   const dds_return_t result = Real().ddsi_delete_reader(gv, guid);
-  if (RemoveReader(key)) AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+  if (RemoveReader(key)) {
+    ForgetIgnoring(key);
+    AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+  }
   return result;
 }
 
@@ -143,10 +131,9 @@ void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
     Real().ddsi_update_reader_qos(reader, qos);
     return;
   }
-  const MatchableQos matchable(qos);
   {
     const MakingReader making;
-    Real().ddsi_update_reader_qos(reader, matchable.get());
+    Real().ddsi_update_reader_qos(reader, qos);
   }
   AnnounceChange(*reader);
 }

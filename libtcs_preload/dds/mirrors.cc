@@ -4,6 +4,7 @@
 
 #include "libtcs_preload/dds/catch_up.h"
 #include "libtcs_preload/dds/identity.h"
+#include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/liveliness.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
@@ -203,6 +204,7 @@ void Mirrors::MakeEndpoint(const Guid& guid, Endpoint& endpoint) {
   const dds_entity_t topic = TopicOf(gv, endpoint, participant, qos.get());
   if (topic <= 0) return;
   SetNextEntity(gv, endpoint.participant, guid);
+  const ShadowMatches matches(gv);
   if (endpoint.what.kind == shm::kDdsWriter) {
     MakeWriter(endpoint, participant.shadow, topic, qos.get());
   } else {

@@ -67,6 +67,18 @@ void Forget(Writer& writer, const ddsi_domaingv* gv) {
   for (auto& [iid, instance] : writer.instances) ddsi_tkmap_instance_unref(gv->m_tkmap, instance);
 }
 
+std::vector<Guid> SomeWritersOf(std::uint32_t domain, const std::string& topic, bool with_history) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<Guid> guids;
+  for (const auto& [guid, writer] : state.writers) {
+    if ((writer.has_history || !with_history) && writer.domain == domain && writer.topic == topic) {
+      guids.push_back(guid);
+    }
+  }
+  return guids;
+}
+
 }  // namespace
 
 void AddShadow(const Guid& participant) {
@@ -194,16 +206,12 @@ bool IsWriter(const Guid& guid) {
   return state.writers.contains(guid);
 }
 
+std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
+  return SomeWritersOf(domain, topic, false);
+}
+
 std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& topic) {
-  State& state = Get();
-  const std::lock_guard lock(state.mutex);
-  std::vector<Guid> guids;
-  for (const auto& [guid, writer] : state.writers) {
-    if (writer.has_history && writer.domain == domain && writer.topic == topic) {
-      guids.push_back(guid);
-    }
-  }
-  return guids;
+  return SomeWritersOf(domain, topic, true);
 }
 
 namespace {

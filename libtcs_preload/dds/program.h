@@ -41,7 +41,8 @@ void ReleaseTypes(std::uint32_t domain);
 bool AddWriter(const ddsi_writer& writer);
 void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid);
 bool IsWriter(const Guid& guid);
-// The transient-local writers of a topic.
+std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
+// The transient-local ones among them.
 std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& topic);
 
 // Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one

@@ -3,6 +3,10 @@
 // starts both, and waits for them; it calls itself for each with its role and the descriptor of
 // their socket:
 //   dds_scenario NAME native|sockets|endpoints writer|reader FD
+// Two robots have one each, which meet at a socket of that name (it begins with a slash or a dot):
+//   dds_scenario NAME native|sockets|endpoints writer|reader PATH
+// The variable TCS_DDS_DOMAIN is the domain to use, 0 without it; the one after it must be free,
+// too.
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -12,11 +16,13 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "tests/dds/support/process.h"
+#include "tests/dds/support/waits.h"
 
 namespace dds_test {
 namespace {
@@ -25,7 +31,10 @@ constexpr const char* kRoles[] = {"writer", "reader"};
 
 int Play(const Scenario& scenario, Under under, Role role, int socket) {
   Peer peer(socket);
-  Process process{OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr)), peer, under};
+  const char* domain = getenv("TCS_DDS_DOMAIN");
+  Process process{domain == nullptr ? 0u : static_cast<dds_domainid_t>(atoi(domain)), 0, peer,
+                  under};
+  process.participant = process.Participant();
   (role == Role::kWriter ? scenario.writer_role : scenario.reader_role)(process);
   // Nobody sees the other leave while it is still looking.
   if (scenario.end == End::kOrderly) peer.Meet("end");
@@ -96,6 +105,25 @@ int StartBoth(const Scenario& scenario, char** argv) {
   return result;
 }
 
+// The writer waits there, the reader tries until it does.
+int MeetAt(const char* path, Role role) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (strlen(path) >= sizeof address.sun_path) Fail("the path '%s' is too long", path);
+  strcpy(address.sun_path, path);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const auto* where = reinterpret_cast<const sockaddr*>(&address);
+  if (role == Role::kWriter) {
+    if (bind(fd, where, sizeof address) != 0 || listen(fd, 1) != 0)
+      Fail("cannot listen at '%s': %s", path, strerror(errno));
+    const int peer = accept4(fd, nullptr, nullptr, SOCK_CLOEXEC);
+    close(fd);
+    return peer;
+  }
+  WaitUntil("the writer listens", [&] { return connect(fd, where, sizeof address) == 0; });
+  return fd;
+}
+
 int Main(int argc, char** argv) {
   if (argc != 3 && argc != 5) {
     fprintf(stderr, "usage: %s NAME native|sockets|endpoints\n", argv[0]);
@@ -107,8 +135,9 @@ int Main(int argc, char** argv) {
                       : strcmp(argv[2], "sockets") == 0 ? Under::kSockets
                                                         : Under::kNative;
   if (argc == 5) {
-    return Play(*scenario, under, strcmp(argv[3], kRoles[0]) == 0 ? Role::kWriter : Role::kReader,
-                atoi(argv[4]));
+    const Role role = strcmp(argv[3], kRoles[0]) == 0 ? Role::kWriter : Role::kReader;
+    const bool is_path = argv[4][0] == '/' || argv[4][0] == '.';
+    return Play(*scenario, under, role, is_path ? MeetAt(argv[4], role) : atoi(argv[4]));
   }
   if (under != Under::kNative) ProveVirtualTime();
   return StartBoth(*scenario, argv);

@@ -25,7 +25,7 @@ void Writer(Process& self) {
   self.peer.Await("endpoint gone");
   OK(dds_delete(self.participant));
   self.peer.Await("participant gone");
-  self.participant = OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr));
+  self.participant = self.Participant();
 }
 
 const char* State(dds_instance_state_t state) {

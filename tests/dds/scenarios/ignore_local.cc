@@ -10,7 +10,7 @@ using namespace dds_test;
 // Both processes do the same, each with a key of its own.
 void Play(Process& self, int key) {
   const dds_entity_t topic = self.Topic();
-  const dds_entity_t other = OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr));
+  const dds_entity_t other = self.Participant();
   const dds_entity_t other_topic =
       OK(dds_create_topic(other, &dds_test_Sample_desc, "a", nullptr, nullptr));
   const auto ignoring = [](dds_entity_t participant, dds_entity_t in, dds_ignorelocal_kind_t kind) {

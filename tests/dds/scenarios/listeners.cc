@@ -119,7 +119,10 @@ void Reader(Process& self) {
   of_all.WaitFor(4);
   OK(dds_delete(a));
   self.peer.Reached("reader deleted");
-  OK(dds_set_listener(self.participant, nullptr));
+  // The other process may be gone first, which is data as well.
+  for (const dds_entity_t with : {self.participant, subscriber}) {
+    OK(dds_set_listener(with, nullptr));
+  }
   for (Log* log : {&of_a, &of_b, &of_all}) log->Tell();
 }
 

@@ -46,7 +46,7 @@ void Reader(Process& self) {
   OK(dds_delete(self.participant));
   self.peer.Reached("participant gone");
   self.peer.Await("written a third time");
-  self.participant = OK(dds_create_participant(DDS_DOMAIN_DEFAULT, nullptr, nullptr));
+  self.participant = self.Participant();
   Join<92>(self, "with a new participant");
 }
 

@@ -24,6 +24,10 @@ const Scenario* FindScenario(const char* name) {
   return scenario;
 }
 
+dds_entity_t Process::Participant(dds_domainid_t beside) const {
+  return OK(dds_create_participant(domain + beside, nullptr, nullptr));
+}
+
 dds_entity_t Process::Topic(const char* name, const dds_topic_descriptor_t* type) const {
   return OK(dds_create_topic(participant, type, name, nullptr, nullptr));
 }

@@ -20,10 +20,13 @@ enum class Role { kWriter, kReader };
 enum class Under { kNative, kSockets, kEndpoints };
 
 struct Process {
+  dds_domainid_t domain;
   dds_entity_t participant;
   Peer& peer;
   Under under;
 
+  // One more participant, in the scenario's domain or in one beside it.
+  dds_entity_t Participant(dds_domainid_t beside = 0) const;
   // Topics of a scenario are told apart by a letter.
   dds_entity_t Topic(const char* name = "a",
                      const dds_topic_descriptor_t* type = &dds_test_Sample_desc) const;

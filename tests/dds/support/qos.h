@@ -56,6 +56,18 @@ class Qos {
     dds_qset_ignorelocal(qos_, kind);
     return *this;
   }
+  Qos& Exclusive() {
+    dds_qset_ownership(qos_, DDS_OWNERSHIP_EXCLUSIVE);
+    return *this;
+  }
+  Qos& Exclusive(int strength) {
+    dds_qset_ownership_strength(qos_, strength);
+    return Exclusive();
+  }
+  Qos& BySourceTimestamp() {
+    dds_qset_destination_order(qos_, DDS_DESTINATIONORDER_BY_SOURCE_TIMESTAMP);
+    return *this;
+  }
   Qos& Partition(const char* name) {
     dds_qset_partition1(qos_, name);
     return *this;

@@ -252,6 +252,18 @@ TEST_F(BagTest, OfAKilledWriterCanBeOpened) {
   EXPECT_EQ(Metadata()["duration"]["nanoseconds"].as<std::int64_t>(), 299 * kPeriod);
 }
 
+TEST_F(BagTest, WritesLargeSamplesBeforeTheSecondIsOver) {
+  Bag bag;
+  ASSERT_EQ(bag.Open(Folder()), "");
+  const int topic = bag.AddTopic("/cloud", "sensor_msgs/msg/PointCloud2");
+  const std::vector<std::byte> megabyte(1 << 20);
+  for (int i = 0; i < 5; ++i) bag.Write(topic, kStart, megabyte);
+  EXPECT_EQ(Metadata()["message_count"].as<int>(), 4);
+  EXPECT_THAT(Reader(Database()).Rows("SELECT count(*) FROM messages"), ElementsAre("4"));
+  EXPECT_EQ(bag.Close(), "");
+  EXPECT_EQ(Metadata()["message_count"].as<int>(), 5);
+}
+
 TEST_F(BagTest, OnAFullDiskSaysWhatIsMissing) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
