@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kVersion = 7;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -193,12 +193,15 @@ struct alignas(64) ThreadSlot {
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
   std::uint32_t patch_vdso;  // 1: calls of the vDSO are to be led to the shim
-  std::uint8_t reserved[460];
+  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
+  std::atomic<std::uint32_t> signals;
+  std::uint8_t reserved[464];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
+static_assert(offsetof(ThreadSlot, signals) == 556);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters.

@@ -365,6 +365,9 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.used_up = 0;
   }
   ExpireCpuTimers(task);
+  // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
+  // the level of its last dispatch, beside whoever is next.
+  if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);
   if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;

@@ -65,10 +65,13 @@ class Engine {
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   bool HasRunOut(const Task& task, std::int64_t now_ns) const;
-  void SetState(Task& task, TaskState state);
-  void Requeue(Task& task);
+  void SetState(Task& task, TaskState state, bool goes_first = false);
+  void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason);
+  bool GoesFirst(const Task& task, std::int64_t after_ns) const;
+  static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
+  static void ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing);
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -278,6 +281,7 @@ class Engine {
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
+  bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
   bool external_event_ = false;

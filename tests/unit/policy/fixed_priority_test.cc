@@ -83,12 +83,12 @@ TEST(FixedPriority, AThreadRunsNoEarlierThanItHasCome) {
   robot.Assign({500});
   EXPECT_EQ(robot.Next(0).thread, kPlanner) << "the controller wakes only at 600";
   EXPECT_EQ(robot.Next(0).start_ns, 500);
-  EXPECT_EQ(robot.NextMoreUrgent(0), 600);
+  EXPECT_EQ(robot.NextToPrecede(0), 600);
   robot.Remove(kPlanner);
   robot.Assign({500});
   EXPECT_EQ(robot.Next(0).thread, kController);
   EXPECT_EQ(robot.Next(0).start_ns, 600);
-  EXPECT_EQ(robot.NextMoreUrgent(0), kNever);
+  EXPECT_EQ(robot.NextToPrecede(0), kNever);
 }
 
 TEST(FixedPriority, EachCoreRunsAThreadOfItsOwn) {
