@@ -160,6 +160,7 @@ class Engine {
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
+  void AnswerAhead(Task& task);
   void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets);
   bool PollSignals();
