@@ -87,6 +87,7 @@ struct Task {
   std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
   int unchecked_slices = 0;                 // by the coordinator
+  int unchecked_from_gate = 0;              // of them
   std::int64_t turn_ns = 0;                 // had since its equals last had a turn
   Share share;                              // of what it and its equals have had
   std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
