@@ -133,8 +133,9 @@ struct ClockPage {
   std::atomic<std::int64_t> last_shown_ns;  // the clock never shows less
   std::atomic<std::uint64_t> last_check_tsc;
   std::atomic<std::int64_t> stolen_ns;  // removed so far, virtual ns, host-visible statistics only
+  // The thread's CPU clock at base_cpu_ns == 0, moved by what is not charged.
+  std::int64_t host_cpu_origin_ns;
   // Constant from the thread's first dispatch on.
-  std::int64_t host_cpu_origin_ns;   // the thread's CPU clock at base_cpu_ns == 0
   std::uint64_t ns_per_host_ns_q32;  // virtual ns per host ns, times 2^32
   std::uint64_t check_after_ticks;   // the CPU clock is asked when this much TSC has passed
   std::int64_t call_cost_ns;         // of each intercepted call; 0 under measured accounting

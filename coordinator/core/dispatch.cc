@@ -200,6 +200,7 @@ void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
+  task.host_origin_ns = page.host_cpu_origin_ns;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
   if (trapped_.has_value() && IsFixed()) {

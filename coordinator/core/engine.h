@@ -272,10 +272,10 @@ class Engine {
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
   double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
-  // From the coordinator's last word to the thread's first, and back: of a thread that was preempted,
-  // and of one at its gate, which has more of the kernel to run through.
+  // From the coordinator's last word to the thread's first, and back: of a thread that was
+  // preempted, and of one at its gate, which has more of the kernel to run through.
   double switch_ns_[2] = {0, 0};
-  bool from_gate_ = false;      // the running thread
+  bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;
   std::int64_t event_ns_ = 0;  // virtual time of what is being handled
