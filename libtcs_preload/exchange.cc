@@ -64,7 +64,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
     }
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
-    if (result == 0) shm::TakeOutGate(slot.clock, kMostGateNs);
+    if (result == 0) shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && interruptible &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {
