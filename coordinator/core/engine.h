@@ -69,10 +69,13 @@ class Engine {
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   bool HasRunOut(const Task& task, std::int64_t now_ns) const;
-  void SetState(Task& task, TaskState state);
-  void Requeue(Task& task);
+  void SetState(Task& task, TaskState state, bool goes_first = false);
+  void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason);
+  bool GoesFirst(const Task& task, std::int64_t after_ns) const;
+  static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
+  static void ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing);
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -171,10 +174,13 @@ class Engine {
   void ReleaseThoseAwaitingDeliverer(const Process& process);
   void ShowDeliverersTheirDeadlines();
   void HandMessagesOver(Task& task);
+  void AwaitRoom(Task& task);
+  void ReleaseThoseAwaitingRoom(dds::Hub::Number number);
 
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
+  void AnswerAhead(Task& task);
   void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets);
   bool PollSignals();
@@ -291,7 +297,10 @@ class Engine {
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
   double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
-  double switch_ns_ = 0;        // from the coordinator's last word to the thread's first, and back
+  // From the coordinator's last word to the thread's first, and back: of a thread that was
+  // preempted, and of one at its gate, which has more of the kernel to run through.
+  double switch_ns_[2] = {0, 0};
+  bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;
   std::int64_t event_ns_ = 0;  // virtual time of what is being handled
@@ -301,6 +310,7 @@ class Engine {
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
+  bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
   bool external_event_ = false;
