@@ -12,13 +12,6 @@
 
 namespace tcs {
 
-namespace {
-
-// The default of DDS's max_blocking_time.
-constexpr std::int64_t kMostWaitForRoomNs = 100'000'000;
-
-}  // namespace
-
 std::string Engine::OpenDds() {
   const std::string& directory = options_.output_directory;
   if (!directory.empty()) {
@@ -87,7 +80,6 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       }
       if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
       ShowDeliverersTheirDeadlines();
-      AwaitRoom(task);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
@@ -114,9 +106,7 @@ void Engine::LeaveDds(Process& process) {
   if (process.dds_number == 0) return;
   process.deliverer = nullptr;
   std::erase(dds_processes_, &process);
-  const dds::Hub::Number number = std::exchange(process.dds_number, 0);
-  hub_.Leave(number, event_ns_);
-  ReleaseThoseAwaitingRoom(number);
+  hub_.Leave(std::exchange(process.dds_number, 0), event_ns_);
   ShowDeliverersTheirDeadlines();
 }
 
@@ -159,22 +149,6 @@ void Engine::ShowDeliverersTheirDeadlines() {
   }
 }
 
-// Whoever writes faster than others read has to wait for them, as a reliable writer does; but for
-// none that has stopped reading.
-void Engine::AwaitRoom(Task& task) {
-  task.waits_for_room = hub_.crowded();
-  if (task.waits_for_room == 0) return;
-  task.deadline_ns = task.reached_ns + kMostWaitForRoomNs;
-  SetState(task, TaskState::kWaiting);
-}
-
-void Engine::ReleaseThoseAwaitingRoom(dds::Hub::Number number) {
-  if (hub_.IsCrowded(number)) return;
-  for (Task& task : tasks_) {
-    if (task.waits_for_room == number) MakeReady(task, shm::WakeReason::kGo);
-  }
-}
-
 // At the dispatch of a deliverer whose wait is over.
 void Engine::HandMessagesOver(Task& task) {
   const std::int64_t until = std::exchange(task.messages_until_ns, -1);
@@ -182,8 +156,6 @@ void Engine::HandMessagesOver(Task& task) {
   const std::size_t bytes =
       hub_.Deliver(task.process->dds_number, std::max(until, task.cpu->progress_ns));
   task.reply[0] = static_cast<std::int64_t>(bytes);
-  event_ns_ = task.cpu->progress_ns;
-  ReleaseThoseAwaitingRoom(task.process->dds_number);
 }
 
 }  // namespace tcs

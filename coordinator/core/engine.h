@@ -174,8 +174,6 @@ class Engine {
   void ReleaseThoseAwaitingDeliverer(const Process& process);
   void ShowDeliverersTheirDeadlines();
   void HandMessagesOver(Task& task);
-  void AwaitRoom(Task& task);
-  void ReleaseThoseAwaitingRoom(dds::Hub::Number number);
 
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);

@@ -21,9 +21,6 @@ using shm::DdsMessage;
 
 // What may wait for one process. Whoever lets more wait has stopped taking it.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
-// Where more waits, writers are to wait, too; about as much as Cyclone's own lets be
-// unacknowledged.
-constexpr std::size_t kCrowdedBytes = std::size_t{512} << 10;
 
 Hub::Guid GuidOf(const std::uint8_t* bytes) {
   Hub::Guid guid;
@@ -120,7 +117,6 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
 
 std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const Member* member = Find(from);
-  crowded_ = 0;
   if (member == nullptr) return "it has not joined";
   if (bytes > shm::kDdsBoxSize) return "its messages are longer than its outbox";
   const char* at = member->outbox();
@@ -220,14 +216,8 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
     return;
   }
   member->queued_bytes += message->size();
-  if (header.kind == DdsKind::kSample && member->queued_bytes > kCrowdedBytes) crowded_ = to;
   member->queue.emplace(due_ns, message);
   member->ShowDue();
-}
-
-bool Hub::IsCrowded(Number number) const {
-  const Member* member = Find(number);
-  return member != nullptr && member->queued_bytes > kCrowdedBytes;
 }
 
 std::int64_t Hub::DueNs(Number number) const {

@@ -53,11 +53,6 @@ class Hub {
   // with the first one that is not as it must be: it is dropped, and what follows it.
   [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns);
 
-  // Of the processes that got a sample by the last Send, one for which much is waiting already; 0:
-  // none.
-  Number crowded() const { return crowded_; }
-  bool IsCrowded(Number number) const;
-
   // When the process's next message is due.
   std::int64_t DueNs(Number number) const;
   // Puts what is due into its inbox, as far as there is room; returns the bytes. From then on until
@@ -123,7 +118,6 @@ class Hub {
   std::vector<Member> members_;               // of number i + 1
   std::vector<Known> known_;                  // in the order in which they came
   std::uint64_t dropped_ = 0;
-  Number crowded_ = 0;
 };
 
 }  // namespace tcs::dds
