@@ -19,6 +19,9 @@
 // before its own time any more (kRead), and then until the deliverer is done (kDdsSync): meanwhile
 // it lends it its priority.
 //
+// Whoever writes faster than others take waits after sending (kDdsRoom), as a reliable DDS writer
+// does, as long as its QoS say: nothing is lost by that, and nobody waits for ever.
+//
 // The coordinator remembers participants and endpoints: who joins later is told of them, and when a
 // process dies its participants are reported as gone once their leases are over. It trusts nothing
 // that it reads here. Any change bumps kVersion (layout.h).
@@ -44,7 +47,9 @@ struct alignas(64) DdsArea {
   std::atomic<std::int64_t> due_ns;     // of the earliest message not handed over; kNeverNs
   std::atomic<std::uint32_t> delivers;  // 1: the deliverer has not come back for more yet
   std::uint32_t process;                // its number
-  std::uint64_t reserved[6];
+  std::atomic<std::uint32_t> full;      // a process for which too much waited after the last send
+  std::uint32_t reserved32;
+  std::uint64_t reserved[5];
 };
 static_assert(sizeof(DdsArea) == 64);
 

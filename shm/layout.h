@@ -79,6 +79,7 @@ enum class NotificationKind : std::uint32_t {
   kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
                   // messages in the inbox
   kDdsSync = 28,  // go on once the deliverer has handed over what is due, or waits for others
+  kDdsRoom = 29,  // args[0]: go on once less waits for that process, or at the deadline
 };
 
 // Kernel objects that cannot be polled. kTerminals is for waking only: what is written to one end

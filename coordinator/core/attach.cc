@@ -245,6 +245,7 @@ void Engine::LeaveWait(Task& task) {
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
   task.waits_for_messages = false;
+  task.waits_for_room = 0;
   if (std::exchange(task.waits_for_deliverer, false) && task.process->deliverer != nullptr) {
     FindPriority(*task.process->deliverer);
   }

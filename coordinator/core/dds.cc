@@ -84,6 +84,11 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
       break;
+    case shm::NotificationKind::kDdsRoom:
+      task.waits_for_room = static_cast<std::uint32_t>(note.args[0]);
+      if (!hub_.IsFull(task.waits_for_room)) break;
+      SetState(task, TaskState::kWaiting);
+      break;
     default:
       if (!IsDelivering(process, task.reached_ns)) break;
       task.waits_for_deliverer = true;
@@ -106,7 +111,9 @@ void Engine::LeaveDds(Process& process) {
   if (process.dds_number == 0) return;
   process.deliverer = nullptr;
   std::erase(dds_processes_, &process);
-  hub_.Leave(std::exchange(process.dds_number, 0), event_ns_);
+  const std::uint32_t number = std::exchange(process.dds_number, 0);
+  hub_.Leave(number, event_ns_);
+  ReleaseThoseAwaitingRoom(number);
   ShowDeliverersTheirDeadlines();
 }
 
@@ -118,6 +125,7 @@ void Engine::AwaitMessages(Task& task) {
     task.is_deliverer = true;
   }
   hub_.CameBack(process.dds_number);
+  ReleaseThoseAwaitingRoom(process.dds_number);
   task.waits_for_messages = true;
   task.deadline_ns = hub_.DueNs(process.dds_number);
   SetState(task, TaskState::kWaiting);
@@ -137,6 +145,16 @@ void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
   for (Task* task : tasks) {
     if (task->process != &process || !task->waits_for_deliverer) continue;
     if (!IsDelivering(process, task->reached_ns)) MakeReady(*task, shm::WakeReason::kGo);
+  }
+}
+
+// Those that sent to a process more than it can take at once.
+void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number) {
+  if (hub_.IsFull(number)) return;
+  for (Task& task : tasks_) {
+    if (task.state == TaskState::kWaiting && task.waits_for_room == number) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
   }
 }
 

@@ -172,6 +172,7 @@ class Engine {
   void AwaitMessages(Task& task);
   bool IsDelivering(const Process& process, std::int64_t now_ns) const;
   void ReleaseThoseAwaitingDeliverer(const Process& process);
+  void ReleaseThoseAwaitingRoom(std::uint32_t number);
   void ShowDeliverersTheirDeadlines();
   void HandMessagesOver(Task& task);
 

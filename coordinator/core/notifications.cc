@@ -157,6 +157,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsSend:
     case Kind::kDdsWait:
     case Kind::kDdsSync:
+    case Kind::kDdsRoom:
       HandleDds(task, note);
       break;
     case Kind::kQueueNotifies:

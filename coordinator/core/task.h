@@ -61,6 +61,7 @@ struct Task {
   std::uint64_t key_order = 0;            // of waiting
   // Of programs that speak DDS (dds.cc).
   bool is_deliverer = false, waits_for_messages = false, waits_for_deliverer = false;
+  std::uint32_t waits_for_room = 0;     // of that process among those that speak DDS
   std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
   bool has_wait_mask = false;           // it waits with a signal mask of its own (sigsuspend):
   std::uint64_t wait_mask = 0;          // this one; bit 0 is signal 1

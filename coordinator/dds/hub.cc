@@ -21,6 +21,8 @@ using shm::DdsMessage;
 
 // What may wait for one process. Whoever lets more wait has stopped taking it.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
+// Some milliseconds' work for who takes it. Cyclone's writers stop at half of that.
+constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
 Hub::Guid GuidOf(const std::uint8_t* bytes) {
   Hub::Guid guid;
@@ -119,6 +121,7 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const Member* member = Find(from);
   if (member == nullptr) return "it has not joined";
   if (bytes > shm::kDdsBoxSize) return "its messages are longer than its outbox";
+  member->shown().full.store(0);
   const char* at = member->outbox();
   const char* const end = at + bytes;
   while (at != end) {
@@ -217,6 +220,9 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
   }
   member->queued_bytes += message->size();
   member->queue.emplace(due_ns, message);
+  if (header.kind == DdsKind::kSample && IsFull(to)) {
+    if (const Member* sender = Find(header.from)) sender->shown().full.store(to);
+  }
   member->ShowDue();
 }
 
@@ -237,6 +243,7 @@ std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
     member->queued_bytes -= message.size();
     member->queue.erase(member->queue.begin());
   }
+  member->delivered_bytes = filled;
   member->delivers = true;
   member->shown().delivers.store(1);
   member->ShowDue();
@@ -247,7 +254,13 @@ void Hub::CameBack(Number number) {
   Member* member = Find(number);
   if (member == nullptr) return;
   member->delivers = false;
+  member->delivered_bytes = 0;
   member->shown().delivers.store(0);
+}
+
+bool Hub::IsFull(Number number) const {
+  const Member* member = Find(number);
+  return member != nullptr && member->queued_bytes + member->delivered_bytes > kFullBytes;
 }
 
 bool Hub::IsDelivering(Number number) const {

@@ -60,6 +60,8 @@ class Hub {
   std::size_t Deliver(Number number, std::int64_t now_ns);
   void CameBack(Number number);
   bool IsDelivering(Number number) const;
+  // More waits for it, or is in its hands, than it should: senders wait until it is not so.
+  bool IsFull(Number number) const;
 
   // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
   // left to be filled in.
@@ -88,6 +90,7 @@ class Hub {
     bool delivers = false;
     std::multimap<std::int64_t, Message> queue;  // by the time when it is due
     std::size_t queued_bytes = 0;
+    std::size_t delivered_bytes = 0;  // in its inbox until it comes back for more
 
     shm::DdsArea& shown() const { return *reinterpret_cast<shm::DdsArea*>(area); }
     char* outbox() const { return area + shm::kDdsHeaderSize; }

@@ -87,6 +87,17 @@ bool Send(const iovec* parts, int count) {
   return true;
 }
 
+void AwaitRoom(std::int64_t most_ns) {
+  if (g_area == nullptr || t_delivers) return;
+  const std::uint32_t full = g_area->full.load();
+  if (full == 0) return;
+  GuestThread* t = Current();
+  if (t == nullptr) return;
+  Exchange(*t, Request{.kind = NotificationKind::kDdsRoom,
+                       .deadline_ns = NowNs(*t) + most_ns,
+                       .args = {full}});
+}
+
 std::size_t Wait(const std::byte** messages) {
   t_delivers = true;
   *messages = reinterpret_cast<const std::byte*>(Inbox());
@@ -94,6 +105,7 @@ std::size_t Wait(const std::byte** messages) {
     GuestThread* t = Current();
     if (t == nullptr || IsShutDown()) return 0;
     const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsWait});
+    if (IsShutDown()) return 0;  // the answer is to an earlier call
     if (reply.values[0] > 0) return static_cast<std::size_t>(reply.values[0]);
   }
 }
@@ -115,7 +127,7 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, Wait, Sync, NowOfThread};
+const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, NowOfThread};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";

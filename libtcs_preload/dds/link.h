@@ -19,6 +19,10 @@ struct Link {
   // threads may send at the same time. False: it is larger than the outbox, and was not sent.
   bool (*send)(const iovec* parts, int count);
 
+  // After a send: if more waits for a process that the message was for than it can take at once,
+  // waits until that is not so, for as long as that at most. Nothing for the deliverer.
+  void (*await_room)(std::int64_t most_ns);
+
   // For the deliverer, a thread that makes itself known by calling this first: waits until messages
   // are due. They stand one after another at `*messages`, until the next call. Returns their bytes
   // together; 0: the run is over, and the thread has to end.

@@ -28,6 +28,7 @@ struct Writer {
   std::uint32_t domain = 0;
   std::string topic;
   bool has_history = false;
+  std::int64_t blocks_ns = 0;
   std::map<std::uint32_t, Shipped> shipped;  // by process
   std::unordered_map<std::uint64_t, ddsi_tkmap_instance*> instances;
 };
@@ -183,6 +184,9 @@ bool AddWriter(const ddsi_writer& writer) {
   if (!is_new) return false;
   place->second.domain = writer.e.gv->config.domainId;
   place->second.topic = writer.xqos->topic_name;
+  if (writer.xqos->reliability.kind == DDS_RELIABILITY_RELIABLE) {
+    place->second.blocks_ns = writer.xqos->reliability.max_blocking_time;
+  }
   place->second.has_history = writer.xqos->durability.kind >= DDS_DURABILITY_TRANSIENT_LOCAL;
   return true;
 }
@@ -219,12 +223,13 @@ namespace {
 // `*unneeded`: to be unreferred to without the lock, since that may run a serdata's own code.
 Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const Tap& tap,
                             ddsi_serdata* sample, ddsi_tkmap_instance* instance,
-                            ddsi_serdata** unneeded) {
+                            ddsi_serdata** unneeded, std::int64_t* blocks_ns) {
   const auto found = state.writers.find(Guid::Of(writer_guid));
   if (found == state.writers.end()) {
     return state.shadows.contains(PrefixOf(writer_guid)) ? Carries::kNo : Carries::kUnknownWriter;
   }
   Writer& writer = found->second;
+  *blocks_ns = writer.blocks_ns;
   Shipped& shipped = writer.shipped[tap.process];
   if (shipped.sample == sample && shipped.by != &tap) return Carries::kNo;
   *unneeded = shipped.sample;
@@ -245,13 +250,13 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
 }  // namespace
 
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
-                      ddsi_tkmap_instance* instance) {
+                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns) {
   State& state = Get();
   ddsi_serdata* unneeded = nullptr;
   Carries carries;
   {
     const std::lock_guard lock(state.mutex);
-    carries = LockedCarriesSample(state, writer, tap, sample, instance, &unneeded);
+    carries = LockedCarriesSample(state, writer, tap, sample, instance, &unneeded, blocks_ns);
   }
   if (unneeded != nullptr) ddsi_serdata_unref(unneeded);
   return carries;

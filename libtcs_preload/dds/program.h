@@ -48,9 +48,10 @@ std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& to
 // Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
 // process the first that sees it. Keeps the sample's instance alive, since Cyclone would otherwise
 // make and collect one for each write. Kind of writer: unknown, to be announced first.
+// `*blocks_ns`: how long its writer may wait for readers that cannot keep up.
 enum class Carries { kNo, kYes, kUnknownWriter };
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
-                      ddsi_tkmap_instance* instance);
+                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns);
 
 // Readers.
 void AddReader(const ddsi_reader& reader);

@@ -1,11 +1,16 @@
 #include "libtcs_preload/dds/tap.h"
 
+#include <algorithm>
+
 #include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/program.h"
 
 namespace tcs::dds {
 namespace {
+
+// Of a writer that would wait for ever. Cyclone's locks are held meanwhile.
+constexpr std::int64_t kMostBlockingNs = 1'000'000'000;
 
 thread_local bool t_matching;
 thread_local const Tap* t_matching_tap;
@@ -38,9 +43,10 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
     if (tap.catches_up && !IsShadow(info->guid)) Ship(tap, info->guid, *sample, true);
     return true;
   }
-  Carries carries = CarriesSample(info->guid, tap, sample, instance);
+  std::int64_t blocks_ns = 0;
+  Carries carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
-    carries = CarriesSample(info->guid, tap, sample, instance);
+    carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
   }
   if (carries == Carries::kYes) {
     Ship(tap, info->guid, *sample, false);
@@ -48,6 +54,7 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
   if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
     Ship(tap, info->guid, *sample, true);
   }
+  if (blocks_ns > 0) TheLink().await_room(std::min(blocks_ns, kMostBlockingNs));
   return true;
 }
 

@@ -209,6 +209,27 @@ TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   EXPECT_EQ(hub.dropped(), 4u) << "who is there is never dropped";
 }
 
+TEST(DdsHub, WhoSendsMoreThanOneTakesIsTold) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0), c(hub, 0);
+  DdsMessage sample = Message(DdsKind::kSample, 1, b.number());
+  sample.payload_size = 600'000;
+  sample.size = shm::DdsMessageSize(sample.payload_size);
+  EXPECT_EQ(a.Send(1, {sample}), "");
+  EXPECT_EQ(a.shown().full, 0u);
+  EXPECT_EQ(a.Send(2, {sample}), "");
+  EXPECT_EQ(a.shown().full, b.number());
+  EXPECT_TRUE(hub.IsFull(b.number()));
+  EXPECT_FALSE(hub.IsFull(c.number()));
+  hub.Deliver(b.number(), 2);
+  EXPECT_TRUE(hub.IsFull(b.number())) << "it still has them in its hands";
+  hub.CameBack(b.number());
+  EXPECT_FALSE(hub.IsFull(b.number()));
+  sample.to = c.number();
+  EXPECT_EQ(a.Send(3, {sample}), "");
+  EXPECT_EQ(a.shown().full, 0u) << "of the last message only";
+}
+
 TEST(DdsHub, TheCoordinatorIsOneOfThem) {
   Hub hub;
   hub.TellOwn();
