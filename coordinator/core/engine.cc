@@ -263,10 +263,6 @@ void Engine::StepCpu(VirtualCpu& cpu) {
 bool Engine::StepWorld() {
   if (!world_.present()) return false;
   const std::int64_t limit = std::min(root_.Least(), end_ns_);
-  if (hub_.OwnDueNs() <= limit) {
-    world_.TakeDdsCommands(limit);
-    ShowDeliverersTheirDeadlines();
-  }
   const std::int64_t now = world_.progress_ns();
   const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
   if (limit - now <= lag && world_.NextStopNs() > limit) return false;
@@ -382,6 +378,7 @@ bool Engine::Step() {
   if (living_ == 0) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
+  TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();
   if (least == shm::kNeverNs) {

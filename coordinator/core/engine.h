@@ -13,8 +13,11 @@
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
 #include "coordinator/trace/schedule_trace.h"
 
@@ -156,6 +159,10 @@ class Engine {
   void FlushTerminals();
 
   // Programs that speak DDS (dds.cc).
+  std::string OpenDds();
+  std::string CloseDds();
+  dds::Speaker WhoIs(dds::Hub::Number number) const;
+  void TakeOwnMessages();
   void HandleDds(Task& task, const shm::Notification& note);
   void JoinDds(Task& task);
   void LeaveDds(Process& process);
@@ -259,6 +266,9 @@ class Engine {
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
   dds::Hub hub_;
+  dds::OwnEndpoints ends_{hub_};
+  dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
+  std::optional<record::Recording> recording_;
   std::vector<Process*> dds_processes_;  // that have joined it
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead

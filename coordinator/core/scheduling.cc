@@ -48,8 +48,8 @@ void Engine::FindPriority(Task& task) {
   for (int i = 0; next != nullptr && i < kMostOwners; ++i) {
     int priority = OwnPriority(*next);
     for (const Task& waiter : tasks_) {
-      const bool lends = waiter.lock_owner == next || (waiter.waits_for_deliverer &&
-                                                       waiter.process->deliverer == next);
+      const bool lends = waiter.lock_owner == next ||
+                         (waiter.waits_for_deliverer && waiter.process->deliverer == next);
       if (lends) priority = std::max(priority, waiter.priority);
     }
     if (priority != next->priority) {

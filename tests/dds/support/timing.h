@@ -7,7 +7,7 @@
 namespace dds_test {
 
 // What the threads on the way may have computed, in virtual time.
-constexpr dds_duration_t kComputing = DDS_MSECS(2);
+constexpr dds_duration_t kComputing = DDS_MSECS(1);
 
 // `moment` was due at `due`, for reasons that samples carried by a protocol may delay.
 inline void CheckDue(const Process& self, const char* what, dds_time_t moment, dds_time_t due) {
