@@ -1,5 +1,7 @@
 #include "examples/predator_prey/common/predator_topics.h"
 
+#include <stdexcept>
+
 namespace predator_prey {
 namespace {
 
@@ -35,8 +37,12 @@ void AddNamespace(CLI::App& app, const std::string& name, std::string& value,
 }
 
 DdsEntity JoinDomain(const DdsOptions& options) {
-  return DdsEntity(dds_create_participant(options.domain, nullptr, nullptr),
-                   "join the DDS domain (Cyclone says why above; CYCLONEDDS_URI configures it)");
+  const dds_entity_t participant = dds_create_participant(options.domain, nullptr, nullptr);
+  if (participant < 0) {
+    throw std::runtime_error(
+        "cannot join the DDS domain; Cyclone says why above, and is configured by CYCLONEDDS_URI");
+  }
+  return DdsEntity(participant, "join the DDS domain");
 }
 
 Topic<OdometryMessage> OdometryTopic(const DdsEntity& participant, const std::string& name_space) {
