@@ -85,8 +85,8 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       AwaitMessages(task);
       break;
     case shm::NotificationKind::kDdsRoom:
-      task.waits_for_room = static_cast<std::uint32_t>(note.args[0]);
-      if (!hub_.IsFull(task.waits_for_room)) break;
+      if (!hub_.IsFull(static_cast<dds::Hub::Number>(note.args[0]))) break;
+      task.waits_for_room = static_cast<dds::Hub::Number>(note.args[0]);
       SetState(task, TaskState::kWaiting);
       break;
     default:
