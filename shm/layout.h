@@ -141,8 +141,9 @@ struct ClockPage {
   std::atomic<std::int64_t> last_shown_ns;  // the clock never shows less
   std::atomic<std::uint64_t> last_check_tsc;
   std::atomic<std::int64_t> stolen_ns;  // removed so far, virtual ns, host-visible statistics only
+  // The thread's CPU clock at base_cpu_ns == 0, moved by what is not charged.
+  std::int64_t host_cpu_origin_ns;
   // Constant from the thread's first dispatch on.
-  std::int64_t host_cpu_origin_ns;   // the thread's CPU clock at base_cpu_ns == 0
   std::uint64_t ns_per_host_ns_q32;  // virtual ns per host ns, times 2^32
   std::uint64_t check_after_ticks;   // the CPU clock is asked when this much TSC has passed
   std::int64_t call_cost_ns;         // of each intercepted call; 0 under measured accounting
@@ -202,12 +203,15 @@ struct alignas(64) ThreadSlot {
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
   std::uint32_t patch_vdso;     // 1: calls of the vDSO are to be led to the shim
   std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
-  std::uint8_t reserved[456];
+  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
+  std::atomic<std::uint32_t> signals;
+  std::uint8_t reserved[460];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
+static_assert(offsetof(ThreadSlot, signals) == 560);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters.

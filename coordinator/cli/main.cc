@@ -50,6 +50,9 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
       ->capture_default_str();
+  bool record = false;
+  run->add_flag("--record", record,
+                "also write all DDS topics into the folder, as the rosbag2 bag `bag`");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
@@ -149,6 +152,7 @@ int main(int argc, char** argv) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }
   }
+  options.record = record;
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");

@@ -202,6 +202,7 @@ void Engine::Attach(int connection) {
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
+  slot.signals.store(0);
   slot.gate.store(shm::kGateClosed);
   LeaveWait(task);
   task.early_trap.reset();

@@ -4,11 +4,64 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "coordinator/core/engine.h"
 
 namespace tcs {
+
+std::string Engine::OpenDds() {
+  const std::string& directory = options_.output_directory;
+  if (!directory.empty()) {
+    std::error_code ignored;  // of an earlier run into the same folder
+    std::filesystem::remove(directory + "/topics.json", ignored);
+    std::filesystem::remove_all(directory + "/bag", ignored);
+    hub_.Observe(&topic_log_);
+  }
+  if (options_.record) {
+    recording_.emplace(topic_log_, ends_, header_->realtime_offset_ns);
+    topic_log_.Tell(&*recording_);
+    if (std::string error = recording_->Open(directory + "/bag"); !error.empty()) return error;
+  }
+  world_.OpenDds(ends_, header_->realtime_offset_ns);
+  if (recording_.has_value()) recording_->ReadNewTopics(0);
+  return {};
+}
+
+std::string Engine::CloseDds() {
+  const std::vector<dds::TopicReport>& topics = topic_log_.reports();
+  std::string error;
+  if (!topics.empty()) {
+    error = dds::WriteTopics(topics, options_.output_directory + "/topics.json");
+  }
+  if (recording_.has_value()) {
+    if (std::string missing = recording_->Close(); error.empty()) error = std::move(missing);
+  }
+  return error;
+}
+
+dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
+  if (number == shm::kDdsCoordinator) return {"tcsim", ""};
+  for (const Process* process : dds_processes_) {
+    if (process->dds_number == number) return {process->name, process->robot->name};
+  }
+  return {};
+}
+
+// What is from before anything that can still be sent.
+void Engine::TakeOwnMessages() {
+  const std::int64_t until = std::min(root_.Least(), end_ns_);
+  if (hub_.OwnDueNs() > until) return;
+  if (world_.speaks_dds()) {
+    world_.TakeDdsCommands(until);
+  } else {
+    while (ends_.Take(until).has_value()) {
+    }
+  }
+  ShowDeliverersTheirDeadlines();
+}
 
 void Engine::HandleDds(Task& task, const shm::Notification& note) {
   Process& process = *task.process;
@@ -25,14 +78,15 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
                         "is its libtcs_dds.so of another version?",
                         process.name, wrong));
       }
+      if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
       ShowDeliverersTheirDeadlines();
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
       break;
     case shm::NotificationKind::kDdsRoom:
-      task.waits_for_room = static_cast<std::uint32_t>(note.args[0]);
-      if (!hub_.IsFull(task.waits_for_room)) break;
+      if (!hub_.IsFull(static_cast<dds::Hub::Number>(note.args[0]))) break;
+      task.waits_for_room = static_cast<dds::Hub::Number>(note.args[0]);
       SetState(task, TaskState::kWaiting);
       break;
     default:

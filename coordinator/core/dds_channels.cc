@@ -9,9 +9,10 @@
 
 namespace tcs {
 
-DdsChannels::DdsChannels(const Scenario& scenario, dds::Hub& hub, std::int64_t realtime_offset_ns)
+DdsChannels::DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends,
+                         std::int64_t realtime_offset_ns)
     : scenario_(scenario),
-      ends_(hub),
+      ends_(ends),
       realtime_offset_ns_(realtime_offset_ns),
       next_clock_ns_(scenario.clock.has_value() ? 0 : shm::kNeverNs) {
   for (const DdsSensorSpec& spec : scenario.dds_sensors) {
@@ -39,7 +40,7 @@ dds::OwnEndpoints::Index DdsChannels::Add(dds::EndpointKind kind, const DdsTopic
                                .type = dds::DdsType(message),
                                .keyless = true,
                                .qos = end.qos};
-  return ends_.Add(endpoint, end.domain);
+  return ends_.Add(endpoint, end.domain, 0);
 }
 
 std::int64_t DdsChannels::NextSampleNs() const {

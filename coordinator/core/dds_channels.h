@@ -17,8 +17,8 @@ namespace tcs {
 
 class DdsChannels {
  public:
-  // Announces the scenario's channels. The hub and the scenario outlive this.
-  DdsChannels(const Scenario& scenario, dds::Hub& hub, std::int64_t realtime_offset_ns);
+  // Announces the scenario's channels. The endpoints and the scenario outlive this.
+  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
 
   // When the dynamics have to be looked at next, and when something next leaves them.
   std::int64_t NextSampleNs() const;
@@ -54,7 +54,7 @@ class DdsChannels {
               std::vector<Command>* commands) const;
 
   const Scenario& scenario_;
-  dds::OwnEndpoints ends_;
+  dds::OwnEndpoints& ends_;
   std::int64_t realtime_offset_ns_;
   std::vector<Sensor> sensors_;
   std::vector<Actuator> actuators_;

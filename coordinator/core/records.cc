@@ -28,7 +28,8 @@ std::string Engine::OpenRecords() {
 }
 
 std::string Engine::CloseRecords() {
-  const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close()};
+  const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close(),
+                                CloseDds()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;
   }

@@ -66,7 +66,7 @@ std::string Engine::Prepare() {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   if (std::string error = PrepareSegment(); !error.empty()) return error;
-  world_.OpenDds(hub_, header_->realtime_offset_ns);
+  if (std::string error = OpenDds(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {

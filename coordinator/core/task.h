@@ -14,6 +14,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/share.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/layout.h"
@@ -90,7 +91,9 @@ struct Task {
   std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
   int unchecked_slices = 0;                 // by the coordinator
+  int unchecked_from_gate = 0;              // of them
   std::int64_t turn_ns = 0;                 // had since its equals last had a turn
+  Share share;                              // of what it and its equals have had
   std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
   int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
@@ -170,6 +173,7 @@ struct VirtualCpu {
   std::uint32_t core = 0;
   std::int64_t progress_ns = 0;
   TemporalConsistency::Leaf leaf = -1;
+  FixedPriority::Thread turn_over = FixedPriority::kNobody;  // goes behind its equals
 };
 
 struct Robot {

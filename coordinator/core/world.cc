@@ -54,13 +54,13 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   return {};
 }
 
-void World::OpenDds(dds::Hub& hub, std::int64_t realtime_offset_ns) {
+void World::OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns) {
   if (!present()) return;
   if (scenario_.dds_sensors.empty() && scenario_.dds_commands.empty() &&
       !scenario_.clock.has_value()) {
     return;
   }
-  dds_.emplace(scenario_, hub, realtime_offset_ns);
+  dds_.emplace(scenario_, ends, realtime_offset_ns);
   FindNextStop();
 }
 
@@ -174,7 +174,6 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
 }
 
 void World::TakeDdsCommands(std::int64_t now_ns) {
-  if (!dds_.has_value()) return;
   const Spent spent(&host_ns_);
   while (const auto commands = dds_->TakeCommands(now_ns)) {
     for (const DdsChannels::Command& command : *commands) {

@@ -20,8 +20,8 @@ class World {
   // Binds the channels' ports. Empty on success, else one sentence.
   std::string Open(const Scenario& scenario, const std::string& csv_path);
 
-  // The channels on DDS, once there is a hub for them; it outlives this.
-  void OpenDds(dds::Hub& hub, std::int64_t realtime_offset_ns);
+  // The channels on DDS, once there are such endpoints; they outlive this.
+  void OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
 
   bool present() const { return dynamics_ != nullptr; }
   std::int64_t progress_ns() const { return progress_ns_; }
@@ -41,6 +41,7 @@ class World {
   // Applies what has arrived on command channel `index` at virtual time `now_ns`.
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
 
+  bool speaks_dds() const { return dds_.has_value(); }
   // Applies what has been written by `now_ns` to command channels on DDS.
   void TakeDdsCommands(std::int64_t now_ns);
 

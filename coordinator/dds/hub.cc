@@ -167,6 +167,9 @@ std::optional<Hub::Bytes> Hub::TakeOwn(std::int64_t now_ns) {
 
 void Hub::Enter(const DdsMessage& header, Bytes bytes) {
   const auto message = std::make_shared<const Bytes>(std::move(bytes));
+  if (observer_ != nullptr) {
+    observer_->Entered(header, std::span(*message).subspan(sizeof header, header.payload_size));
+  }
   Remember(header, message);
   if (header.to == shm::kDdsEverybody) {
     QueueForOthers(header.from, header.time_ns, message);
@@ -212,6 +215,7 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
   if (header.kind == DdsKind::kSample &&
       member->queued_bytes + message->size() > kMostQueuedBytes) {
     ++dropped_;
+    if (observer_ != nullptr) observer_->Dropped(header, to);
     return;
   }
   member->queued_bytes += message->size();

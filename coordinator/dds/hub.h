@@ -21,6 +21,17 @@
 
 namespace tcs::dds {
 
+// Who looks on.
+class HubObserver {
+ public:
+  virtual ~HubObserver() = default;
+  // A message has been sent: once for each process that it is for, in the order of sending, which
+  // is not that of times where processes have come to different ones.
+  virtual void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) = 0;
+  // Process `to` does not get this sample.
+  virtual void Dropped(const shm::DdsMessage& header, std::uint32_t to) = 0;
+};
+
 class Hub {
  public:
   using Number = std::uint32_t;  // of a process, from 1 on; 0: the coordinator
@@ -60,6 +71,9 @@ class Hub {
   void TellOwn() { tells_own_ = true; }
   std::optional<Bytes> TakeOwn(std::int64_t now_ns);
   std::int64_t OwnDueNs() const { return own_.empty() ? shm::kNeverNs : own_.begin()->first; }
+
+  // Null: nobody. It outlives this.
+  void Observe(HubObserver* observer) { observer_ = observer; }
 
   // How many processes have joined so far: the largest number.
   Number count() const { return static_cast<Number>(members_.size()); }
@@ -101,6 +115,7 @@ class Hub {
   void Remember(const shm::DdsMessage& header, const Message& message);
 
   int fd_ = -1;
+  HubObserver* observer_ = nullptr;
   bool tells_own_ = false;
   std::multimap<std::int64_t, Message> own_;  // for the coordinator
   std::vector<Member> members_;               // of number i + 1

@@ -40,7 +40,7 @@ Hub::Guid GuidAt(const std::uint8_t* bytes) {
 }  // namespace
 
 // Twelve bytes that no client has: Eclipse's vendor number first, as all of Cyclone's.
-Hub::Guid OwnEndpoints::ParticipantOf(int domain) {
+Hub::Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
   Hub::Guid guid{0x01, 0x10, 't', 'c', 's', 0};
   for (std::size_t i = 0; i < 4; ++i) {
     guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
@@ -48,14 +48,15 @@ Hub::Guid OwnEndpoints::ParticipantOf(int domain) {
   guid[14] = 0x01;
   guid[15] = shm::kDdsParticipantId;
   if (domains_.insert(domain).second) {
-    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain), EncodeParticipant("tcsim"), 0);
+    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain), EncodeParticipant("tcsim"),
+                 now_ns);
   }
   return guid;
 }
 
-OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain) {
+OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std::int64_t now_ns) {
   hub_.TellOwn();
-  const Hub::Guid participant = ParticipantOf(domain);
+  const Hub::Guid participant = ParticipantOf(domain, now_ns);
   Own& own = own_.emplace_back(Own{endpoint, domain, participant, {}});
   const auto number = static_cast<std::uint32_t>(own_.size());
   own.guid[12] = 0;
@@ -66,7 +67,7 @@ OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain) {
                                   : (writes ? shm::kDdsWriterWithKeyId : shm::kDdsReaderWithKeyId);
   DdsMessage header = Announcement(DdsKind::kEndpoint, own.guid, domain);
   std::copy(participant.begin(), participant.end(), header.other);
-  hub_.SendOwn(header, EncodeEndpoint(endpoint), 0);
+  hub_.SendOwn(header, EncodeEndpoint(endpoint), now_ns);
   return own_.size() - 1;
 }
 
@@ -95,11 +96,14 @@ bool OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int6
     }
   }
   DdsMessage header = SampleHeader(own, timestamp_ns);
+  // Where nobody reads, it is still for those who look on.
+  const bool read = !reached.empty();
+  if (!read) reached.insert(shm::kDdsCoordinator);
   for (const Hub::Number process : reached) {
     header.to = process;
     hub_.SendOwn(header, cdr, due_ns);
   }
-  return !reached.empty();
+  return read;
 }
 
 // Who has a transient-local writer tells such readers what it has kept, and when that was all.

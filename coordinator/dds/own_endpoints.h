@@ -29,8 +29,8 @@ class OwnEndpoints {
   // The hub outlives this.
   explicit OwnEndpoints(Hub& hub) : hub_(hub) {}
 
-  // Announced to all that have joined and will join. Before the first sample is taken.
-  Index Add(const Endpoint& endpoint, int domain);
+  // Announced at `now_ns` to all that have joined, and to those who will.
+  Index Add(const Endpoint& endpoint, int domain, std::int64_t now_ns);
 
   // To all who read the topic, at `due_ns`, not before what it was written at `now_ns`;
   // `timestamp_ns` is DDS's source timestamp. True if there is somebody.
@@ -68,7 +68,7 @@ class OwnEndpoints {
     Endpoint endpoint;
   };
 
-  Hub::Guid ParticipantOf(int domain);
+  Hub::Guid ParticipantOf(int domain, std::int64_t now_ns);
   void Notice(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void Meet(const Hub::Guid& guid, const Remote& remote, std::int64_t now_ns);
   void Forget(const Hub::Guid& subject);

@@ -13,12 +13,15 @@ void Writer(Process& self) {
   Write(writer, 1, 1);
   Write(writer, 90, 0);
   WaitForReaders(writer, 1);
+  self.peer.Reached("matched");
   self.peer.Await("reader gone");
   WaitForReaders(writer, 0);
   Event("the reader has gone");
   Write(writer, 1, 2);
   Write(writer, 91, 0);
   self.peer.Reached("written again");
+  WaitForReaders(writer, 1);
+  self.peer.Reached("matched");
   self.peer.Await("participant gone");
   WaitForReaders(writer, 0);
   Event("the participant has gone");
@@ -39,10 +42,12 @@ dds_entity_t Join(Process& self, const char* who) {
 
 void Reader(Process& self) {
   const dds_entity_t reader = Join<90>(self, "at first");
+  self.peer.Await("matched");
   OK(dds_delete(reader));
   self.peer.Reached("reader gone");
   self.peer.Await("written again");
   Join<91>(self, "back");
+  self.peer.Await("matched");
   OK(dds_delete(self.participant));
   self.peer.Reached("participant gone");
   self.peer.Await("written a third time");

@@ -1,15 +1,12 @@
-// A timer that ticks every period of CLOCK_MONOTONIC, and that clock. Owns its descriptor, which is
-// readable when a tick is due. For one thread.
+// A timer that ticks every period of CLOCK_MONOTONIC. Owns its descriptor, which is readable when a
+// tick is due. For one thread.
 #pragma once
 
 #include <cstdint>
 
-#include "examples/predator_prey/common/unique_fd.h"
+#include "examples/predator_prey/prey_controller/unique_fd.h"
 
 namespace predator_prey {
-
-// Seconds of CLOCK_MONOTONIC.
-double MonotonicSeconds();
 
 class PeriodicTimer {
  public:

@@ -1,5 +1,6 @@
-#include "examples/predator_prey/common/udp_socket.h"
+#include "examples/predator_prey/prey_controller/udp_socket.h"
 
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -45,49 +46,27 @@ UdpSocket UdpSocket::ConnectedTo(std::uint16_t port) {
   if (::connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     throw SystemError("cannot send to UDP port " + std::to_string(port));
   }
-  socket.connected_ = true;
   return socket;
-}
-
-UdpSocket::Status UdpSocket::Receive(std::string& datagram) {
-  datagram.resize(kMaxDatagramBytes);
-  for (;;) {
-    socklen_t address_bytes = sizeof(last_sender_);
-    const ssize_t bytes = ::recvfrom(fd(), datagram.data(), datagram.size(), MSG_DONTWAIT,
-                                     reinterpret_cast<sockaddr*>(&last_sender_), &address_bytes);
-    if (bytes >= 0) {
-      datagram.resize(static_cast<std::size_t>(bytes));
-      return Status::kDatagram;
-    }
-    if (errno == EINTR) continue;
-    datagram.clear();
-    if (errno == EAGAIN || errno == EWOULDBLOCK) return Status::kNothing;
-    if (errno == ECONNREFUSED) return Status::kPeerAbsent;
-    throw SystemError("cannot receive from a UDP socket");
-  }
 }
 
 std::optional<std::string> UdpSocket::ReceiveNewest() {
   std::optional<std::string> newest;
-  std::string datagram;
+  std::string datagram(kMaxDatagramBytes, '\0');
   for (;;) {
-    switch (Receive(datagram)) {
-      case Status::kDatagram:
-        newest = std::move(datagram);
-        break;
-      case Status::kNothing:
-        return newest;
-      case Status::kPeerAbsent:
-        break;
+    const ssize_t bytes = ::recv(fd(), datagram.data(), datagram.size(), MSG_DONTWAIT);
+    if (bytes >= 0) {
+      newest = datagram.substr(0, static_cast<std::size_t>(bytes));
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      return newest;
+    } else if (errno != EINTR) {
+      throw SystemError("cannot receive from a UDP socket");
     }
   }
 }
 
 void UdpSocket::Send(std::string_view datagram) {
-  const auto* address = connected_ ? nullptr : reinterpret_cast<const sockaddr*>(&last_sender_);
-  const socklen_t address_bytes = connected_ ? 0 : sizeof(last_sender_);
   for (;;) {
-    if (::sendto(fd(), datagram.data(), datagram.size(), 0, address, address_bytes) >= 0) return;
+    if (::send(fd(), datagram.data(), datagram.size(), 0) >= 0) return;
     // A connected socket reports here, once, that an earlier datagram found nobody.
     if (errno == EINTR) continue;
     if (errno == ECONNREFUSED || errno == EAGAIN || errno == ENOBUFS) return;

@@ -1,7 +1,6 @@
-#include "examples/predator_prey/common/periodic_timer.h"
+#include "examples/predator_prey/prey_controller/periodic_timer.h"
 
 #include <sys/timerfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -25,12 +24,6 @@ int OpenTimer(double period_s) {
 }
 
 }  // namespace
-
-double MonotonicSeconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 PeriodicTimer::PeriodicTimer(double period_s) : fd_(OpenTimer(period_s)) {}
 
