@@ -26,15 +26,16 @@ dds_ignorelocal_kind_t Policy(const dds_qos_t* qos) {
   return kind;
 }
 
-// Held only where somebody ignores what is in the process.
-std::unique_lock<std::recursive_timed_mutex> Turn(bool ignores) {
+// Of making an endpoint: always a shadow's and that of one that ignores what is in its process, and
+// others' as soon as there is such a one.
+std::unique_lock<std::recursive_timed_mutex> Turn(bool always) {
   State& state = Get();
   {
     const std::lock_guard lock(state.mutex);
-    ignores = ignores || !state.ignoring.empty();
+    always = always || !state.ignoring.empty();
   }
   std::unique_lock turn(state.turn, std::defer_lock);
-  if (ignores) static_cast<void>(turn.try_lock_for(kLongestTurn));
+  if (always) static_cast<void>(turn.try_lock_for(kLongestTurn));
   return turn;
 }
 
@@ -74,7 +75,7 @@ void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t kind) {
 
 }  // namespace
 
-ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn(false)), gv_(gv) {
+ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn(true)), gv_(gv) {
   SetAll(gv_, DDS_IGNORELOCAL_PARTICIPANT);
 }
 ShadowMatches::~ShadowMatches() { SetAll(gv_, DDS_IGNORELOCAL_PROCESS); }
