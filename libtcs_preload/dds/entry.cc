@@ -148,7 +148,7 @@ void StartPastUs() {
   if (DdsLibrary(buffer) != nullptr) {
     Say("tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets.\n");
   }
-  __atomic_store_n(&g_hooks, kNoHooks, __ATOMIC_RELEASE);
+  __atomic_store_n(&g_hooks, &kNoHooks[0], __ATOMIC_RELEASE);
 }
 
 void* HookOf(const dds::Hook* hooks, const char* name) {
