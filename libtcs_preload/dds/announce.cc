@@ -57,10 +57,7 @@ void AnnounceReader(const ddsi_reader& reader) {
   SendEndpoint(reader, shm::kDdsReader);
 }
 
-void AnnounceChange(const ddsi_writer& writer) {
-  SendEndpoint(writer, shm::kDdsWriter);
-  EndHistories(writer);
-}
+void AnnounceChange(const ddsi_writer& writer) { SendEndpoint(writer, shm::kDdsWriter); }
 
 void AnnounceChange(const ddsi_reader& reader) { SendEndpoint(reader, shm::kDdsReader); }
 

@@ -14,7 +14,8 @@ void AnnounceParticipant(const ddsi_participant& participant);
 void AnnounceWriter(const ddsi_writer& writer);
 void AnnounceReader(const ddsi_reader& reader);
 
-// The same again with other QoS.
+// The same again with other QoS. Who matches whom is not changed by that: Cyclone refuses changes
+// of policies that would.
 void AnnounceChange(const ddsi_writer& writer);
 void AnnounceChange(const ddsi_reader& reader);
 

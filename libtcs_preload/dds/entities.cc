@@ -7,7 +7,6 @@
 #include "libtcs_preload/dds/listening.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
-#include "libtcs_preload/dds/tap.h"
 
 namespace tcs::dds {
 namespace {
@@ -81,15 +80,8 @@ dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
 }
 
 void UpdateWriter(ddsi_writer* writer, const dds_qos_t* qos) {
-  if (!IsWriter(Guid::Of(writer->e.guid))) {
-    Real().ddsi_update_writer_qos(writer, qos);
-    return;
-  }
-  {
-    const Matching matching(nullptr);
-    Real().ddsi_update_writer_qos(writer, qos);
-  }
-  AnnounceChange(*writer);
+  Real().ddsi_update_writer_qos(writer, qos);
+  if (IsWriter(Guid::Of(writer->e.guid))) AnnounceChange(*writer);
 }
 
 dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_t* group,
@@ -127,15 +119,8 @@ dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
 }
 
 void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
-  if (IsShadow(reader->e.guid)) {
-    Real().ddsi_update_reader_qos(reader, qos);
-    return;
-  }
-  {
-    const MakingReader making;
-    Real().ddsi_update_reader_qos(reader, qos);
-  }
-  AnnounceChange(*reader);
+  Real().ddsi_update_reader_qos(reader, qos);
+  if (!IsShadow(reader->e.guid)) AnnounceChange(*reader);
 }
 
 }  // namespace tcs::dds

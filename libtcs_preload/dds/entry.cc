@@ -6,6 +6,7 @@
 // its first participant or domain. Nothing here refers to a symbol of libddsc: the shim is in
 // programs that do not have it, too.
 #include <dlfcn.h>
+#include <link.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -90,11 +91,25 @@ void Say(const char* text) {
   abort();
 }
 
+// Whatever library calls itself libddsc, as Python packages that bring their own do.
+void* AnyLibrary() {
+  static char path[4096];
+  const auto is_it = [](dl_phdr_info* info, std::size_t, void*) {
+    const char* slash = strrchr(info->dlpi_name, '/');
+    if (slash == nullptr || strncmp(slash + 1, "libddsc", 7) != 0) return 0;
+    if (strlen(info->dlpi_name) >= sizeof path) return 0;
+    strcpy(path, info->dlpi_name);
+    return 1;
+  };
+  return dl_iterate_phdr(is_it, nullptr) != 0 ? dlopen(path, RTLD_LAZY | RTLD_NOLOAD) : nullptr;
+}
+
 // libddsc's own function.
 void* Real(unsigned call) {
   if (void* found = dlsym(RTLD_NEXT, kNames[call]); found != nullptr) return found;
   // libddsc is there, but not for all: some library's, which was loaded later.
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
+  if (library == nullptr) library = AnyLibrary();
   void* found = library != nullptr ? dlsym(library, kNames[call]) : nullptr;
   if (found == nullptr) DieWithout(kNames[call]);
   return found;
@@ -126,6 +141,16 @@ void Start() {
   __atomic_store_n(&g_hooks, hooks, __ATOMIC_RELEASE);
 }
 
+// A domain begins, and none of the starting calls came by: the program has looked them up in the
+// library itself, as Python's ctypes does. Then others do not come by either.
+void StartPastUs() {
+  char buffer[kDdsPathSize];
+  if (DdsLibrary(buffer) != nullptr) {
+    Say("tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets.\n");
+  }
+  __atomic_store_n(&g_hooks, &kNoHooks[0], __ATOMIC_RELEASE);
+}
+
 void* HookOf(const dds::Hook* hooks, const char* name) {
   for (const dds::Hook* hook = hooks; hook->name != nullptr; ++hook) {
     if (strcmp(hook->name, name) == 0) return hook->function;
@@ -139,6 +164,7 @@ void* HookOf(const dds::Hook* hooks, const char* name) {
 void* tcs_dds_resolve(unsigned call) {
   using namespace tcs::preload;
   if (call < kStartingCalls) pthread_once(&g_start, Start);
+  if (call == tcs::dds::kCall_rtps_config_prep) pthread_once(&g_start, StartPastUs);
   const tcs::dds::Hook* hooks = __atomic_load_n(&g_hooks, __ATOMIC_ACQUIRE);
   // Before the start: libddsc's own, for this once.
   if (hooks == nullptr) return Real(call);

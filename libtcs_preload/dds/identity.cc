@@ -1,5 +1,6 @@
 #include "libtcs_preload/dds/identity.h"
 
+#include <atomic>
 #include <mutex>
 
 #include "libtcs_preload/dds/outgoing.h"
@@ -62,9 +63,12 @@ std::uint64_t GenerateInstance() {
   return Real().ddsi_iid_gen();
 }
 
-// Each process has its own, and the same one in each run: instances then come in the same order.
+// Each process has its own, and the same ones in each run: instances then come in the same order.
+// Another one each time that the program begins anew with its first domain: GUIDs must not come
+// back while others may still know them.
 bool MakeSeed(ddsrt_prng_seed* seed) {
-  std::uint32_t value = OwnProcess();
+  static std::atomic<std::uint32_t> made;
+  std::uint32_t value = OwnProcess() << 16 ^ made++;
   for (std::uint32_t& key : seed->key) key = value = value * 1664525u + 1013904223u;
   return true;
 }

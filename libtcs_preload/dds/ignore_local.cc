@@ -1,12 +1,16 @@
 #include "libtcs_preload/dds/ignore_local.h"
 
-#include <mutex>
+#include <chrono>
 #include <utility>
 
 namespace tcs::dds {
 namespace {
 
+// Listeners run while it is held, which may wait for a thread that wants it: not for ever.
+constexpr std::chrono::milliseconds kLongestTurn{100};
+
 struct State {
+  std::recursive_timed_mutex turn;
   std::mutex mutex;
   std::vector<std::pair<ddsi_domaingv*, Guid>> ignoring;  // the program's, with that policy
 };
@@ -20,6 +24,19 @@ dds_ignorelocal_kind_t Policy(const dds_qos_t* qos) {
   dds_ignorelocal_kind_t kind = DDS_IGNORELOCAL_NONE;
   dds_qget_ignorelocal(qos, &kind);
   return kind;
+}
+
+// Of making an endpoint: always a shadow's and that of one that ignores what is in its process, and
+// others' as soon as there is such a one.
+std::unique_lock<std::recursive_timed_mutex> Turn(bool always) {
+  State& state = Get();
+  {
+    const std::lock_guard lock(state.mutex);
+    always = always || !state.ignoring.empty();
+  }
+  std::unique_lock turn(state.turn, std::defer_lock);
+  if (always) static_cast<void>(turn.try_lock_for(kLongestTurn));
+  return turn;
 }
 
 // Returns the policy that a reader or writer had; the same if it is gone.
@@ -58,13 +75,13 @@ void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t kind) {
 
 }  // namespace
 
-ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : gv_(gv) {
+ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn(true)), gv_(gv) {
   SetAll(gv_, DDS_IGNORELOCAL_PARTICIPANT);
 }
 ShadowMatches::~ShadowMatches() { SetAll(gv_, DDS_IGNORELOCAL_PROCESS); }
 
 OwnMatches::OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others)
-    : gv_(gv), given_(qos) {
+    : turn_(Turn(Policy(qos) == DDS_IGNORELOCAL_PROCESS)), gv_(gv), given_(qos) {
   if (Policy(qos) != DDS_IGNORELOCAL_PROCESS) return;
   milder_ = ddsi_xqos_dup(qos);
   dds_qset_ignorelocal(milder_, DDS_IGNORELOCAL_PARTICIPANT);

@@ -3,10 +3,11 @@
 //
 // Cyclone compares the two endpoints' policies whenever one of them is made. So the program's
 // endpoints with that policy have a milder one while a shadow is made; and while one of them is
-// made itself, it is the program's others that ignore it. (That another thread makes an endpoint in
-// the same instant is not provided for.)
+// made itself, it is the program's others that ignore it. Where there is any, endpoints are made
+// one after another.
 #pragma once
 
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ class ShadowMatches {
   ShadowMatches& operator=(const ShadowMatches&) = delete;
 
  private:
+  std::unique_lock<std::recursive_timed_mutex> turn_;
   ddsi_domaingv* gv_;
 };
 
@@ -40,6 +42,7 @@ class OwnMatches {
   void Made(const ddsi_guid_t& guid);
 
  private:
+  std::unique_lock<std::recursive_timed_mutex> turn_;
   ddsi_domaingv* gv_;
   const dds_qos_t* given_;
   dds_qos_t* milder_ = nullptr;  // null: it has another policy, and nothing is to be done

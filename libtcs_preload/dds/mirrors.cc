@@ -50,12 +50,6 @@ bool CatchesUp(const dds_qos_t* qos) {
   return reliability == DDS_RELIABILITY_RELIABLE && durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
 }
 
-void EndHistories(const Tap& tap) {
-  for (const Guid& writer : WritersWithHistory(tap.domain, tap.topic)) {
-    SendHistoryEnd(tap.domain, writer, tap.reader, tap.process);
-  }
-}
-
 }  // namespace
 
 void Mirrors::Handle(const shm::DdsMessage& message, const std::byte* payload) {
@@ -120,20 +114,9 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
   const Qos qos(ShadowQos(endpoint.payload));
-  const auto change = [&] {
-    dds_set_qos(dds_get_topic(endpoint.shadow), qos.get());
-    dds_set_qos(dds_get_parent(endpoint.shadow), qos.get());
-    dds_set_qos(endpoint.shadow, qos.get());
-  };
-  if (endpoint.tap == nullptr) {
-    change();
-    return;
-  }
-  {
-    const Matching matching(endpoint.tap);
-    change();
-  }
-  if (endpoint.tap->catches_up) EndHistories(*endpoint.tap);
+  dds_set_qos(dds_get_topic(endpoint.shadow), qos.get());
+  dds_set_qos(dds_get_parent(endpoint.shadow), qos.get());
+  dds_set_qos(endpoint.shadow, qos.get());
 }
 
 void Mirrors::RemoveParticipant(const Guid& guid) {
@@ -161,7 +144,6 @@ void Mirrors::EndShadow(const Guid& guid, Participant& participant) {
   for (auto& [key, endpoint] : endpoints_) {
     if (endpoint.participant == guid) {
       endpoint.shadow = 0;
-      endpoint.tap = nullptr;
       endpoint.type = nullptr;
     }
   }
@@ -264,16 +246,17 @@ void Mirrors::MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv
   Tap* tap =
       NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic, CatchesUp(qos));
   {
-    const Matching matching(tap);
+    const MakingTap making(tap);
     endpoint.shadow = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
   }
   if (endpoint.shadow <= 0) {
     RemoveTap(tap);
     return;
   }
-  endpoint.tap = tap;
   if (!tap->catches_up) return;
-  EndHistories(*tap);
+  for (const Guid& writer : WritersWithHistory(tap->domain, tap->topic)) {
+    SendHistoryEnd(tap->domain, writer, tap->reader, tap->process);
+  }
   tap->catching_up = false;
 }
 

@@ -21,8 +21,6 @@
 
 namespace tcs::dds {
 
-struct Tap;
-
 class Mirrors {
  public:
   // One message of another process.
@@ -51,7 +49,6 @@ class Mirrors {
     dds_entity_t shadow = 0;
     ddsi_guid_t inner{};  // the shadow's
     const ddsi_sertype* type = nullptr;
-    Tap* tap = nullptr;  // a shadow reader's
     bool warned = false;
   };
   using Participants = std::unordered_map<Guid, Participant, GuidHash>;

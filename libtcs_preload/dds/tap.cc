@@ -12,8 +12,7 @@ namespace {
 // Of a writer that would wait for ever. Cyclone's locks are held meanwhile.
 constexpr std::int64_t kMostBlockingNs = 1'000'000'000;
 
-thread_local bool t_matching;
-thread_local const Tap* t_matching_tap;
+thread_local const Tap* t_making;
 
 Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
 
@@ -39,7 +38,7 @@ bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
 bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
            ddsi_tkmap_instance* instance) {
   const Tap& tap = TapOf(rhc);
-  if (t_matching && (t_matching_tap == nullptr || t_matching_tap == &tap)) {
+  if (t_making == &tap) {
     if (tap.catches_up && !IsShadow(info->guid)) Ship(tap, info->guid, *sample, true);
     return true;
   }
@@ -103,15 +102,8 @@ Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, cons
   return tap;
 }
 
-Matching::Matching(const Tap* tap) : was_matching_(t_matching), was_(t_matching_tap) {
-  t_matching = true;
-  t_matching_tap = tap;
-}
-
-Matching::~Matching() {
-  t_matching = was_matching_;
-  t_matching_tap = was_;
-}
+MakingTap::MakingTap(const Tap* tap) { t_making = tap; }
+MakingTap::~MakingTap() { t_making = nullptr; }
 
 void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
                     std::uint32_t process) {

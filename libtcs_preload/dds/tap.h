@@ -28,18 +28,14 @@ struct Tap {
 Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
             const std::string& topic, bool catches_up);
 
-// While it lives, what the calling thread stores is what writers had already (null: in all taps):
-// Cyclone hands it over when a reader and a writer come to match.
-class Matching {
+// While it lives, the calling thread makes the tap's shadow reader, and what it stores in the tap
+// is what writers had already.
+class MakingTap {
  public:
-  explicit Matching(const Tap* tap);
-  ~Matching();
-  Matching(const Matching&) = delete;
-  Matching& operator=(const Matching&) = delete;
-
- private:
-  bool was_matching_;
-  const Tap* was_;
+  explicit MakingTap(const Tap* tap);
+  ~MakingTap();
+  MakingTap(const MakingTap&) = delete;
+  MakingTap& operator=(const MakingTap&) = delete;
 };
 
 // Tells a reader elsewhere that it has what a writer had.
