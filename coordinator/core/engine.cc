@@ -116,8 +116,9 @@ void Engine::Refresh(Robot& robot) {
   }
 }
 
-// As on Linux: whom time wakes goes before its equals, if it has used less than its share of late.
-// `after_ns`: of theirs, from now on. Who is woken by an equal of its own robot waits behind it.
+// As on Linux: whom time or input wakes goes before its equals, if it has used less than its share
+// of late. `after_ns`: of theirs, from now on. Who is woken by its own robot's threads waits
+// behind.
 bool Engine::GoesFirst(const Task& task, std::int64_t after_ns) const {
   return task.policy == SCHED_OTHER && !IsCallback() &&
          task.share.GoesFirst(after_ns, task.process->robot->ready.CountOf(task.priority));
@@ -145,10 +146,19 @@ void Engine::ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t shar
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
+<<<<<<< HEAD
   const bool reads = task.state == TaskState::kWaiting &&
                      (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
                       task.awaited_signals != 0 || task.waits_for_messages);
   const bool goes_first = from_outside_ && task.state == TaskState::kWaiting && GoesFirst(task, 0);
+=======
+  const bool reads =
+      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child ||
+                                            task.waits_for_key || task.awaited_signals != 0);
+  const bool outside =
+      from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
+  const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
+>>>>>>> sched
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
@@ -203,7 +213,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     if (other->priority == task.priority && task.policy != SCHED_FIFO) {
       const std::int64_t due = std::min(other->deadline_ns, expiry);
       if (due != shm::kNeverNs && task_yields && GoesFirst(*other, due - cpu.progress_ns)) {
-        if (MakesRoom(cpu, *other, due)) limit = std::min(limit, due);
+        if (MakesRoom(cpu, *other, due)) limit = std::min(limit, std::max(due, cpu.progress_ns));
       } else {
         // Its turn comes when this one's is over.
         limit = std::min(limit, std::max(due, turn_end));
