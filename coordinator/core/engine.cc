@@ -146,19 +146,12 @@ void Engine::ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t shar
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-<<<<<<< HEAD
   const bool reads = task.state == TaskState::kWaiting &&
                      (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
                       task.awaited_signals != 0 || task.waits_for_messages);
-  const bool goes_first = from_outside_ && task.state == TaskState::kWaiting && GoesFirst(task, 0);
-=======
-  const bool reads =
-      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child ||
-                                            task.waits_for_key || task.awaited_signals != 0);
   const bool outside =
       from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
   const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
->>>>>>> sched
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
