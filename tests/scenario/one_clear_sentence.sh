@@ -48,5 +48,6 @@ refused "another run writes to the folder '$out/busy'.*--out" "$tcsim" run "$out
 install -D -m 755 "$tcsim" "$out/bin/tcsim"
 install -D -m 755 "$build/lib/libtcs_preload.so" "$out/lib/libtcs_preload.so"
 install -D -m 755 "$build/lib/libtcs_allocations.so" "$out/lib/libtcs_allocations.so"
+install -D -m 755 "$build/lib/libtcs_dds.so" "$out/lib/libtcs_dds.so"
 unprivileged=(setpriv --reuid 65534 --regid 65534 --clear-groups --bounding-set -all)
 refused 'SCHED_FIFO.*tcsim doctor' prlimit --rtprio=0 "${unprivileged[@]}" "$out/bin/tcsim" exec -- true
