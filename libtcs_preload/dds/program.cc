@@ -100,12 +100,6 @@ bool IsShadow(const ddsi_guid_t& entity) {
   return state.shadows.contains(PrefixOf(entity));
 }
 
-void SetDomain(std::uint32_t domain, ddsi_domaingv* gv) {
-  State& state = Get();
-  const std::lock_guard lock(state.mutex);
-  state.domains[domain].gv = gv;
-}
-
 ddsi_domaingv* DomainOf(std::uint32_t domain) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);

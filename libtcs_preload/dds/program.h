@@ -23,7 +23,6 @@ void RemoveShadow(const Guid& participant);
 bool IsShadow(const ddsi_guid_t& entity);
 
 // Domains.
-void SetDomain(std::uint32_t domain, ddsi_domaingv* gv);
 ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
