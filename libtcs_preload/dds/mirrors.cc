@@ -253,11 +253,7 @@ void Mirrors::MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv
     RemoveTap(tap);
     return;
   }
-  if (!tap->catches_up) return;
-  for (const Guid& writer : WritersWithHistory(tap->domain, tap->topic)) {
-    SendHistoryEnd(tap->domain, writer, tap->reader, tap->process);
-  }
-  tap->catching_up = false;
+  if (tap->catches_up) EndCatchUp(*tap);
 }
 
 void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payload) {

@@ -68,9 +68,8 @@ void Forget(Writer& writer, const ddsi_domaingv* gv) {
   for (auto& [iid, instance] : writer.instances) ddsi_tkmap_instance_unref(gv->m_tkmap, instance);
 }
 
-std::vector<Guid> SomeWritersOf(std::uint32_t domain, const std::string& topic, bool with_history) {
-  State& state = Get();
-  const std::lock_guard lock(state.mutex);
+std::vector<Guid> LockedWritersOf(const State& state, std::uint32_t domain,
+                                  const std::string& topic, bool with_history) {
   std::vector<Guid> guids;
   for (const auto& [guid, writer] : state.writers) {
     if ((writer.has_history || !with_history) && writer.domain == domain && writer.topic == topic) {
@@ -205,11 +204,9 @@ bool IsWriter(const Guid& guid) {
 }
 
 std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
-  return SomeWritersOf(domain, topic, false);
-}
-
-std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& topic) {
-  return SomeWritersOf(domain, topic, true);
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return LockedWritersOf(state, domain, topic, false);
 }
 
 namespace {
@@ -295,11 +292,18 @@ std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::stri
   const std::lock_guard lock(state.mutex);
   std::vector<LateReader> readers;
   for (const Tap* tap : state.taps) {
-    if (tap->catches_up && tap->domain == domain && tap->topic == topic) {
+    if (tap->catches_up && tap->is_complete && tap->domain == domain && tap->topic == topic) {
       readers.push_back({tap->reader, tap->process});
     }
   }
   return readers;
+}
+
+std::vector<Guid> CompleteTap(Tap& tap) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  tap.is_complete = true;
+  return LockedWritersOf(state, tap.domain, tap.topic, true);
 }
 
 }  // namespace tcs::dds

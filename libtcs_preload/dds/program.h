@@ -41,8 +41,6 @@ bool AddWriter(const ddsi_writer& writer);
 void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid);
 bool IsWriter(const Guid& guid);
 std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
-// The transient-local ones among them.
-std::vector<Guid> WritersWithHistory(std::uint32_t domain, const std::string& topic);
 
 // Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
 // process the first that sees it. Keeps the sample's instance alive, since Cyclone would otherwise
@@ -64,6 +62,10 @@ struct LateReader {
   Guid guid;
   std::uint32_t process;
 };
+// Those whose shadow reader is complete; the others hear of a new writer when theirs is.
 std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic);
+// The shadow reader is complete: the transient-local writers that it has met. In one step, so that
+// a writer that is made meanwhile is told of by the one or by the other.
+std::vector<Guid> CompleteTap(Tap& tap);
 
 }  // namespace tcs::dds

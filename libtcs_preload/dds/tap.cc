@@ -14,6 +14,9 @@ constexpr std::int64_t kMostBlockingNs = 1'000'000'000;
 
 thread_local const Tap* t_making;
 
+// As many as threads can be writing at a time, and more.
+constexpr std::size_t kMostHad = 64;
+
 Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
 
 void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample, bool addressed) {
@@ -24,6 +27,17 @@ void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
   message.status_info = sample.statusinfo;
   message.sample_kind = sample.kind;
   SendSample(message, sample, tap.topic);
+}
+
+// To the tap's reader alone, unless it has had it.
+void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
+  if (std::ranges::count(tap.had, sample) != 0) return;
+  tap.had.push_back(ddsi_serdata_ref(sample));
+  if (tap.had.size() > kMostHad) {
+    ddsi_serdata_unref(tap.had.front());
+    tap.had.pop_front();
+  }
+  Ship(tap, writer, *sample, true);
 }
 
 // The program's listener may write while its writer is still being made: others have to know the
@@ -37,11 +51,14 @@ bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
 
 bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
            ddsi_tkmap_instance* instance) {
-  const Tap& tap = TapOf(rhc);
+  Tap& tap = TapOf(rhc);
+  std::unique_lock lock(tap.mutex, std::defer_lock);
+  if (tap.catches_up) lock.lock();
   if (t_making == &tap) {
-    if (tap.catches_up && !IsShadow(info->guid)) Ship(tap, info->guid, *sample, true);
+    if (tap.catches_up && !IsShadow(info->guid)) ShipAlone(tap, info->guid, sample);
     return true;
   }
+  if (!tap.catching_up && std::ranges::count(tap.had, sample) != 0) return true;
   std::int64_t blocks_ns = 0;
   Carries carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
@@ -51,8 +68,9 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
     Ship(tap, info->guid, *sample, false);
   }
   if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
-    Ship(tap, info->guid, *sample, true);
+    ShipAlone(tap, info->guid, sample);
   }
+  if (lock.owns_lock()) lock.unlock();
   if (blocks_ns > 0) TheLink().await_room(std::min(blocks_ns, kMostBlockingNs));
   return true;
 }
@@ -64,6 +82,7 @@ void SetQos(ddsi_rhc*, const dds_qos_t*) {}
 void Free(ddsi_rhc* rhc) {
   Tap* tap = &TapOf(rhc);
   RemoveTap(tap);
+  for (ddsi_serdata* sample : tap->had) ddsi_serdata_unref(sample);
   delete tap;
 }
 
@@ -96,7 +115,7 @@ constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnersh
 
 Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
             const std::string& topic, bool catches_up) {
-  Tap* tap = new Tap{{}, gv, domain, process, reader, topic, catches_up, {catches_up}};
+  Tap* tap = new Tap{{}, gv, domain, process, reader, topic, catches_up, false, catches_up, {}, {}};
   tap->rhc.common.ops = &kOperations;
   AddTap(tap);
   return tap;
@@ -104,6 +123,14 @@ Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, cons
 
 MakingTap::MakingTap(const Tap* tap) { t_making = tap; }
 MakingTap::~MakingTap() { t_making = nullptr; }
+
+void EndCatchUp(Tap& tap) {
+  const std::lock_guard lock(tap.mutex);
+  for (const Guid& writer : CompleteTap(tap)) {
+    SendHistoryEnd(tap.domain, writer, tap.reader, tap.process);
+  }
+  tap.catching_up = false;
+}
 
 void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
                     std::uint32_t process) {

@@ -3,8 +3,9 @@
 // program's own is shipped to the process of the reader that the shadow stands for.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <deque>
+#include <mutex>
 #include <string>
 
 #include "libtcs_preload/dds/guid.h"
@@ -19,9 +20,15 @@ struct Tap {
   std::uint32_t process;
   Guid reader;
   std::string topic;
-  bool catches_up;  // reliable and transient local: gets what writers have when they meet
+  bool catches_up;   // reliable and transient local: gets what writers have when they meet
+  bool is_complete;  // CompleteTap has been called
   // Samples of all threads go to this reader alone until its history's end has been sent.
-  std::atomic<bool> catching_up;
+  bool catching_up;
+  // What it has had alone of late, referred to: a thread that is writing while the history is read
+  // stores its sample once more. Both under the mutex, and so is what is sent meanwhile, for the
+  // reader takes what comes after the history's end, and nothing before.
+  std::deque<ddsi_serdata*> had;
+  std::mutex mutex;
 };
 
 // Belongs to the shadow reader that is made with it, and goes with it.
@@ -37,6 +44,9 @@ class MakingTap {
   MakingTap(const MakingTap&) = delete;
   MakingTap& operator=(const MakingTap&) = delete;
 };
+
+// The shadow reader is there: tells the reader elsewhere that it has had what writers had.
+void EndCatchUp(Tap& tap);
 
 // Tells a reader elsewhere that it has what a writer had.
 void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
