@@ -62,7 +62,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   page.idle_until_ns = idle_until_ns;
   page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   page.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  page.host_cpu_origin_ns = task.host_origin_ns;
+  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
   page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
   page.ns_per_tick_q32 =
       IsFixed()
@@ -200,7 +200,10 @@ void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
-  task.host_origin_ns = page.host_cpu_origin_ns;
+  // What the thread has taken out; its origin may have become another one meanwhile.
+  const std::int64_t moved = page.host_cpu_origin_ns - task.page_origin_ns;
+  task.page_origin_ns += moved;
+  task.host_origin_ns += moved;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
   if (trapped_.has_value() && IsFixed()) {

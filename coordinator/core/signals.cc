@@ -100,8 +100,11 @@ void Engine::WakeForSignals(Process& process) {
 // it run before (while the running thread waits for the disk), the kernel would end the call with
 // an error of its own, and the result would be lost.
 void Engine::AnswerAhead(Task& task) {
-  if (task.trap_id == 0 || task.trap_continues || task.state != TaskState::kReady) return;
-  if (&task != running_ && task.level == Level::kActive) {
+  if (&task == running_ || task.trap_id == 0 || task.trap_continues ||
+      task.state != TaskState::kReady) {
+    return;
+  }
+  if (task.level == Level::kActive) {
     SetLevel(task.tid, Level::kWaiting);
     task.level = Level::kWaiting;
   }

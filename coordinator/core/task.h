@@ -98,7 +98,8 @@ struct Task {
   int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
-  int cpu_clock_fd = -1;  // where its CPU clock is read, if it is not its process's
+  std::int64_t page_origin_ns = 0;  // what its page says of that
+  int cpu_clock_fd = -1;            // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
   bool spins = false;           // computes without calls where computing takes no time
   bool parked = true;           // at its gate, rather than stopped by priority
