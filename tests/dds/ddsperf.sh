@@ -26,7 +26,7 @@ END
     >"$work/said" 2>&1 || fail "'$2' with '$3': $(cat "$work/said" "$work"/out/*.log)"
   python3 - "$work/out/summary.json" "$seconds" <<'END' || fail "'$2' with '$3': $(cat "$work"/out/*.log)"
 import json, sys
-seconds = int(sys.argv[2])
+seconds = float(sys.argv[2])
 for name, client in json.load(open(sys.argv[1]))["clients"].items():
     assert client["wait_status"] == 0, f"{name} ended with {client['wait_status']}"
     ended = client["ended_at_ns"] / 1e9
@@ -45,8 +45,8 @@ between 10 '-Qsamples:9900 sub' 'pub 1kHz size 256'
 says "$first" ' 9\.00.* lost 0 delta (999|1000|1001) lost 0 '
 between 10 '-Qsamples:9900 sub polling' 'pub 1kHz size 16k'
 says "$first" ' 9\.00.* lost 0 delta (999|1000|1001) lost 0 '
-# As fast as they can.
-between 1 'pong' '-Qroundtrips:1000 ping'
-between 1 'pong waitset' '-Qroundtrips:1000 ping waitset'
+# As fast as they can. (Pings begin after a second.)
+between 1.1 'pong' '-Qroundtrips:1000 ping'
+between 1.1 'pong waitset' '-Qroundtrips:1000 ping waitset'
 between 1 '-Qsamples:1000 sub' 'pub size 64'
 between 1 '-Qsamples:1000 sub waitset' 'pub size 16k'
