@@ -26,16 +26,11 @@ dds_ignorelocal_kind_t Policy(const dds_qos_t* qos) {
   return kind;
 }
 
-// Of making an endpoint: always a shadow's and that of one that ignores what is in its process, and
-// others' as soon as there is such a one.
-std::unique_lock<std::recursive_timed_mutex> Turn(bool always) {
-  State& state = Get();
-  {
-    const std::lock_guard lock(state.mutex);
-    always = always || !state.ignoring.empty();
-  }
-  std::unique_lock turn(state.turn, std::defer_lock);
-  if (always) static_cast<void>(turn.try_lock_for(kLongestTurn));
+// Of making an endpoint. Two that are made at a time may find each other twice: Cyclone then counts
+// two that do not suit it where there is one.
+std::unique_lock<std::recursive_timed_mutex> Turn() {
+  std::unique_lock turn(Get().turn, std::defer_lock);
+  static_cast<void>(turn.try_lock_for(kLongestTurn));
   return turn;
 }
 
@@ -75,13 +70,13 @@ void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t kind) {
 
 }  // namespace
 
-ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn(true)), gv_(gv) {
+ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn()), gv_(gv) {
   SetAll(gv_, DDS_IGNORELOCAL_PARTICIPANT);
 }
 ShadowMatches::~ShadowMatches() { SetAll(gv_, DDS_IGNORELOCAL_PROCESS); }
 
 OwnMatches::OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others)
-    : turn_(Turn(Policy(qos) == DDS_IGNORELOCAL_PROCESS)), gv_(gv), given_(qos) {
+    : turn_(Turn()), gv_(gv), given_(qos) {
   if (Policy(qos) != DDS_IGNORELOCAL_PROCESS) return;
   milder_ = ddsi_xqos_dup(qos);
   dds_qset_ignorelocal(milder_, DDS_IGNORELOCAL_PARTICIPANT);

@@ -3,8 +3,8 @@
 //
 // Cyclone compares the two endpoints' policies whenever one of them is made. So the program's
 // endpoints with that policy have a milder one while a shadow is made; and while one of them is
-// made itself, it is the program's others that ignore it. Where there is any, endpoints are made
-// one after another.
+// made itself, it is the program's others that ignore it. Endpoints and shadows are made one after
+// another.
 #pragma once
 
 #include <mutex>
