@@ -21,6 +21,7 @@ using shm::WakeReason;
 // The gate is waited for in turns of this length, to notice a coordinator that was killed. With a
 // timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
+constexpr std::int64_t kMostGateNs = 10'000;
 
 void DieIfCoordinatorIsGone() {
   pollfd pipe{g_notify_fd, 0, 0};
@@ -63,6 +64,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
     }
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
+    if (result == 0) shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && interruptible &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {

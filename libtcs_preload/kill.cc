@@ -17,16 +17,22 @@ using namespace tcs::preload;
 namespace {
 
 // Sending is a write: no handler may run at an earlier time. `receiver` as for kill(2); a `call`
-// that returns 0 has sent something. A signal of 0 only asks whether somebody is there.
+// that returns 0 has sent something. A signal of 0 only asks whether somebody is there. Should the
+// thread be stopped between the signal and word of it, the coordinator sees from its slot that
+// there may be one: before it has seen to the receiver nobody else may run.
 template <class Call>
 auto SendSignal(pid_t receiver, int signal, Call call) {
   GuestThread* t = Enter();
-  if (t != nullptr && signal != 0) HoldForWrite(*t);
+  if (t == nullptr || signal == 0) return call();
+  HoldForWrite(*t);
+  std::atomic<std::uint32_t>& signals = t->slot->signals;
+  signals.fetch_add(1, std::memory_order_relaxed);
   const auto result = call();
-  if (t != nullptr && signal != 0 && result == 0) {
+  if (result == 0) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignalled,
                          .args = {receiver > 0 ? receiver : 0}});
   }
+  signals.fetch_sub(1, std::memory_order_relaxed);
   return result;
 }
 

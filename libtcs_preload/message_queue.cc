@@ -68,13 +68,19 @@ long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsig
   std::int64_t deadline;
   if (!ToDeadline(timeout, &deadline)) return -EINVAL;
   HoldForWrite(t);
+  // The kernel may send a signal with it: see kill.cc.
+  const bool notifies = g_header->queues_notify.load(std::memory_order_relaxed) != 0;
+  std::atomic<std::uint32_t>& signals = t.slot->signals;
   const long result = WaitAndCall(t, queue, POLLOUT, deadline, [&] {
-    return RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
-                      static_cast<long>(priority), Arg(&kLongAgo));
+    if (notifies) signals.fetch_add(1, std::memory_order_relaxed);
+    const long sent = RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
+                                 static_cast<long>(priority), Arg(&kLongAgo));
+    if (sent != 0) signals.fetch_sub(1, std::memory_order_relaxed);
+    return sent;
   });
-  // The kernel may have sent a signal with it.
-  if (result == 0 && g_header->queues_notify.load(std::memory_order_relaxed) != 0) {
+  if (result == 0 && notifies) {
     Exchange(t, Request{.kind = tcs::shm::NotificationKind::kSignalled});
+    signals.fetch_sub(1, std::memory_order_relaxed);
   }
   return result;
 }

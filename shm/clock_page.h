@@ -111,4 +111,16 @@ inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t ho
   return true;
 }
 
+// What has been executed since the dispatch was the way out of the gate: neither time nor charge of
+// the thread's. Nothing is taken out if that was more than `most_ns`: a handler has run.
+inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
+  const std::int64_t gate_ns = r.cpu_ns - page.base_cpu_ns;
+  if (page.ns_per_tick_q32 == 0 || gate_ns <= 0 || gate_ns > most_ns) return;
+  std::uint64_t expected = r.executed_word;
+  const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - gate_ns);
+  if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
+  page.host_cpu_origin_ns += static_cast<std::int64_t>((static_cast<std::uint64_t>(gate_ns) << 32) /
+                                                       page.ns_per_host_ns_q32);
+}
+
 }  // namespace tcs::shm

@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kVersion = 7;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -72,6 +72,14 @@ enum class NotificationKind : std::uint32_t {
   kWakeKey = 23,  // the object of args[0] and args[1] has been changed
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
+  // Of programs that speak DDS (dds_exchange.h).
+  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the coordinator's
+                  // descriptor of the memory with the areas
+  kDdsSend = 26,  // args[0]: bytes of messages in the outbox
+  kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
+                  // messages in the inbox
+  kDdsSync = 28,  // go on once the deliverer has handed over what is due, or waits for others
+  kDdsRoom = 29,  // args[0]: go on once less waits for that process, or at the deadline
 };
 
 // Kernel objects that cannot be polled. kTerminals is for waking only: what is written to one end
@@ -133,8 +141,9 @@ struct ClockPage {
   std::atomic<std::int64_t> last_shown_ns;  // the clock never shows less
   std::atomic<std::uint64_t> last_check_tsc;
   std::atomic<std::int64_t> stolen_ns;  // removed so far, virtual ns, host-visible statistics only
+  // The thread's CPU clock at base_cpu_ns == 0, moved by what is not charged.
+  std::int64_t host_cpu_origin_ns;
   // Constant from the thread's first dispatch on.
-  std::int64_t host_cpu_origin_ns;   // the thread's CPU clock at base_cpu_ns == 0
   std::uint64_t ns_per_host_ns_q32;  // virtual ns per host ns, times 2^32
   std::uint64_t check_after_ticks;   // the CPU clock is asked when this much TSC has passed
   std::int64_t call_cost_ns;         // of each intercepted call; 0 under measured accounting
@@ -192,13 +201,17 @@ struct alignas(64) ThreadSlot {
   std::uint32_t cores;  // of the robot
   std::uint32_t core;   // the virtual CPU the thread was last dispatched on
   std::uint64_t seed;   // of everything the thread draws from the system in deterministic modes
-  std::uint32_t patch_vdso;  // 1: calls of the vDSO are to be led to the shim
+  std::uint32_t patch_vdso;     // 1: calls of the vDSO are to be led to the shim
+  std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
+  // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
+  std::atomic<std::uint32_t> signals;
   std::uint8_t reserved[460];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
+static_assert(offsetof(ThreadSlot, signals) == 560);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters.

@@ -36,6 +36,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   client.name = command[0];
   client.command = command;
   client.patch_vdso = arguments.patch_vdso;
+  client.dds = arguments.dds;
   if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});

@@ -15,6 +15,7 @@ struct ExecArguments {
   bool patch_vdso = false;
   std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default
   std::string allocation_cost;  // of one allocation, the same
+  DdsTransport dds = DdsTransport::kEndpoints;
 };
 
 // Runs the command alone on a computer, without dynamics; the exit status is the command's own.

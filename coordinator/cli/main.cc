@@ -11,6 +11,7 @@
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
@@ -49,6 +50,9 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
       ->capture_default_str();
+  bool record = false;
+  run->add_flag("--record", record,
+                "also write all DDS topics into the folder, as the rosbag2 bag `bag`");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
@@ -79,6 +83,12 @@ int main(int argc, char** argv) {
   exec->add_option(
       "--allocation-cost", allocation_cost,
       "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
+  std::string dds = "endpoints";
+  exec->add_option(
+          "--dds", dds,
+          "how programs that use Cyclone DDS reach each other; endpoints: in shared memory "
+          "(default); sockets: by their own protocol")
+      ->check(CLI::IsMember({"endpoints", "sockets"}));
   exec->add_option("command", command, "the program and its arguments, after --")->required();
   exec->positionals_at_end();
 
@@ -100,6 +110,12 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   report->add_option("--title", report_arguments.title,
                      "of the page; the scenario's name unless told");
+
+  tcs::TopicsArguments topics_arguments;
+  CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
+  topics->add_option("folder", topics_arguments.folder, "what run wrote")->required();
+  topics->add_flag("--qos", topics_arguments.with_qos,
+                   "the quality of service of each endpoint, too");
 
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
@@ -125,22 +141,27 @@ int main(int argc, char** argv) {
     return tcs::CanRun(findings) ? 0 : 1;
   }
   if (report->parsed()) return tcs::ReportCommand(report_arguments);
+  if (topics->parsed()) return tcs::TopicsCommand(topics_arguments);
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");
   }
-  for (const std::string& library : {options.preload_library, options.allocation_library}) {
+  for (const std::string& library :
+       {options.preload_library, options.allocation_library, tcs::DdsLibrary()}) {
     if (access(library.c_str(), R_OK) != 0) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }
   }
+  options.record = record;
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {
     return exec->parsed()
-               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost},
+               ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
+                                   dds == "sockets" ? tcs::DdsTransport::kSockets
+                                                    : tcs::DdsTransport::kEndpoints},
                                   options)
                : tcs::RunCommand(arguments, options);
   });

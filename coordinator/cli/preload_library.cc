@@ -17,6 +17,8 @@ std::string Library(const char* name) {
 
 std::string PreloadLibrary() { return Library("libtcs_preload.so"); }
 
+std::string DdsLibrary() { return Library("libtcs_dds.so"); }
+
 std::string AllocationLibrary() { return Library("libtcs_allocations.so"); }
 
 }  // namespace tcs

@@ -94,6 +94,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.call_cost_ns = maker->call_cost_ns;
     process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
+    process.dds_endpoints = maker->dds_endpoints;
     process.frozen_ns = maker->frozen_ns;
     process.shown_ns = maker->shown_ns;
   }
@@ -192,6 +193,7 @@ void Engine::Attach(int connection) {
     new (&Slot(task)) shm::ThreadSlot{};
   } else {
     DeletePosixTimers(*task.process);  // it has executed another program
+    LeaveDds(*task.process);
   }
   shm::ThreadSlot& slot = Slot(task);
   slot.pid = task.process->pid;
@@ -199,6 +201,8 @@ void Engine::Attach(int connection) {
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
+  slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
+  slot.signals.store(0);
   slot.gate.store(shm::kGateClosed);
   LeaveWait(task);
   task.early_trap.reset();
@@ -240,6 +244,11 @@ void Engine::LeaveWait(Task& task) {
   waiting_for_child_ -= task.waits_for_child;
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
+  task.waits_for_messages = false;
+  task.waits_for_room = 0;
+  if (std::exchange(task.waits_for_deliverer, false) && task.process->deliverer != nullptr) {
+    FindPriority(*task.process->deliverer);
+  }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
   task.deadline_ns = shm::kNeverNs;
@@ -260,6 +269,7 @@ void Engine::EndTask(Task& task) {
     report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
+  if (process.deliverer == &task) process.deliverer = nullptr;
   LeaveWait(task);
   SetState(task, TaskState::kDead);
   --living_;
@@ -307,6 +317,7 @@ void Engine::ProcessEnded(std::size_t index) {
   }
   if (parent != nullptr) WakeForSignals(*parent);
   WakeEveryKey();
+  LeaveDds(process);
   // Our own children, and those who lost their parent, are reaped here.
   if (!process.is_client) ended_processes_.push_back(&process);
   int status = 0;

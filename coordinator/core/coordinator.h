@@ -28,6 +28,7 @@ struct RunOptions {
   shm::Accounting accounting = shm::Accounting::kMeasured;
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
+  bool record = false;           // all DDS topics, into a bag in output_directory
   std::string preload_library;
   std::string allocation_library;  // preloaded besides under fixed accounting
   // Called about five times a real second, if set; what it takes is the coordinator's.

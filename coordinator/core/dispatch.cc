@@ -62,7 +62,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   page.idle_until_ns = idle_until_ns;
   page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   page.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  page.host_cpu_origin_ns = task.host_origin_ns;
+  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
   page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
   page.ns_per_tick_q32 =
       IsFixed()
@@ -94,10 +94,11 @@ void Engine::StartClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = stop_tsc_ + static_cast<std::uint64_t>(switch_ns_ * ticks_per_ns_);
+  page.base_tsc = stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
   task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
   page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
   ++task.unchecked_slices;
+  task.unchecked_from_gate += from_gate_;
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -112,6 +113,7 @@ void Engine::Resume(Task& task) {
     task.level = Level::kActive;
   }
   last_ = &task;
+  from_gate_ = task.parked;
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
@@ -167,9 +169,13 @@ void Engine::CheckCpuClock(Task& task) {
     const auto stolen = static_cast<double>(reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu)) *
                         task.process->robot->speed;
     const double more = std::clamp(stolen / task.unchecked_slices, -kMostSwitchNs, kMostSwitchNs);
-    switch_ns_ = std::clamp(switch_ns_ + more / 16, 0.0, kMostSwitchNs);
+    const bool all_from_gate = task.unchecked_from_gate == task.unchecked_slices;
+    if (all_from_gate || task.unchecked_from_gate == 0) {
+      double& known = switch_ns_[all_from_gate];
+      known = std::clamp(known + more / 16, 0.0, kMostSwitchNs);
+    }
   }
-  task.unchecked_slices = 0;
+  task.unchecked_slices = task.unchecked_from_gate = 0;
   shm::RemoveStolen(page, reading, cpu);
 }
 
@@ -194,6 +200,10 @@ void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
+  // What the thread has taken out; its origin may have become another one meanwhile.
+  const std::int64_t moved = page.host_cpu_origin_ns - task.page_origin_ns;
+  task.page_origin_ns += moved;
+  task.host_origin_ns += moved;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
   if (trapped_.has_value() && IsFixed()) {
@@ -346,6 +356,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     SendTimerSignalsTo(task);
+    HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
   Resume(task);
@@ -365,6 +376,9 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.used_up = 0;
   }
   ExpireCpuTimers(task);
+  // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
+  // the level of its last dispatch, beside whoever is next.
+  if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);
   if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;

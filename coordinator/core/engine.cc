@@ -8,6 +8,7 @@
 #include <x86intrin.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
@@ -58,18 +59,22 @@ bool Engine::IsRunnable(const Task& task) {
          task.state == TaskState::kStarting;
 }
 
-void Engine::SetState(Task& task, TaskState state) {
+void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
   if (ends && task.state != TaskState::kWaiting) NoteIdle(task);
   unseen_ += (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
   task.state = state;
-  Requeue(task);
+  Requeue(task, goes_first);
+  // A deliverer that waits for something else must not be waited for: it may need what those hold.
+  if (task.is_deliverer && !IsRunnable(task) && !task.waits_for_messages) {
+    ReleaseThoseAwaitingDeliverer(*task.process);
+  }
 }
 
-void Engine::Requeue(Task& task) {
+void Engine::Requeue(Task& task, bool goes_first) {
   FixedPriority& ready = task.process->robot->ready;
   if (IsRunnable(task)) {
-    ready.Add({task.order, task.priority, task.reached_ns, task.allowed_cores});
+    ready.Add({task.order, task.priority, task.reached_ns, task.allowed_cores, goes_first});
   } else {
     ready.Remove(task.order);
   }
@@ -111,11 +116,42 @@ void Engine::Refresh(Robot& robot) {
   }
 }
 
+// As on Linux: whom time or input wakes goes before its equals, if it has used less than its share
+// of late. `after_ns`: of theirs, from now on. Who is woken by its own robot's threads waits
+// behind.
+bool Engine::GoesFirst(const Task& task, std::int64_t after_ns) const {
+  return task.policy == SCHED_OTHER && !IsCallback() &&
+         task.share.GoesFirst(after_ns, task.process->robot->ready.CountOf(task.priority));
+}
+
+// Whether the core has to stop at `due_ns` for a thread that goes first then: of the cores that
+// would, the one that comes there last. The others need not.
+bool Engine::MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns) {
+  const auto may_take = [&woken](const VirtualCpu& core) {
+    return (woken.allowed_cores >> (core.core & 63) & 1) != 0 &&
+           core.robot->ready.YieldsTo(core.core, woken.priority);
+  };
+  return may_take(cpu) &&
+         std::none_of(cpu.robot->cpus.begin(), cpu.robot->cpus.end(), [&](const VirtualCpu* other) {
+           return other != &cpu && other->progress_ns <= due_ns && may_take(*other);
+         });
+}
+
+void Engine::ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing) {
+  for (Task* task : ran.process->robot->tasks) {
+    if (task->priority == priority) task->share.Earn(ns, sharing);
+  }
+  ran.share.Spend(ns);
+}
+
 void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   if (task.state == TaskState::kDead) return;
-  const bool reads =
-      task.state == TaskState::kWaiting && (task.waits_for_fds || task.waits_for_child ||
-                                            task.waits_for_key || task.awaited_signals != 0);
+  const bool reads = task.state == TaskState::kWaiting &&
+                     (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
+                      task.awaited_signals != 0 || task.waits_for_messages);
+  const bool outside =
+      from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
+  const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
@@ -123,10 +159,11 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max(task.reached_ns, event_ns_);
+  if (task.waits_for_messages) task.messages_until_ns = std::max(event_ns_, task.deadline_ns);
   if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
   LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.
-  SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady);
+  SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady, goes_first);
   task.hold = shm::NotificationKind::kRead;
   task.reason = reason;
   Refresh(*task.process->robot);
@@ -153,6 +190,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   std::int64_t idle = limit;
   const std::int64_t turn_end =
       task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
+  const bool task_yields = robot.ready.YieldsTo(cpu.core, task.priority);
   for (const Task* other : robot.tasks) {
     const std::int64_t expiry = other->process->next_expiry_ns;
     if (other->process == task.process || other->priority > task.priority) {
@@ -166,18 +204,24 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
     }
     idle = std::min(idle, other->deadline_ns);
     if (other->priority == task.priority && task.policy != SCHED_FIFO) {
-      // Its turn comes when this one's is over.
-      limit = std::min(limit, std::max(std::min(other->deadline_ns, expiry), turn_end));
+      const std::int64_t due = std::min(other->deadline_ns, expiry);
+      if (due != shm::kNeverNs && task_yields && GoesFirst(*other, due - cpu.progress_ns)) {
+        if (MakesRoom(cpu, *other, due)) limit = std::min(limit, std::max(due, cpu.progress_ns));
+      } else {
+        // Its turn comes when this one's is over.
+        limit = std::min(limit, std::max(due, turn_end));
+      }
     }
     if (other->priority <= task.priority) continue;
     limit = std::min(limit, other->deadline_ns);
     if (!other->waits_for_fds && !other->waits_for_key && other->awaited_signals == 0 &&
+        !other->waits_for_messages && other->waits_for_room == 0 &&
         !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
       continue;
     const std::int64_t input = root_.NextInput(cpu.leaf);
     limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
   }
-  limit = std::min(limit, robot.ready.NextMoreUrgent(cpu.core));
+  limit = std::min(limit, robot.ready.NextToPrecede(cpu.core));
   if (robot.ready.HasWaitingEqual(cpu.core)) limit = std::min(limit, turn_end);
   *idle_until = std::min(idle, limit);
   return limit;
@@ -220,6 +264,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.progress_ns = std::max(cpu.progress_ns, root_.Least());
   FireDue(robot, cpu.progress_ns);
+  // Who is due by now did not wait for another turn of the last one.
+  robot.ready.Rotate(std::exchange(cpu.turn_over, FixedPriority::kNobody));
   Refresh(robot);
   const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
   // What was due may have woken somebody who acts on another virtual CPU first.
@@ -233,6 +279,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
+  const int priority = task.priority;
+  const std::size_t sharing = robot.ready.CountOf(priority);
   const std::int64_t horizon = KeepWorldNear(task, HorizonFor(task, &idle_until));
   idle_until = std::min(idle_until, horizon);
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
@@ -241,12 +289,11 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     Dispatch(task, horizon, idle_until);
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
+  ShareOut(task, cpu.progress_ns - start, priority, sharing);
   task.turn_ns += cpu.progress_ns - start + task.process->frozen_ns - frozen;
   if (task.turn_ns >= QuantumOf(task)) {
     task.turn_ns = 0;
-    // Who is due by now does not wait for another turn.
-    FireDue(robot, cpu.progress_ns);
-    robot.ready.Rotate(task.order);
+    if (IsRunnable(task)) cpu.turn_over = task.order;
   }
   Requeue(task);
   Refresh(robot);
@@ -271,7 +318,10 @@ bool Engine::StepWorld() {
   if (sent) {
     event_ns_ = world_.progress_ns();
     trace_.Instant(world_row_, "sensors", event_ns_);
+    ShowDeliverersTheirDeadlines();
+    from_outside_ = true;
     PollEvents(0);
+    from_outside_ = false;
   }
   return true;
 }
@@ -371,6 +421,7 @@ bool Engine::Step() {
   if (living_ == 0) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
+  TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();
   if (least == shm::kNeverNs) {

@@ -12,8 +12,12 @@
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
+#include "coordinator/dds/hub.h"
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
 #include "coordinator/trace/schedule_trace.h"
 
@@ -65,10 +69,13 @@ class Engine {
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   bool HasRunOut(const Task& task, std::int64_t now_ns) const;
-  void SetState(Task& task, TaskState state);
-  void Requeue(Task& task);
+  void SetState(Task& task, TaskState state, bool goes_first = false);
+  void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason);
+  bool GoesFirst(const Task& task, std::int64_t after_ns) const;
+  static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
+  static void ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing);
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -154,9 +161,25 @@ class Engine {
   void NoteTerminal(Task& task, int fd);
   void FlushTerminals();
 
+  // Programs that speak DDS (dds.cc).
+  std::string OpenDds();
+  std::string CloseDds();
+  dds::Speaker WhoIs(dds::Hub::Number number) const;
+  void TakeOwnMessages();
+  void HandleDds(Task& task, const shm::Notification& note);
+  void JoinDds(Task& task);
+  void LeaveDds(Process& process);
+  void AwaitMessages(Task& task);
+  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
+  void ReleaseThoseAwaitingDeliverer(const Process& process);
+  void ReleaseThoseAwaitingRoom(std::uint32_t number);
+  void ShowDeliverersTheirDeadlines();
+  void HandMessagesOver(Task& task);
+
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver);
   void WakeForSignals(Process& process);
+  void AnswerAhead(Task& task);
   void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets);
   bool PollSignals();
@@ -247,6 +270,11 @@ class Engine {
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
+  dds::Hub hub_;
+  dds::OwnEndpoints ends_{hub_};
+  dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
+  std::optional<record::Recording> recording_;
+  std::vector<Process*> dds_processes_;  // that have joined it
   std::deque<int> free_slots_;
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
@@ -268,7 +296,10 @@ class Engine {
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
   double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
-  double switch_ns_ = 0;        // from the coordinator's last word to the thread's first, and back
+  // From the coordinator's last word to the thread's first, and back: of a thread that was
+  // preempted, and of one at its gate, which has more of the kernel to run through.
+  double switch_ns_[2] = {0, 0};
+  bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;
   std::int64_t event_ns_ = 0;  // virtual time of what is being handled
@@ -278,6 +309,7 @@ class Engine {
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   bool stop_requested_ = false;
+  bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped
   bool external_event_ = false;

@@ -49,8 +49,11 @@ void Engine::NotificationArrived(Task& task) {
     CheckCpuClock(task);
     const shm::Notification note = Slot(task).note;
     Handle(task, note);
-  } else if (!task.parked) {
-    // It ran on while the coordinator slept for a thread that the kernel held.
+  } else if (!task.parked || task.trap_id != 0) {
+    // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
+    // outside has ended its trapped call.
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    task.trap_id = 0;
     task.notified_early = true;
   }
 }

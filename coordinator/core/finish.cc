@@ -1,4 +1,5 @@
 // The orderly end of a run, and what it reports.
+#include <fmt/format.h>
 #include <linux/futex.h>
 #include <poll.h>
 #include <signal.h>
@@ -55,6 +56,12 @@ void Engine::Shutdown() {
 
 void Engine::Report(RunReport* report) {
   report->virtual_ns = world_.present() ? world_.progress_ns() : 0;
+  if (hub_.dropped() > 0) {
+    Warn(
+        fmt::format("{} DDS samples were dropped, because a program has stopped taking what is "
+                    "sent to it and 256 MiB were waiting: look for a listener that never returns",
+                    hub_.dropped()));
+  }
   for (const VirtualCpu& cpu : cpus_) {
     report->virtual_ns = std::max(report->virtual_ns, cpu.progress_ns);
   }

@@ -153,6 +153,13 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
         task.process->robot->ready.Rotate(task.order);
       }
       break;
+    case Kind::kDdsJoin:
+    case Kind::kDdsSend:
+    case Kind::kDdsWait:
+    case Kind::kDdsSync:
+    case Kind::kDdsRoom:
+      HandleDds(task, note);
+      break;
     case Kind::kQueueNotifies:
       header_->queues_notify.store(1);
       break;

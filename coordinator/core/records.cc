@@ -8,11 +8,20 @@ namespace tcs {
 
 namespace {
 
+// Whether the process's DDS samples are being handed over: whom this wakes, a sample has woken.
+bool IsTakingSamples(const Process& process) {
+  const Task* deliverer = process.deliverer;
+  return deliverer != nullptr && !deliverer->waits_for_messages;
+}
+
 ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
+  if (task.waits_for_messages) return ReleaseCause::kInput;
   if (reason == shm::WakeReason::kDeadline) return ReleaseCause::kTime;
   if (task.process->expired_ns != shm::kNeverNs) return ReleaseCause::kTime;
   if (reason == shm::WakeReason::kSignal) return ReleaseCause::kSignal;
-  if (task.trap_wait == TrapWait::kFutex) return ReleaseCause::kThread;
+  if (task.trap_wait == TrapWait::kFutex) {
+    return IsTakingSamples(*task.process) ? ReleaseCause::kInput : ReleaseCause::kThread;
+  }
   return task.waits_for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
 }
 
@@ -28,7 +37,8 @@ std::string Engine::OpenRecords() {
 }
 
 std::string Engine::CloseRecords() {
-  const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close()};
+  const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close(),
+                                CloseDds()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;
   }

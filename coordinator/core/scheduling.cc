@@ -41,13 +41,16 @@ void Engine::InheritScheduling(Task& task, const Task& creator) {
   FindPriority(task);
 }
 
-// Those who wait for its locks lend it theirs, and it lends to whom it waits for.
+// Those who wait for its locks, or for it to deliver, lend it theirs, and it lends to whom it waits
+// for.
 void Engine::FindPriority(Task& task) {
   Task* next = &task;
   for (int i = 0; next != nullptr && i < kMostOwners; ++i) {
     int priority = OwnPriority(*next);
     for (const Task& waiter : tasks_) {
-      if (waiter.lock_owner == next) priority = std::max(priority, waiter.priority);
+      const bool lends = waiter.lock_owner == next ||
+                         (waiter.waits_for_deliverer && waiter.process->deliverer == next);
+      if (lends) priority = std::max(priority, waiter.priority);
     }
     if (priority != next->priority) {
       next->priority = priority;

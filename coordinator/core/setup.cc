@@ -58,7 +58,6 @@ std::string Engine::Prepare() {
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (world_.present()) {
     world_row_ = AddRow("dynamics", "dynamics");
-    root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   claim_ = ClaimCpu();
   if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
@@ -67,6 +66,8 @@ std::string Engine::Prepare() {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   if (std::string error = PrepareSegment(); !error.empty()) return error;
+  if (std::string error = OpenDds(); !error.empty()) return error;
+  if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
     Watch(world_.command_fds()[i], EPOLLIN, Tag::kCommand, static_cast<std::uint32_t>(i));
@@ -184,6 +185,7 @@ std::string Engine::StartClients() {
       task->process->call_cost_ns = client.fixed_call_cost.ns();
       task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
       task->process->patch_vdso = client.patch_vdso;
+      task->process->dds_endpoints = client.dds == DdsTransport::kEndpoints;
     }
   }
   return {};

@@ -90,10 +90,27 @@ void Engine::WakeForSignals(Process& process) {
     const std::uint64_t mine =
         Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, blocked);
     taken |= mine;
-    if (mine != 0 && task.state == TaskState::kWaiting) {
-      MakeReady(task, shm::WakeReason::kSignal);
-    }
+    if (mine == 0) continue;
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    AnswerAhead(task);
   }
+}
+
+// A thread that runs a handler at its next dispatch gets the result of its trapped call now: should
+// it run before (while the running thread waits for the disk), the kernel would end the call with
+// an error of its own, and the result would be lost.
+void Engine::AnswerAhead(Task& task) {
+  if (&task == running_ || task.trap_id == 0 || task.trap_continues ||
+      task.state != TaskState::kReady) {
+    return;
+  }
+  if (task.level == Level::kActive) {
+    SetLevel(task.tid, Level::kWaiting);
+    task.level = Level::kWaiting;
+  }
+  if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) task.handed_lock = 0;
+  task.trap_id = 0;
+  task.parked = false;
 }
 
 void Engine::WakeSignalled(pid_t receiver) {

@@ -14,6 +14,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/share.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/layout.h"
@@ -58,12 +59,16 @@ struct Task {
   std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
   std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
   std::uint64_t key_order = 0;            // of waiting
-  bool has_wait_mask = false;             // it waits with a signal mask of its own (sigsuspend):
-  std::uint64_t wait_mask = 0;            // this one; bit 0 is signal 1
-  std::uint64_t awaited_signals = 0;      // its wait ends when one of them is pending
-  std::vector<int> watched;               // descriptors in the coordinator's epoll set
-  bool watches_terminal = false;          // among the watched
-  std::uint32_t wait_number = 0;          // of its last wait for descriptors
+  // Of programs that speak DDS (dds.cc).
+  bool is_deliverer = false, waits_for_messages = false, waits_for_deliverer = false;
+  std::uint32_t waits_for_room = 0;     // of that process among those that speak DDS
+  std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
+  bool has_wait_mask = false;           // it waits with a signal mask of its own (sigsuspend):
+  std::uint64_t wait_mask = 0;          // this one; bit 0 is signal 1
+  std::uint64_t awaited_signals = 0;    // its wait ends when one of them is pending
+  std::vector<int> watched;             // descriptors in the coordinator's epoll set
+  bool watches_terminal = false;        // among the watched
+  std::uint32_t wait_number = 0;        // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
@@ -86,12 +91,15 @@ struct Task {
   std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
   int unchecked_slices = 0;                 // by the coordinator
+  int unchecked_from_gate = 0;              // of them
   std::int64_t turn_ns = 0;                 // had since its equals last had a turn
+  Share share;                              // of what it and its equals have had
   std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
   int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
-  int cpu_clock_fd = -1;  // where its CPU clock is read, if it is not its process's
+  std::int64_t page_origin_ns = 0;  // what its page says of that
+  int cpu_clock_fd = -1;            // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
   bool spins = false;           // computes without calls where computing takes no time
   bool parked = true;           // at its gate, rather than stopped by priority
@@ -134,7 +142,7 @@ struct Process {
   std::string name;
   int priority = 0;
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
-  bool patch_vdso = false;
+  bool patch_vdso = false, dds_endpoints = false;
   // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the
   // world stood still. While it waits the world catches up, but its clock never goes back, nor
   // behind the end of a wait that is over by time.
@@ -151,6 +159,8 @@ struct Process {
   std::int64_t children_ended = 0;  // how many
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
+  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  Task* deliverer = nullptr;     // its thread that takes what is for it
   bool dead = false;
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will
@@ -164,6 +174,7 @@ struct VirtualCpu {
   std::uint32_t core = 0;
   std::int64_t progress_ns = 0;
   TemporalConsistency::Leaf leaf = -1;
+  FixedPriority::Thread turn_over = FixedPriority::kNobody;  // goes behind its equals
 };
 
 struct Robot {

@@ -210,6 +210,7 @@ void Engine::ExpireCpuTimers(const Task& ran) {
 
 void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   event_ns_ = now_ns;
+  from_outside_ = true;
   bool wrote = false;
   for (Task* task : robot.tasks) {
     if (task->state == TaskState::kWaiting && HasRunOut(*task, now_ns)) {
@@ -225,6 +226,7 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
     if (!process.timer_signals.empty()) RouteTimerSignals(process);
   }
   if (wrote) PollEvents(0);
+  from_outside_ = false;
 }
 
 }  // namespace tcs

@@ -54,6 +54,16 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   return {};
 }
 
+void World::OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns) {
+  if (!present()) return;
+  if (scenario_.dds_sensors.empty() && scenario_.dds_commands.empty() &&
+      !scenario_.clock.has_value()) {
+    return;
+  }
+  dds_.emplace(scenario_, ends, realtime_offset_ns);
+  FindNextStop();
+}
+
 void World::FindNextStop() {
   next_output_ns_ = shm::kNeverNs;
   next_stop_ns_ = csv_.is_open() ? next_csv_ns_ : shm::kNeverNs;
@@ -63,6 +73,10 @@ void World::FindNextStop() {
                                      : sensor.on_the_way.front().first;
     next_output_ns_ = std::min(next_output_ns_, arrival);
     next_stop_ns_ = std::min({next_stop_ns_, arrival, sensor.next_ns});
+  }
+  if (dds_.has_value()) {
+    next_output_ns_ = std::min(next_output_ns_, dds_->NextOutputNs());
+    next_stop_ns_ = std::min(next_stop_ns_, dds_->NextSampleNs());
   }
 }
 
@@ -113,6 +127,10 @@ bool World::Advance(std::int64_t limit_ns) {
     if (sensor.next_ns <= progress_ns_) Sample(sensor);
     sent |= SendDue(sensor);
   }
+  if (dds_.has_value() && dds_->NextSampleNs() <= progress_ns_) {
+    samples_ += dds_->WriteDue(progress_ns_, [this](int body) { return dynamics_->Read(body); });
+    sent = true;
+  }
   FindNextStop();
   return sent;
 }
@@ -152,6 +170,16 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
     }
     Apply(std::max(now_ns, settled_ns_) + spec.latency.ns(), spec.body, std::get<Wrench>(wrench));
     ++commands_;
+  }
+}
+
+void World::TakeDdsCommands(std::int64_t now_ns) {
+  const Spent spent(&host_ns_);
+  while (const auto commands = dds_->TakeCommands(now_ns)) {
+    for (const DdsChannels::Command& command : *commands) {
+      Apply(std::max(command.at_ns, settled_ns_), command.body, command.wrench);
+      ++commands_;
+    }
   }
 }
 

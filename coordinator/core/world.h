@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/channel/udp_socket.h"
+#include "coordinator/core/dds_channels.h"
 #include "coordinator/scenario/scenario.h"
 
 namespace tcs {
@@ -18,6 +19,9 @@ class World {
  public:
   // Binds the channels' ports. Empty on success, else one sentence.
   std::string Open(const Scenario& scenario, const std::string& csv_path);
+
+  // The channels on DDS, once there are such endpoints; they outlive this.
+  void OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
 
   bool present() const { return dynamics_ != nullptr; }
   std::int64_t progress_ns() const { return progress_ns_; }
@@ -36,6 +40,10 @@ class World {
   const std::vector<int>& command_fds() const { return command_fds_; }
   // Applies what has arrived on command channel `index` at virtual time `now_ns`.
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
+
+  bool speaks_dds() const { return dds_.has_value(); }
+  // Applies what has been written by `now_ns` to command channels on DDS.
+  void TakeDdsCommands(std::int64_t now_ns);
 
   // Of the coordinator's processor time, what physics and channels took.
   std::int64_t host_ns() const { return host_ns_; }
@@ -72,6 +80,7 @@ class World {
   std::vector<UdpSocket> command_sockets_;
   std::vector<int> command_fds_;
   std::optional<UdpSocket> out_;
+  std::optional<DdsChannels> dds_;
   std::ofstream csv_;
   std::int64_t next_csv_ns_ = 0;
   std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;

@@ -28,11 +28,11 @@ bool WriteAll(int fd, const std::string& text) {
 
 }  // namespace
 
-std::string WriteWhole(const std::string& path, const std::string& text) {
+std::string WriteWhole(const std::string& path, const std::string& text, Withstands what) {
   const std::string unfinished = path + ".new";
   const int fd = open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   // Without the fsync a power cut may leave the new name with nothing in it.
-  bool done = fd >= 0 && WriteAll(fd, text) && fsync(fd) == 0;
+  bool done = fd >= 0 && WriteAll(fd, text) && (what == Withstands::kCrash || fsync(fd) == 0);
   done = fd >= 0 && close(fd) == 0 && done;
   if (done && std::rename(unfinished.c_str(), path.c_str()) == 0) return {};
   return path + " cannot be written: " + strerror(errno);

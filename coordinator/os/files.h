@@ -5,9 +5,14 @@
 
 namespace tcs {
 
+// What a file outlives: the death of any process, or of the machine, too, which takes the disk's
+// time.
+enum class Withstands { kCrash, kPowerCut };
+
 // Whoever reads `path` finds all of the text or what was there before, whatever dies meanwhile.
 // Empty on success, else one sentence.
-[[nodiscard]] std::string WriteWhole(const std::string& path, const std::string& text);
+[[nodiscard]] std::string WriteWhole(const std::string& path, const std::string& text,
+                                     Withstands what = Withstands::kPowerCut);
 
 // Makes the folder and those above it. Empty on success, else one sentence that names --out.
 [[nodiscard]] std::string MakeFolder(const std::string& path);

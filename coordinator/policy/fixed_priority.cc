@@ -12,6 +12,17 @@ std::vector<FixedPriority::Ready>::const_iterator FixedPriority::Find(Thread thr
 
 bool FixedPriority::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
 
+std::size_t FixedPriority::CountOf(int priority) const {
+  return static_cast<std::size_t>(
+      std::count_if(ready_.begin(), ready_.end(),
+                    [priority](const Ready& ready) { return ready.priority == priority; }));
+}
+
+bool FixedPriority::Precedes(const Ready& one, const Ready& other) {
+  return one.priority > other.priority ||
+         (one.priority == other.priority && one.first && !other.first);
+}
+
 void FixedPriority::Add(const Ready& added) {
   if (const auto found = Find(added.thread); found != ready_.end()) {
     Ready& known = ready_[static_cast<std::size_t>(found - ready_.begin())];
@@ -19,9 +30,8 @@ void FixedPriority::Add(const Ready& added) {
     known.allowed = added.allowed;
     return;
   }
-  const auto behind = std::find_if(ready_.begin(), ready_.end(), [&](const Ready& ready) {
-    return ready.priority < added.priority;
-  });
+  const auto behind = std::find_if(ready_.begin(), ready_.end(),
+                                   [&](const Ready& ready) { return Precedes(added, ready); });
   ready_.insert(behind, added);
 }
 
@@ -40,6 +50,7 @@ void FixedPriority::SetPriority(Thread thread, int priority) {
   if (found == ready_.end()) return;
   Ready moved = *found;
   moved.priority = priority;
+  moved.first = false;
   ready_.erase(found);
   Add(moved);
 }
@@ -89,12 +100,18 @@ bool FixedPriority::HasWaitingEqual(std::size_t core) const {
   });
 }
 
-std::int64_t FixedPriority::NextMoreUrgent(std::size_t core) const {
+bool FixedPriority::YieldsTo(std::size_t core, int priority) const {
+  const auto own = Find(turns_[core].thread);
+  return own == ready_.end() ||
+         Precedes({.thread = kNobody, .priority = priority, .from_ns = 0, .first = true}, *own);
+}
+
+std::int64_t FixedPriority::NextToPrecede(std::size_t core) const {
   std::int64_t next = INT64_MAX;
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return next;
   for (const Ready& ready : ready_) {
-    if (ready.priority <= own->priority || HasTurn(ready.thread)) continue;
+    if (!Precedes(ready, *own) || HasTurn(ready.thread)) continue;
     if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from_ns);
   }
   return next;

@@ -1,6 +1,7 @@
 // Who runs on the virtual CPUs (cores) of one robot: the most urgent ready threads, wherever there
 // is a core for them; among equals the one that became ready first, until it waits or is rotated
-// behind them (SCHED_FIFO, and SCHED_RR at a quantum's end).
+// behind them (SCHED_FIFO, and SCHED_RR at a quantum's end). One that is woken may go first, before
+// its equals, but not before one that has gone first and has its turn yet.
 //
 // The cores advance one after the other, so one may be ahead of another, and a ready thread may
 // have come further than a core: it runs no earlier than that. A thread stays on the core that it
@@ -25,6 +26,7 @@ class FixedPriority {
     int priority;
     std::int64_t from_ns;                // runs no earlier
     std::uint64_t allowed = kEveryCore;  // cores; bit 0 is core 0
+    bool first = false;                  // it goes before its equals, until it is rotated
   };
 
   struct Turn {
@@ -34,7 +36,7 @@ class FixedPriority {
 
   explicit FixedPriority(std::size_t cores) : on_(cores, kNobody), turns_(cores) {}
 
-  // Ready, behind its equals. A thread that is ready already keeps its place.
+  // Ready, behind its equals unless it goes first. A thread that is ready already keeps its place.
   void Add(const Ready& ready);
   // No longer ready. Nothing happens if it was not.
   void Remove(Thread thread);
@@ -51,13 +53,17 @@ class FixedPriority {
   const Turn& Next(std::size_t core) const { return turns_[core]; }
   // Whether an equal of the core's thread waits for a core.
   bool HasWaitingEqual(std::size_t core) const;
-  // From when on somebody more urgent than the core's thread wants a core; INT64_MAX: nobody.
-  std::int64_t NextMoreUrgent(std::size_t core) const;
+  // From when on somebody who precedes the core's thread wants a core; INT64_MAX: nobody.
+  std::int64_t NextToPrecede(std::size_t core) const;
+  // Whether a thread of that priority would take the core from its thread if it went first now.
+  bool YieldsTo(std::size_t core, int priority) const;
+  std::size_t CountOf(int priority) const;
 
   bool IsReady(Thread thread) const;
   std::size_t size() const { return ready_.size(); }
 
  private:
+  static bool Precedes(const Ready& one, const Ready& other);
   std::vector<Ready>::const_iterator Find(Thread thread) const;
   bool HasTurn(Thread thread) const;
   bool StaysElsewhere(Thread thread, std::size_t core) const;

@@ -43,7 +43,7 @@ std::string FolderOf(const std::string& path) {
 Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   const YamlMap top = ParseYaml(path, ReadFile(path), overrides.set).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
-                 "channels"});
+                 "channels", "clock"});
   Scenario scenario;
   scenario.path = path;
   scenario.set = overrides.set;

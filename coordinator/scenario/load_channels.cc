@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/scenario/load_dds.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 
@@ -67,27 +68,13 @@ class Endpoints {
   std::vector<Use> uses_;
 };
 
-VirtualDuration LoadPeriod(const YamlValue& value) {
-  const double rate = value.AsPositiveNumber(" (Hz)");
-  if (rate < kLowestRate || rate > kHighestRate) {
-    value.Fail("is " + value.AsText() + "; it must be between 0.001 and 1000000 Hz");
-  }
-  return VirtualDuration::Nanoseconds(std::llround(1e9 / rate));
-}
-
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value,
                               const Scenario& scenario, Endpoints* endpoints) {
   const YamlMap map = value.AsMap();
   map.AllowOnly({"bodies", "rate", "to", "latency"});
   SensorChannelSpec channel;
   channel.name = entry.key;
-  for (const YamlValue& name : map.Require("bodies", "bodies: [predator]").AsList("[predator]")) {
-    const int body = FindBody(name, scenario);
-    if (std::find(channel.bodies.begin(), channel.bodies.end(), body) != channel.bodies.end()) {
-      name.Fail("names the body '" + name.AsText() + "' a second time; remove it");
-    }
-    channel.bodies.push_back(body);
-  }
+  channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   const YamlValue& to = map.Require("to", "to: \"127.0.0.1:47010\"");
@@ -110,19 +97,42 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
   return channel;
 }
 
-void CheckType(const YamlValue& value) {
-  const std::string type = value.AsText();
-  if (type != "udp_json") {
-    value.Fail("is the unknown '" + type + "'; " + Suggest(type, {"udp_json"}, "types"));
+bool IsDds(const YamlValue& type) {
+  const std::string text = type.AsText();
+  if (text != "dds" && text != "udp_json") {
+    type.Fail("is the unknown '" + text + "'; " + Suggest(text, {"udp_json", "dds"}, "types"));
   }
+  return text == "dds";
 }
 
 }  // namespace
 
+VirtualDuration LoadPeriod(const YamlValue& value) {
+  const double rate = value.AsPositiveNumber(" (Hz)");
+  if (rate < kLowestRate || rate > kHighestRate) {
+    value.Fail("is " + value.AsText() + "; it must be between 0.001 and 1000000 Hz");
+  }
+  return VirtualDuration::Nanoseconds(std::llround(1e9 / rate));
+}
+
+std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario) {
+  std::vector<int> bodies;
+  for (const YamlValue& name : value.AsList("[predator]")) {
+    const int body = FindBody(name, scenario);
+    if (std::find(bodies.begin(), bodies.end(), body) != bodies.end()) {
+      name.Fail("names the body '" + name.AsText() + "' a second time; remove it");
+    }
+    bodies.push_back(body);
+  }
+  return bodies;
+}
+
 void LoadChannels(const YamlMap& top, Scenario* scenario) {
+  Endpoints endpoints;
+  DdsTopics topics;
+  if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &topics);
   const YamlValue* channels = top.Find("channels");
   if (channels == nullptr) return;
-  Endpoints endpoints;
   const YamlMap channel_map = channels->AsMap();
   for (const YamlMap::Entry& entry : channel_map.entries()) {
     CheckName(entry);
@@ -131,7 +141,7 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
     }
     const YamlMap map = entry.value.AsMap();
     map.AllowOnly({"type", "sensors", "commands"});
-    CheckType(map.Require("type", "type: udp_json"));
+    const bool is_dds = IsDds(map.Require("type", "type: udp_json"));
     const YamlValue* sensors = map.Find("sensors");
     const YamlValue* commands = map.Find("commands");
     if ((sensors == nullptr) == (commands == nullptr)) {
@@ -139,7 +149,11 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
                            ? "carries nothing; add the key sensors or commands"
                            : "has both sensors and commands; make two channels of it");
     }
-    if (sensors != nullptr) {
+    if (is_dds && sensors != nullptr) {
+      scenario->dds_sensors.push_back(LoadDdsSensors(entry, *sensors, *scenario, &topics));
+    } else if (is_dds) {
+      scenario->dds_commands.push_back(LoadDdsCommands(entry, *commands, *scenario, &topics));
+    } else if (sensors != nullptr) {
       scenario->sensors.push_back(LoadSensors(entry, *sensors, *scenario, &endpoints));
     } else {
       scenario->commands.push_back(LoadCommands(entry, *commands, *scenario, &endpoints));

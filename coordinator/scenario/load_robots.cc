@@ -38,6 +38,14 @@ ClientClass LoadClass(const YamlValue& value) {
              Suggest(text, {"periodic", "best-effort"}, "classes"));
 }
 
+DdsTransport LoadDdsTransport(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "endpoints") return DdsTransport::kEndpoints;
+  if (text == "sockets") return DdsTransport::kSockets;
+  value.Fail("is the unknown '" + text + "'; " +
+             Suggest(text, {"endpoints", "sockets"}, "ways of DDS"));
+}
+
 std::vector<std::string> LoadCommand(const YamlValue& value, const std::string& folder,
                                      std::uint64_t seed) {
   std::vector<std::string> command;
@@ -73,7 +81,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
   map.AllowOnly({"command", "class", "priority", "body", "environment", "fixed_call_cost",
-                 "fixed_allocation_cost", "patch_vdso"});
+                 "fixed_allocation_cost", "patch_vdso", "dds"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
   client.working_directory = folder;
@@ -94,6 +102,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
     client.fixed_allocation_cost = v->AsDuration();
   }
   if (const YamlValue* v = map.Find("patch_vdso")) client.patch_vdso = v->AsBoolean();
+  if (const YamlValue* v = map.Find("dds")) client.dds = LoadDdsTransport(*v);
   return client;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/dds/qos.h"
+#include "coordinator/dds/ros_names.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 
@@ -17,6 +19,12 @@ enum class ClientClass {
   kPeriodic,  // a controller: activated by time or data, expected to be idle again before the next
               // activation
   kBestEffort,  // a planner: computes whenever nothing more urgent wants the processor
+};
+
+// How a client's DDS samples travel.
+enum class DdsTransport {
+  kEndpoints,  // in shared memory, from writer to reader, past the network; Cyclone's
+  kSockets,    // as DDS sends them, by sockets; any vendor's
 };
 
 struct ClientSpec {
@@ -32,6 +40,7 @@ struct ClientSpec {
   // The same of one memory allocation; 0: none.
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
   bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
+  DdsTransport dds = DdsTransport::kEndpoints;
 };
 
 struct RobotSpec {
@@ -65,6 +74,39 @@ struct CommandChannelSpec {
   UdpEndpoint listen;
 };
 
+// The coordinator's end of a DDS topic.
+struct DdsTopicSpec {
+  std::string topic;  // ROS 2's name: "/odom"
+  int domain = 0;
+  dds::Qos qos;
+};
+
+// The state of `bodies`, sampled every `period` from time 0 on and written to the topic `latency`
+// later.
+struct DdsSensorSpec {
+  std::string name;
+  DdsTopicSpec end;
+  dds::SensorMessage message = dds::SensorMessage::kOdometry;
+  std::vector<int> bodies;  // indices into world.bodies; one, unless `message` tells of several
+  VirtualDuration period = VirtualDuration::Milliseconds(10);
+  VirtualDuration latency{};
+};
+
+// Samples of the topic move `body`, from the virtual time of the write plus `latency` on.
+struct DdsCommandSpec {
+  std::string name;
+  DdsTopicSpec end;
+  dds::CommandMessage message = dds::CommandMessage::kWrench;
+  int body = 0;
+  VirtualDuration latency{};
+};
+
+// The virtual time as a topic, every `period` from time 0 on.
+struct ClockSpec {
+  DdsTopicSpec end;
+  VirtualDuration period = VirtualDuration::Milliseconds(10);
+};
+
 struct Scenario {
   std::string name;
   std::string path;              // of the YAML file; empty for `tcsim exec`
@@ -76,6 +118,9 @@ struct Scenario {
   std::vector<RobotSpec> robots;
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;
+  std::vector<DdsSensorSpec> dds_sensors;
+  std::vector<DdsCommandSpec> dds_commands;
+  std::optional<ClockSpec> clock;
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
 };

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/scenario/yaml_reader.h"
@@ -17,10 +18,16 @@ void LoadWorld(const YamlMap& top, Scenario* scenario);
 // absolute.
 void LoadRobots(const YamlMap& top, const std::string& folder, Scenario* scenario);
 
-// `channels`. Reads the world's bodies from `scenario`.
+// `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, Scenario* scenario);
 
 // The index of the body that `value` names.
 int FindBody(const YamlValue& value, const Scenario& scenario);
+
+// The indices of the bodies that the list `value` names, each once.
+std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario);
+
+// One over a rate in Hz.
+VirtualDuration LoadPeriod(const YamlValue& value);
 
 }  // namespace tcs

@@ -46,10 +46,9 @@ speed=robots.predator.cpu.speed
 client=robots.predator.clients
 # Plans are executed as they are: feedback would lead back to where the ship was when its plan was asked
 # for, at any speed.
-as_planned="$client.controller.command=[./predator_controller, --sensors-port, '27010', --commands-port, '27011',
-  --planner-port, '27012', --kp, '0', --kd, '0']"
+as_planned="$client.controller.command=[./predator_controller, --kp, '0', --kd, '0']"
 # As much thinking for each plan as fits into some half a second at speed 1, however long it takes.
-same_work="$client.planner.command=[./predator_planner, --port, '27012', --iterations, '20000', --seed, '\${seed}']"
+same_work="$client.planner.command=[./predator_planner, --iterations, '20000', --seed, '\${seed}']"
 
 failed=()
 results=()

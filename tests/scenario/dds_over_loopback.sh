@@ -5,7 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
   <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
 both() {
-  "$tcsim" exec --accounting "$1" -- bash -c "ddsperf -D 4 $2 & ddsperf -D 3.5 $3; wait" 2>/dev/null
+  "$tcsim" exec --dds sockets --accounting "$1" -- bash -c "ddsperf -D 4 $2 & ddsperf -D 3.5 $3; wait" 2>/dev/null
 }
 for accounting in measured fixed; do
   said=$(both "$accounting" sub 'pub 100Hz size 64')

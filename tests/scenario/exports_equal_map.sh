@@ -1,14 +1,22 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# Both preloaded libraries export what their maps list, no more and no less, and depend on libc
-# alone.
+# The libraries that programs get export what their maps list, no more and no less, and depend on
+# libc alone, but for the one that is for programs that use Cyclone DDS.
 check() {
-  local library=$build/lib/$1 map=$source_root/libtcs_preload/$2 listed has needed
+  local library=$build/lib/$1 map=$source_root/libtcs_preload/$2 allowed=$3 listed has needed
   listed=$(sed -n 's/^ *\([A-Za-z_0-9]*\);$/\1/p' "$map" | LC_ALL=C sort)
   has=$(nm -D --defined-only "$library" | awk '{print $3}' | LC_ALL=C sort)
   diff <(echo "$listed") <(echo "$has") || fail "the exported symbols of $1 are not those of its map"
-  needed=$(readelf -d "$library" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p')
-  [[ $needed == libc.so.6 ]] || fail "$1 depends on: $needed"
+  needed=$(readelf -d "$library" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | grep -Ev "^($allowed)$" || true)
+  [[ -z $needed ]] || fail "$1 depends on: $needed"
 }
-check libtcs_preload.so exports.map
-check libtcs_allocations.so allocations/exports.map
+check libtcs_preload.so exports.map 'libc\.so\.6'
+check libtcs_allocations.so allocations/exports.map 'libc\.so\.6'
+check libtcs_dds.so dds/exports.map '(libc|libstdc\+\+|libgcc_s|libddsc|ld-linux-x86-64)\.so\..*'
+# The shim is in programs without libddsc: it has names of it, but refers to none.
+refers=$(nm -D --undefined-only "$build/lib/libtcs_preload.so" | grep -E ' (dds|ddsi|ddsrt|rtps)_' || true)
+[[ -z $refers ]] || fail "the shim refers to symbols of libddsc: $refers"
+# What the shim stands before must be there in Debian's libddsc.
+missing=$(comm -23 <(sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' "$source_root/libtcs_preload/dds/calls.h" | LC_ALL=C sort) \
+  <(nm -D --defined-only "$(ldconfig -p | awk '/libddsc.so.0debian/ {print $NF; exit}')" | awk '{print $3}' | LC_ALL=C sort))
+[[ -z $missing ]] || fail "libddsc does not have: $missing"

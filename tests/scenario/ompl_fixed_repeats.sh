@@ -3,7 +3,8 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Stock OMPL does the same in each run under fixed accounting, its threads included: states, costs
 # and readings of the clock. And solve(1.0) takes a second: what it takes besides are up to 1 ms that
 # OMPL's own thread sleeps at the end, 1 us for each of the calls that it has made, and what the
-# planner does until it looks at the thread's flag.
+# planner does until it looks at the thread's flag: of PRMstar that is a search of its whole roadmap,
+# thousands of allocations.
 repeats() {
   local cores=$1 cost=$2 first second
   shift 2
@@ -15,7 +16,10 @@ repeats() {
   second=$(plan "$@")
   [[ $first == "$second" ]] || fail "two runs of $* differ: '$first' and '$second'"
   [[ $first != *warning* ]] || fail "$*: $first"
-  awk '{for (i = 1; i < NF; ++i) if ($i == "took") exit !($(i + 1) >= 1 && $(i + 1) < 1.006)}' \
+  local most=1.006
+  [[ $1 != prmstar ]] || most=1.040
+  awk -v most="$most" \
+    '{for (i = 1; i < NF; ++i) if ($i == "took") exit !($(i + 1) >= 1 && $(i + 1) < most)}' \
     <<<"$first" || fail "not a second: $first"
   # Not because nothing happened.
   awk '{for (i = 2; i <= NF; ++i) if ($i == "checks,") exit !($(i - 1) > 10000)}' <<<"$first" ||

@@ -34,6 +34,9 @@ refused '\{measured,fixed\}' "$tcsim" exec --accounting guessed -- true
 refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
 refused 'call-cost.*above 0' "$tcsim" exec --call-cost 0ns -- true
 refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
+refused "no folder '$out/nowhere'" "$tcsim" topics "$out/nowhere"
+mkdir "$out/no-topics"
+refused "'$out/no-topics' has no topics.json" "$tcsim" topics "$out/no-topics"
 
 mkdir "$out/busy"
 flock --no-fork "$out/busy" sleep 60 &
@@ -45,5 +48,6 @@ refused "another run writes to the folder '$out/busy'.*--out" "$tcsim" run "$out
 install -D -m 755 "$tcsim" "$out/bin/tcsim"
 install -D -m 755 "$build/lib/libtcs_preload.so" "$out/lib/libtcs_preload.so"
 install -D -m 755 "$build/lib/libtcs_allocations.so" "$out/lib/libtcs_allocations.so"
+install -D -m 755 "$build/lib/libtcs_dds.so" "$out/lib/libtcs_dds.so"
 unprivileged=(setpriv --reuid 65534 --regid 65534 --clear-groups --bounding-set -all)
 refused 'SCHED_FIFO.*tcsim doctor' prlimit --rtprio=0 "${unprivileged[@]}" "$out/bin/tcsim" exec -- true

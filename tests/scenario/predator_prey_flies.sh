@@ -15,4 +15,10 @@ charged = sum(c["charged_ns"] for c in s["clients"].values())
 own = sum(c["host_cpu_ns"] for c in s["clients"].values())
 assert charged > 1_500_000_000 and abs(charged - own) < 0.01 * own, (charged, own)
 PY
+# The predator is on DDS: the robot's topics, and those on which its programs talk.
+topics=$("$tcsim" topics "$out")
+for line in '/predator/odom .* 100 Hz +0 +tcsim +predator/controller' '/prey/odom .* 100 Hz +0 +tcsim +predator/controller' \
+  '/predator/wrench .* 10[0-9.]* Hz +0 +predator/controller +tcsim' '/predator/plan_request +predator_prey_msgs/msg/PlanRequest +[23] '; do
+  grep -Eq "^$line" <<<"$topics" || fail "no line '$line' in: $topics"
+done
 (($(wc -l <"$out/bodies.csv") > 600)) || fail "the body states are missing"

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Jobs, traps and timeouts of bash, and what people write in pipelines. Allocations cost nothing,
-# so that a shell does what it does next before its child has begun.
+# so that a shell does what it does next before its child has begun. Where seconds are counted, they
+# are those of the calendar: each begins with a new one, for computing takes some milliseconds.
+begin='sleep 0.$(printf %09d $((1000000000 - 1$(date +%N) + 1000000000)))'
 expect() {
   local wanted=$1 said accounting
   for accounting in measured fixed; do
-    said=$("$tcsim" exec --accounting "$accounting" --allocation-cost 0 -- bash -c "$2" 2>&1 | grep -v 'tcsim: other runs')
+    said=$("$tcsim" exec --accounting "$accounting" --allocation-cost 0 -- \
+      bash -c "$begin; exec bash -c \"\$1\"" bash "$2" 2>&1 | grep -v 'tcsim: other runs')
     [[ $said == "$wanted" ]] || fail "$accounting: '$2' says '$said' instead of '$wanted'"
   done
 }

@@ -1,10 +1,15 @@
 // The predator's controller. Over and over: (1) read the state, (2) send it to the planner, (3)
 // wait for the plan, coasting, (4) execute the beginning of the plan, 100 commands a second.
 
-#include "examples/predator_prey/common/messages.h"
-#include "examples/predator_prey/common/periodic_timer.h"
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "examples/predator_prey/common/dds_waitset.h"
+#include "examples/predator_prey/common/monotonic_clock.h"
+#include "examples/predator_prey/common/predator_topics.h"
 #include "examples/predator_prey/common/program.h"
-#include "examples/predator_prey/common/udp_socket.h"
+#include "examples/predator_prey/common/ticks.h"
 #include "examples/predator_prey/predator_controller/plan_follower.h"
 #include "examples/predator_prey/predator_controller/plan_requester.h"
 
@@ -12,37 +17,61 @@ namespace predator_prey {
 namespace {
 
 struct Options {
-  std::uint16_t sensors_port = 0;
-  std::uint16_t commands_port = 0;
-  std::uint16_t planner_port = 0;
+  DdsOptions dds;
+  std::string prey = "prey";  // namespace of its topics
   double request_timeout_s = 3.0;
   FollowerOptions follower;
 };
 
+// Where a body was last seen.
+class Sight {
+ public:
+  Sight(const DdsEntity& participant, const std::string& name_space)
+      : odometry_(OdometryTopic(participant, name_space)) {}
+
+  const DdsEntity& has_news() const { return odometry_.has_samples(); }
+
+  void Update() {
+    if (const auto newest = odometry_.TakeNewest()) body_ = FromMessage(*newest);
+  }
+
+  const std::optional<BodyState>& body() const { return body_; }
+
+ private:
+  Reader<OdometryMessage> odometry_;
+  std::optional<BodyState> body_;
+};
+
 void Run(const Options& options) {
-  UdpSocket sensors = UdpSocket::BoundTo(options.sensors_port);
-  UdpSocket commands = UdpSocket::ConnectedTo(options.commands_port);
-  PlanRequester planner(options.planner_port, options.request_timeout_s);
+  const DdsEntity participant = JoinDomain(options.dds);
+  Sight predator(participant, options.dds.predator);
+  Sight prey(participant, options.prey);
+  Writer<WrenchMessage> wrenches(WrenchTopic(participant, options.dds.predator));
+  PlanRequester planner(participant, options.dds.predator, options.request_timeout_s);
   PlanFollower follower(options.follower);
-  PeriodicTimer timer(options.follower.period_s);
-  std::optional<SensorReading> seen;
+
+  Waitset waitset(participant);
+  waitset.Attach(predator.has_news());
+  waitset.Attach(prey.has_news());
+  waitset.Attach(planner.has_plan());
+  Ticks ticks(std::chrono::duration_cast<Ticks::Clock::duration>(
+      std::chrono::duration<double>(options.follower.period_s)));
 
   for (;;) {
-    WaitForAny({timer.fd(), sensors.fd(), planner.fd()});
-    if (const auto datagram = sensors.ReceiveNewest()) {
-      if (auto reading = DecodeSensorReading(*datagram)) seen = reading;
-    }
-    bool act = timer.TakeTicks() > 0;
+    waitset.WaitUntil(ticks.next());
+    predator.Update();
+    prey.Update();
+    bool act = ticks.Take() > 0;
     if (auto reply = planner.TakeReply()) {
       follower.Start(std::move(reply->steps), MonotonicSeconds());
       act = true;  // at once, not at the next tick
     }
-    if (!act || !seen) continue;
+    if (!act || !predator.body() || !prey.body()) continue;
 
     const double now_s = MonotonicSeconds();
-    const std::optional<Wrench> control = follower.Control(now_s, seen->predator);
-    if (!control) planner.RequestIfIdle(now_s, *seen);
-    commands.Send(EncodeCommand(control.value_or(Wrench{})));
+    const std::optional<Wrench> control = follower.Control(now_s, *predator.body());
+    if (!control) planner.RequestIfIdle(now_s, *predator.body(), *prey.body());
+    wrenches.Write(ToMessage(control.value_or(Wrench{})));
   }
 }
 
@@ -66,9 +95,8 @@ int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
   CLI::App app("Controls the predator along the plans of predator_planner.", "predator_controller");
-  AddPort(app, "--sensors-port", options.sensors_port, "UDP port to receive sensor readings on");
-  AddPort(app, "--commands-port", options.commands_port, "UDP port to send wrench commands to");
-  AddPort(app, "--planner-port", options.planner_port, "UDP port that the planner listens on");
+  AddDdsOptions(app, options.dds);
+  AddNamespace(app, "--prey-namespace", options.prey, "namespace of the prey's topics");
   app.add_option("--request-timeout", options.request_timeout_s,
                  "ask again when a plan does not come for so long [s]")
       ->capture_default_str()

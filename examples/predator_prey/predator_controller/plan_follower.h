@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/common/plan.h"
 
 namespace predator_prey {
 

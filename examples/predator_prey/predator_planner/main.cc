@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/common/dds_waitset.h"
+#include "examples/predator_prey/common/predator_topics.h"
 #include "examples/predator_prey/common/program.h"
-#include "examples/predator_prey/common/udp_socket.h"
 #include "examples/predator_prey/predator_planner/pursuit_planner.h"
 
 namespace predator_prey {
 namespace {
 
 struct Options {
-  std::uint16_t port = 0;
+  DdsOptions dds;
   std::uint32_t seed = 1;
   PlannerOptions planner;
 };
@@ -31,19 +31,23 @@ void Log(const PlanReply& reply) {
 }
 
 void Run(const Options& options) {
-  UdpSocket socket = UdpSocket::BoundTo(options.port);
   ompl::msg::noOutputHandler();
   ompl::RNG::setSeed(options.seed);
   PursuitPlanner planner(options.planner);
 
+  const DdsEntity participant = JoinDomain(options.dds);
+  // In this order: who finds a writer of plans asks it for one.
+  Reader<PlanRequestMessage> requests(PlanRequestTopic(participant, options.dds.predator));
+  Writer<PlanMessage> plans(PlanTopic(participant, options.dds.predator));
+  Waitset waitset(participant);
+  waitset.Attach(requests.has_samples());
+
   for (;;) {
-    WaitForAny({socket.fd()});
-    const auto datagram = socket.ReceiveNewest();
-    if (!datagram) continue;
-    const auto request = DecodePlanRequest(*datagram);
+    waitset.Wait();
+    const auto request = requests.TakeNewest();
     if (!request) continue;
-    const PlanReply reply = planner.Plan(*request);
-    socket.Send(Encode(reply));
+    const PlanReply reply = planner.Plan(FromMessage(*request));
+    plans.Write(PlanToWrite(reply).message());
     Log(reply);
     planner.Forget();
   }
@@ -56,7 +60,7 @@ int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
   CLI::App app("Plans how the predator catches the prey.", "predator_planner");
-  AddPort(app, "--port", options.port, "UDP port to receive plan requests on");
+  AddDdsOptions(app, options.dds);
   app.add_option("--seed", options.seed, "seed of the planner's random numbers, 1 or more")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

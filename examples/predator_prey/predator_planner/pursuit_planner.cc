@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "examples/predator_prey/common/periodic_timer.h"
+#include "examples/predator_prey/common/monotonic_clock.h"
 
 namespace predator_prey {
 

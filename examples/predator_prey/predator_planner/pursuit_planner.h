@@ -9,7 +9,7 @@
 
 #include <memory>
 
-#include "examples/predator_prey/common/messages.h"
+#include "examples/predator_prey/common/plan.h"
 #include "examples/predator_prey/predator_planner/pursuit_goal.h"
 #include "examples/predator_prey/predator_planner/pursuit_propagator.h"
 #include "examples/predator_prey/predator_planner/pursuit_space.h"
@@ -20,7 +20,7 @@ namespace predator_prey {
 struct PlannerOptions {
   double budget_s = 1.0;
   unsigned iterations = 0;  // when not 0, the budget instead: so much work, however long it takes
-  double reply_s = 0.2;     // how much of the plan is given away; a datagram must hold it
+  double reply_s = 0.2;     // how much of the plan is given away
   double step_s = 0.01;     // of propagation
   unsigned min_control_steps = 10;
   unsigned max_control_steps = 30;

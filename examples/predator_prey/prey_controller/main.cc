@@ -1,11 +1,18 @@
 // The prey's controller: reads where both bodies are, flees or wanders, and commands a force, 100
 // times a second.
 
-#include "examples/predator_prey/common/messages.h"
-#include "examples/predator_prey/common/periodic_timer.h"
+#include <poll.h>
+
+#include <array>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
 #include "examples/predator_prey/common/program.h"
-#include "examples/predator_prey/common/udp_socket.h"
 #include "examples/predator_prey/prey_controller/flee_or_wander.h"
+#include "examples/predator_prey/prey_controller/json_messages.h"
+#include "examples/predator_prey/prey_controller/periodic_timer.h"
+#include "examples/predator_prey/prey_controller/udp_socket.h"
 
 namespace predator_prey {
 namespace {
@@ -18,6 +25,15 @@ struct Options {
   PreyOptions prey;
 };
 
+// Blocks until one of the two descriptors has something to read.
+void WaitForEither(int first, int second) {
+  std::array<pollfd, 2> waiting{{{.fd = first, .events = POLLIN, .revents = 0},
+                                 {.fd = second, .events = POLLIN, .revents = 0}}};
+  if (::poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) {
+    throw std::system_error(errno, std::generic_category(), "cannot poll");
+  }
+}
+
 void Run(const Options& options) {
   UdpSocket sensors = UdpSocket::BoundTo(options.sensors_port);
   UdpSocket commands = UdpSocket::ConnectedTo(options.commands_port);
@@ -26,7 +42,7 @@ void Run(const Options& options) {
   std::optional<SensorReading> seen;
 
   for (;;) {
-    WaitForAny({timer.fd(), sensors.fd()});
+    WaitForEither(timer.fd(), sensors.fd());
     if (const auto datagram = sensors.ReceiveNewest()) {
       if (auto reading = DecodeSensorReading(*datagram)) seen = reading;
     }
@@ -36,6 +52,10 @@ void Run(const Options& options) {
     commands.Send(
         EncodeCommand({.force_n = behaviour.Step(elapsed_s, seen->prey, seen->predator)}));
   }
+}
+
+void AddPort(CLI::App& app, const std::string& name, std::uint16_t& port, const std::string& help) {
+  app.add_option(name, port, help)->required()->check(CLI::Range(1, 65535));
 }
 
 }  // namespace

@@ -57,6 +57,48 @@ TEST(FixedPriority, RotatingDoesNotPassLessUrgentOnes) {
   EXPECT_FALSE(robot.HasWaitingEqual(0));
 }
 
+TEST(FixedPriority, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
+  EXPECT_EQ(FirstOfOneCore(robot), kLogger);
+  EXPECT_FALSE(robot.YieldsTo(0, 10)) << "one that goes first, too, waits for its turn";
+  robot.Rotate(kLogger);
+  EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
+  EXPECT_TRUE(robot.YieldsTo(0, 10));
+}
+
+TEST(FixedPriority, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
+  robot.Add({kController, 10, 0, FixedPriority::kEveryCore, true});
+  for (const int turn : {kLogger, kController, kPlanner}) {
+    EXPECT_EQ(FirstOfOneCore(robot), turn);
+    robot.Remove(turn);
+  }
+}
+
+TEST(FixedPriority, WhoGoesFirstPrecedesNobodyMoreUrgent) {
+  FixedPriority robot(1);
+  robot.Add({kController, 80, 0});
+  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
+  EXPECT_EQ(FirstOfOneCore(robot), kController);
+  EXPECT_FALSE(robot.YieldsTo(0, 10));
+  EXPECT_EQ(robot.NextToPrecede(0), kNever);
+}
+
+TEST(FixedPriority, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
+  FixedPriority robot(1);
+  robot.Add({kPlanner, 10, 0});
+  robot.Add({kLogger, 10, 700, FixedPriority::kEveryCore, true});
+  robot.Assign({300});
+  EXPECT_EQ(robot.Next(0).thread, kPlanner);
+  EXPECT_EQ(robot.NextToPrecede(0), 700);
+  robot.Assign({700});
+  EXPECT_EQ(robot.Next(0).thread, kLogger);
+}
+
 TEST(FixedPriority, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
   FixedPriority robot(1);
   robot.Add({kController, 80, 0});
@@ -83,12 +125,12 @@ TEST(FixedPriority, AThreadRunsNoEarlierThanItHasCome) {
   robot.Assign({500});
   EXPECT_EQ(robot.Next(0).thread, kPlanner) << "the controller wakes only at 600";
   EXPECT_EQ(robot.Next(0).start_ns, 500);
-  EXPECT_EQ(robot.NextMoreUrgent(0), 600);
+  EXPECT_EQ(robot.NextToPrecede(0), 600);
   robot.Remove(kPlanner);
   robot.Assign({500});
   EXPECT_EQ(robot.Next(0).thread, kController);
   EXPECT_EQ(robot.Next(0).start_ns, 600);
-  EXPECT_EQ(robot.NextMoreUrgent(0), kNever);
+  EXPECT_EQ(robot.NextToPrecede(0), kNever);
 }
 
 TEST(FixedPriority, EachCoreRunsAThreadOfItsOwn) {

@@ -50,6 +50,48 @@ channels:
     commands: {body: prey, listen: "127.0.0.1:47011", latency: 3ms}
 )";
 
+const std::string_view kGoodDdsScenario = R"(name: pursuit
+duration: 20s
+dynamics: {}
+bodies:
+  predator: {mass: 1, inertia: [1, 1, 1]}
+  prey: {mass: 1, inertia: [1, 1, 1]}
+robots:
+  hunter:
+    clients:
+      controller: {command: [./controller], dds: sockets}
+      planner: {command: [./controller], dds: endpoints}
+      other: {command: [./controller]}
+clock: {topic: /sim/clock, rate: 50, domain: 7}
+channels:
+  odometry:
+    type: dds
+    sensors:
+      bodies: [prey]
+      message: nav_msgs/msg/Odometry
+      topic: /odom
+      rate: 200
+      latency: 2ms
+      domain: 3
+      qos: {reliability: best_effort, history: keep_last, depth: 5, durability: transient_local,
+            deadline: 20ms, lifespan: 1s, lease: 3s}
+  joints:
+    type: dds
+    sensors: {bodies: [predator, prey], message: sensor_msgs/JointState, topic: /joint_states}
+  thrust:
+    type: dds
+    commands:
+      body: prey
+      message: geometry_msgs/msg/Wrench
+      topic: /cmd
+      latency: 3ms
+      domain: 3
+      qos: {reliability: reliable, history: keep_all, deadline: 1s}
+  push:
+    type: dds
+    commands: {body: predator, message: geometry_msgs/Wrench, topic: /push}
+)";
+
 ScenarioFolder::ScenarioFolder() {
   std::string name = (fs::temp_directory_path() / "tcs_scenario_XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
@@ -82,8 +124,8 @@ std::string ScenarioFolder::Patch(std::string_view name, std::size_t offset,
   return WriteExecutable(name, image.replace(offset, bytes.size(), bytes));
 }
 
-std::string WithReplaced(std::string_view from, std::string_view to) {
-  std::string text(kGoodScenario);
+std::string WithReplaced(std::string_view from, std::string_view to, std::string_view in) {
+  std::string text(in);
   const std::size_t at = text.find(from);
   if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
     throw std::logic_error("not once in the scenario: " + std::string(from));

@@ -32,8 +32,12 @@ class ScenarioFolder {
 // A scenario without mistakes, which uses every section. Its lines are counted on by the tests.
 extern const std::string_view kGoodScenario;
 
-// kGoodScenario with `from`, which must occur once, replaced.
-std::string WithReplaced(std::string_view from, std::string_view to);
+// The same world on DDS.
+extern const std::string_view kGoodDdsScenario;
+
+// kGoodScenario, or `text`, with `from`, which must occur once, replaced.
+std::string WithReplaced(std::string_view from, std::string_view to,
+                         std::string_view text = kGoodScenario);
 
 // What LoadScenario says of the `text`, written to FOLDER/s.yaml, without "FOLDER/"; "" if it is
 // fine.

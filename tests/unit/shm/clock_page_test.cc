@@ -71,6 +71,21 @@ TEST(ClockPage, WhatTheTscMissedIsAdded) {
   EXPECT_EQ(page.stolen_ns, 0);
 }
 
+TEST(ClockPage, TheWayOutOfTheGateIsNeitherTimeNorCharge) {
+  Page page(100);
+  page.ns_per_host_ns_q32 = 2 * kOnePerTick;
+  TakeOutGate(page, ReadClockAt(page, 500), 1'000);
+  EXPECT_EQ(ReadClockAt(page, 500).time_ns, 1'000);
+  EXPECT_EQ(ReadClockAt(page, 800).cpu_ns, 300);
+  EXPECT_EQ(page.host_cpu_origin_ns, 200) << "its CPU clock went on half as fast";
+}
+
+TEST(ClockPage, WhatAHandlerDidAtTheGateStays) {
+  Page page(0);
+  TakeOutGate(page, ReadClockAt(page, 1'001), 1'000);
+  EXPECT_EQ(ReadClockAt(page, 1'001).cpu_ns, 1'001);
+}
+
 TEST(ClockPage, ADispatchInBetweenMakesACorrectionFail) {
   Page page(0);
   const ClockReading before = ReadClockAt(page, 1'000);

@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionSixHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 6u);
+TEST(Layout, VersionSevenHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 7u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -24,6 +24,7 @@ TEST(Layout, VersionSixHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
+  EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
 }
 
 TEST(Layout, SlotsFollowTheHeaderWithoutAGap) {

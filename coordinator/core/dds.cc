@@ -1,0 +1,179 @@
+// Programs that speak DDS: who has joined, what they send each other, and the thread of each that
+// takes what is for it (shm/dds_exchange.h).
+#include <errno.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+std::string Engine::OpenDds() {
+  const std::string& directory = options_.output_directory;
+  if (!directory.empty()) {
+    std::error_code ignored;  // of an earlier run into the same folder
+    std::filesystem::remove(directory + "/topics.json", ignored);
+    std::filesystem::remove_all(directory + "/bag", ignored);
+    hub_.Observe(&topic_log_);
+  }
+  if (options_.record) {
+    recording_.emplace(topic_log_, ends_, header_->realtime_offset_ns);
+    topic_log_.Tell(&*recording_);
+    if (std::string error = recording_->Open(directory + "/bag"); !error.empty()) return error;
+  }
+  world_.OpenDds(ends_, header_->realtime_offset_ns);
+  if (recording_.has_value()) recording_->ReadNewTopics(0);
+  return {};
+}
+
+std::string Engine::CloseDds() {
+  const std::vector<dds::TopicReport>& topics = topic_log_.reports();
+  std::string error;
+  if (!topics.empty()) {
+    error = dds::WriteTopics(topics, options_.output_directory + "/topics.json");
+  }
+  if (recording_.has_value()) {
+    if (std::string missing = recording_->Close(); error.empty()) error = std::move(missing);
+  }
+  return error;
+}
+
+dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
+  if (number == shm::kDdsCoordinator) return {"tcsim", ""};
+  for (const Process* process : dds_processes_) {
+    if (process->dds_number == number) return {process->name, process->robot->name};
+  }
+  return {};
+}
+
+// What is from before anything that can still be sent.
+void Engine::TakeOwnMessages() {
+  const std::int64_t until = std::min(root_.Least(), end_ns_);
+  if (hub_.OwnDueNs() > until) return;
+  if (world_.speaks_dds()) {
+    world_.TakeDdsCommands(until);
+  } else {
+    while (ends_.Take(until).has_value()) {
+    }
+  }
+  ShowDeliverersTheirDeadlines();
+}
+
+void Engine::HandleDds(Task& task, const shm::Notification& note) {
+  Process& process = *task.process;
+  switch (note.kind) {
+    case shm::NotificationKind::kDdsJoin:
+      JoinDds(task);
+      break;
+    case shm::NotificationKind::kDdsSend:
+      if (const std::string wrong =
+              hub_.Send(process.dds_number, static_cast<std::size_t>(note.args[0]), event_ns_);
+          !wrong.empty()) {
+        Warn(
+            fmt::format("{} sends DDS messages that are not as they must be ({}): they are lost; "
+                        "is its libtcs_dds.so of another version?",
+                        process.name, wrong));
+      }
+      if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
+      ShowDeliverersTheirDeadlines();
+      break;
+    case shm::NotificationKind::kDdsWait:
+      AwaitMessages(task);
+      break;
+    case shm::NotificationKind::kDdsRoom:
+      if (!hub_.IsFull(static_cast<dds::Hub::Number>(note.args[0]))) break;
+      task.waits_for_room = static_cast<dds::Hub::Number>(note.args[0]);
+      SetState(task, TaskState::kWaiting);
+      break;
+    default:
+      if (!IsDelivering(process, task.reached_ns)) break;
+      task.waits_for_deliverer = true;
+      SetState(task, TaskState::kWaiting);
+      FindPriority(*process.deliverer);
+  }
+}
+
+void Engine::JoinDds(Task& task) {
+  Process& process = *task.process;
+  LeaveDds(process);
+  process.dds_number = hub_.Join(event_ns_);
+  task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
+  task.reply[1] = hub_.fd();
+  if (process.dds_number != 0) dds_processes_.push_back(&process);
+}
+
+// It has died, or executes another program.
+void Engine::LeaveDds(Process& process) {
+  if (process.dds_number == 0) return;
+  process.deliverer = nullptr;
+  std::erase(dds_processes_, &process);
+  const std::uint32_t number = std::exchange(process.dds_number, 0);
+  hub_.Leave(number, event_ns_);
+  ReleaseThoseAwaitingRoom(number);
+  ShowDeliverersTheirDeadlines();
+}
+
+// The deliverer has nothing more to hand over, and waits until something is due.
+void Engine::AwaitMessages(Task& task) {
+  Process& process = *task.process;
+  if (process.deliverer != &task) {
+    process.deliverer = &task;
+    task.is_deliverer = true;
+  }
+  hub_.CameBack(process.dds_number);
+  ReleaseThoseAwaitingRoom(process.dds_number);
+  task.waits_for_messages = true;
+  task.deadline_ns = hub_.DueNs(process.dds_number);
+  SetState(task, TaskState::kWaiting);
+  ReleaseThoseAwaitingDeliverer(process);
+}
+
+// Whether what is due at `now_ns` is being handed over, or is about to be.
+bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
+  const Task* deliverer = process.deliverer;
+  if (deliverer == nullptr) return false;
+  if (deliverer->waits_for_messages) return hub_.DueNs(process.dds_number) <= now_ns;
+  return IsRunnable(*deliverer);
+}
+
+void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
+  const std::vector<Task*> tasks = process.robot->tasks;
+  for (Task* task : tasks) {
+    if (task->process != &process || !task->waits_for_deliverer) continue;
+    if (!IsDelivering(process, task->reached_ns)) MakeReady(*task, shm::WakeReason::kGo);
+  }
+}
+
+// Those that sent to a process more than it can take at once.
+void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number) {
+  if (hub_.IsFull(number)) return;
+  for (Task& task : tasks_) {
+    if (task.state == TaskState::kWaiting && task.waits_for_room == number) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+}
+
+void Engine::ShowDeliverersTheirDeadlines() {
+  for (const Process* process : dds_processes_) {
+    Task* deliverer = process->deliverer;
+    if (deliverer == nullptr || !deliverer->waits_for_messages) continue;
+    const std::int64_t due = hub_.DueNs(process->dds_number);
+    if (std::exchange(deliverer->deadline_ns, due) != due) Refresh(*process->robot);
+  }
+}
+
+// At the dispatch of a deliverer whose wait is over.
+void Engine::HandMessagesOver(Task& task) {
+  const std::int64_t until = std::exchange(task.messages_until_ns, -1);
+  if (until < 0) return;
+  const std::size_t bytes =
+      hub_.Deliver(task.process->dds_number, std::max(until, task.cpu->progress_ns));
+  task.reply[0] = static_cast<std::int64_t>(bytes);
+}
+
+}  // namespace tcs

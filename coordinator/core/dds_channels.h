@@ -1,0 +1,65 @@
+// The robots' channels on DDS: sensors, the clock, commands (docs/SCENARIO.md). What the dynamics
+// send and take there, as the coordinator's own endpoints.
+//
+// Times are virtual nanoseconds since the run's start; stamps are virtual CLOCK_REALTIME.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/robot_topics.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class DdsChannels {
+ public:
+  // Announces the scenario's channels. The endpoints and the scenario outlive this.
+  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
+
+  // When the dynamics have to be looked at next, and when something next leaves them.
+  std::int64_t NextSampleNs() const;
+  std::int64_t NextOutputNs() const;
+
+  // Writes what is due at `now_ns`; `read` says how a body is. Returns how many samples there were.
+  int WriteDue(std::int64_t now_ns, const std::function<BodyState(int body)>& read);
+
+  struct Command {
+    std::int64_t at_ns;  // when it acts
+    int body;
+    Wrench wrench;
+  };
+  // The commands of the next sample that was written by `now_ns`; none: there is no such sample.
+  // A sample that cannot be read is named on stderr and yields no commands.
+  std::optional<std::vector<Command>> TakeCommands(std::int64_t now_ns);
+
+ private:
+  struct Sensor {
+    const DdsSensorSpec* spec;
+    dds::OwnEndpoints::Index writer;
+    dds::SensorEncoder encoder;
+    std::int64_t next_ns = 0;
+  };
+  struct Actuator {
+    const DdsCommandSpec* spec;
+    dds::OwnEndpoints::Index reader;
+  };
+
+  dds::OwnEndpoints::Index Add(dds::EndpointKind kind, const DdsTopicSpec& end,
+                               std::string_view message);
+  void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
+              std::vector<Command>* commands) const;
+
+  const Scenario& scenario_;
+  dds::OwnEndpoints& ends_;
+  std::int64_t realtime_offset_ns_;
+  std::vector<Sensor> sensors_;
+  std::vector<Actuator> actuators_;
+  std::optional<dds::OwnEndpoints::Index> clock_;
+  std::int64_t next_clock_ns_;
+};
+
+}  // namespace tcs

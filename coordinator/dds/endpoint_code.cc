@@ -1,0 +1,137 @@
+#include "coordinator/dds/endpoint_code.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "shm/dds_endpoint.h"
+
+namespace tcs::dds {
+
+namespace {
+
+using shm::DdsBytes;
+using shm::DdsQos;
+
+constexpr std::int64_t kForEverNs = INT64_MAX;
+// Cyclone's own for reliable writers.
+constexpr std::int64_t kMaxBlockingNs = 100'000'000;
+
+// Texts behind a structure of `size` bytes.
+class Texts {
+ public:
+  explicit Texts(std::size_t size) : start_(size) {}
+
+  DdsBytes Add(std::string_view text) {
+    const DdsBytes where{static_cast<std::uint32_t>(start_ + text_.size()),
+                         static_cast<std::uint32_t>(text.size())};
+    text_ += text;
+    return where;
+  }
+  template <class Structure>
+  std::vector<std::byte> After(const Structure& structure) const {
+    std::vector<std::byte> bytes(sizeof structure + text_.size());
+    memcpy(bytes.data(), &structure, sizeof structure);
+    memcpy(bytes.data() + sizeof structure, text_.data(), text_.size());
+    return bytes;
+  }
+
+ private:
+  std::size_t start_;
+  std::string text_;
+};
+
+std::int64_t NsOf(const std::optional<VirtualDuration>& duration) {
+  return duration.has_value() ? duration->ns() : kForEverNs;
+}
+
+std::optional<VirtualDuration> DurationOf(std::int64_t ns) {
+  if (ns <= 0 || ns == kForEverNs) return std::nullopt;
+  return VirtualDuration::Nanoseconds(ns);
+}
+
+DdsQos ToShared(const Qos& qos, EndpointKind kind) {
+  DdsQos shared{};
+  shared.present = shm::kDdsDurability | shm::kDdsHistory | shm::kDdsReliability |
+                   shm::kDdsLivelinessPolicy | shm::kDdsDeadline;
+  shared.durability = qos.durability == Durability::kTransientLocal ? 1 : 0;
+  shared.history = qos.history == History::kKeepAll ? 1 : 0;
+  shared.history_depth = qos.depth;
+  shared.reliability = qos.reliability == Reliability::kReliable ? 1 : 0;
+  shared.max_blocking_ns = kMaxBlockingNs;
+  shared.liveliness = static_cast<std::int32_t>(qos.liveliness);
+  shared.liveliness_lease_ns = NsOf(qos.lease);
+  shared.deadline_ns = NsOf(qos.deadline);
+  if (kind == EndpointKind::kWriter) {
+    shared.present |= shm::kDdsLifespan;
+    shared.lifespan_ns = NsOf(qos.lifespan);
+  }
+  return shared;
+}
+
+Qos FromShared(const DdsQos& shared, EndpointKind kind) {
+  const auto has = [&shared](std::uint32_t policy) { return (shared.present & policy) != 0; };
+  Qos qos;
+  // DDS's defaults, not ROS 2's.
+  const bool reliable =
+      has(shm::kDdsReliability) ? shared.reliability != 0 : kind == EndpointKind::kWriter;
+  qos.reliability = reliable ? Reliability::kReliable : Reliability::kBestEffort;
+  qos.depth = has(shm::kDdsHistory) ? std::max(1, shared.history_depth) : 1;
+  if (has(shm::kDdsHistory) && shared.history != 0) qos.history = History::kKeepAll;
+  if (has(shm::kDdsDurability) && shared.durability != 0) {
+    qos.durability = Durability::kTransientLocal;
+  }
+  if (has(shm::kDdsLivelinessPolicy)) {
+    qos.liveliness = static_cast<Liveliness>(std::clamp(shared.liveliness, 0, 2));
+    qos.lease = DurationOf(shared.liveliness_lease_ns);
+  }
+  if (has(shm::kDdsDeadline)) qos.deadline = DurationOf(shared.deadline_ns);
+  if (has(shm::kDdsLifespan)) qos.lifespan = DurationOf(shared.lifespan_ns);
+  return qos;
+}
+
+std::optional<std::string> TextAt(std::span<const std::byte> payload, DdsBytes where) {
+  if (where.offset > payload.size() || where.size > payload.size() - where.offset) {
+    return std::nullopt;
+  }
+  return std::string(reinterpret_cast<const char*>(payload.data()) + where.offset, where.size);
+}
+
+}  // namespace
+
+std::vector<std::byte> EncodeParticipant(std::string_view name) {
+  DdsQos qos{};
+  Texts texts(sizeof qos);
+  qos.present = shm::kDdsEntityName;
+  qos.entity_name = texts.Add(name);
+  return texts.After(qos);
+}
+
+std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint) {
+  shm::DdsEndpoint shared{};
+  Texts texts(sizeof shared);
+  shared.kind = endpoint.kind == EndpointKind::kWriter ? shm::kDdsWriter : shm::kDdsReader;
+  shared.keyless = endpoint.keyless ? 1 : 0;
+  shared.topic = texts.Add(endpoint.topic);
+  shared.type = texts.Add(endpoint.type);
+  shared.qos = ToShared(endpoint.qos, endpoint.kind);
+  return texts.After(shared);
+}
+
+std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
+  shm::DdsEndpoint shared;
+  if (payload.size() < sizeof shared) return std::nullopt;
+  memcpy(&shared, payload.data(), sizeof shared);
+  if (shared.kind != shm::kDdsWriter && shared.kind != shm::kDdsReader) return std::nullopt;
+  auto topic = TextAt(payload, shared.topic), type = TextAt(payload, shared.type);
+  if (!topic.has_value() || !type.has_value()) return std::nullopt;
+  Endpoint endpoint;
+  endpoint.kind = shared.kind == shm::kDdsWriter ? EndpointKind::kWriter : EndpointKind::kReader;
+  endpoint.topic = std::move(*topic);
+  endpoint.type = std::move(*type);
+  endpoint.keyless = shared.keyless != 0;
+  endpoint.qos = FromShared(shared.qos, endpoint.kind);
+  return endpoint;
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,30 @@
+// Participants and endpoints as they stand in the hub's messages (shm/dds_endpoint.h).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coordinator/dds/qos.h"
+#include "coordinator/dds/topics_file.h"
+
+namespace tcs::dds {
+
+// What tells endpoints of one participant apart, and whom they reach; names are DDS's.
+struct Endpoint {
+  EndpointKind kind = EndpointKind::kWriter;
+  std::string topic, type;
+  bool keyless = true;
+  Qos qos;
+};
+
+[[nodiscard]] std::vector<std::byte> EncodeParticipant(std::string_view name);
+[[nodiscard]] std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint);
+
+// None for bytes that are no endpoint: they come from clients.
+[[nodiscard]] std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload);
+
+}  // namespace tcs::dds

@@ -1,0 +1,126 @@
+// Where the messages of programs that speak DDS pass through: keeps them in the order of their
+// virtual times until they are due, remembers participants and endpoints for those who join later,
+// and reports as gone what a dead process has left behind (shm/dds_exchange.h).
+//
+// Used by the coordinator's only thread. Trusts nothing that processes write: messages are copied,
+// then checked. Times are virtual nanoseconds; kNeverNs for never.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shm/dds_exchange.h"
+#include "shm/layout.h"
+
+namespace tcs::dds {
+
+// Who looks on.
+class HubObserver {
+ public:
+  virtual ~HubObserver() = default;
+  // A message has been sent: once for each process that it is for, in the order of sending, which
+  // is not that of times where processes have come to different ones.
+  virtual void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) = 0;
+  // Process `to` does not get this sample.
+  virtual void Dropped(const shm::DdsMessage& header, std::uint32_t to) = 0;
+};
+
+class Hub {
+ public:
+  using Number = std::uint32_t;  // of a process, from 1 on; 0: the coordinator
+  using Guid = std::array<std::uint8_t, 16>;
+  // A whole message with its header, as shm/dds_exchange.h says.
+  using Bytes = std::vector<std::byte>;
+
+  Hub() = default;
+  ~Hub();
+  Hub(const Hub&) = delete;
+  Hub& operator=(const Hub&) = delete;
+
+  // A new process, to which all that is there is reported. 0, with errno, if there is no room.
+  Number Join(std::int64_t now_ns);
+  // It has died, or executes another program.
+  void Leave(Number number, std::int64_t now_ns);
+
+  // Takes the messages in the first `bytes` of its outbox, sent at `now_ns`. Says what is wrong
+  // with the first one that is not as it must be: it is dropped, and what follows it.
+  [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns);
+
+  // When the process's next message is due.
+  std::int64_t DueNs(Number number) const;
+  // Puts what is due into its inbox, as far as there is room; returns the bytes. From then on until
+  // it has come back for more it is delivering.
+  std::size_t Deliver(Number number, std::int64_t now_ns);
+  void CameBack(Number number);
+  bool IsDelivering(Number number) const;
+  // More waits for it, or is in its hands, than it should: senders wait until it is not so.
+  bool IsFull(Number number) const;
+
+  // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
+  // left to be filled in.
+  void SendOwn(shm::DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns);
+  // The earliest message for the coordinator, if it is from before or at `now_ns`. Participants,
+  // endpoints and what is addressed to it; kept only once it has asked to be told.
+  void TellOwn() { tells_own_ = true; }
+  std::optional<Bytes> TakeOwn(std::int64_t now_ns);
+  std::int64_t OwnDueNs() const { return own_.empty() ? shm::kNeverNs : own_.begin()->first; }
+
+  // Null: nobody. It outlives this.
+  void Observe(HubObserver* observer) { observer_ = observer; }
+
+  // How many processes have joined so far: the largest number.
+  Number count() const { return static_cast<Number>(members_.size()); }
+  // Of the memory with the areas; -1 before the first process has joined.
+  int fd() const { return fd_; }
+  // Samples that were not delivered because too many wait for a process that does not take them.
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  using Message = std::shared_ptr<const Bytes>;
+
+  struct Member {
+    char* area = nullptr;  // null: it has left
+    bool delivers = false;
+    std::multimap<std::int64_t, Message> queue;  // by the time when it is due
+    std::size_t queued_bytes = 0;
+    std::size_t delivered_bytes = 0;  // in its inbox until it comes back for more
+
+    shm::DdsArea& shown() const { return *reinterpret_cast<shm::DdsArea*>(area); }
+    char* outbox() const { return area + shm::kDdsHeaderSize; }
+    char* inbox() const { return outbox() + shm::kDdsBoxSize; }
+    void ShowDue() const;
+  };
+  // A participant or an endpoint.
+  struct Known {
+    Number from;
+    shm::DdsKind kind;
+    Guid subject, participant;
+    std::uint16_t flags;
+    std::int64_t lease_ns;
+    Message message;
+  };
+
+  void Enter(const shm::DdsMessage& header, Bytes bytes);
+  Member* Find(Number number);
+  const Member* Find(Number number) const;
+  void Queue(Number to, std::int64_t due_ns, const Message& message);
+  void QueueForOthers(Number from, std::int64_t due_ns, const Message& message);
+  void Remember(const shm::DdsMessage& header, const Message& message);
+
+  int fd_ = -1;
+  HubObserver* observer_ = nullptr;
+  bool tells_own_ = false;
+  std::multimap<std::int64_t, Message> own_;  // for the coordinator
+  std::vector<Member> members_;               // of number i + 1
+  std::vector<Known> known_;                  // in the order in which they came
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace tcs::dds

@@ -1,0 +1,176 @@
+#include "coordinator/dds/own_endpoints.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shm/check.h"
+#include "shm/dds_endpoint.h"
+
+namespace tcs::dds {
+
+namespace {
+
+using shm::DdsKind;
+using shm::DdsMessage;
+
+constexpr std::uint32_t kData = 2;  // DdsMessage::sample_kind
+
+DdsMessage Announcement(DdsKind kind, const Hub::Guid& guid, int domain) {
+  DdsMessage header{};
+  header.kind = kind;
+  header.to = shm::kDdsEverybody;
+  std::copy(guid.begin(), guid.end(), header.subject);
+  header.lease_ns = INT64_MAX;
+  header.domain = static_cast<std::uint32_t>(domain);
+  return header;
+}
+
+bool WantsHistory(const Endpoint& reader) {
+  return reader.kind == EndpointKind::kReader &&
+         reader.qos.durability == Durability::kTransientLocal &&
+         reader.qos.reliability == Reliability::kReliable;
+}
+
+Hub::Guid GuidAt(const std::uint8_t* bytes) {
+  Hub::Guid guid;
+  std::copy_n(bytes, guid.size(), guid.begin());
+  return guid;
+}
+
+}  // namespace
+
+// Twelve bytes that no client has: Eclipse's vendor number first, as all of Cyclone's.
+Hub::Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
+  Hub::Guid guid{0x01, 0x10, 't', 'c', 's', 0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
+  }
+  guid[14] = 0x01;
+  guid[15] = shm::kDdsParticipantId;
+  if (domains_.insert(domain).second) {
+    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain), EncodeParticipant("tcsim"),
+                 now_ns);
+  }
+  return guid;
+}
+
+OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std::int64_t now_ns) {
+  hub_.TellOwn();
+  const Hub::Guid participant = ParticipantOf(domain, now_ns);
+  Own& own = own_.emplace_back(Own{endpoint, domain, participant, {}});
+  const auto number = static_cast<std::uint32_t>(own_.size());
+  own.guid[12] = 0;
+  own.guid[13] = static_cast<std::uint8_t>(number >> 8);
+  own.guid[14] = static_cast<std::uint8_t>(number);
+  const bool writes = endpoint.kind == EndpointKind::kWriter;
+  own.guid[15] = endpoint.keyless ? (writes ? shm::kDdsWriterNoKeyId : shm::kDdsReaderNoKeyId)
+                                  : (writes ? shm::kDdsWriterWithKeyId : shm::kDdsReaderWithKeyId);
+  DdsMessage header = Announcement(DdsKind::kEndpoint, own.guid, domain);
+  std::copy(participant.begin(), participant.end(), header.other);
+  hub_.SendOwn(header, EncodeEndpoint(endpoint), now_ns);
+  return own_.size() - 1;
+}
+
+DdsMessage OwnEndpoints::SampleHeader(const Own& writer, std::int64_t timestamp_ns) const {
+  DdsMessage header = Announcement(DdsKind::kSample, writer.guid, writer.domain);
+  header.source_timestamp_ns = timestamp_ns;
+  header.sample_kind = kData;
+  return header;
+}
+
+bool OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
+                         std::int64_t due_ns) {
+  Own& own = own_[writer];
+  TCS_CHECK(own.endpoint.kind == EndpointKind::kWriter);
+  if (own.endpoint.qos.durability == Durability::kTransientLocal) {
+    own.history.push_back({{cdr.begin(), cdr.end()}, timestamp_ns});
+    const bool keeps_all = own.endpoint.qos.history == History::kKeepAll;
+    const auto depth = static_cast<std::size_t>(own.endpoint.qos.depth);
+    if (!keeps_all && own.history.size() > depth) own.history.pop_front();
+  }
+  std::set<Hub::Number> reached;
+  for (const auto& [guid, remote] : remotes_) {
+    if (remote.endpoint.kind == EndpointKind::kReader && remote.domain == own.domain &&
+        remote.endpoint.topic == own.endpoint.topic) {
+      reached.insert(remote.process);
+    }
+  }
+  DdsMessage header = SampleHeader(own, timestamp_ns);
+  // Where nobody reads, it is still for those who look on.
+  const bool read = !reached.empty();
+  if (!read) reached.insert(shm::kDdsCoordinator);
+  for (const Hub::Number process : reached) {
+    header.to = process;
+    hub_.SendOwn(header, cdr, due_ns);
+  }
+  return read;
+}
+
+// Who has a transient-local writer tells such readers what it has kept, and when that was all.
+void OwnEndpoints::Meet(const Hub::Guid& guid, const Remote& remote, std::int64_t now_ns) {
+  if (!WantsHistory(remote.endpoint)) return;
+  for (const Own& own : own_) {
+    if (own.endpoint.kind != EndpointKind::kWriter || own.domain != remote.domain ||
+        own.endpoint.topic != remote.endpoint.topic ||
+        own.endpoint.qos.durability != Durability::kTransientLocal) {
+      continue;
+    }
+    DdsMessage header = SampleHeader(own, 0);
+    header.to = remote.process;
+    std::copy(guid.begin(), guid.end(), header.other);
+    for (const Kept& kept : own.history) {
+      header.source_timestamp_ns = kept.timestamp_ns;
+      hub_.SendOwn(header, kept.cdr, now_ns);
+    }
+    header.kind = DdsKind::kHistoryEnd;
+    header.source_timestamp_ns = 0;
+    header.sample_kind = 0;
+    hub_.SendOwn(header, {}, now_ns);
+  }
+}
+
+void OwnEndpoints::Forget(const Hub::Guid& subject) {
+  std::erase_if(remotes_, [&subject](const auto& entry) {
+    return entry.first == subject || entry.second.participant == subject;
+  });
+}
+
+void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> payload) {
+  const Hub::Guid subject = GuidAt(header.subject);
+  if ((header.flags & shm::kDdsGone) != 0) {
+    if (header.kind != DdsKind::kLiveliness) Forget(subject);
+    return;
+  }
+  if (header.kind != DdsKind::kEndpoint) return;
+  const std::optional<Endpoint> endpoint = DecodeEndpoint(payload);
+  if (!endpoint.has_value()) return;
+  const Remote remote{header.from, static_cast<int>(header.domain), GuidAt(header.other),
+                      *endpoint};
+  if (remotes_.insert_or_assign(subject, remote).second) Meet(subject, remote, header.time_ns);
+}
+
+std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
+  while (auto bytes = hub_.TakeOwn(now_ns)) {
+    DdsMessage header;
+    memcpy(&header, bytes->data(), sizeof header);
+    const std::span<const std::byte> payload{bytes->data() + sizeof header, header.payload_size};
+    if (header.kind != DdsKind::kSample) {
+      Notice(header, payload);
+      continue;
+    }
+    const auto writer = remotes_.find(GuidAt(header.subject));
+    if (writer == remotes_.end() || header.sample_kind != kData) continue;
+    Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
+    for (Index i = 0; i < own_.size(); ++i) {
+      const Own& own = own_[i];
+      if (own.endpoint.kind == EndpointKind::kReader && own.domain == writer->second.domain &&
+          own.endpoint.topic == writer->second.endpoint.topic) {
+        sample.readers.push_back(i);
+      }
+    }
+    if (!sample.readers.empty()) return sample;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tcs::dds

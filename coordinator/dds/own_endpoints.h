@@ -1,0 +1,83 @@
+// The coordinator's own writers and readers: it is one of those that the hub connects, without
+// being a DDS participant. One participant per domain stands for all of its endpoints there.
+//
+// Whether a reader matches is decided where the reader is, by Cyclone: each process with a reader
+// of the topic gets the samples, once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/dds/endpoint_code.h"
+#include "coordinator/dds/hub.h"
+
+namespace tcs::dds {
+
+class OwnEndpoints {
+ public:
+  using Index = std::size_t;  // of an endpoint, in the order of adding
+
+  // The hub outlives this.
+  explicit OwnEndpoints(Hub& hub) : hub_(hub) {}
+
+  // Announced at `now_ns` to all that have joined, and to those who will.
+  Index Add(const Endpoint& endpoint, int domain, std::int64_t now_ns);
+
+  // To all who read the topic, at `due_ns`, not before what it was written at `now_ns`;
+  // `timestamp_ns` is DDS's source timestamp. True if there is somebody.
+  bool Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
+             std::int64_t due_ns);
+
+  struct Sample {
+    std::vector<Index> readers;  // all of its topic
+    std::int64_t at_ns;          // when it was written
+    std::vector<std::byte> cdr;
+  };
+  // The next sample that was written by `now_ns` to one of the readers. Takes notice of who reads
+  // and writes what, too.
+  std::optional<Sample> Take(std::int64_t now_ns);
+
+  // What each endpoint is known by: its participant's twelve bytes, then its own four.
+  Hub::Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
+
+ private:
+  struct Kept {
+    std::vector<std::byte> cdr;
+    std::int64_t timestamp_ns;
+  };
+  struct Own {
+    Endpoint endpoint;
+    int domain = 0;
+    Hub::Guid guid{};
+    std::deque<Kept> history;  // of a transient-local writer
+  };
+  // Another's.
+  struct Remote {
+    Hub::Number process = 0;
+    int domain = 0;
+    Hub::Guid participant{};
+    Endpoint endpoint;
+  };
+
+  Hub::Guid ParticipantOf(int domain, std::int64_t now_ns);
+  void Notice(const shm::DdsMessage& header, std::span<const std::byte> payload);
+  void Meet(const Hub::Guid& guid, const Remote& remote, std::int64_t now_ns);
+  void Forget(const Hub::Guid& subject);
+  shm::DdsMessage SampleHeader(const Own& writer, std::int64_t timestamp_ns) const;
+
+  Hub& hub_;
+  std::vector<Own> own_;
+  std::set<int> domains_;  // with a participant
+  std::map<Hub::Guid, Remote> remotes_;
+};
+
+}  // namespace tcs::dds

@@ -1,0 +1,54 @@
+// What a participant tells ROS 2's graph tools on the topic `ros_discovery_info` (of the type
+// rmw_dds_common/msg/ParticipantEntitiesInfo, reliable and transient-local): which nodes it has,
+// and which endpoints are whose.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/dds/cdr.h"
+
+namespace tcs::dds {
+
+// As DDS sends them.
+using Guid = std::array<std::uint8_t, 16>;
+
+struct Node {
+  std::string name_space = "/";
+  std::string name;
+  std::vector<Guid> readers, writers;
+
+  friend bool operator==(const Node&, const Node&) = default;
+};
+
+struct ParticipantInfo {
+  Guid participant{};
+  std::vector<Node> nodes;
+
+  friend bool operator==(const ParticipantInfo&, const ParticipantInfo&) = default;
+};
+
+// The type has one name and two forms. A participant that gets the other form cannot read it, so
+// who speaks to several must know which ones they use: by what they say themselves.
+enum class GidForm {
+  kHumble,  // 24 octets, of which the last 8 are zero
+  kIron,    // 16 octets: Iron, Jazzy and later
+};
+
+[[nodiscard]] std::vector<std::byte> EncodeParticipant(const ParticipantInfo& info, GidForm form);
+
+struct DecodedParticipant {
+  ParticipantInfo info;
+  GidForm form = GidForm::kHumble;
+};
+
+// A sample in whichever form it is.
+[[nodiscard]] std::variant<DecodedParticipant, CdrError> DecodeParticipant(
+    std::span<const std::byte> cdr);
+
+}  // namespace tcs::dds

@@ -1,0 +1,40 @@
+#include "coordinator/dds/robot_topics.h"
+
+#include <utility>
+
+namespace tcs::dds {
+
+SensorEncoder::SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
+                             const std::array<double, 3>& gravity_mps2)
+    : message_(message), bodies_(std::move(bodies)), inertial_(bodies_.at(0), gravity_mps2) {
+  TCS_CHECK(bodies_.size() == 1 || message_ == SensorMessage::kJointState);
+}
+
+std::vector<std::byte> SensorEncoder::Encode(VirtualTime at, std::int64_t stamp_ns,
+                                             std::span<const BodyState> states) {
+  TCS_CHECK(states.size() == bodies_.size());
+  switch (message_) {
+    case SensorMessage::kOdometry:
+      return ToCdr(ToOdometry(stamp_ns, bodies_[0], states[0]));
+    case SensorMessage::kImu:
+      return ToCdr(inertial_.Sample(at, stamp_ns, states[0]));
+    case SensorMessage::kJointState:
+      return ToCdr(ToJointState(stamp_ns, bodies_, states));
+    case SensorMessage::kTwist:
+      return ToCdr(ToTwist(states[0]));
+  }
+  TCS_CHECK(false);
+  return {};
+}
+
+std::vector<std::byte> EncodeClock(std::int64_t stamp_ns) { return ToCdr(ToClock(stamp_ns)); }
+
+std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
+                                                 std::span<const std::byte> cdr) {
+  TCS_CHECK(message == CommandMessage::kWrench);
+  const auto wrench = FromCdr<WrenchMessage>(cdr);
+  if (const auto* error = std::get_if<CdrError>(&wrench)) return MessageError{error->message};
+  return ToWrench(*std::get<Owned<WrenchMessage>>(wrench));
+}
+
+}  // namespace tcs::dds

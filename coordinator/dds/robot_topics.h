@@ -1,0 +1,42 @@
+// The coordinator's own ends of topics, as bytes: what it writes of bodies, and what it reads for
+// them. No transport here: whoever carries samples calls these.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/dds/ros_messages.h"
+#include "coordinator/dds/ros_names.h"
+
+namespace tcs::dds {
+
+// One sensor of a scenario (DdsSensorSpec).
+class SensorEncoder {
+ public:
+  // All messages but JointState tell of one body.
+  SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
+                const std::array<double, 3>& gravity_mps2);
+
+  // The sample of the instant `at`, in virtual CLOCK_REALTIME `stamp_ns`; instants go forward.
+  // `states` are those of the bodies, in their order.
+  [[nodiscard]] std::vector<std::byte> Encode(VirtualTime at, std::int64_t stamp_ns,
+                                              std::span<const BodyState> states);
+
+ private:
+  SensorMessage message_;
+  std::vector<std::string> bodies_;
+  InertialSensor inertial_;
+};
+
+[[nodiscard]] std::vector<std::byte> EncodeClock(std::int64_t stamp_ns);
+
+// `cdr` is whatever a client wrote. The error is the rest of a sentence about the sample.
+[[nodiscard]] std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
+                                                               std::span<const std::byte> cdr);
+
+}  // namespace tcs::dds

@@ -1,0 +1,163 @@
+#include "coordinator/dds/ros_messages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tcs::dds {
+namespace {
+
+using Vector3 = std::array<double, 3>;
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::string_view kWorldFrame = "world";
+constexpr std::array kJoints = {"/x", "/y", "/z", "/yaw", "/pitch", "/roll"};
+// Below this cosine of the pitch (the nose within some 0.06 mrad of straight up), roll and yaw
+// cannot be told apart in doubles.
+constexpr double kUpright = 6e-5;
+
+Vector3Message ToVector3(const Vector3& v) { return {v[0], v[1], v[2]}; }
+
+QuaternionMessage ToQuaternion(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
+
+void SetHeader(HeaderMessage* header, std::int64_t stamp_ns, std::string_view frame) {
+  header->stamp = ToTime(stamp_ns);
+  SetText(&header->frame_id, frame);
+}
+
+Vector3 Cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// A world vector along the axes of a body with the orientation `q`.
+Vector3 InBody(const std::array<double, 4>& q, const Vector3& v) {
+  const Vector3 axis = {-q[0], -q[1], -q[2]};
+  const Vector3 once = Cross(axis, v);
+  const Vector3 twice = Cross(axis, once);
+  Vector3 turned;
+  for (std::size_t i = 0; i < 3; ++i) turned[i] = v[i] + 2 * (q[3] * once[i] + twice[i]);
+  return turned;
+}
+
+TwistMessage TwistInBody(const BodyState& state) {
+  return {ToVector3(InBody(state.orientation_xyzw, state.linear_velocity_mps)),
+          ToVector3(InBody(state.orientation_xyzw, state.angular_velocity_radps))};
+}
+
+struct Angles {
+  double yaw = 0, pitch = 0, roll = 0;                 // rad
+  double yaw_rate = 0, pitch_rate = 0, roll_rate = 0;  // rad/s
+};
+
+Angles ToAngles(const BodyState& state) {
+  const auto& [x, y, z, w] = state.orientation_xyzw;
+  const auto& [wx, wy, wz] = state.angular_velocity_radps;
+  Angles angles;
+  angles.pitch = std::asin(std::clamp(2 * (w * y - x * z), -1.0, 1.0));
+  const double cosine = std::cos(angles.pitch);
+  if (cosine < kUpright) {
+    angles.yaw = std::atan2(2 * (w * z - x * y), 1 - 2 * (x * x + z * z));
+    angles.yaw_rate = wz;
+    angles.pitch_rate = std::cos(angles.yaw) * wy - std::sin(angles.yaw) * wx;
+    return angles;
+  }
+  angles.yaw = std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+  angles.roll = std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
+  const double along = std::cos(angles.yaw) * wx + std::sin(angles.yaw) * wy;
+  angles.roll_rate = along / cosine;
+  angles.pitch_rate = std::cos(angles.yaw) * wy - std::sin(angles.yaw) * wx;
+  angles.yaw_rate = wz + along * std::tan(angles.pitch);
+  return angles;
+}
+
+}  // namespace
+
+TimeMessage ToTime(std::int64_t stamp_ns) {
+  return {static_cast<std::int32_t>(stamp_ns / kSecond_ns),
+          static_cast<std::uint32_t>(stamp_ns % kSecond_ns)};
+}
+
+Owned<OdometryMessage> ToOdometry(std::int64_t stamp_ns, std::string_view body,
+                                  const BodyState& state) {
+  Owned<OdometryMessage> odometry;
+  SetHeader(&odometry->header, stamp_ns, kWorldFrame);
+  SetText(&odometry->child_frame_id, body);
+  const auto& [x, y, z] = state.position_m;
+  odometry->pose.pose = {{x, y, z}, ToQuaternion(state.orientation_xyzw)};
+  odometry->twist.twist = TwistInBody(state);
+  return odometry;
+}
+
+Owned<TwistMessage> ToTwist(const BodyState& state) {
+  Owned<TwistMessage> twist;
+  *twist = TwistInBody(state);
+  return twist;
+}
+
+Owned<JointStateMessage> ToJointState(std::int64_t stamp_ns, std::span<const std::string> bodies,
+                                      std::span<const BodyState> states) {
+  TCS_CHECK(bodies.size() == states.size());
+  Owned<JointStateMessage> joints;
+  SetHeader(&joints->header, stamp_ns, kWorldFrame);
+  Resize(&joints->name, bodies.size() * kJoints.size());
+  Resize(&joints->position, bodies.size() * kJoints.size());
+  Resize(&joints->velocity, bodies.size() * kJoints.size());
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto& [x, y, z] = states[i].position_m;
+    const auto& [vx, vy, vz] = states[i].linear_velocity_mps;
+    const Angles a = ToAngles(states[i]);
+    const std::array positions = {x, y, z, a.yaw, a.pitch, a.roll};
+    const std::array velocities = {vx, vy, vz, a.yaw_rate, a.pitch_rate, a.roll_rate};
+    for (std::size_t j = 0; j < kJoints.size(); ++j, ++at) {
+      SetText(&joints->name._buffer[at], bodies[i] + kJoints[j]);
+      joints->position._buffer[at] = positions[j];
+      joints->velocity._buffer[at] = velocities[j];
+    }
+  }
+  return joints;
+}
+
+Owned<ClockMessage> ToClock(std::int64_t stamp_ns) {
+  Owned<ClockMessage> clock;
+  clock->clock = ToTime(stamp_ns);
+  return clock;
+}
+
+Owned<ImuMessage> InertialSensor::Sample(VirtualTime at, std::int64_t stamp_ns,
+                                         const BodyState& state) {
+  Owned<ImuMessage> imu;
+  SetHeader(&imu->header, stamp_ns, body_);
+  imu->orientation = ToQuaternion(state.orientation_xyzw);
+  imu->angular_velocity = ToVector3(InBody(state.orientation_xyzw, state.angular_velocity_radps));
+  if (has_before_) {
+    TCS_CHECK(at > before_at_);
+    const double seconds = static_cast<double>((at - before_at_).ns()) * 1e-9;
+    Vector3 force_mps2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      force_mps2[i] =
+          (state.linear_velocity_mps[i] - before_velocity_mps_[i]) / seconds - gravity_mps2_[i];
+    }
+    imu->linear_acceleration = ToVector3(InBody(state.orientation_xyzw, force_mps2));
+  } else {
+    imu->linear_acceleration_covariance[0] = -1;
+  }
+  has_before_ = true;
+  before_at_ = at;
+  before_velocity_mps_ = state.linear_velocity_mps;
+  return imu;
+}
+
+std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message) {
+  const Wrench wrench{{message.force.x, message.force.y, message.force.z},
+                      {message.torque.x, message.torque.y, message.torque.z}};
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (!std::all_of(wrench.force_n.begin(), wrench.force_n.end(), is_finite)) {
+    return MessageError{"has a force that is not finite"};
+  }
+  if (!std::all_of(wrench.torque_nm.begin(), wrench.torque_nm.end(), is_finite)) {
+    return MessageError{"has a torque that is not finite"};
+  }
+  return wrench;
+}
+
+}  // namespace tcs::dds

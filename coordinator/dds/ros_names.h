@@ -1,0 +1,40 @@
+// ROS 2's names for topics and types, and what DDS knows them by. Pure.
+//
+//   /odom                  rt/odom                           a topic
+//   nav_msgs/msg/Odometry  nav_msgs::msg::dds_::Odometry_    its type
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tcs::dds {
+
+// Messages that tell the state of bodies.
+enum class SensorMessage { kOdometry, kImu, kJointState, kTwist };
+// Messages that move them.
+enum class CommandMessage { kWrench };
+
+// In the order of the enumerators.
+[[nodiscard]] const std::vector<std::string>& SensorMessageNames();
+[[nodiscard]] const std::vector<std::string>& CommandMessageNames();
+inline constexpr std::string_view kClockMessageName = "rosgraph_msgs/msg/Clock";
+
+[[nodiscard]] const std::string& NameOf(SensorMessage message);
+[[nodiscard]] const std::string& NameOf(CommandMessage message);
+
+// "nav_msgs/Odometry" means "nav_msgs/msg/Odometry"; anything else is returned as it is.
+[[nodiscard]] std::string FullMessageName(std::string_view name);
+
+// Why `topic` is no absolute name of a ROS 2 topic, as the rest of a sentence; none if it is one.
+[[nodiscard]] std::optional<std::string> WhatIsWrongWithTopic(std::string_view topic);
+
+[[nodiscard]] std::string DdsTopic(std::string_view ros_topic);
+[[nodiscard]] std::string DdsType(std::string_view ros_message);
+
+// Back again. A topic or type that is not ROS 2's keeps its DDS name: "DDSPerfRDataKS".
+[[nodiscard]] std::string RosTopic(std::string_view dds_topic);
+[[nodiscard]] std::string RosType(std::string_view dds_type);
+
+}  // namespace tcs::dds

@@ -1,0 +1,65 @@
+// What goes over the topics of a run, as the hub sees it: for topics.json and for recordings.
+//
+// A sample is sent once to each process that reads it; here it counts once. What is sent again to a
+// reader that came late does not count, and neither does what a program writes and nobody reads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/dds/endpoint_code.h"
+#include "coordinator/dds/hub.h"
+#include "coordinator/dds/topics_file.h"
+
+namespace tcs::dds {
+
+// Whose process it is.
+struct Speaker {
+  std::string process, robot;  // as in EndpointReport
+};
+
+class TopicLog : public HubObserver {
+ public:
+  using Topic = std::size_t;  // by number, from 0 on
+  struct Listener {
+    virtual ~Listener() = default;
+    // A new endpoint of a process, of a topic that may be new. The name is DDS's.
+    virtual void Opened(Topic topic, int domain, const Endpoint& endpoint) = 0;
+    // A sample was written at `at_ns`; data, rather than the end of an instance.
+    virtual void Written(Topic topic, std::int64_t at_ns, std::span<const std::byte> cdr) = 0;
+  };
+
+  explicit TopicLog(std::function<Speaker(Hub::Number)> who) : who_(std::move(who)) {}
+  // Null: nobody. It outlives this.
+  void Tell(Listener* listener) { listener_ = listener; }
+
+  const std::vector<TopicReport>& reports() const { return reports_; }
+
+  void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) override;
+  void Dropped(const shm::DdsMessage& header, std::uint32_t to) override;
+
+ private:
+  struct Known {
+    Topic topic;
+    // The last sample, and whom it was sent to so far.
+    std::int64_t timestamp_ns = INT64_MIN;
+    std::uint32_t payload_size = 0;
+    std::set<std::uint32_t> sent_to;
+  };
+  Topic TopicOf(const Endpoint& endpoint, int domain);
+  void NoteEndpoint(const shm::DdsMessage& header, std::span<const std::byte> payload);
+  void NoteSample(const shm::DdsMessage& header, std::span<const std::byte> payload);
+
+  std::function<Speaker(Hub::Number)> who_;
+  Listener* listener_ = nullptr;
+  std::vector<TopicReport> reports_;
+  std::map<Hub::Guid, Known> known_;
+};
+
+}  // namespace tcs::dds

@@ -1,0 +1,53 @@
+// topics.json of a result folder: which topics a run had, what went over them, who was at their
+// ends.
+//
+// Everything in it derives from virtual time, and the order is that of the names: two runs with
+// --accounting fixed write the same bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/dds/qos.h"
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::dds {
+
+enum class EndpointKind { kWriter, kReader };
+
+struct EndpointReport {
+  EndpointKind kind = EndpointKind::kWriter;
+  std::string process;  // the client's name, "ROBOT/CLIENT", or "tcsim"
+  std::string robot;    // empty: the coordinator's
+  Qos qos;
+};
+
+struct TopicReport {
+  std::string topic, type;  // ROS 2's names where they are ROS 2's (ros_names.h)
+  int domain = 0;
+  std::int64_t samples = 0;                // written
+  std::int64_t bytes = 0;                  // of their CDR
+  std::int64_t first_ns = 0, last_ns = 0;  // when the first and the last one were, in virtual time
+  std::int64_t drops =
+      0;  // samples that a matching reader did not get, each counted once per reader
+  std::vector<EndpointReport> endpoints;  // that there ever were, each once
+
+  // One more sample, in the order of virtual time.
+  void Count(std::int64_t at_ns, std::size_t size) {
+    if (samples++ == 0) first_ns = at_ns;
+    last_ns = at_ns;
+    bytes += static_cast<std::int64_t>(size);
+  }
+  // Samples in a second, over the time from the first to the last; 0 if there is none.
+  double RateHz() const;
+};
+
+// Empty on success, else one sentence.
+[[nodiscard]] std::string WriteTopics(std::vector<TopicReport> topics, const std::string& path);
+
+// What stands in the topics.json of a result folder.
+[[nodiscard]] LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder);
+
+}  // namespace tcs::dds

@@ -1,0 +1,83 @@
+// A recording as ROS 2 keeps it: a rosbag2 bag with SQLite storage, that is a folder with
+// metadata.yaml and NAME_0.db3, in the form of ROS 2 Humble (schema 3), which later ones read.
+//
+// Samples are written in batches of a virtual second at the most. Whatever ends the process, what
+// was written before the last batch can be opened: SQLite's write-ahead log keeps the database
+// whole (NAME_0.db3-wal, beside it until Close), and metadata.yaml counts what the batches brought.
+//
+// Not thread-safe. What could not be written is reported by Close().
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "coordinator/dds/qos.h"
+#include "coordinator/os/files.h"
+#include "coordinator/record/bag_metadata.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace tcs::record {
+
+class Bag {
+ public:
+  Bag();
+  // Closes without a word if nobody has.
+  ~Bag();
+  Bag(const Bag&) = delete;
+  Bag& operator=(const Bag&) = delete;
+
+  // Makes the folder, and an empty bag in it in place of an earlier one. Empty on success, else one
+  // sentence.
+  [[nodiscard]] std::string Open(const std::string& folder);
+  bool is_open() const { return database_ != nullptr; }
+
+  // The number of the topic, for Write. ROS 2's names (dds/ros_names.h); a topic and type that the
+  // bag has already keep their number. A topic of another type is another topic, "/odom_2", for
+  // readers of bags go by the name.
+  int AddTopic(std::string_view name, std::string_view type);
+  // A writer of the topic offers `qos`.
+  void AddOffer(int topic, const dds::Qos& qos);
+
+  // `cdr` is a sample with its encapsulation, `stamp_ns` its virtual time since 1970.
+  void Write(int topic, std::int64_t stamp_ns, std::span<const std::byte> cdr);
+
+  // Empty on success, else one sentence that says what is missing.
+  [[nodiscard]] std::string Close();
+
+  const BagMetadata& metadata() const { return metadata_; }
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
+
+  // Each is false, and `failure_` says why, once something went wrong.
+  bool Run(const char* sql);
+  bool Prepare(const char* sql, Statement* statement);
+  bool Step(sqlite3_stmt* statement);
+  bool Begin();
+  bool EndBatch();
+  bool WriteMetadata(Withstands what);
+  bool Fail(const std::string& why);
+
+  std::string folder_, path_;
+  sqlite3* database_ = nullptr;
+  Statement insert_topic_, update_topic_, insert_message_;
+  BagMetadata metadata_;
+  BagMetadata in_batches_;  // the same as of the last batch that was written whole
+  bool is_in_batch_ = false;
+  std::optional<std::int64_t> batch_began_ns_;  // none: no message in it
+  std::size_t batch_bytes_ = 0;
+  std::int64_t missing_ = 0;
+  std::string failure_;
+};
+
+}  // namespace tcs::record

@@ -1,0 +1,45 @@
+#include "coordinator/record/recording.h"
+
+namespace tcs::record {
+
+Recording::Topic& Recording::At(dds::TopicLog::Topic topic) {
+  if (topics_.size() <= topic) topics_.resize(topic + 1);
+  Topic& known = topics_[topic];
+  if (known.number < 0) {
+    const dds::TopicReport& report = log_.reports()[topic];
+    known.number = bag_.AddTopic(report.topic, report.type);
+  }
+  return known;
+}
+
+// A reader that asks for no more than DDS's least suits every writer; of what a writer keeps for
+// late readers only one that asks for it hears.
+void Recording::Opened(dds::TopicLog::Topic topic, int domain, const dds::Endpoint& endpoint) {
+  Topic& known = At(topic);
+  if (endpoint.kind == dds::EndpointKind::kWriter) bag_.AddOffer(known.number, endpoint.qos);
+  if (known.is_read) return;
+  known.is_read = true;
+  dds::Endpoint reader = endpoint;
+  reader.kind = dds::EndpointKind::kReader;
+  reader.qos = {.reliability = dds::Reliability::kBestEffort, .history = dds::History::kKeepAll};
+  if (endpoint.kind == dds::EndpointKind::kWriter &&
+      endpoint.qos.durability == dds::Durability::kTransientLocal &&
+      endpoint.qos.reliability == dds::Reliability::kReliable) {
+    reader.qos.reliability = endpoint.qos.reliability;
+    reader.qos.durability = endpoint.qos.durability;
+  }
+  to_read_.emplace_back(std::move(reader), domain);
+}
+
+void Recording::ReadNewTopics(std::int64_t now_ns) {
+  for (const auto& [reader, domain] : std::exchange(to_read_, {})) {
+    ends_.Add(reader, domain, now_ns);
+  }
+}
+
+void Recording::Written(dds::TopicLog::Topic topic, std::int64_t at_ns,
+                        std::span<const std::byte> cdr) {
+  bag_.Write(At(topic).number, at_ns + realtime_offset_ns_, cdr);
+}
+
+}  // namespace tcs::record

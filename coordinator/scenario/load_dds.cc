@@ -1,0 +1,184 @@
+#include "coordinator/scenario/load_dds.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
+
+namespace tcs {
+namespace {
+
+// The ports of higher domains would lie beyond 65535.
+constexpr std::int64_t kHighestDomain = 232;
+constexpr std::int64_t kGreatestDepth = 1'000'000;
+
+// The enumerator of the kind that is written as the text `value`.
+template <class Kind>
+Kind LoadPolicy(const YamlValue& value, std::initializer_list<Kind> kinds,
+                std::string_view plural) {
+  const std::string text = value.AsText();
+  std::vector<std::string> known;
+  for (const Kind kind : kinds) {
+    known.push_back(NameOf(kind));
+    if (text == known.back()) return kind;
+  }
+  value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, plural));
+}
+
+enum class Side { kWriter, kReader };
+
+void LoadHistory(const YamlMap& map, dds::Qos* qos) {
+  const YamlValue* depth = map.Find("depth");
+  if (const YamlValue* v = map.Find("history")) {
+    qos->history =
+        LoadPolicy(*v, {dds::History::kKeepLast, dds::History::kKeepAll}, "kinds of history");
+  }
+  if (depth == nullptr) return;
+  if (qos->history == dds::History::kKeepAll) {
+    depth->Fail("is for the history keep_last, but here it is keep_all; remove one of them");
+  }
+  qos->depth = static_cast<int>(depth->AsInteger(1, kGreatestDepth));
+}
+
+// Over what `qos` says already.
+void LoadQos(const YamlValue& value, Side side, dds::Qos* qos) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"reliability", "history", "depth", "durability", "deadline", "lifespan", "lease"});
+  if (const YamlValue* v = map.Find("reliability")) {
+    qos->reliability = LoadPolicy(*v, {dds::Reliability::kReliable, dds::Reliability::kBestEffort},
+                                  "kinds of reliability");
+  }
+  LoadHistory(map, qos);
+  if (const YamlValue* v = map.Find("durability")) {
+    qos->durability = LoadPolicy(*v, {dds::Durability::kVolatile, dds::Durability::kTransientLocal},
+                                 "kinds of durability");
+  }
+  if (const YamlValue* v = map.Find("deadline")) qos->deadline = v->AsPositiveDuration();
+  if (const YamlValue* v = map.Find("lease")) qos->lease = v->AsPositiveDuration();
+  if (const YamlValue* v = map.Find("lifespan")) {
+    if (side == Side::kReader) {
+      v->Fail("is for writers, and commands are read; remove it, or set it in the client");
+    }
+    qos->lifespan = v->AsPositiveDuration();
+  }
+}
+
+// Over what `end` says already; a topic that it does not say is required.
+DdsTopicSpec LoadEnd(const YamlMap& map, std::string_view message, Side side, DdsTopicSpec end,
+                     DdsTopics* topics) {
+  if (const YamlValue* domain = map.Find("domain")) {
+    end.domain = static_cast<int>(domain->AsInteger(0, kHighestDomain));
+  }
+  if (const YamlValue* v = map.Find("qos")) LoadQos(*v, side, &end.qos);
+  if (!end.topic.empty() && map.Find("topic") == nullptr) {
+    topics->Add(map.place(), end.topic, end.domain, message);
+  } else {
+    end.topic = topics->Load(map.Require("topic", "topic: /odom"), end.domain, message);
+  }
+  return end;
+}
+
+// A writer that offers a deadline writes at least as often.
+void CheckDeadline(const YamlMap& map, const DdsTopicSpec& end, VirtualDuration period) {
+  if (!end.qos.deadline || *end.qos.deadline >= period) return;
+  map.Find("qos")
+      ->AsMap()
+      .Find("deadline")
+      ->Fail(
+          "is shorter than the time between two samples, so that it would always be missed; make "
+          "it "
+          "longer, or the rate higher");
+}
+
+// The place of `value` in `names`.
+std::size_t LoadMessage(const YamlValue& value, const std::vector<std::string>& names) {
+  const std::string name = dds::FullMessageName(value.AsText());
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    value.Fail("is the unknown '" + value.AsText() + "'; " + Suggest(name, names, "messages"));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+dds::CommandMessage LoadCommandMessage(const YamlValue& value) {
+  if (dds::FullMessageName(value.AsText()) == dds::NameOf(dds::SensorMessage::kTwist)) {
+    value.Fail(
+        "is a velocity, but bodies are moved by forces; read geometry_msgs/msg/Wrench here, and "
+        "let a client turn velocities into forces");
+  }
+  return static_cast<dds::CommandMessage>(LoadMessage(value, dds::CommandMessageNames()));
+}
+
+}  // namespace
+
+std::string DdsTopics::Load(const YamlValue& value, int domain, std::string_view message) {
+  const std::string topic = value.AsText();
+  if (const auto wrong = dds::WhatIsWrongWithTopic(topic)) {
+    value.Fail("is '" + topic + "', which " + *wrong + "; write a topic in full, like /odom");
+  }
+  Add(value, topic, domain, message);
+  return topic;
+}
+
+void DdsTopics::Add(const YamlValue& value, const std::string& topic, int domain,
+                    std::string_view message) {
+  for (const Use& use : uses_) {
+    if (use.topic != topic || use.domain != domain || use.message == message) continue;
+    value.Fail("uses the topic " + topic + " for " + std::string(message) + ", but " + use.name +
+               " " + use.place.Reference() + " uses it for " + use.message +
+               "; give each a topic of its own");
+  }
+  uses_.push_back({topic, domain, std::string(message), value.name(), value.place()});
+}
+
+DdsSensorSpec LoadDdsSensors(const YamlMap::Entry& entry, const YamlValue& value,
+                             const Scenario& scenario, DdsTopics* topics) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"bodies", "message", "topic", "rate", "latency", "domain", "qos"});
+  DdsSensorSpec sensor;
+  sensor.name = entry.key;
+  const YamlValue& bodies = map.Require("bodies", "bodies: [predator]");
+  sensor.bodies = FindBodies(bodies, scenario);
+  sensor.message = static_cast<dds::SensorMessage>(LoadMessage(
+      map.Require("message", "message: nav_msgs/msg/Odometry"), dds::SensorMessageNames()));
+  const std::string& name = dds::NameOf(sensor.message);
+  if (sensor.bodies.size() > 1 && sensor.message != dds::SensorMessage::kJointState) {
+    bodies.Fail("names " + std::to_string(sensor.bodies.size()) + " bodies, but " + name +
+                " tells of one; make a channel for each");
+  }
+  if (const YamlValue* rate = map.Find("rate")) sensor.period = LoadPeriod(*rate);
+  if (const YamlValue* latency = map.Find("latency")) sensor.latency = latency->AsDuration();
+  sensor.end = LoadEnd(map, name, Side::kWriter, {}, topics);
+  CheckDeadline(map, sensor.end, sensor.period);
+  return sensor;
+}
+
+DdsCommandSpec LoadDdsCommands(const YamlMap::Entry& entry, const YamlValue& value,
+                               const Scenario& scenario, DdsTopics* topics) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"body", "message", "topic", "latency", "domain", "qos"});
+  DdsCommandSpec command;
+  command.name = entry.key;
+  command.body = FindBody(map.Require("body", "body: predator"), scenario);
+  command.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
+  if (const YamlValue* latency = map.Find("latency")) command.latency = latency->AsDuration();
+  // Best effort matches what every writer offers; on the way to the coordinator nothing is lost.
+  command.end.qos.reliability = dds::Reliability::kBestEffort;
+  command.end = LoadEnd(map, dds::NameOf(command.message), Side::kReader, command.end, topics);
+  return command;
+}
+
+ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"topic", "rate", "domain", "qos"});
+  ClockSpec clock;
+  if (const YamlValue* rate = map.Find("rate")) clock.period = LoadPeriod(*rate);
+  clock.end.topic = "/clock";
+  clock.end.qos.depth = 1;
+  clock.end = LoadEnd(map, dds::kClockMessageName, Side::kWriter, clock.end, topics);
+  CheckDeadline(map, clock.end, clock.period);
+  return clock;
+}
+
+}  // namespace tcs

@@ -1,0 +1,38 @@
+// What of a scenario file stands on DDS: channels of the type `dds`, and `clock`. Internal to
+// LoadScenario: mistakes are thrown as ScenarioMistake.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/scenario/yaml_reader.h"
+
+namespace tcs {
+
+// The topics that are used so far: in one domain a topic carries one type.
+class DdsTopics {
+ public:
+  // The topic's name, for samples of the type `message`.
+  std::string Load(const YamlValue& value, int domain, std::string_view message);
+  void Add(const YamlValue& value, const std::string& topic, int domain, std::string_view message);
+
+ private:
+  struct Use {
+    std::string topic;
+    int domain;
+    std::string message;
+    std::string name;
+    Place place;
+  };
+  std::vector<Use> uses_;
+};
+
+DdsSensorSpec LoadDdsSensors(const YamlMap::Entry& entry, const YamlValue& value,
+                             const Scenario& scenario, DdsTopics* topics);
+DdsCommandSpec LoadDdsCommands(const YamlMap::Entry& entry, const YamlValue& value,
+                               const Scenario& scenario, DdsTopics* topics);
+ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
+
+}  // namespace tcs

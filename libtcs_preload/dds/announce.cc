@@ -1,0 +1,70 @@
+#include "libtcs_preload/dds/announce.h"
+
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+#include "libtcs_preload/dds/tap.h"
+
+namespace tcs::dds {
+namespace {
+
+// What a lease is to the coordinator: the time that automatic liveliness lasts when nobody renews
+// it. Manual liveliness runs out in each reader's process by itself.
+void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
+  if (lease_ns == DDS_INFINITY) return;
+  message.lease_ns = lease_ns;
+  message.flags |= shm::kDdsLeased;
+}
+
+template <class Entity>
+void SendEndpoint(const Entity& entity, std::uint32_t kind) {
+  const dds_qos_t& qos = *entity.xqos;
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kEndpoint, entity.e.gv->config.domainId, Guid::Of(entity.e.guid));
+  Guid::Of(entity.c.pp->e.guid).To(message.other);
+  if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
+    SetLease(message, qos.liveliness.lease_duration);
+  }
+  Send(message, EncodeEndpoint(kind, entity.type->typekind_no_key != 0, qos.topic_name,
+                               entity.type->type_name, &qos));
+}
+
+// Readers of other processes that expect what the writer has: it has sent all, or has nothing.
+void EndHistories(const ddsi_writer& writer) {
+  if (writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
+  const std::uint32_t domain = writer.e.gv->config.domainId;
+  for (const LateReader& reader : ReadersThatCatchUp(domain, writer.xqos->topic_name)) {
+    SendHistoryEnd(domain, Guid::Of(writer.e.guid), reader.guid, reader.process);
+  }
+}
+
+}  // namespace
+
+void AnnounceParticipant(const ddsi_participant& participant) {
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, participant.e.gv->config.domainId,
+                                      Guid::Of(participant.e.guid));
+  SetLease(message, participant.lease_duration);
+  Send(message, EncodeParticipant(&participant.plist->qos));
+}
+
+void AnnounceWriter(const ddsi_writer& writer) {
+  if (!AddWriter(writer)) return;
+  SendEndpoint(writer, shm::kDdsWriter);
+  EndHistories(writer);
+}
+
+void AnnounceReader(const ddsi_reader& reader) {
+  AddReader(reader);
+  SendEndpoint(reader, shm::kDdsReader);
+}
+
+void AnnounceChange(const ddsi_writer& writer) { SendEndpoint(writer, shm::kDdsWriter); }
+
+void AnnounceChange(const ddsi_reader& reader) { SendEndpoint(reader, shm::kDdsReader); }
+
+void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid) {
+  shm::DdsMessage message = MessageOf(kind, domain, guid);
+  message.flags = shm::kDdsGone;
+  Send(message, {});
+}
+
+}  // namespace tcs::dds

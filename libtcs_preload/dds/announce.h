@@ -1,0 +1,24 @@
+// Tells the other processes what the program has.
+//
+// For whoever is awake (cyclone.h) or holds the entity otherwise.
+#pragma once
+
+#include "libtcs_preload/dds/guid.h"
+#include "shm/dds_exchange.h"
+
+namespace tcs::dds {
+
+void AnnounceParticipant(const ddsi_participant& participant);
+
+// A writer that is new is made known (program.h) and told of; one that is known is left alone.
+void AnnounceWriter(const ddsi_writer& writer);
+void AnnounceReader(const ddsi_reader& reader);
+
+// The same again with other QoS. Who matches whom is not changed by that: Cyclone refuses changes
+// of policies that would.
+void AnnounceChange(const ddsi_writer& writer);
+void AnnounceChange(const ddsi_reader& reader);
+
+void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid);
+
+}  // namespace tcs::dds

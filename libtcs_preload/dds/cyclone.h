@@ -1,0 +1,62 @@
+// Cyclone DDS as libtcs_dds.so calls it.
+//
+// Functions that the shim stands before are called through Real(): their plain names would lead
+// back to the hooks. All others are called as they are.
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsc/dds_rhc.h>
+// q_sockwaitset.h is not C++: it gives a structure and a pointer to it one name.
+#define Q_SOCKWAITSET_H
+typedef struct TcsSockWaitset* os_sockWaitset;
+
+#include <dds/ddsi/ddsi_builtin_topic_if.h>
+#include <dds/ddsi/ddsi_domaingv.h>
+#include <dds/ddsi/ddsi_entity_index.h>
+#include <dds/ddsi/ddsi_iid.h>
+#include <dds/ddsi/ddsi_participant.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsi/ddsi_tkmap.h>
+#include <dds/ddsi/q_bswap.h>
+#include <dds/ddsrt/random.h>
+#include <dds/version.h>
+
+#include "libtcs_preload/dds/calls.h"
+
+namespace tcs::dds {
+
+struct RealCalls {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+#define TCS_DDS_MEMBER(name) decltype(&::name) name;
+  TCS_DDS_CALLS(TCS_DDS_MEMBER)
+#undef TCS_DDS_MEMBER
+#pragma GCC diagnostic pop
+};
+
+const RealCalls& Real();
+
+// Fills Real(). False, and one line on stderr, if the program's libddsc is not the version whose
+// inner structures this library was compiled with.
+bool FindCyclone();
+
+// The same of what can be seen only once there is a participant: whether its structures lie where
+// the headers say.
+bool LayoutIsAsCompiled(const ddsi_domaingv& gv, const ddsi_participant& participant);
+
+// While it lives, what the index of entities leads to stays.
+class Awake {
+ public:
+  explicit Awake(const ddsi_domaingv* gv) : thread_(lookup_thread_state()) {
+    thread_state_awake(thread_, gv);
+  }
+  ~Awake() { thread_state_asleep(thread_); }
+  Awake(const Awake&) = delete;
+  Awake& operator=(const Awake&) = delete;
+
+ private:
+  thread_state* thread_;
+};
+
+}  // namespace tcs::dds

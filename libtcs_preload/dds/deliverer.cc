@@ -1,0 +1,121 @@
+#include "libtcs_preload/dds/deliverer.h"
+
+#include <pthread.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <vector>
+
+#include "libtcs_preload/dds/mirrors.h"
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+#include "libtcs_preload/dds/say.h"
+
+namespace tcs::dds {
+namespace {
+
+thread_local bool t_is_deliverer;
+
+struct State {
+  std::mutex mutex;
+  std::condition_variable done;
+  std::vector<std::uint32_t> closing;
+  bool ended = false;  // the run is over: who wants something has to do it
+  Mirrors mirrors;     // the deliverer's, and after its end whoever has the mutex
+};
+
+State& Get() {
+  static auto* state = new State;
+  return *state;
+}
+
+bool IsNudge(const shm::DdsMessage& message) {
+  return message.kind == shm::DdsKind::kHistoryEnd && Guid::FromBytes(message.subject).IsZero();
+}
+
+void CloseDomains(State& state) {
+  std::vector<std::uint32_t> closing;
+  {
+    const std::lock_guard lock(state.mutex);
+    closing = state.closing;
+  }
+  if (closing.empty()) return;
+  for (const std::uint32_t domain : closing) state.mirrors.Close(domain);
+  const std::lock_guard lock(state.mutex);
+  for (const std::uint32_t domain : closing) std::erase(state.closing, domain);
+  state.done.notify_all();
+}
+
+void HandleAll(State& state, const std::byte* messages, std::size_t size) {
+  for (std::size_t at = 0; at + sizeof(shm::DdsMessage) <= size;) {
+    shm::DdsMessage message;
+    std::memcpy(&message, messages + at, sizeof(message));
+    if (message.size < sizeof(message) || message.size > size - at) return;
+    if (IsNudge(message)) {
+      state.mirrors.Complete();
+    } else {
+      state.mirrors.Handle(message, messages + at + sizeof(message));
+    }
+    CloseDomains(state);
+    at += message.size;
+  }
+}
+
+void* Run(void*) {
+  t_is_deliverer = true;
+  State& state = Get();
+  const std::byte* messages = nullptr;
+  while (const std::size_t size = TheLink().wait(&messages)) HandleAll(state, messages, size);
+  const std::lock_guard lock(state.mutex);
+  state.ended = true;
+  state.done.notify_all();
+  return nullptr;
+}
+
+}  // namespace
+
+void StartDeliverer() {
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  pthread_t thread;
+  if (const int error = pthread_create(&thread, nullptr, Run, nullptr); error != 0) {
+    Say("cannot start the thread that takes in DDS samples: %s", strerror(error));
+    State& state = Get();
+    state.ended = true;
+  } else {
+    pthread_setname_np(thread, "tcs-dds");
+    pthread_detach(thread);
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+bool IsDeliverer() { return t_is_deliverer; }
+
+void LookAgain() {
+  // On the deliverer a listener has made it: it looks when the listener is done.
+  SendNudge();
+}
+
+void CloseDomain(std::uint32_t domain) {
+  State& state = Get();
+  std::unique_lock lock(state.mutex);
+  if (!state.ended) {
+    state.closing.push_back(domain);
+    if (t_is_deliverer) return;
+    lock.unlock();
+    SendNudge();
+    lock.lock();
+    state.done.wait(lock, [&state, domain] {
+      return state.ended || std::ranges::count(state.closing, domain) == 0;
+    });
+    if (std::ranges::count(state.closing, domain) == 0) return;
+    std::erase(state.closing, domain);
+  }
+  state.mirrors.Close(domain);
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,22 @@
+// The thread that takes in what other processes send. The mirrors (mirrors.h) are its own: no lock
+// of ours is held while Cyclone, and with it the program's listeners, run on it.
+#pragma once
+
+#include <cstdint>
+
+namespace tcs::dds {
+
+void StartDeliverer();
+
+// The calling thread is it.
+bool IsDeliverer();
+
+// The program has a new topic or participant: there may be more to mirror. Has happened when the
+// calling thread goes on or next looks at what has come.
+void LookAgain();
+
+// The program's last participant in a domain is gone: so are the shadows when this returns, or, on
+// the deliverer, soon.
+void CloseDomain(std::uint32_t domain);
+
+}  // namespace tcs::dds

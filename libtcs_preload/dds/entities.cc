@@ -1,0 +1,126 @@
+#include "libtcs_preload/dds/entities.h"
+
+#include "libtcs_preload/dds/announce.h"
+#include "libtcs_preload/dds/catch_up.h"
+#include "libtcs_preload/dds/identity.h"
+#include "libtcs_preload/dds/ignore_local.h"
+#include "libtcs_preload/dds/listening.h"
+#include "libtcs_preload/dds/program.h"
+#include "libtcs_preload/dds/say.h"
+
+namespace tcs::dds {
+namespace {
+
+// Built-in topics are each process's own.
+bool IsBuiltin(const ddsi_participant& participant, const ddsi_sertype* type) {
+  return builtintopic_is_builtintopic(participant.e.gv->builtin_topic_interface, type);
+}
+
+}  // namespace
+
+dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags,
+                            const ddsi_plist_t* plist) {
+  const dds_return_t result = MakeParticipant(guid, gv, flags, plist);
+  if (result < 0 || IsShadow(*guid)) return result;
+  const Awake awake(gv);
+  const ddsi_participant* made = entidx_lookup_participant_guid(gv->entity_index, guid);
+  if (made == nullptr || !LayoutIsAsCompiled(*gv, *made)) {
+    Say("this libddsc is not laid out as Debian's %s is: run the program with DDS over sockets",
+        DDS_VERSION);
+    Real().ddsi_delete_participant(gv, guid);
+    return DDS_RETCODE_PRECONDITION_NOT_MET;
+  }
+  AddParticipant(gv, Guid::Of(*guid));
+  AnnounceParticipant(*made);
+  return result;
+}
+
+dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
+  const Guid key = Guid::Of(*guid);
+  const std::uint32_t domain = gv->config.domainId;
+  const bool own = IsParticipant(key);
+  if (own) RemoveParticipant(gv, key);
+  const dds_return_t result = Real().ddsi_delete_participant(gv, guid);
+  if (own) AnnounceGone(shm::DdsKind::kParticipant, domain, key);
+  return result;
+}
+
+void UpdateParticipant(ddsi_participant* participant, const ddsi_plist_t* plist) {
+  Real().ddsi_update_participant_plist(participant, plist);
+  if (!IsShadow(participant->e.guid)) AnnounceParticipant(*participant);
+}
+
+dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_t* group,
+                       ddsi_participant* participant, const char* topic, const ddsi_sertype* type,
+                       const dds_qos_t* qos, whc* cache, ddsi_status_cb_t status, void* argument) {
+  if (IsShadow(participant->e.guid)) {
+    return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, qos, cache, status,
+                                  argument);
+  }
+  ddsi_domaingv* gv = participant->e.gv;
+  OwnMatches matches(gv, qos, ReadersOf(gv->config.domainId, topic));
+  const dds_return_t result =
+      Real().ddsi_new_writer(writer, guid, group, participant, topic, type, matches.qos(), cache,
+                             ListeningWriterStatus(status), argument);
+  if (result < 0) return result;
+  matches.Made(*guid);
+  if (!IsBuiltin(*participant, type)) AnnounceWriter(**writer);
+  return result;
+}
+
+dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
+  const Guid key = Guid::Of(*guid);
+  const dds_return_t result = Real().ddsi_delete_writer(gv, guid);
+  if (IsWriter(key)) {
+    RemoveWriter(gv, key);
+    ForgetIgnoring(key);
+    AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+  }
+  return result;
+}
+
+void UpdateWriter(ddsi_writer* writer, const dds_qos_t* qos) {
+  Real().ddsi_update_writer_qos(writer, qos);
+  if (IsWriter(Guid::Of(writer->e.guid))) AnnounceChange(*writer);
+}
+
+dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_t* group,
+                       ddsi_participant* participant, const char* topic, const ddsi_sertype* type,
+                       const dds_qos_t* qos, ddsi_rhc* cache, ddsi_status_cb_t status,
+                       void* argument) {
+  if (IsShadow(participant->e.guid)) {
+    return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, qos, cache, status,
+                                  argument);
+  }
+  ddsi_domaingv* gv = participant->e.gv;
+  const bool builtin = IsBuiltin(*participant, type);
+  if (!builtin) CoverHistoryCache(cache, gv, *qos);
+  OwnMatches matches(gv, qos, WritersOf(gv->config.domainId, topic));
+  dds_return_t result;
+  {
+    const MakingReader making;
+    result = Real().ddsi_new_reader(reader, guid, group, participant, topic, type, matches.qos(),
+                                    cache, ListeningReaderStatus(status), argument);
+  }
+  if (result < 0) return result;
+  matches.Made(*guid);
+  if (!builtin) AnnounceReader(**reader);
+  return result;
+}
+
+dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
+  const Guid key = Guid::Of(*guid);
+  const dds_return_t result = Real().ddsi_delete_reader(gv, guid);
+  if (RemoveReader(key)) {
+    ForgetIgnoring(key);
+    AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+  }
+  return result;
+}
+
+void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
+  Real().ddsi_update_reader_qos(reader, qos);
+  if (!IsShadow(reader->e.guid)) AnnounceChange(*reader);
+}
+
+}  // namespace tcs::dds

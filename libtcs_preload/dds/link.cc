@@ -1,0 +1,147 @@
+// The process's way to all others that speak DDS: through the coordinator, and through memory that
+// the two of them share.
+#include "libtcs_preload/dds/link.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "libtcs_preload/dds/shim_link.h"
+#include "libtcs_preload/exchange.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/virtual_clock.h"
+#include "shm/dds_exchange.h"
+
+using namespace tcs::preload;
+using tcs::shm::DdsArea;
+using tcs::shm::NotificationKind;
+
+namespace {
+
+DdsArea* g_area = nullptr;
+__thread bool t_delivers __attribute__((tls_model("initial-exec"))) = false;
+
+char* Outbox() { return reinterpret_cast<char*>(g_area) + tcs::shm::kDdsHeaderSize; }
+const char* Inbox() { return Outbox() + tcs::shm::kDdsBoxSize; }
+
+// "/proc/PID/fd/FD": the coordinator's own descriptor. The buffer is large enough for any two.
+void PathOf(char* path, long pid, long fd) {
+  const auto number = [&path](long value) {
+    char digits[24];
+    int count = 0;
+    do {
+      digits[count++] = static_cast<char>('0' + value % 10);
+      value /= 10;
+    } while (value > 0);
+    while (count > 0) *path++ = digits[--count];
+  };
+  const auto text = [&path](const char* from) {
+    while (*from != '\0') *path++ = *from++;
+  };
+  text("/proc/");
+  number(pid);
+  text("/fd/");
+  number(fd);
+  *path = '\0';
+}
+
+DdsArea* MapArea(long fd_of_coordinator, std::uint32_t process) {
+  char path[80];
+  PathOf(path, g_header->coordinator_pid, fd_of_coordinator);
+  const long fd = RawSyscall(SYS_openat, AT_FDCWD, Arg(path), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return nullptr;
+  const long at =
+      RawSyscall(SYS_mmap, 0, static_cast<long>(tcs::shm::kDdsAreaSize), PROT_READ | PROT_WRITE,
+                 MAP_SHARED, fd, static_cast<long>((process - 1) * tcs::shm::kDdsAreaSize));
+  RawSyscall(SYS_close, fd);
+  if (at < 0 && at > -4096) return nullptr;
+  auto* area = reinterpret_cast<DdsArea*>(at);
+  return area->process == process ? area : nullptr;
+}
+
+std::uint32_t Join() {
+  GuestThread* t = Enter();
+  if (t == nullptr) return 0;
+  const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
+  if (reply.values[0] <= 0) return 0;
+  const auto process = static_cast<std::uint32_t>(reply.values[0]);
+  g_area = MapArea(reply.values[1], process);
+  return g_area != nullptr ? process : 0;
+}
+
+bool Send(const iovec* parts, int count) {
+  std::size_t size = 0;
+  for (int i = 0; i < count; ++i) size += parts[i].iov_len;
+  if (size > tcs::shm::kDdsBoxSize) return false;
+  GuestThread* t = Enter();
+  if (t == nullptr) return true;  // the run is over
+  char* to = Outbox();
+  for (int i = 0; i < count; ++i) {
+    memcpy(to, parts[i].iov_base, parts[i].iov_len);
+    to += parts[i].iov_len;
+  }
+  Exchange(*t,
+           Request{.kind = NotificationKind::kDdsSend, .args = {static_cast<std::int64_t>(size)}});
+  return true;
+}
+
+void AwaitRoom(std::int64_t most_ns) {
+  if (g_area == nullptr || t_delivers) return;
+  const std::uint32_t full = g_area->full.load();
+  if (full == 0) return;
+  GuestThread* t = Current();
+  if (t == nullptr) return;
+  Exchange(*t, Request{.kind = NotificationKind::kDdsRoom,
+                       .deadline_ns = NowNs(*t) + most_ns,
+                       .args = {full}});
+}
+
+std::size_t Wait(const std::byte** messages) {
+  t_delivers = true;
+  *messages = reinterpret_cast<const std::byte*>(Inbox());
+  for (;;) {
+    GuestThread* t = Current();
+    if (t == nullptr || IsShutDown()) return 0;
+    const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsWait});
+    if (IsShutDown()) return 0;  // the answer is to an earlier call
+    if (reply.values[0] > 0) return static_cast<std::size_t>(reply.values[0]);
+  }
+}
+
+void Sync() {
+  GuestThread* t = Enter();
+  if (t == nullptr || g_area == nullptr || t_delivers) return;
+  HoldForRead(*t);
+  if (g_area->delivers.load() == 0 && g_area->due_ns.load() > NowNs(*t)) return;
+  Exchange(*t, Request{.kind = NotificationKind::kDdsSync});
+}
+
+std::int64_t NowOfThread() {
+  GuestThread* t = Current();
+  return t == nullptr ? 0 : NowNs(*t);
+}
+
+}  // namespace
+
+namespace tcs::preload {
+
+const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, NowOfThread};
+
+const char* DdsLibrary(char (&path)[kDdsPathSize]) {
+  static const char kName[] = "libtcs_dds.so";
+  GuestThread* t = Current();
+  Dl_info self{};
+  if (t == nullptr || t->slot->dds_endpoints == 0) return nullptr;
+  if (dladdr(reinterpret_cast<const void*>(&kDdsLink), &self) == 0) return nullptr;
+  const char* const slash = strrchr(self.dli_fname, '/');
+  const std::size_t folder =
+      slash == nullptr ? 0 : static_cast<std::size_t>(slash + 1 - self.dli_fname);
+  if (folder + sizeof kName > kDdsPathSize) return nullptr;
+  memcpy(path, self.dli_fname, folder);
+  memcpy(path + folder, kName, sizeof kName);
+  return path;
+}
+
+}  // namespace tcs::preload

@@ -1,0 +1,53 @@
+// What the shim does for the part that knows Cyclone DDS (libtcs_dds.so), which it loads when a
+// program creates its first participant. That part has nothing else of the shim's.
+#pragma once
+
+#include <sys/uio.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tcs::dds {
+
+struct Link {
+  // The process's number (shm/dds_exchange.h), after it has been given its area. Once per process;
+  // 0: not under tcs, or there is no room for it.
+  std::uint32_t (*join)();
+
+  // One whole message, its DdsMessage header first. It has been sent, at the calling thread's
+  // virtual time, when this returns; more urgent threads that it wakes have run by then. No two
+  // threads may send at the same time. False: it is larger than the outbox, and was not sent.
+  bool (*send)(const iovec* parts, int count);
+
+  // After a send: if more waits for a process that the message was for than it can take at once,
+  // waits until that is not so, for as long as that at most. Nothing for the deliverer.
+  void (*await_room)(std::int64_t most_ns);
+
+  // For the deliverer, a thread that makes itself known by calling this first: waits until messages
+  // are due. They stand one after another at `*messages`, until the next call. Returns their bytes
+  // together; 0: the run is over, and the thread has to end.
+  std::size_t (*wait)(const std::byte** messages);
+
+  // Before the calling thread looks at what has come: returns once all that was sent before its
+  // own time is in Cyclone's hands. Nothing for the deliverer. Not with a lock that the deliverer
+  // or its listeners need.
+  void (*sync)();
+
+  // The calling thread's virtual time, ns since the run's start.
+  std::int64_t (*now)();
+};
+
+// One function of libddsc (calls.h) that libtcs_dds.so does otherwise. A table of them ends with
+// nulls.
+struct Hook {
+  const char* name;
+  void* function;
+};
+
+// What libtcs_dds.so exports: called once per process, before anything else of it. Null and one
+// line on stderr if it cannot work here (another version of Cyclone): the program then uses
+// sockets. Null and no line outside tcs.
+inline constexpr char kStartSymbol[] = "tcs_dds_start";
+using Start = const Hook* (*)(const Link& link);
+
+}  // namespace tcs::dds

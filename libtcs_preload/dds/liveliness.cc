@@ -1,0 +1,64 @@
+#include "libtcs_preload/dds/liveliness.h"
+
+#include <dds/ddsi/ddsi_entity_match.h>
+
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+// Notes in the reader's match that the writer is not alive; false: it does not match, or was not.
+bool MarkNotAlive(ddsi_reader& reader, const ddsi_writer& writer) {
+  ddsrt_mutex_lock(&reader.e.lock);
+  auto* match = static_cast<ddsi_rd_wr_match*>(
+      ddsrt_avl_lookup(&ddsi_rd_local_writers_treedef, &reader.local_writers, &writer.e.guid));
+  const bool was_alive = match != nullptr && match->wr_alive;
+  if (was_alive) {
+    match->wr_alive = 0;
+    ++match->wr_alive_vclock;
+  }
+  ddsrt_mutex_unlock(&reader.e.lock);
+  return was_alive;
+}
+
+void TellReader(ddsi_reader& reader, const ddsi_writer& writer) {
+  if (!MarkNotAlive(reader, writer)) return;
+  if (reader.status_cb != nullptr) {
+    ddsi_status_cb_data_t data{};
+    data.raw_status_id = DDS_LIVELINESS_CHANGED_STATUS_ID;
+    data.extra = DDSI_LIVELINESS_CHANGED_ALIVE_TO_NOT_ALIVE;
+    data.handle = writer.e.iid;
+    reader.status_cb(reader.status_cb_entity, &data);
+  }
+  ddsi_writer_info info;
+  ddsi_make_writer_info(&info, &writer.e, writer.xqos, NN_STATUSINFO_UNREGISTER);
+  ddsi_rhc_unregister_wr(reader.rhc, &info);
+}
+
+}  // namespace
+
+void LoseLiveliness(ddsi_domaingv* gv, const ddsi_guid_t& shadow,
+                    const std::vector<Guid>& readers) {
+  const Awake awake(gv);
+  const ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &shadow);
+  if (writer == nullptr) return;
+  for (const Guid& guid : readers) {
+    const ddsi_guid_t inner = guid.Inner();
+    ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
+    if (reader != nullptr) TellReader(*reader, *writer);
+  }
+}
+
+dds_return_t AssertLiveliness(dds_entity_t entity) {
+  const dds_return_t result = Real().dds_assert_liveliness(entity);
+  dds_guid_t guid;
+  if (result < 0 || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return result;
+  dds_domainid_t domain = 0;
+  dds_get_domainid(entity, &domain);
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kLiveliness, domain, Guid::FromBytes(guid.v));
+  Send(message, {});
+  return result;
+}
+
+}  // namespace tcs::dds

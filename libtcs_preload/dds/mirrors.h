@@ -1,0 +1,80 @@
+// Other processes' participants and endpoints, each with a shadow in this process that Cyclone
+// takes for local: so matching, incompatible QoS and all statuses are Cyclone's own.
+//
+// A shadow participant is there while the program has a participant in the domain; a shadow
+// endpoint once the program has its topic and type. Shadow writers write what their originals have
+// written; shadow readers are taps (tap.h).
+//
+// For one thread, the deliverer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "libtcs_preload/dds/guid.h"
+#include "libtcs_preload/dds/qos_code.h"
+#include "shm/dds_exchange.h"
+
+namespace tcs::dds {
+
+class Mirrors {
+ public:
+  // One message of another process.
+  void Handle(const shm::DdsMessage& message, const std::byte* payload);
+
+  // Makes the shadows that have become possible.
+  void Complete();
+
+  // Ends all shadows in a domain in which the program has no participant any more.
+  void Close(std::uint32_t domain);
+
+ private:
+  struct Participant {
+    std::uint32_t domain;
+    std::uint32_t process;
+    Payload payload;
+    dds_entity_t shadow = 0;
+    std::map<std::pair<std::string, std::string>, dds_entity_t> topics;
+  };
+  struct Endpoint {
+    Guid participant;
+    std::uint32_t domain;
+    std::uint32_t process;
+    Payload payload;
+    DecodedEndpoint what;
+    dds_entity_t shadow = 0;
+    ddsi_guid_t inner{};  // the shadow's
+    const ddsi_sertype* type = nullptr;
+    bool warned = false;
+  };
+  using Participants = std::unordered_map<Guid, Participant, GuidHash>;
+  using Endpoints = std::unordered_map<Guid, Endpoint, GuidHash>;
+
+  void HandleParticipant(const shm::DdsMessage& message, Payload payload);
+  void HandleEndpoint(const shm::DdsMessage& message, Payload payload);
+  void HandleSample(const shm::DdsMessage& message, const std::byte* payload);
+  void HandleHistoryEnd(const shm::DdsMessage& message);
+  void HandleLiveliness(const shm::DdsMessage& message);
+
+  void ChangeQos(Endpoint& endpoint, Payload payload);
+  void RemoveParticipant(const Guid& guid);
+  void RemoveEndpoint(const Guid& guid);
+  void EndShadow(const Guid& guid, Participant& participant);
+
+  void MakeParticipant(const Guid& guid, Participant& participant);
+  void MakeEndpoint(const Guid& guid, Endpoint& endpoint);
+  dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, Participant& participant,
+                       const dds_qos_t* qos);
+  void MakeWriter(Endpoint& endpoint, dds_entity_t participant, dds_entity_t topic, dds_qos_t* qos);
+  void MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv, dds_entity_t participant,
+                  dds_entity_t topic, const dds_qos_t* qos);
+
+  Participants participants_;
+  Endpoints endpoints_;
+};
+
+}  // namespace tcs::dds

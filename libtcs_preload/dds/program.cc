@@ -1,0 +1,309 @@
+#include "libtcs_preload/dds/program.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "libtcs_preload/dds/tap.h"
+
+namespace tcs::dds {
+namespace {
+
+struct Domain {
+  ddsi_domaingv* gv = nullptr;
+  std::vector<Guid> participants;
+  std::map<std::pair<std::string, std::string>, ddsi_sertype*> types;
+};
+
+// The last sample shipped to a process, referred to so that no other can have its address.
+struct Shipped {
+  ddsi_serdata* sample = nullptr;
+  const Tap* by = nullptr;
+};
+
+struct Writer {
+  std::uint32_t domain = 0;
+  std::string topic;
+  bool has_history = false;
+  std::int64_t blocks_ns = 0;
+  std::map<std::uint32_t, Shipped> shipped;  // by process
+  std::unordered_map<std::uint64_t, ddsi_tkmap_instance*> instances;
+};
+
+struct Reader {
+  std::uint32_t domain = 0;
+  std::string topic;
+};
+
+// What is kept of a writer that never unregisters its instances.
+constexpr std::size_t kMostInstances = 4096;
+
+struct State {
+  std::mutex mutex;
+  std::set<std::pair<std::uint64_t, std::uint32_t>> shadows;
+  std::map<std::uint32_t, Domain> domains;
+  std::unordered_map<Guid, Writer, GuidHash> writers;
+  std::unordered_map<Guid, Reader, GuidHash> readers;
+  std::vector<const Tap*> taps;
+};
+
+// Never destroyed: the deliverer and Cyclone's threads outlive main.
+State& Get() {
+  static auto* state = new State;
+  return *state;
+}
+
+std::pair<std::uint64_t, std::uint32_t> PrefixOf(const ddsi_guid_t& guid) {
+  return {std::uint64_t{guid.prefix.u[0]} << 32 | guid.prefix.u[1], guid.prefix.u[2]};
+}
+
+void Forget(Writer& writer, const ddsi_domaingv* gv) {
+  for (auto& [process, shipped] : writer.shipped) {
+    if (shipped.sample != nullptr) ddsi_serdata_unref(shipped.sample);
+  }
+  const Awake awake(gv);
+  for (auto& [iid, instance] : writer.instances) ddsi_tkmap_instance_unref(gv->m_tkmap, instance);
+}
+
+std::vector<Guid> LockedWritersOf(const State& state, std::uint32_t domain,
+                                  const std::string& topic, bool with_history) {
+  std::vector<Guid> guids;
+  for (const auto& [guid, writer] : state.writers) {
+    if ((writer.has_history || !with_history) && writer.domain == domain && writer.topic == topic) {
+      guids.push_back(guid);
+    }
+  }
+  return guids;
+}
+
+}  // namespace
+
+void AddShadow(const Guid& participant) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  state.shadows.insert(PrefixOf(participant.Inner()));
+}
+
+void RemoveShadow(const Guid& participant) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  state.shadows.erase(PrefixOf(participant.Inner()));
+}
+
+bool IsShadow(const ddsi_guid_t& entity) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.shadows.contains(PrefixOf(entity));
+}
+
+ddsi_domaingv* DomainOf(std::uint32_t domain) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto found = state.domains.find(domain);
+  if (found == state.domains.end() || found->second.participants.empty()) return nullptr;
+  return found->second.gv;
+}
+
+void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  Domain& domain = state.domains[gv->config.domainId];
+  domain.gv = gv;
+  domain.participants.push_back(guid);
+}
+
+void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::erase(state.domains[gv->config.domainId].participants, guid);
+}
+
+bool IsParticipant(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return std::any_of(state.domains.begin(), state.domains.end(), [&guid](const auto& domain) {
+    return std::ranges::count(domain.second.participants, guid) != 0;
+  });
+}
+
+bool IsLastParticipant(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return std::any_of(state.domains.begin(), state.domains.end(), [&guid](const auto& domain) {
+    return domain.second.participants == std::vector{guid};
+  });
+}
+
+std::vector<std::uint32_t> Domains() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<std::uint32_t> ids;
+  for (const auto& [id, domain] : state.domains) ids.push_back(id);
+  return ids;
+}
+
+void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  ddsi_sertype*& held = state.domains[domain].types[{topic, type->type_name}];
+  if (held == nullptr) held = ddsi_sertype_ref(type);
+}
+
+ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto& types = state.domains[domain].types;
+  const auto found = types.find({topic, type});
+  return found == types.end() ? nullptr : ddsi_sertype_ref(found->second);
+}
+
+void ReleaseTypes(std::uint32_t domain) {
+  State& state = Get();
+  std::map<std::pair<std::string, std::string>, ddsi_sertype*> types;
+  {
+    const std::lock_guard lock(state.mutex);
+    types.swap(state.domains[domain].types);
+  }
+  for (const auto& [name, type] : types) ddsi_sertype_unref(type);
+}
+
+bool AddWriter(const ddsi_writer& writer) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto [place, is_new] = state.writers.try_emplace(Guid::Of(writer.e.guid));
+  if (!is_new) return false;
+  place->second.domain = writer.e.gv->config.domainId;
+  place->second.topic = writer.xqos->topic_name;
+  if (writer.xqos->reliability.kind == DDS_RELIABILITY_RELIABLE) {
+    place->second.blocks_ns = writer.xqos->reliability.max_blocking_time;
+  }
+  place->second.has_history = writer.xqos->durability.kind >= DDS_DURABILITY_TRANSIENT_LOCAL;
+  return true;
+}
+
+void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid) {
+  State& state = Get();
+  Writer writer;
+  {
+    const std::lock_guard lock(state.mutex);
+    const auto found = state.writers.find(guid);
+    if (found == state.writers.end()) return;
+    writer = std::move(found->second);
+    state.writers.erase(found);
+  }
+  Forget(writer, gv);
+}
+
+bool IsWriter(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.writers.contains(guid);
+}
+
+std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return LockedWritersOf(state, domain, topic, false);
+}
+
+namespace {
+
+// `*unneeded`: to be unreferred to without the lock, since that may run a serdata's own code.
+Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const Tap& tap,
+                            ddsi_serdata* sample, ddsi_tkmap_instance* instance,
+                            ddsi_serdata** unneeded, std::int64_t* blocks_ns) {
+  const auto found = state.writers.find(Guid::Of(writer_guid));
+  if (found == state.writers.end()) {
+    return state.shadows.contains(PrefixOf(writer_guid)) ? Carries::kNo : Carries::kUnknownWriter;
+  }
+  Writer& writer = found->second;
+  *blocks_ns = writer.blocks_ns;
+  Shipped& shipped = writer.shipped[tap.process];
+  if (shipped.sample == sample && shipped.by != &tap) return Carries::kNo;
+  *unneeded = shipped.sample;
+  shipped = {ddsi_serdata_ref(sample), &tap};
+
+  if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) != 0) {
+    if (const auto held = writer.instances.find(instance->m_iid); held != writer.instances.end()) {
+      ddsi_tkmap_instance_unref(tap.gv->m_tkmap, held->second);
+      writer.instances.erase(held);
+    }
+  } else if (writer.instances.size() < kMostInstances &&
+             writer.instances.try_emplace(instance->m_iid, instance).second) {
+    ddsi_tkmap_instance_ref(instance);
+  }
+  return Carries::kYes;
+}
+
+}  // namespace
+
+Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
+                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns) {
+  State& state = Get();
+  ddsi_serdata* unneeded = nullptr;
+  Carries carries;
+  {
+    const std::lock_guard lock(state.mutex);
+    carries = LockedCarriesSample(state, writer, tap, sample, instance, &unneeded, blocks_ns);
+  }
+  if (unneeded != nullptr) ddsi_serdata_unref(unneeded);
+  return carries;
+}
+
+void AddReader(const ddsi_reader& reader) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  state.readers[Guid::Of(reader.e.guid)] = {reader.e.gv->config.domainId, reader.xqos->topic_name};
+}
+
+bool RemoveReader(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.readers.erase(guid) != 0;
+}
+
+std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<Guid> guids;
+  for (const auto& [guid, reader] : state.readers) {
+    if (reader.domain == domain && reader.topic == topic) guids.push_back(guid);
+  }
+  return guids;
+}
+
+void AddTap(const Tap* tap) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  state.taps.push_back(tap);
+}
+
+void RemoveTap(const Tap* tap) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::erase(state.taps, tap);
+}
+
+std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<LateReader> readers;
+  for (const Tap* tap : state.taps) {
+    if (tap->catches_up && tap->is_complete && tap->domain == domain && tap->topic == topic) {
+      readers.push_back({tap->reader, tap->process});
+    }
+  }
+  return readers;
+}
+
+std::vector<Guid> CompleteTap(Tap& tap) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  tap.is_complete = true;
+  return LockedWritersOf(state, tap.domain, tap.topic, true);
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,71 @@
+// What the program has: its participants, topics and endpoints, as the hooks see them come and go.
+//
+// Those of other processes are mirrored by *shadows* in here (mirrors.h), which Cyclone takes for
+// the program's own. They pass through the same hooks and are told apart by their participant.
+//
+// Thread-safe, by a lock that is held for look-ups only: everything here may be called from inside
+// Cyclone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libtcs_preload/dds/guid.h"
+
+namespace tcs::dds {
+
+struct Tap;
+
+// Shadow participants, by the first part of their GUIDs.
+void AddShadow(const Guid& participant);
+void RemoveShadow(const Guid& participant);
+bool IsShadow(const ddsi_guid_t& entity);
+
+// Domains.
+ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
+void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
+void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
+bool IsParticipant(const Guid& guid);
+bool IsLastParticipant(const Guid& guid);
+std::vector<std::uint32_t> Domains();
+
+// The types of its topics. A type is held until the domain's last participant is about to go:
+// Cyclone aborts if it is held any longer.
+void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type);
+ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type);
+void ReleaseTypes(std::uint32_t domain);
+
+// Writers. False: known already.
+bool AddWriter(const ddsi_writer& writer);
+void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid);
+bool IsWriter(const Guid& guid);
+std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
+
+// Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
+// process the first that sees it. Keeps the sample's instance alive, since Cyclone would otherwise
+// make and collect one for each write. Kind of writer: unknown, to be announced first.
+// `*blocks_ns`: how long its writer may wait for readers that cannot keep up.
+enum class Carries { kNo, kYes, kUnknownWriter };
+Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
+                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns);
+
+// Readers.
+void AddReader(const ddsi_reader& reader);
+bool RemoveReader(const Guid& guid);
+std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic);
+
+// The shadow readers to which writers of the program owe their history's end.
+void AddTap(const Tap* tap);
+void RemoveTap(const Tap* tap);
+struct LateReader {
+  Guid guid;
+  std::uint32_t process;
+};
+// Those whose shadow reader is complete; the others hear of a new writer when theirs is.
+std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic);
+// The shadow reader is complete: the transient-local writers that it has met. In one step, so that
+// a writer that is made meanwhile is told of by the one or by the other.
+std::vector<Guid> CompleteTap(Tap& tap);
+
+}  // namespace tcs::dds

@@ -1,0 +1,78 @@
+#include "libtcs_preload/dds/public_calls.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "libtcs_preload/dds/deliverer.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+// The domains whose last participant of the program's goes with `entity`.
+std::vector<std::uint32_t> DomainsThatEndWith(dds_entity_t entity) {
+  if (entity == DDS_CYCLONEDDS_HANDLE) return Domains();
+  dds_domainid_t domain = 0;
+  if (dds_get_domainid(entity, &domain) != DDS_RETCODE_OK) return {};
+  const dds_entity_t participant = dds_get_participant(entity);
+  if (participant <= 0) return {domain};  // it is a domain
+  dds_guid_t guid;
+  if (participant != entity || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return {};
+  if (!IsLastParticipant(Guid::FromBytes(guid.v))) return {};
+  return {domain};
+}
+
+bool IsShadowHandle(dds_entity_t participant) {
+  dds_guid_t guid;
+  return dds_get_guid(participant, &guid) == DDS_RETCODE_OK &&
+         IsShadow(Guid::FromBytes(guid.v).Inner());
+}
+
+}  // namespace
+
+dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
+                               const dds_listener_t* listener) {
+  const dds_entity_t participant = Real().dds_create_participant(domain, qos, listener);
+  if (participant > 0) LookAgain();
+  return participant;
+}
+
+dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertype** type,
+                         const dds_qos_t* qos, const dds_listener_t* listener,
+                         const ddsi_plist* discovery) {
+  const dds_entity_t topic =
+      Real().dds_create_topic_sertype(participant, name, type, qos, listener, discovery);
+  dds_domainid_t domain = 0;
+  if (topic > 0 && dds_get_domainid(topic, &domain) == DDS_RETCODE_OK) {
+    AddType(domain, name, *type);
+    LookAgain();
+  }
+  return topic;
+}
+
+// The types are let go before the participant goes, the shadows after it: the program's readers and
+// writers must not see them go.
+dds_return_t Delete(dds_entity_t entity) {
+  const std::vector<std::uint32_t> ending = DomainsThatEndWith(entity);
+  for (const std::uint32_t domain : ending) ReleaseTypes(domain);
+  const dds_return_t result = Real().dds_delete(entity);
+  for (const std::uint32_t domain : ending) CloseDomain(domain);
+  return result;
+}
+
+dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participants,
+                                std::size_t size) {
+  const dds_return_t count = Real().dds_lookup_participant(domain, nullptr, 0);
+  // Wrong arguments are Cyclone's to find.
+  if (count <= 0 || (participants == nullptr) != (size == 0)) {
+    return Real().dds_lookup_participant(domain, participants, size);
+  }
+  std::vector<dds_entity_t> all(static_cast<std::size_t>(count));
+  const dds_return_t now = Real().dds_lookup_participant(domain, all.data(), all.size());
+  all.resize(static_cast<std::size_t>(std::clamp(now, 0, count)));
+  std::erase_if(all, IsShadowHandle);
+  std::copy_n(all.begin(), std::min(size, all.size()), participants);
+  return static_cast<dds_return_t>(all.size());
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,32 @@
+// QoS as numbers and texts (shm/dds_endpoint.h), and back, through Cyclone's public accessors.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libtcs_preload/dds/cyclone.h"
+#include "shm/dds_endpoint.h"
+
+namespace tcs::dds {
+
+using Payload = std::vector<std::byte>;
+
+Payload EncodeParticipant(const dds_qos_t* qos);
+Payload EncodeEndpoint(std::uint32_t kind, bool keyless, const char* topic, const char* type,
+                       const dds_qos_t* qos);
+
+struct DecodedEndpoint {
+  std::uint32_t kind = 0;
+  std::string topic;
+  std::string type;
+};
+
+// Empty names if the payload is malformed.
+DecodedEndpoint DecodeEndpoint(const Payload& payload);
+
+// The QoS that a payload of either kind carries; the caller deletes it.
+dds_qos_t* DecodeQos(const Payload& payload, bool participant);
+
+}  // namespace tcs::dds

@@ -1,0 +1,15 @@
+// The shim's side of what it does for libtcs_dds.so (link.h).
+#pragma once
+
+#include "libtcs_preload/dds/link.h"
+
+namespace tcs::preload {
+
+extern const dds::Link kDdsLink;
+
+// The library that knows Cyclone DDS, for processes that are to use it; null: their DDS uses
+// sockets. Writes the path, which is next to the shim, into the buffer.
+inline constexpr std::size_t kDdsPathSize = 4096;
+const char* DdsLibrary(char (&path)[kDdsPathSize]);
+
+}  // namespace tcs::preload

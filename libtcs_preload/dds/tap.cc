@@ -1,0 +1,143 @@
+#include "libtcs_preload/dds/tap.h"
+
+#include <algorithm>
+
+#include "libtcs_preload/dds/announce.h"
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+// Of a writer that would wait for ever. Cyclone's locks are held meanwhile.
+constexpr std::int64_t kMostBlockingNs = 1'000'000'000;
+
+thread_local const Tap* t_making;
+
+// As many as threads can be writing at a time, and more.
+constexpr std::size_t kMostHad = 64;
+
+Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
+
+void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample, bool addressed) {
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kSample, tap.domain, Guid::Of(writer));
+  message.to = tap.process;
+  if (addressed) tap.reader.To(message.other);
+  message.source_timestamp_ns = sample.timestamp.v;
+  message.status_info = sample.statusinfo;
+  message.sample_kind = sample.kind;
+  SendSample(message, sample, tap.topic);
+}
+
+// To the tap's reader alone, unless it has had it.
+void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
+  if (std::ranges::count(tap.had, sample) != 0) return;
+  tap.had.push_back(ddsi_serdata_ref(sample));
+  if (tap.had.size() > kMostHad) {
+    ddsi_serdata_unref(tap.had.front());
+    tap.had.pop_front();
+  }
+  Ship(tap, writer, *sample, true);
+}
+
+// The program's listener may write while its writer is still being made: others have to know the
+// writer first.
+bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
+  const ddsi_writer* writer = entidx_lookup_writer_guid(tap.gv->entity_index, &guid);
+  if (writer == nullptr) return false;
+  AnnounceWriter(*writer);
+  return true;
+}
+
+bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
+           ddsi_tkmap_instance* instance) {
+  Tap& tap = TapOf(rhc);
+  std::unique_lock lock(tap.mutex, std::defer_lock);
+  if (tap.catches_up) lock.lock();
+  if (t_making == &tap) {
+    if (tap.catches_up && !IsShadow(info->guid)) ShipAlone(tap, info->guid, sample);
+    return true;
+  }
+  if (!tap.catching_up && std::ranges::count(tap.had, sample) != 0) return true;
+  std::int64_t blocks_ns = 0;
+  Carries carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
+  if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
+    carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
+  }
+  if (carries == Carries::kYes) {
+    Ship(tap, info->guid, *sample, false);
+  }
+  if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
+    ShipAlone(tap, info->guid, sample);
+  }
+  if (lock.owns_lock()) lock.unlock();
+  if (blocks_ns > 0) TheLink().await_room(std::min(blocks_ns, kMostBlockingNs));
+  return true;
+}
+
+void UnregisterWriter(ddsi_rhc*, const ddsi_writer_info*) {}
+void RelinquishOwnership(ddsi_rhc*, const std::uint64_t) {}
+void SetQos(ddsi_rhc*, const dds_qos_t*) {}
+
+void Free(ddsi_rhc* rhc) {
+  Tap* tap = &TapOf(rhc);
+  RemoveTap(tap);
+  for (ddsi_serdata* sample : tap->had) ddsi_serdata_unref(sample);
+  delete tap;
+}
+
+std::int32_t ReadNothing(dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
+                         dds_instance_handle_t, dds_readcond*) {
+  return 0;
+}
+std::int32_t ReadNoCdr(dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t,
+                       std::uint32_t, std::uint32_t, std::uint32_t, dds_instance_handle_t) {
+  return 0;
+}
+bool AddCondition(dds_rhc*, dds_readcond*) { return true; }
+void RemoveCondition(dds_rhc*, dds_readcond*) {}
+std::uint32_t LockSamples(dds_rhc*) { return 0; }
+dds_return_t Associate(dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) {
+  return DDS_RETCODE_OK;
+}
+
+constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnership, SetQos, Free},
+                                     ReadNothing,
+                                     ReadNothing,
+                                     ReadNoCdr,
+                                     ReadNoCdr,
+                                     AddCondition,
+                                     RemoveCondition,
+                                     LockSamples,
+                                     Associate};
+
+}  // namespace
+
+Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
+            const std::string& topic, bool catches_up) {
+  Tap* tap = new Tap{{}, gv, domain, process, reader, topic, catches_up, false, catches_up, {}, {}};
+  tap->rhc.common.ops = &kOperations;
+  AddTap(tap);
+  return tap;
+}
+
+MakingTap::MakingTap(const Tap* tap) { t_making = tap; }
+MakingTap::~MakingTap() { t_making = nullptr; }
+
+void EndCatchUp(Tap& tap) {
+  const std::lock_guard lock(tap.mutex);
+  for (const Guid& writer : CompleteTap(tap)) {
+    SendHistoryEnd(tap.domain, writer, tap.reader, tap.process);
+  }
+  tap.catching_up = false;
+}
+
+void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
+                    std::uint32_t process) {
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, domain, writer);
+  message.to = process;
+  reader.To(message.other);
+  Send(message, {});
+}
+
+}  // namespace tcs::dds

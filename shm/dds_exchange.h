@@ -1,0 +1,98 @@
+// How programs that speak DDS hand their samples to each other without a network: messages, and the
+// memory that they pass through.
+//
+// The coordinator is in the middle. A process that has a participant joins: it gets a number and an
+// area of a memfd of its own (whose pages cost nothing until they are used):
+//
+//   +---------+------------------+------------------+
+//   | DdsArea | outbox           | inbox            |
+//   +---------+------------------+------------------+
+//               written by the     written by the
+//               process            coordinator
+//
+// To send, a process writes whole messages into its outbox and notifies (kDdsSend): they carry the
+// virtual time of that notification. The coordinator copies them out, checks them, and keeps them
+// in the order of their times. One thread of each process, the *deliverer*, waits for what is due
+// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox. It runs as
+// the robot's scheduler lets it, as a middleware's threads do, for the program's listeners run on
+// it. A thread that is about to look at what has come first waits until nobody can send anything
+// before its own time any more (kRead), and then until the deliverer is done (kDdsSync): meanwhile
+// it lends it its priority.
+//
+// Whoever writes faster than others take waits after sending (kDdsRoom), as a reliable DDS writer
+// does, as long as its QoS say: nothing is lost by that, and nobody waits for ever.
+//
+// The coordinator remembers participants and endpoints: who joins later is told of them, and when a
+// process dies its participants are reported as gone once their leases are over. It trusts nothing
+// that it reads here. Any change bumps kVersion (layout.h).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace tcs::shm {
+
+inline constexpr std::size_t kDdsHeaderSize = 4096;
+inline constexpr std::size_t kDdsBoxSize = std::size_t{16} << 20;
+inline constexpr std::size_t kDdsAreaSize = kDdsHeaderSize + 2 * kDdsBoxSize;
+inline constexpr std::uint32_t kDdsMostProcesses = 1024;
+
+// Numbers of processes. Process n has the area that starts at (n - 1) * kDdsAreaSize.
+inline constexpr std::uint32_t kDdsCoordinator = 0;
+inline constexpr std::uint32_t kDdsEverybody = UINT32_MAX;
+
+// Written by the coordinator.
+struct alignas(64) DdsArea {
+  std::atomic<std::int64_t> due_ns;     // of the earliest message not handed over; kNeverNs
+  std::atomic<std::uint32_t> delivers;  // 1: the deliverer has not come back for more yet
+  std::uint32_t process;                // its number
+  std::atomic<std::uint32_t> full;      // a process for which too much waited after the last send
+  std::uint32_t reserved32;
+  std::uint64_t reserved[5];
+};
+static_assert(sizeof(DdsArea) == 64);
+
+enum class DdsKind : std::uint16_t {
+  kParticipant = 1,  // subject: its GUID; payload: DdsQos
+  kEndpoint = 2,     // subject: its GUID; other: its participant's; payload: dds_endpoint.h
+  kSample = 3,      // subject: the writer's GUID; other: the reader's, or zeros for all that match;
+                    // payload: CDR with its encapsulation header
+  kHistoryEnd = 4,  // subject: a writer's GUID, other: a reader's: this one has been sent all that
+                    // the writer had when they met
+  kLiveliness = 5,  // subject: a writer's or a participant's GUID: asserted, or with kDdsGone lost
+};
+
+// DdsMessage::flags.
+inline constexpr std::uint16_t kDdsGone = 1;  // the subject is no more
+// The subject stays alive for lease_ns only, unless its process says so (DDS's automatic
+// liveliness): reported as lost, that long after the process's death.
+inline constexpr std::uint16_t kDdsLeased = 2;
+
+struct DdsMessage {
+  std::uint32_t size;  // of all, a multiple of 8: this, the payload, zeros
+  DdsKind kind;
+  std::uint16_t flags;
+  std::uint32_t from;    // set by the coordinator
+  std::uint32_t to;      // a process's number, or kDdsEverybody but the sender
+  std::int64_t time_ns;  // virtual, when it was sent; set by the coordinator
+  std::uint8_t subject[16];
+  std::uint8_t other[16];
+  std::int64_t source_timestamp_ns;  // DDS's, of samples
+  std::int64_t lease_ns;             // of participants and writers, INT64_MAX for ever
+  std::uint32_t domain;
+  std::uint32_t status_info;  // of samples: Cyclone's NN_STATUSINFO_* bits
+  std::uint32_t sample_kind;  // of samples: 0 empty, 1 key only, 2 data, as Cyclone's serdata kinds
+  std::uint32_t payload_size;
+};
+static_assert(sizeof(DdsMessage) == 88);
+static_assert(offsetof(DdsMessage, subject) == 24);
+static_assert(offsetof(DdsMessage, source_timestamp_ns) == 56);
+
+inline constexpr std::uint32_t DdsMessageSize(std::uint32_t payload_size) {
+  return static_cast<std::uint32_t>((sizeof(DdsMessage) + payload_size + 7) / 8 * 8);
+}
+inline constexpr std::uint32_t kDdsMostPayload =
+    static_cast<std::uint32_t>(kDdsBoxSize - sizeof(DdsMessage) - 8);
+
+}  // namespace tcs::shm

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# ddsperf.sh BUILD sockets|endpoints: Debian's ddsperf, on two robots: each process ends by itself
+# with status 0 after its stated virtual duration, having seen its peer and what it had to.
+set -euo pipefail
+build=$1 variant=$2
+fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General>
+  <Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>
+</General></Domain></CycloneDDS>'
+dds=", dds: $variant"
+
+# between SECONDS 'ARGUMENTS OF THE FIRST' 'OF THE SECOND': their words come into $first and $second.
+between() {
+  local seconds=$1 one two
+  one=$(printf '"%s", ' $2) two=$(printf '"%s", ' $3)
+  cat >"$work/scenario.yaml" <<END
+duration: 1h
+robots:
+  left: {clients: {first: {command: [ddsperf, -D$seconds, "-Qminmatch:1", $one]$dds}}}
+  right: {clients: {second: {command: [ddsperf, -D$seconds, "-Qminmatch:1", $two]$dds}}}
+END
+  rm -rf "$work/out"
+  "$build/bin/in_own_network" "$build/bin/tcsim" run "$work/scenario.yaml" --out "$work/out" \
+    >"$work/said" 2>&1 || fail "'$2' with '$3': $(cat "$work/said" "$work"/out/*.log)"
+  python3 - "$work/out/summary.json" "$seconds" <<'END' || fail "'$2' with '$3': $(cat "$work"/out/*.log)"
+import json, sys
+seconds = float(sys.argv[2])
+for name, client in json.load(open(sys.argv[1]))["clients"].items():
+    assert client["wait_status"] == 0, f"{name} ended with {client['wait_status']}"
+    ended = client["ended_at_ns"] / 1e9
+    assert seconds <= ended < seconds + 0.5, f"{name} ended at {ended} s"
+END
+  first=$(cat "$work/out/left-first.out.log") second=$(cat "$work/out/right-second.out.log")
+}
+
+says() { grep -Eq -- "$2" <<<"$1" || fail "it does not say '$2': $1"; }
+
+between 10 'pong' '-Qroundtrips:990 ping 100Hz'
+says "$second" ' 9\.00.* cnt 100$'
+between 10 'pong waitset' '-Qroundtrips:990 ping 100Hz waitset'
+says "$second" ' 9\.00.* cnt 100$'
+between 10 '-Qsamples:9900 sub' 'pub 1kHz size 256'
+says "$first" ' 9\.00.* lost 0 delta (999|1000|1001) lost 0 '
+between 10 '-Qsamples:9900 sub polling' 'pub 1kHz size 16k'
+says "$first" ' 9\.00.* lost 0 delta (999|1000|1001) lost 0 '
+# As fast as they can. (Pings begin after a second.)
+between 1.1 'pong' '-Qroundtrips:1000 ping'
+between 1.1 'pong waitset' '-Qroundtrips:1000 ping waitset'
+between 1 '-Qsamples:1000 sub' 'pub size 64'
+between 1 '-Qsamples:1000 sub waitset' 'pub size 16k'

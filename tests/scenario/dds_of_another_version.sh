@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# A program with another Cyclone DDS than Debian's is told so in one line, and uses sockets.
+export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
+  <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+# The version stands in the name of the file, behind the link.
+cp "$(ldconfig -p | awk '/libddsc.so.0debian/ {print $NF; exit}')" "$work/libddsc.so.9.9.9"
+ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
+said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
+  "ddsperf -D 2 pong & ddsperf -D 2 ping 100Hz; wait" 2>&1)
+[[ $(grep -c 'tcs: DDS without a network is written for libddsc.so.0.10.2, this program has .*/libddsc.so.9.9.9: it uses sockets' \
+  <<<"$said") == 2 ]] || fail "not told once by each program: $said"
+grep -Eq 'recvUC|mean .* cnt ' <<<"$said" || fail "they have not met: $said"
+
+# So is one that brings a library with another name for itself, and looks functions up in it.
+sed 's/libddsc\.so\.0debian/libddsc.so.0bundle/' "$work/libddsc.so.9.9.9" >"$work/libddsc-bundled.so"
+cmp -s "$work/libddsc.so.9.9.9" "$work/libddsc-bundled.so" && fail "the library has not been renamed"
+said=$("$tcsim" exec -- python3 -c '
+import ctypes, sys
+ddsc = ctypes.CDLL(sys.argv[1])
+participant = ddsc.dds_create_participant(0, None, None)
+print("participant", participant > 0, "deleted", ddsc.dds_delete(participant))
+' "$work/libddsc-bundled.so" 2>&1)
+grep -q "tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets" <<<"$said" ||
+  fail "not told: $said"
+grep -q 'participant True deleted 0' <<<"$said" || fail "it does not work: $said"

@@ -1,0 +1,272 @@
+// The hub as processes see it: two mappings of one area, like theirs.
+#include "coordinator/dds/hub.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace tcs::dds {
+namespace {
+
+using shm::DdsKind;
+using shm::DdsMessage;
+using Number = Hub::Number;
+
+// A process's side: its area mapped once more.
+class Peer {
+ public:
+  Peer(Hub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
+    void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED, hub.fd(),
+                    static_cast<off_t>((number_ - 1) * shm::kDdsAreaSize));
+    area_ = static_cast<char*>(at);
+  }
+  ~Peer() { munmap(area_, shm::kDdsAreaSize); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  Number number() const { return number_; }
+  const shm::DdsArea& shown() const { return *reinterpret_cast<shm::DdsArea*>(area_); }
+  char* outbox() { return area_ + shm::kDdsHeaderSize; }
+
+  std::string Send(std::int64_t now_ns, const std::vector<DdsMessage>& messages) {
+    std::size_t size = 0;
+    for (const DdsMessage& message : messages) {
+      memcpy(outbox() + size, &message, sizeof message);
+      size += message.size;
+    }
+    return hub_.Send(number_, size, now_ns);
+  }
+
+  std::vector<DdsMessage> Take(std::int64_t now_ns) {
+    const std::size_t size = hub_.Deliver(number_, now_ns);
+    hub_.CameBack(number_);
+    const char* at = area_ + shm::kDdsHeaderSize + shm::kDdsBoxSize;
+    const char* const end = at + size;
+    std::vector<DdsMessage> messages;
+    while (at != end) {
+      DdsMessage message;
+      memcpy(&message, at, sizeof message);
+      messages.push_back(message);
+      at += message.size;
+    }
+    return messages;
+  }
+
+ private:
+  Hub& hub_;
+  Number number_;
+  char* area_;
+};
+
+DdsMessage Message(DdsKind kind, std::uint8_t subject, std::uint32_t to = shm::kDdsEverybody) {
+  DdsMessage message{};
+  message.size = shm::DdsMessageSize(0);
+  message.kind = kind;
+  message.to = to;
+  message.subject[0] = subject;
+  message.lease_ns = INT64_MAX;
+  return message;
+}
+
+TEST(DdsHub, DeliversAtTheTimeOfSendingAndNotBefore) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  EXPECT_EQ(a.Send(700, {Message(DdsKind::kSample, 1)}), "");
+  EXPECT_EQ(hub.DueNs(b.number()), 700);
+  EXPECT_EQ(b.shown().due_ns, 700);
+  EXPECT_TRUE(b.Take(699).empty());
+  const auto taken = b.Take(700);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].time_ns, 700);
+  EXPECT_EQ(taken[0].from, a.number());
+  EXPECT_EQ(b.shown().due_ns, shm::kNeverNs);
+  EXPECT_EQ(hub.DueNs(a.number()), shm::kNeverNs) << "what one sends does not come back";
+}
+
+TEST(DdsHub, KeepsTheOrderOfTimesWhoeverSpeaksFirst) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0), reader(hub, 0);
+  EXPECT_EQ(a.Send(900, {Message(DdsKind::kSample, 1), Message(DdsKind::kSample, 2)}), "");
+  EXPECT_EQ(b.Send(800, {Message(DdsKind::kSample, 3)}), "");
+  EXPECT_EQ(b.Send(900, {Message(DdsKind::kSample, 4)}), "");
+  std::vector<int> order;
+  for (const DdsMessage& message : reader.Take(1000)) order.push_back(message.subject[0]);
+  EXPECT_EQ(order, (std::vector<int>{3, 1, 2, 4}));
+}
+
+TEST(DdsHub, AddressedMessagesAreForOneOnly) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0), c(hub, 0);
+  EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1, c.number())}), "");
+  EXPECT_TRUE(b.Take(1).empty());
+  EXPECT_EQ(c.Take(1).size(), 1u);
+}
+
+TEST(DdsHub, WhoJoinsLaterIsToldOfWhatIsThere) {
+  Hub hub;
+  Peer a(hub, 0);
+  DdsMessage writer = Message(DdsKind::kEndpoint, 2);
+  writer.other[0] = 1;
+  DdsMessage reader = Message(DdsKind::kEndpoint, 3);
+  reader.other[0] = 1;
+  EXPECT_EQ(a.Send(5, {Message(DdsKind::kParticipant, 1), writer, reader}), "");
+  reader.flags = shm::kDdsGone;
+  EXPECT_EQ(a.Send(6, {reader, Message(DdsKind::kSample, 2)}), "");
+  Peer late(hub, 10);
+  const auto told = late.Take(10);
+  ASSERT_EQ(told.size(), 2u) << "participant and writer: no reader, no samples";
+  EXPECT_EQ(told[0].kind, DdsKind::kParticipant);
+  EXPECT_EQ(told[1].subject[0], 2);
+}
+
+TEST(DdsHub, AParticipantThatEndsTakesItsEndpointsAlong) {
+  Hub hub;
+  Peer a(hub, 0);
+  DdsMessage writer = Message(DdsKind::kEndpoint, 2);
+  writer.other[0] = 1;
+  DdsMessage gone = Message(DdsKind::kParticipant, 1);
+  gone.flags = shm::kDdsGone;
+  EXPECT_EQ(a.Send(5, {Message(DdsKind::kParticipant, 1), writer, gone}), "");
+  Peer late(hub, 10);
+  EXPECT_TRUE(late.Take(10).empty());
+}
+
+TEST(DdsHub, TheDeadAreMissedWhenTheirLeasesAreOver) {
+  Hub hub;
+  Peer b(hub, 0);
+  {
+    Peer a(hub, 0);
+    DdsMessage participant = Message(DdsKind::kParticipant, 1);
+    participant.lease_ns = 10'000;
+    DdsMessage leased = Message(DdsKind::kEndpoint, 2);
+    leased.other[0] = 1;
+    leased.flags = shm::kDdsLeased;
+    leased.lease_ns = 300;
+    DdsMessage other = Message(DdsKind::kEndpoint, 3);
+    other.other[0] = 1;
+    EXPECT_EQ(a.Send(5, {participant, leased, other}), "");
+    EXPECT_EQ(b.Take(5).size(), 3u);
+    hub.Leave(a.number(), 1'000);
+  }
+  Peer late(hub, 1'001);
+  EXPECT_EQ(hub.DueNs(late.number()), shm::kNeverNs) << "whoever comes now never saw it";
+  EXPECT_TRUE(b.Take(1'299).empty());
+  const auto lost = b.Take(1'300);
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].kind, DdsKind::kLiveliness);
+  EXPECT_EQ(lost[0].flags, shm::kDdsGone);
+  EXPECT_EQ(lost[0].subject[0], 2);
+  const auto gone = b.Take(11'000);
+  ASSERT_EQ(gone.size(), 1u);
+  EXPECT_EQ(gone[0].kind, DdsKind::kParticipant);
+  EXPECT_EQ(gone[0].time_ns, 11'000);
+}
+
+TEST(DdsHub, SaysWhatIsWrongWithAMessageAndKeepsThoseBefore) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage wrong = Message(DdsKind::kSample, 2);
+  wrong.kind = static_cast<DdsKind>(77);
+  EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1), wrong}), "a message has an unknown kind, 77");
+  EXPECT_EQ(b.Take(1).size(), 1u);
+  wrong = Message(DdsKind::kSample, 2);
+  wrong.payload_size = 4000;
+  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 88");
+  wrong.payload_size = UINT32_MAX - 3;
+  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 88");
+  memset(a.outbox(), 0xff, 200);
+  EXPECT_EQ(hub.Send(a.number(), 200, 1), "a message has a wrong size, 4294967295");
+  EXPECT_EQ(hub.Send(a.number(), 8, 1), "a message is cut off");
+  EXPECT_EQ(hub.Send(a.number(), shm::kDdsBoxSize + 8, 1),
+            "its messages are longer than its outbox");
+  EXPECT_EQ(hub.Send(99, 0, 1), "it has not joined");
+}
+
+TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage large = Message(DdsKind::kSample, 1);
+  large.payload_size = shm::kDdsMostPayload / 3;
+  large.size = shm::DdsMessageSize(large.payload_size);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(a.Send(i, {large}), "");
+  EXPECT_EQ(b.Take(10).size(), 2u);
+  EXPECT_EQ(hub.DueNs(b.number()), 2) << "the rest is due still";
+  EXPECT_EQ(b.Take(10).size(), 2u);
+}
+
+TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage large = Message(DdsKind::kSample, 1);
+  large.payload_size = shm::kDdsMostPayload;
+  large.size = shm::DdsMessageSize(large.payload_size);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(a.Send(i, {large}), "");
+  EXPECT_EQ(hub.dropped(), 4u);
+  EXPECT_EQ(a.Send(20, {Message(DdsKind::kParticipant, 2)}), "");
+  EXPECT_EQ(hub.dropped(), 4u) << "who is there is never dropped";
+}
+
+TEST(DdsHub, WhoSendsMoreThanOneTakesIsTold) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0), c(hub, 0);
+  DdsMessage sample = Message(DdsKind::kSample, 1, b.number());
+  sample.payload_size = 600'000;
+  sample.size = shm::DdsMessageSize(sample.payload_size);
+  EXPECT_EQ(a.Send(1, {sample}), "");
+  EXPECT_EQ(a.shown().full, 0u);
+  EXPECT_EQ(a.Send(2, {sample}), "");
+  EXPECT_EQ(a.shown().full, b.number());
+  EXPECT_TRUE(hub.IsFull(b.number()));
+  EXPECT_FALSE(hub.IsFull(c.number()));
+  hub.Deliver(b.number(), 2);
+  EXPECT_TRUE(hub.IsFull(b.number())) << "it still has them in its hands";
+  hub.CameBack(b.number());
+  EXPECT_FALSE(hub.IsFull(b.number()));
+  sample.to = c.number();
+  EXPECT_EQ(a.Send(3, {sample}), "");
+  EXPECT_EQ(a.shown().full, 0u) << "of the last message only";
+}
+
+TEST(DdsHub, TheCoordinatorIsOneOfThem) {
+  Hub hub;
+  hub.TellOwn();
+  Peer a(hub, 0);
+  EXPECT_EQ(a.Send(400, {Message(DdsKind::kParticipant, 1), Message(DdsKind::kSample, 2, 0)}), "");
+  EXPECT_FALSE(hub.TakeOwn(399).has_value());
+  ASSERT_TRUE(hub.TakeOwn(400).has_value());
+  const auto sample = hub.TakeOwn(400);
+  ASSERT_TRUE(sample.has_value());
+  DdsMessage header;
+  memcpy(&header, sample->data(), sizeof header);
+  EXPECT_EQ(header.subject[0], 2);
+  EXPECT_FALSE(hub.TakeOwn(400).has_value());
+
+  const std::byte payload[5] = {};
+  hub.SendOwn(Message(DdsKind::kEndpoint, 3), payload, 500);
+  EXPECT_TRUE(a.Take(499).empty());
+  const auto taken = a.Take(500);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].from, 0u);
+  EXPECT_EQ(taken[0].payload_size, 5u);
+  EXPECT_EQ(Peer(hub, 600).Take(600).size(), 2u)
+      << "the participant and the coordinator's endpoint";
+  EXPECT_FALSE(hub.TakeOwn(1000).has_value()) << "its own messages are not for it";
+}
+
+TEST(DdsHub, WhoeverHandsOverIsDeliveringUntilItComesBack) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1)}), "");
+  hub.Deliver(b.number(), 1);
+  EXPECT_TRUE(hub.IsDelivering(b.number()));
+  EXPECT_EQ(b.shown().delivers, 1u);
+  hub.CameBack(b.number());
+  EXPECT_FALSE(hub.IsDelivering(b.number()));
+  EXPECT_EQ(b.shown().delivers, 0u);
+}
+
+}  // namespace
+}  // namespace tcs::dds

@@ -1,0 +1,70 @@
+// What `tcsim topics` prints.
+#include "coordinator/dds/topics_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/topics/some_topics.h"
+
+namespace tcs::dds {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+TEST(TopicsTable, HasALinePerTopic) {
+  EXPECT_EQ(
+      TopicsTable(SomeTopics(), false),
+      "topic  type                   domain  samples    rate  drops  writers         readers\n"
+      "/odom  nav_msgs/msg/Odometry       0      201  100 Hz      2  tcsim           "
+      "hunter/controller, hunter/planner x2\n"
+      "/map   nav_msgs/msg/Path           3        1       -      0  hunter/planner  -\n");
+}
+
+TEST(TopicsTable, LeavesTheOnlyDomainOut) {
+  EXPECT_THAT(TopicsTable({SomeTopics()[0]}, false), Not(HasSubstr("domain")));
+}
+
+TEST(TopicsTable, OfNoTopicsIsItsHead) {
+  EXPECT_EQ(TopicsTable({}, true), "topic  type  samples  rate  drops  writers  readers\n");
+}
+
+TEST(TopicsTable, HasALinePerEndpointIfAsked) {
+  const std::string table = TopicsTable(SomeTopics(), true);
+  EXPECT_THAT(table, HasSubstr("\n    writer tcsim: reliable, keep_last 10, volatile\n"));
+  EXPECT_THAT(table, HasSubstr("\n    reader hunter/controller: best_effort, keep_all, volatile, "
+                               "deadline 1500ms, lifespan 2s, lease 7ns\n"));
+  EXPECT_THAT(table, HasSubstr("\n    writer hunter/planner: reliable, keep_last 10, "
+                               "transient_local, manual_by_topic\n"));
+}
+
+TEST(TopicWarnings, NameReadersThatNoWriterSuits) {
+  TopicReport topic{"/odom", "nav_msgs/msg/Odometry"};
+  Qos best_effort;
+  best_effort.reliability = Reliability::kBestEffort;
+  topic.endpoints = {{EndpointKind::kWriter, "tcsim", "", best_effort},
+                     {EndpointKind::kReader, "hunter/planner", "hunter", {}},
+                     {EndpointKind::kReader, "hunter/controller", "hunter", best_effort}};
+  EXPECT_THAT(
+      TopicWarnings({topic}),
+      ElementsAre("/odom: the reader of hunter/planner gets nothing: it wants reliable, but "
+                  "is offered best_effort by tcsim"));
+  topic.endpoints.push_back({EndpointKind::kWriter, "other/estimator", "other", {}});
+  EXPECT_THAT(TopicWarnings({topic}), IsEmpty());
+}
+
+TEST(TopicWarnings, CountDrops) {
+  EXPECT_THAT(TopicWarnings(SomeTopics()),
+              testing::Contains("/odom: 2 samples did not reach a reader that matched"));
+}
+
+TEST(TopicWarnings, SayNothingOfAReaderWithoutAnyWriter) {
+  TopicReport topic{"/odom", "nav_msgs/msg/Odometry"};
+  topic.endpoints = {{EndpointKind::kReader, "hunter/planner", "hunter", {}}};
+  EXPECT_THAT(TopicWarnings({topic}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace tcs::dds
