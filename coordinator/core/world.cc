@@ -138,8 +138,11 @@ bool World::Advance(std::int64_t limit_ns) {
 void World::Lead(std::int64_t settled_ns, std::int64_t to_ns) {
   const Spent spent(&host_ns_);
   settled_ns_ = settled_ns;
-  since_checkpoint_.clear();
-  checkpoint_ = to_ns > settled_ns ? dynamics_->Save() : nullptr;
+  // Where they lead already, what was saved before is from before all that can still come.
+  if (progress_ns_ <= settled_ns || checkpoint_ == nullptr) {
+    since_checkpoint_.clear();
+    checkpoint_ = to_ns > settled_ns ? dynamics_->Save() : nullptr;
+  }
   progress_ns_ = to_ns;
   dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
 }
