@@ -5,9 +5,10 @@ set -euo pipefail
 
 usage() {
   cat <<'END'
-usage: ./dev experiment [--quick] [--out DIR]
+usage: ./dev experiment [--quick] [--jobs N] [--out DIR]
 
   --quick     fewer, shorter trials: the same picture in minutes instead of an hour
+  --jobs N    trials at once, each on a CPU of its own; as many as there are CPUs unless told
   --out DIR   where results and report.html go; out/experiment (with --quick out/experiment-quick) unless told
 
 Call it again after an interruption: it goes on where it was.
@@ -18,10 +19,11 @@ die() { printf './dev experiment: %s\n' "$*" >&2; exit 2; }
 
 build=${1:?the build folder}
 shift
-quick=false out=
+quick=false out= jobs=$(nproc)
 while (($#)); do
   case "$1" in
     --quick) quick=true ;;
+    --jobs) jobs=${2:?./dev experiment: --jobs needs a number}; shift ;;
     --out) out=${2:?./dev experiment: --out needs a folder}; shift ;;
     -h | --help) usage; exit ;;
     *) usage >&2; die "there is no option '$1'" ;;
@@ -39,7 +41,6 @@ else
   lengths=20s,60s,180s speeds=0.25,0.5,1,2,4,8
 fi
 
-jobs=$(nproc)
 tcsim="$build/bin/tcsim"
 scenario="$build/examples/predator_prey/scenario.yaml"
 speed=robots.predator.cpu.speed
