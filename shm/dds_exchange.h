@@ -42,6 +42,9 @@ inline constexpr std::uint32_t kDdsMostProcesses = 1024;
 inline constexpr std::uint32_t kDdsCoordinator = 0;
 inline constexpr std::uint32_t kDdsEverybody = UINT32_MAX;
 
+// DdsMessage::sample_kind of what is more than a key.
+inline constexpr std::uint32_t kDdsData = 2;
+
 // Written by the coordinator.
 struct alignas(64) DdsArea {
   std::atomic<std::int64_t> due_ns;     // of the earliest message not handed over; kNeverNs
@@ -82,7 +85,7 @@ struct DdsMessage {
   std::int64_t lease_ns;             // of participants and writers, INT64_MAX for ever
   std::uint32_t domain;
   std::uint32_t status_info;  // of samples: Cyclone's NN_STATUSINFO_* bits
-  std::uint32_t sample_kind;  // of samples: 0 empty, 1 key only, 2 data, as Cyclone's serdata kinds
+  std::uint32_t sample_kind;  // of samples, Cyclone's ddsi_serdata_kind: kDdsData or of a key only
   std::uint32_t payload_size;
 };
 static_assert(sizeof(DdsMessage) == 88);

@@ -24,12 +24,6 @@ constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
 // Some milliseconds' work for who takes it. Cyclone's writers stop at half of that.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
-Hub::Guid GuidOf(const std::uint8_t* bytes) {
-  Hub::Guid guid;
-  std::copy_n(bytes, guid.size(), guid.begin());
-  return guid;
-}
-
 std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
   return ns < 0 || ns > shm::kNeverNs - now_ns ? shm::kNeverNs : now_ns + ns;
 }
@@ -104,8 +98,7 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
     if (!is_participant && (known.flags & shm::kDdsLeased) == 0) continue;
     const std::int64_t due = After(now_ns, known.lease_ns);
     if (due == shm::kNeverNs) continue;
-    DdsMessage header;
-    memcpy(&header, known.message->data(), sizeof header);
+    DdsMessage header = HeaderOf(*known.message);
     header.size = sizeof header;
     header.payload_size = 0;
     header.kind = is_participant ? DdsKind::kParticipant : DdsKind::kLiveliness;
@@ -125,11 +118,10 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const char* at = member->outbox();
   const char* const end = at + bytes;
   while (at != end) {
-    DdsMessage header;
-    const auto left = static_cast<std::size_t>(end - at);
-    if (left < sizeof header) return "a message is cut off";
-    memcpy(&header, at, sizeof header);
-    if (header.size > left || header.payload_size > shm::kDdsMostPayload ||
+    const std::span left{at, end};
+    if (left.size() < sizeof(DdsMessage)) return "a message is cut off";
+    DdsMessage header = HeaderOf(std::as_bytes(left));
+    if (header.size > left.size() || header.payload_size > shm::kDdsMostPayload ||
         header.size != shm::DdsMessageSize(header.payload_size)) {
       return fmt::format("a message has a wrong size, {}", header.size);
     }
@@ -180,7 +172,7 @@ void Hub::Enter(const DdsMessage& header, Bytes bytes) {
 
 void Hub::Remember(const DdsMessage& header, const Message& message) {
   if (header.kind != DdsKind::kParticipant && header.kind != DdsKind::kEndpoint) return;
-  const Guid subject = GuidOf(header.subject);
+  const Guid subject = GuidAt(header.subject);
   if ((header.flags & shm::kDdsGone) != 0) {
     std::erase_if(known_, [&](const Known& known) {
       return known.from == header.from &&
@@ -188,7 +180,7 @@ void Hub::Remember(const DdsMessage& header, const Message& message) {
     });
     return;
   }
-  Known now{header.from,  header.kind,     subject, GuidOf(header.other),
+  Known now{header.from,  header.kind,     subject, GuidAt(header.other),
             header.flags, header.lease_ns, message};
   const auto before = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
     return known.from == header.from && known.subject == subject;
@@ -210,8 +202,7 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
   if (to == shm::kDdsCoordinator && tells_own_) own_.emplace(due_ns, message);
   Member* member = Find(to);
   if (member == nullptr) return;
-  DdsMessage header;
-  memcpy(&header, message->data(), sizeof header);
+  const DdsMessage header = HeaderOf(*message);
   if (header.kind == DdsKind::kSample &&
       member->queued_bytes + message->size() > kMostQueuedBytes) {
     ++dropped_;

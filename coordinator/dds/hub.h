@@ -6,7 +6,6 @@
 // then checked. Times are virtual nanoseconds; kNeverNs for never.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -16,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/dds/message.h"
 #include "shm/dds_exchange.h"
 #include "shm/layout.h"
 
@@ -35,7 +35,6 @@ class HubObserver {
 class Hub {
  public:
   using Number = std::uint32_t;  // of a process, from 1 on; 0: the coordinator
-  using Guid = std::array<std::uint8_t, 16>;
   // A whole message with its header, as shm/dds_exchange.h says.
   using Bytes = std::vector<std::byte>;
 

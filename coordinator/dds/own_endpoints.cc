@@ -13,9 +13,7 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
-constexpr std::uint32_t kData = 2;  // DdsMessage::sample_kind
-
-DdsMessage Announcement(DdsKind kind, const Hub::Guid& guid, int domain) {
+DdsMessage Announcement(DdsKind kind, const Guid& guid, int domain) {
   DdsMessage header{};
   header.kind = kind;
   header.to = shm::kDdsEverybody;
@@ -31,17 +29,11 @@ bool WantsHistory(const Endpoint& reader) {
          reader.qos.reliability == Reliability::kReliable;
 }
 
-Hub::Guid GuidAt(const std::uint8_t* bytes) {
-  Hub::Guid guid;
-  std::copy_n(bytes, guid.size(), guid.begin());
-  return guid;
-}
-
 }  // namespace
 
 // Twelve bytes that no client has: Eclipse's vendor number first, as all of Cyclone's.
-Hub::Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
-  Hub::Guid guid{0x01, 0x10, 't', 'c', 's', 0};
+Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
+  Guid guid{0x01, 0x10, 't', 'c', 's', 0};
   for (std::size_t i = 0; i < 4; ++i) {
     guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
   }
@@ -56,7 +48,7 @@ Hub::Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
 
 OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std::int64_t now_ns) {
   hub_.TellOwn();
-  const Hub::Guid participant = ParticipantOf(domain, now_ns);
+  const Guid participant = ParticipantOf(domain, now_ns);
   Own& own = own_.emplace_back(Own{endpoint, domain, participant, {}});
   const auto number = static_cast<std::uint32_t>(own_.size());
   own.guid[12] = 0;
@@ -74,11 +66,11 @@ OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std:
 DdsMessage OwnEndpoints::SampleHeader(const Own& writer, std::int64_t timestamp_ns) const {
   DdsMessage header = Announcement(DdsKind::kSample, writer.guid, writer.domain);
   header.source_timestamp_ns = timestamp_ns;
-  header.sample_kind = kData;
+  header.sample_kind = shm::kDdsData;
   return header;
 }
 
-bool OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
+void OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
                          std::int64_t due_ns) {
   Own& own = own_[writer];
   TCS_CHECK(own.endpoint.kind == EndpointKind::kWriter);
@@ -97,17 +89,15 @@ bool OwnEndpoints::Write(Index writer, std::span<const std::byte> cdr, std::int6
   }
   DdsMessage header = SampleHeader(own, timestamp_ns);
   // Where nobody reads, it is still for those who look on.
-  const bool read = !reached.empty();
-  if (!read) reached.insert(shm::kDdsCoordinator);
+  if (reached.empty()) reached.insert(shm::kDdsCoordinator);
   for (const Hub::Number process : reached) {
     header.to = process;
     hub_.SendOwn(header, cdr, due_ns);
   }
-  return read;
 }
 
 // Who has a transient-local writer tells such readers what it has kept, and when that was all.
-void OwnEndpoints::Meet(const Hub::Guid& guid, const Remote& remote, std::int64_t now_ns) {
+void OwnEndpoints::Meet(const Guid& guid, const Remote& remote, std::int64_t now_ns) {
   if (!WantsHistory(remote.endpoint)) return;
   for (const Own& own : own_) {
     if (own.endpoint.kind != EndpointKind::kWriter || own.domain != remote.domain ||
@@ -129,14 +119,14 @@ void OwnEndpoints::Meet(const Hub::Guid& guid, const Remote& remote, std::int64_
   }
 }
 
-void OwnEndpoints::Forget(const Hub::Guid& subject) {
+void OwnEndpoints::Forget(const Guid& subject) {
   std::erase_if(remotes_, [&subject](const auto& entry) {
     return entry.first == subject || entry.second.participant == subject;
   });
 }
 
 void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> payload) {
-  const Hub::Guid subject = GuidAt(header.subject);
+  const Guid subject = GuidAt(header.subject);
   if ((header.flags & shm::kDdsGone) != 0) {
     if (header.kind != DdsKind::kLiveliness) Forget(subject);
     return;
@@ -151,15 +141,14 @@ void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> p
 
 std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
   while (auto bytes = hub_.TakeOwn(now_ns)) {
-    DdsMessage header;
-    memcpy(&header, bytes->data(), sizeof header);
-    const std::span<const std::byte> payload{bytes->data() + sizeof header, header.payload_size};
+    const DdsMessage header = HeaderOf(*bytes);
+    const std::span<const std::byte> payload = PayloadOf(*bytes);
     if (header.kind != DdsKind::kSample) {
       Notice(header, payload);
       continue;
     }
     const auto writer = remotes_.find(GuidAt(header.subject));
-    if (writer == remotes_.end() || header.sample_kind != kData) continue;
+    if (writer == remotes_.end() || header.sample_kind != shm::kDdsData) continue;
     Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
     for (Index i = 0; i < own_.size(); ++i) {
       const Own& own = own_[i];

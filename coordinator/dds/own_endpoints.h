@@ -5,7 +5,6 @@
 // of the topic gets the samples, once.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -33,8 +32,8 @@ class OwnEndpoints {
   Index Add(const Endpoint& endpoint, int domain, std::int64_t now_ns);
 
   // To all who read the topic, at `due_ns`, not before what it was written at `now_ns`;
-  // `timestamp_ns` is DDS's source timestamp. True if there is somebody.
-  bool Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
+  // `timestamp_ns` is DDS's source timestamp.
+  void Write(Index writer, std::span<const std::byte> cdr, std::int64_t timestamp_ns,
              std::int64_t due_ns);
 
   struct Sample {
@@ -47,7 +46,7 @@ class OwnEndpoints {
   std::optional<Sample> Take(std::int64_t now_ns);
 
   // What each endpoint is known by: its participant's twelve bytes, then its own four.
-  Hub::Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
+  Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
 
  private:
   struct Kept {
@@ -57,27 +56,27 @@ class OwnEndpoints {
   struct Own {
     Endpoint endpoint;
     int domain = 0;
-    Hub::Guid guid{};
+    Guid guid{};
     std::deque<Kept> history;  // of a transient-local writer
   };
   // Another's.
   struct Remote {
     Hub::Number process = 0;
     int domain = 0;
-    Hub::Guid participant{};
+    Guid participant{};
     Endpoint endpoint;
   };
 
-  Hub::Guid ParticipantOf(int domain, std::int64_t now_ns);
+  Guid ParticipantOf(int domain, std::int64_t now_ns);
   void Notice(const shm::DdsMessage& header, std::span<const std::byte> payload);
-  void Meet(const Hub::Guid& guid, const Remote& remote, std::int64_t now_ns);
-  void Forget(const Hub::Guid& subject);
+  void Meet(const Guid& guid, const Remote& remote, std::int64_t now_ns);
+  void Forget(const Guid& subject);
   shm::DdsMessage SampleHeader(const Own& writer, std::int64_t timestamp_ns) const;
 
   Hub& hub_;
   std::vector<Own> own_;
   std::set<int> domains_;  // with a participant
-  std::map<Hub::Guid, Remote> remotes_;
+  std::map<Guid, Remote> remotes_;
 };
 
 }  // namespace tcs::dds

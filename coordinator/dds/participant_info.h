@@ -3,7 +3,6 @@
 // and which endpoints are whose.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,11 +11,9 @@
 #include <vector>
 
 #include "coordinator/dds/cdr.h"
+#include "coordinator/dds/message.h"
 
 namespace tcs::dds {
-
-// As DDS sends them.
-using Guid = std::array<std::uint8_t, 16>;
 
 struct Node {
   std::string name_space = "/";

@@ -11,14 +11,6 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
-constexpr std::uint32_t kData = 2;  // DdsMessage::sample_kind
-
-Hub::Guid GuidAt(const std::uint8_t* bytes) {
-  Hub::Guid guid;
-  std::copy_n(bytes, guid.size(), guid.begin());
-  return guid;
-}
-
 bool IsAddressed(const DdsMessage& header) {
   return std::any_of(std::begin(header.other), std::end(header.other),
                      [](std::uint8_t byte) { return byte != 0; });
@@ -46,7 +38,7 @@ TopicLog::Topic TopicLog::TopicOf(const Endpoint& endpoint, int domain) {
 
 // New, or gone, or with another QoS.
 void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte> payload) {
-  const Hub::Guid guid = GuidAt(header.subject);
+  const Guid guid = GuidAt(header.subject);
   if ((header.flags & shm::kDdsGone) != 0 || known_.contains(guid)) return;
   const auto endpoint = DecodeEndpoint(payload);
   if (!endpoint.has_value()) return;
@@ -63,7 +55,7 @@ void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte>
 
 void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> payload) {
   const auto found = known_.find(GuidAt(header.subject));
-  if (found == known_.end() || header.sample_kind != kData) return;
+  if (found == known_.end() || header.sample_kind != shm::kDdsData) return;
   Known& writer = found->second;
   // What a late reader is told once more; unless nobody was there when it was written.
   if (IsAddressed(header) &&

@@ -59,7 +59,7 @@ class TopicLog : public HubObserver {
   std::function<Speaker(Hub::Number)> who_;
   Listener* listener_ = nullptr;
   std::vector<TopicReport> reports_;
-  std::map<Hub::Guid, Known> known_;
+  std::map<Guid, Known> known_;
 };
 
 }  // namespace tcs::dds

@@ -1,0 +1,38 @@
+// Messages of shm/dds_exchange.h as the coordinator keeps them: one after another of header,
+// payload, padding.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "shm/dds_exchange.h"
+
+namespace tcs::dds {
+
+// In the order of bytes in which DDS sends them: a participant's twelve, then an endpoint's four.
+using Guid = std::array<std::uint8_t, 16>;
+
+// `bytes` points to 16 of them, as in DdsMessage.
+inline Guid GuidAt(const std::uint8_t* bytes) {
+  Guid guid;
+  std::copy_n(bytes, guid.size(), guid.begin());
+  return guid;
+}
+
+// `message` holds at least a header, at any alignment.
+inline shm::DdsMessage HeaderOf(std::span<const std::byte> message) {
+  shm::DdsMessage header;
+  std::memcpy(&header, message.data(), sizeof header);
+  return header;
+}
+
+// Of a whole message whose header is true.
+inline std::span<const std::byte> PayloadOf(std::span<const std::byte> message) {
+  return message.subspan(sizeof(shm::DdsMessage), HeaderOf(message).payload_size);
+}
+
+}  // namespace tcs::dds
