@@ -5,10 +5,11 @@
 // reallocarray needs no word: it calls realloc. The allocation itself is left to whoever provides
 // it: the C library, jemalloc, tcmalloc. free is theirs alone, so nothing may be handed out here
 // that they do not know.
-#include <dlfcn.h>
 #include <malloc.h>
 #include <stddef.h>
 #include <stdlib.h>
+
+#include "libtcs_preload/allocations/next.h"
 
 // The shim's. Absent where this library was preloaded without it.
 extern "C" void tcs_charge_allocation() noexcept __attribute__((weak));
@@ -18,37 +19,17 @@ extern "C" void* __libc_malloc(size_t size) noexcept;
 extern "C" void* __libc_calloc(size_t count, size_t size) noexcept;
 extern "C" void* __libc_realloc(void* block, size_t size) noexcept;
 
+__thread bool tcs::charging::t_looking __attribute__((tls_model("initial-exec"))) = false;
+
 namespace {
 
-__thread bool t_looking __attribute__((tls_model("initial-exec"))) = false;
-
-template <class F>
-F* Next(F*& cache, const char* name, F* meanwhile) {
-  F* found = __atomic_load_n(&cache, __ATOMIC_RELAXED);
-  if (found != nullptr) return found;
-  if (t_looking) return meanwhile;
-  t_looking = true;
-  found = reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
-  t_looking = false;
-  __atomic_store_n(&cache, found, __ATOMIC_RELAXED);
-  return found;
-}
-
-// The definition behind this one. dlsym never allocates by `name` itself where there is no
-// `meanwhile`.
-#define TCS_NEXT(name, meanwhile)                             \
-  ([] {                                                       \
-    static __typeof__(&::name) cache;                         \
-    return Next<__typeof__(::name)>(cache, #name, meanwhile); \
-  }())
+using tcs::charging::t_looking;
 
 void Charge() {
   if (tcs_charge_allocation != nullptr && !t_looking) tcs_charge_allocation();
 }
 
 }  // namespace
-
-#define TCS_EXPORT extern "C" __attribute__((visibility("default")))
 
 TCS_EXPORT void* malloc(size_t size) noexcept {
   Charge();

@@ -1,4 +1,5 @@
-// Allocates in each of the ways that there are, and prints what the clock says of each.
+// Allocates in each of the ways that there are, and takes locks, and prints what the clock says of
+// each.
 #include <malloc.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -48,6 +49,18 @@ int main() {
     return posix_memalign(&block, 64, 64) == 0 ? block : nullptr;
   });
   Measure("new", [] { return static_cast<void*>(new char[16]); });
+  static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  Measure("mutex", [] {
+    pthread_mutex_lock(&mutex);
+    pthread_mutex_unlock(&mutex);
+    return static_cast<void*>(nullptr);
+  });
+  static pthread_rwlock_t rwlock = PTHREAD_RWLOCK_INITIALIZER;
+  Measure("rwlock", [] {
+    pthread_rwlock_tryrdlock(&rwlock);
+    pthread_rwlock_unlock(&rwlock);
+    return static_cast<void*>(nullptr);
+  });
   Measure("computing", [] { return static_cast<void*>(nullptr); });
   pthread_t thread;
   pthread_create(&thread, nullptr, Thread, nullptr);

@@ -26,6 +26,6 @@ repeats() {
     fail "next to nothing was explored: $first"
 }
 for which in rrtconnect rrtstar prmstar sst; do repeats 1 10us "$which" 1.0; done
-for which in parallel cforest; do repeats 4 20us "$which" 1.0; done
+for which in parallel cforest anytime; do repeats 4 20us "$which" 1.0; done
 # As it comes.
 repeats 1 2us rrtconnect 1.0
