@@ -61,7 +61,7 @@ void Engine::NoteReleased(Task& task, shm::WakeReason reason) {
   // A program's clock does not go back to the world's.
   if (IsCallback()) activation.release_ns = std::max(activation.release_ns, process.shown_ns);
   activation.start_ns = -1;
-  activation.charged_ns = task.charged_ns;
+  activation.charged_ns = std::max(activation.charged_ns, task.charged_ns);
 }
 
 // It waits again, or has ended.
@@ -70,8 +70,12 @@ void Engine::NoteIdle(Task& task) {
   task.process->expired_ns = shm::kNeverNs;
   if (task.slot < 0) return;  // it never began
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
+  // What a switch takes is an estimate: one shorter than it gives back what was charged too much.
+  // No activation is charged less than nothing for that; those that follow are charged less.
+  const std::int64_t charged = std::max(task.charged_ns, task.activation.charged_ns);
   activation_log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
-                        std::max(now, task.activation.start_ns), task.charged_ns);
+                        std::max(now, task.activation.start_ns), charged);
+  task.activation.charged_ns = charged;
 }
 
 // `row` was busy up to where the running thread was last found stopped.

@@ -17,7 +17,7 @@ struct Activation {
   ReleaseCause cause = ReleaseCause::kStart;
   std::int64_t release_ns = 0;  // it became ready
   std::int64_t start_ns = -1;   // it ran first; -1: not yet
-  std::int64_t charged_ns = 0;  // to the thread before
+  std::int64_t charged_ns = 0;  // to the thread before, at its most
 };
 
 class ActivationLog {
