@@ -133,7 +133,8 @@ std::optional<Outcome> RunNatively(const Pair& pair) {
   const auto results = RunTogether({pair.first, pair.second}, kLongestRun);
   for (const ChildResult& result : results) {
     if (!result.error.empty()) {
-      Complain(result.error + " natively");
+      const bool missing = result.error.find("status 127") != std::string::npos;
+      Complain(result.error + (missing ? "; install cyclonedds-tools" : " natively"));
       return std::nullopt;
     }
   }
