@@ -245,9 +245,11 @@ void Engine::LeaveWait(Task& task) {
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
   task.waits_for_messages = false;
+  waiting_for_room_ -= task.waits_for_room != 0;
   task.waits_for_room = 0;
-  if (std::exchange(task.waits_for_deliverer, false) && task.process->deliverer != nullptr) {
-    FindPriority(*task.process->deliverer);
+  if (std::exchange(task.waits_for_deliverer, false)) {
+    --task.process->waiting_for_deliverer;
+    if (task.process->deliverer != nullptr) FindPriority(*task.process->deliverer);
   }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;

@@ -87,11 +87,13 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
     case shm::NotificationKind::kDdsRoom:
       if (!hub_.IsFull(static_cast<dds::Hub::Number>(note.args[0]))) break;
       task.waits_for_room = static_cast<dds::Hub::Number>(note.args[0]);
+      ++waiting_for_room_;
       SetState(task, TaskState::kWaiting);
       break;
     default:
       if (!IsDelivering(process, task.reached_ns)) break;
       task.waits_for_deliverer = true;
+      ++process.waiting_for_deliverer;
       SetState(task, TaskState::kWaiting);
       FindPriority(*process.deliverer);
   }
@@ -141,8 +143,8 @@ bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
 }
 
 void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
-  const std::vector<Task*> tasks = process.robot->tasks;
-  for (Task* task : tasks) {
+  if (process.waiting_for_deliverer == 0) return;
+  for (Task* task : process.robot->tasks) {
     if (task->process != &process || !task->waits_for_deliverer) continue;
     if (!IsDelivering(process, task->reached_ns)) MakeReady(*task, shm::WakeReason::kGo);
   }
@@ -150,7 +152,7 @@ void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
 
 // Those that sent to a process more than it can take at once.
 void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number) {
-  if (hub_.IsFull(number)) return;
+  if (waiting_for_room_ == 0 || hub_.IsFull(number)) return;
   for (Task& task : tasks_) {
     if (task.state == TaskState::kWaiting && task.waits_for_room == number) {
       MakeReady(task, shm::WakeReason::kGo);

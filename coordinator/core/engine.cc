@@ -270,6 +270,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
   // What was due may have woken somebody who acts on another virtual CPU first.
   if (turn.thread == FixedPriority::kNobody || root_.First() != cpu.leaf) return;
+  root_.FirstActs();
   cpu.progress_ns = std::max(cpu.progress_ns, turn.start_ns);
   Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
   task.cpu = &cpu;

@@ -279,6 +279,7 @@ class Engine {
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
+  int waiting_for_room_ = 0;   // and such that have sent more than others could take at once
   int waiting_for_signals_ = 0;
   std::uint64_t next_signal_look_tsc_ = 0;
 

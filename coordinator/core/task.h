@@ -159,8 +159,9 @@ struct Process {
   std::int64_t children_ended = 0;  // how many
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
-  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
-  Task* deliverer = nullptr;     // its thread that takes what is for it
+  std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
+  Task* deliverer = nullptr;      // its thread that takes what is for it
+  int waiting_for_deliverer = 0;  // threads
   bool dead = false;
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will

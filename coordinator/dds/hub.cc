@@ -130,8 +130,8 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
     }
     header.from = from;
     header.time_ns = now_ns;
-    Bytes copy(header.size);
-    memcpy(copy.data(), at, header.size);
+    const auto* bytes_at = reinterpret_cast<const std::byte*>(at);
+    Bytes copy(bytes_at, bytes_at + header.size);
     memcpy(copy.data(), &header, sizeof header);
     at += header.size;
     Enter(header, std::move(copy));

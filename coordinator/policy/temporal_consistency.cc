@@ -21,9 +21,11 @@ TemporalConsistency::Leaf TemporalConsistency::AddLeaf() {
 }
 
 void TemporalConsistency::FindLeast() {
-  first_ = second_ = -1;
+  first_ = acted_last_;
+  second_ = -1;
   auto next = [this](Leaf leaf) { return leaves_[static_cast<std::size_t>(leaf)].next_ns; };
   for (Leaf leaf = 0; leaf < static_cast<Leaf>(leaves_.size()); ++leaf) {
+    if (leaf == acted_last_) continue;
     if (first_ < 0 || next(leaf) < next(first_)) {
       second_ = first_;
       first_ = leaf;

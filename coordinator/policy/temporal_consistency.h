@@ -29,10 +29,13 @@ class TemporalConsistency {
   // `output_ns`.
   void UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns);
 
-  // The least time at which any virtual CPU can act, and the first one that can act then; -1: none
-  // can.
+  // The least time at which any virtual CPU can act, and who can act then; -1: none can. Of several
+  // it is the one that has acted last: who wakes a thread of another one gets on with what it does,
+  // and has most often released the lock that the woken one wants before that one asks for it.
   std::int64_t Least() const;
   Leaf First() const;
+  // The first one is about to act.
+  void FirstActs() { acted_last_ = first_; }
 
   // How far the leaf may run: the drift bound beyond the slowest other virtual CPU, and the run's
   // end; and beyond the dynamics.
@@ -62,6 +65,7 @@ class TemporalConsistency {
   bool has_dynamics_ = false;
   std::int64_t dynamics_ns_ = 0, output_ns_ = 0;
   Leaf first_ = -1, second_ = -1;  // the two that can act soonest
+  Leaf acted_last_ = -1;
   std::int64_t drift_ns_ = 0;
 };
 

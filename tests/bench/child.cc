@@ -7,6 +7,8 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,9 +19,8 @@ namespace tcs::bench {
 namespace {
 
 using std::chrono::steady_clock;
-constexpr std::chrono::seconds kLongestLife{30};
 
-[[noreturn]] void BecomeProgram(const std::vector<std::string>& command, pid_t parent, int out) {
+[[noreturn]] void BecomeProgram(const Command& command, pid_t parent, int out) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
@@ -32,48 +33,93 @@ constexpr std::chrono::seconds kLongestLife{30};
   _exit(127);
 }
 
-// False if `deadline` came before the end of the output.
-bool ReadToEnd(int fd, steady_clock::time_point deadline, std::string* output) {
-  for (;;) {
+struct Running {
+  pid_t pid = -1;
+  int output = -1;
+};
+
+// A negative pid: none could be made.
+Running Start(const Command& command) {
+  int out[2];
+  if (pipe2(out, O_CLOEXEC) != 0) return {};
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) BecomeProgram(command, parent, out[1]);
+  close(out[1]);
+  return {child, out[0]};
+}
+
+// Of all of them; false if `deadline` came before the last one's end.
+bool ReadToEnds(std::vector<Running> running, steady_clock::time_point deadline,
+                std::vector<ChildResult>* results) {
+  std::size_t open = 0;
+  for (const Running& child : running) open += child.output >= 0 ? 1 : 0;
+  while (open > 0) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now());
-    pollfd readable{fd, POLLIN, 0};
-    if (left.count() <= 0 || poll(&readable, 1, static_cast<int>(left.count())) == 0) return false;
-    char buffer[4096];
-    const ssize_t n = read(fd, buffer, sizeof buffer);
-    if (n <= 0) return true;
-    output->append(buffer, static_cast<std::size_t>(n));
+    std::vector<pollfd> readable;
+    for (const Running& child : running) readable.push_back({child.output, POLLIN, 0});
+    if (left.count() <= 0 ||
+        poll(readable.data(), readable.size(), static_cast<int>(left.count())) == 0) {
+      return false;
+    }
+    for (std::size_t i = 0; i < running.size(); ++i) {
+      if (readable[i].revents == 0) continue;
+      char buffer[4096];
+      const ssize_t n = read(running[i].output, buffer, sizeof buffer);
+      if (n > 0) {
+        (*results)[i].output.append(buffer, static_cast<std::size_t>(n));
+      } else {
+        running[i].output = -1;  // poll ignores it
+        --open;
+      }
+    }
+  }
+  return true;
+}
+
+double Seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / 1e6;
+}
+
+void AwaitEnd(const Running& child, const std::string& name, ChildResult* result) {
+  if (child.pid < 0) {
+    result->error = "no process can be made";
+    return;
+  }
+  int status = 0;
+  rusage usage{};
+  while (wait4(child.pid, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  result->cpu_seconds = Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
+  if (!WIFEXITED(status)) {
+    result->error = fmt::format("{} was killed by signal {}", name, WTERMSIG(status));
+  } else if (WEXITSTATUS(status) != 0) {
+    result->error = fmt::format("{} ended with status {}", name, WEXITSTATUS(status));
   }
 }
 
 }  // namespace
 
-ChildResult RunChild(const std::vector<std::string>& command) {
-  int out[2];
-  if (pipe2(out, O_CLOEXEC) != 0) return {"", "no pipe can be made"};
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child == 0) BecomeProgram(command, parent, out[1]);
-  close(out[1]);
-  ChildResult result;
-  const bool in_time =
-      child > 0 && ReadToEnd(out[0], steady_clock::now() + kLongestLife, &result.output);
-  close(out[0]);
-  if (child < 0) {
-    result.error = "no process can be made";
-    return result;
+std::vector<ChildResult> RunTogether(const std::vector<Command>& commands,
+                                     std::chrono::seconds longest) {
+  std::vector<ChildResult> results(commands.size());
+  std::vector<Running> running;
+  for (const Command& command : commands) running.push_back(Start(command));
+  const bool in_time = ReadToEnds(running, steady_clock::now() + longest, &results);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (running[i].output >= 0) close(running[i].output);
+    if (!in_time && running[i].pid > 0) kill(running[i].pid, SIGKILL);
+    AwaitEnd(running[i], commands[i][0], &results[i]);
+    if (!in_time) {
+      results[i].error = fmt::format("{} took more than {} s", commands[i][0], longest.count());
+    }
   }
-  if (!in_time) kill(child, SIGKILL);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (!in_time) {
-    result.error = fmt::format("{} took more than {} s", command[0], kLongestLife.count());
-  } else if (!WIFEXITED(status)) {
-    result.error = fmt::format("{} was killed by signal {}", command[0], WTERMSIG(status));
-  } else if (WEXITSTATUS(status) != 0) {
-    result.error = fmt::format("{} ended with status {}", command[0], WEXITSTATUS(status));
-  }
-  return result;
+  return results;
+}
+
+ChildResult RunChild(const Command& command, std::chrono::seconds longest) {
+  return RunTogether({command}, longest).front();
 }
 
 }  // namespace tcs::bench

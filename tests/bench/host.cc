@@ -32,6 +32,13 @@ bool BindToLastCpu() {
   return sched_setaffinity(0, sizeof one, &one) == 0;
 }
 
+unsigned AllowedCpus() {
+  cpu_set_t allowed;
+  return sched_getaffinity(0, sizeof allowed, &allowed) == 0
+             ? static_cast<unsigned>(CPU_COUNT(&allowed))
+             : 1;
+}
+
 double NsPerTick() {
   const std::int64_t start_ns = RawNowNs();
   const std::uint64_t start_tsc = __rdtsc();

@@ -1,4 +1,4 @@
-// The processor that everything is measured on.
+// The processor that calls and computing are measured on.
 #pragma once
 
 namespace tcs::bench {
@@ -6,6 +6,9 @@ namespace tcs::bench {
 // Binds the calling process, and so whatever it starts, to the last CPU it may use: the one that
 // tcsim chooses, too.
 bool BindToLastCpu();
+
+// How many CPUs the calling process may use.
+unsigned AllowedCpus();
 
 // Real nanoseconds per TSC tick, measured for some 50 ms.
 double NsPerTick();

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace {
 
 constexpr char kWork[] = "work";
 constexpr char kPlanning[] = "planning";
+constexpr char kDds[] = "dds";
+constexpr int kRounds = 7;
+constexpr int kDdsRounds = 3;  // each of which takes a minute or two
 
 bool Wanted(const std::vector<std::string>& only, const std::string& name) {
   return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
@@ -24,30 +28,38 @@ bool Wanted(const std::vector<std::string>& only, const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  int rounds = 7;
+  std::optional<int> asked_rounds;
   std::vector<std::string> only;
   bool json = false, quick = false;
-  std::vector<std::string> names{kWork, kPlanning};
+  std::vector<std::string> names{kWork, kPlanning, kDds};
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
 
   CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
-  app.add_option("--rounds", rounds, "whose medians are printed; 7 unless told")
+  app.add_option(
+         "--rounds", asked_rounds,
+         fmt::format("whose medians are printed; {} unless told, of dds {}", kRounds, kDdsRounds))
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", only, "these benchmarks alone")->check(CLI::IsMember(names));
   app.add_flag("--json", json, "print one JSON object instead of tables");
   app.add_flag("--quick", quick, "one round and little work: shows only that all can be measured");
   CLI11_PARSE(app, argc, argv);
-  if (quick) rounds = 1;
+  if (quick) asked_rounds = 1;
+  const int rounds = asked_rounds.value_or(kRounds);
   const double work_seconds = quick ? 0.05 : 0.3;
+  tcs::bench::Results results;
+  results.rounds = rounds;
+  bool complete = true;
+  // First, while all CPUs may be used.
+  if (Wanted(only, kDds)) {
+    results.dds = tcs::bench::MeasureDds(asked_rounds.value_or(kDdsRounds), quick);
+    complete = results.dds.has_value();
+  }
 
   if (!tcs::bench::BindToLastCpu()) {
     fmt::print(stderr, "tcs_bench: cannot bind to a CPU\n");
     return 1;
   }
   const double ns_per_tick = tcs::bench::NsPerTick();
-  tcs::bench::Results results;
-  results.rounds = rounds;
-  bool complete = true;
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) {
     if (!Wanted(only, benchmark.name)) continue;
     auto row = tcs::bench::MeasureCall(benchmark, rounds, ns_per_tick);

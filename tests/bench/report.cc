@@ -46,6 +46,41 @@ std::string LoadTable(const char* title, const char* unit, const char* goal,
   return text;
 }
 
+// Three significant digits, and as few as a whole number needs.
+std::string Brief(double value) {
+  return value >= 100 ? fmt::format("{:.0f}", value) : fmt::format("{:#.3g}", value);
+}
+
+std::string DdsTable(const DdsRows& dds) {
+  static constexpr char kLine[] = "{:<7}{:<20}{:>3}{:>10}{:>10}{:>10}{:>12}  {:<16}{}\n";
+  std::string text;
+  const auto group = [&text](const char* title, const std::vector<DdsRow>& rows, bool has_goal) {
+    text += fmt::format("{}\n", title);
+    for (const DdsRow& row : rows) {
+      const char* goal = !has_goal ? "" : row.more_is_better ? "ratio > 1" : "ratio < 1";
+      text +=
+          fmt::format(kLine, row.size, row.what, row.unit, Brief(row.value[0]), Brief(row.value[1]),
+                      Brief(row.value[2]), fmt::format("{:.2f}", row.ratio.median),
+                      fmt::format("{:.2f}-{:.2f}", row.ratio.lowest, row.ratio.highest), goal);
+    }
+  };
+  text += fmt::format(kLine, "ddsperf", "", "", kCarrierNames[0], kCarrierNames[1],
+                      kCarrierNames[2], "E/native", "lowest-highest", "goal");
+  group("by the programs' own clocks: one way, and samples as fast as possible", dds.own_clocks,
+        true);
+  group("real seconds on the host, for 100,000 round trips or samples", dds.real_s, false);
+  group("processor seconds on the host, for 100,000 round trips or samples", dds.cpu_s, false);
+  text += fmt::format(
+      "Medians of {} round{}. Natively over the kernel's loopback, on {} processor{}, in real "
+      "time.\n"
+      "Under tcs both programs are on a robot with two cores, and their clocks show what they "
+      "compute\n"
+      "themselves (Cyclone DDS and the shim included), not what tcs does between them. The host's\n"
+      "seconds have all of it: real ones, and processor time of all programs and of tcs.\n",
+      dds.rounds, dds.rounds == 1 ? "" : "s", dds.processors, dds.processors == 1 ? "" : "s");
+  return text;
+}
+
 Json ToJson(const Spread& spread) {
   return {{"median", spread.median}, {"lowest", spread.lowest}, {"highest", spread.highest}};
 }
@@ -62,6 +97,16 @@ Json ToJson(const std::vector<LoadRow>& rows) {
   return json;
 }
 
+Json ToJson(const std::vector<DdsRow>& rows) {
+  Json json = Json::array();
+  for (const DdsRow& row : rows) {
+    Json& to = json.emplace_back(Json{{"size", row.size}, {"what", row.what}, {"unit", row.unit}});
+    for (std::size_t i = 0; i < kCarrierNames.size(); ++i) to[kCarrierNames[i]] = row.value[i];
+    to["ratio"] = ToJson(row.ratio);
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string ToTables(const Results& results) {
@@ -74,9 +119,12 @@ std::string ToTables(const Results& results) {
     tables.push_back(
         LoadTable("explored by solve(1.0)", "states", "0.95 to 1.05", results.planning));
   }
-  if (tables.empty()) return {};
-  return fmt::format("{}\nMedians of {} round{}, on one processor.\n", fmt::join(tables, "\n"),
-                     results.rounds, results.rounds == 1 ? "" : "s");
+  if (!tables.empty()) {
+    tables.push_back(fmt::format("Medians of {} round{}, on one processor.\n", results.rounds,
+                                 results.rounds == 1 ? "" : "s"));
+  }
+  if (results.dds.has_value()) tables.push_back(DdsTable(*results.dds));
+  return fmt::format("{}", fmt::join(tables, "\n"));
 }
 
 std::string ToJson(const Results& results) {
@@ -90,6 +138,13 @@ std::string ToJson(const Results& results) {
   }
   if (!results.work.empty()) json["work_seconds"] = ToJson(results.work);
   if (!results.planning.empty()) json["explored_states"] = ToJson(results.planning);
+  if (const auto& dds = results.dds; dds.has_value()) {
+    json["dds"] = {{"rounds", dds->rounds},
+                   {"native_processors", dds->processors},
+                   {"own_clocks", ToJson(dds->own_clocks)},
+                   {"real_seconds_per_100000", ToJson(dds->real_s)},
+                   {"cpu_seconds_per_100000", ToJson(dds->cpu_s)}};
+  }
   return json.dump(2) + "\n";
 }
 

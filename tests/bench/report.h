@@ -1,10 +1,12 @@
 // What tcs_bench prints: tables for people, or one JSON object.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/bench/call_ratios.h"
+#include "tests/bench/dds_rows.h"
 #include "tests/bench/under_load.h"
 
 namespace tcs::bench {
@@ -13,6 +15,7 @@ struct Results {
   int rounds = 0;
   std::vector<CallRow> calls;
   std::vector<LoadRow> work, planning;
+  std::optional<DdsRows> dds;
 };
 
 std::string ToTables(const Results& results);

@@ -28,6 +28,24 @@ TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
   EXPECT_EQ(root.First(), predator);
 }
 
+TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto a = root.AddLeaf(), b = root.AddLeaf(), c = root.AddLeaf();
+  root.Update(a, 0, shm::kNeverNs);
+  root.Update(b, 0, 0);
+  root.Update(c, 0, shm::kNeverNs);
+  ASSERT_EQ(root.First(), b);
+  root.FirstActs();
+  root.Update(b, 500, 500);
+  root.Update(a, 0, 500);  // woken by b
+  root.Update(c, 0, 500);
+  EXPECT_EQ(root.First(), b);
+  EXPECT_EQ(root.ReadSafe(b), 500);
+  root.Update(b, 501, 501);
+  EXPECT_EQ(root.First(), a);
+  EXPECT_EQ(root.ReadSafe(a), 500);
+}
+
 TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(), prey = root.AddLeaf();
