@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <charconv>
 
 namespace tcs {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = 64 << 10;
-// More than any line takes, texts (below) included.
-constexpr std::size_t kLongestLine = 1024;
-constexpr std::size_t kLongestText = 256;
+constexpr std::size_t kNotedBytes = 64 << 10;
 
 }  // namespace
 
@@ -25,30 +21,44 @@ std::string CsvFile::Open(const std::string& path, std::string_view header) {
   path_ = path;
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
-  buffer_.resize(kBufferBytes);
-  Put(header);
-  Byte('\n');
+  noted_.resize(kNotedBytes);
+  fmt::print(file_, "{}\n", header);
   return {};
 }
 
-void CsvFile::Room() {
-  if (buffer_.size() - used_ < kLongestLine) Flush();
-}
-
-void CsvFile::Flush() {
-  std::fwrite(buffer_.data(), 1, used_, file_);
+void CsvFile::WriteNoted() {
+  std::string text;
+  text.reserve(2 * used_);
+  const char* at = noted_.data();
+  const auto take = [&at](auto* to) {
+    memcpy(to, at, sizeof *to);
+    at += sizeof *to;
+  };
+  while (at < noted_.data() + used_) {
+    Mark mark;
+    take(&mark);
+    if (mark == kLineEnd) {
+      text.back() = '\n';  // for the last comma
+      continue;
+    }
+    if (mark == kNumber) {
+      std::int64_t number;
+      take(&number);
+      char digits[24];
+      text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+    } else {
+      text.append(at, mark);
+      at += mark;
+    }
+    text += ',';
+  }
+  std::fwrite(text.data(), 1, text.size(), file_);
   used_ = 0;
-}
-
-void CsvFile::Put(std::string_view text) {
-  const std::size_t size = std::min(text.size(), kLongestText);
-  memcpy(buffer_.data() + used_, text.data(), size);
-  used_ += size;
 }
 
 std::string CsvFile::Close() {
   if (file_ == nullptr) return {};
-  Flush();
+  WriteNoted();
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;
