@@ -10,6 +10,8 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kNotedBytes = 64 << 10;
+// From ten bytes noted to at most twenty digits and a comma.
+constexpr std::size_t kMostGrowth = 3;
 
 }  // namespace
 
@@ -27,32 +29,32 @@ std::string CsvFile::Open(const std::string& path, std::string_view header) {
 }
 
 void CsvFile::WriteNoted() {
-  std::string text;
-  text.reserve(2 * used_);
+  std::vector<char> text(kMostGrowth * used_);
+  char* to = text.data();
   const char* at = noted_.data();
-  const auto take = [&at](auto* to) {
-    memcpy(to, at, sizeof *to);
-    at += sizeof *to;
+  const auto take = [&at](auto* what) {
+    memcpy(what, at, sizeof *what);
+    at += sizeof *what;
   };
   while (at < noted_.data() + used_) {
     Mark mark;
     take(&mark);
     if (mark == kLineEnd) {
-      text.back() = '\n';  // for the last comma
+      to[-1] = '\n';  // for the last comma
       continue;
     }
     if (mark == kNumber) {
       std::int64_t number;
       take(&number);
-      char digits[24];
-      text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+      to = std::to_chars(to, text.data() + text.size(), number).ptr;
     } else {
-      text.append(at, mark);
+      memcpy(to, at, mark);
       at += mark;
+      to += mark;
     }
-    text += ',';
+    *to++ = ',';
   }
-  std::fwrite(text.data(), 1, text.size(), file_);
+  std::fwrite(text.data(), 1, static_cast<std::size_t>(to - text.data()), file_);
   used_ = 0;
 }
 

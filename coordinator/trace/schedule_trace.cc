@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace tcs {
 
 namespace {
 
 constexpr std::size_t kNotedAtOnce = 2048;
+constexpr std::string_view kSeparator = ",\n";
 
 std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
@@ -32,8 +35,7 @@ std::string ScheduleTrace::Open(const std::string& path) {
 }
 
 void ScheduleTrace::Event(std::string_view json) {
-  if (!first_) std::fputs(",\n", file_);
-  first_ = false;
+  if (!std::exchange(first_, false)) std::fwrite(kSeparator.data(), 1, kSeparator.size(), file_);
   std::fwrite(json.data(), 1, json.size(), file_);
 }
 
@@ -56,21 +58,26 @@ int ScheduleTrace::AddRow(const std::string& group, const std::string& name) {
 
 // Chrome's unit is the microsecond; three decimals keep every nanosecond.
 void ScheduleTrace::WriteNoted() {
+  fmt::memory_buffer text;
   for (const Noted& noted : noted_) {
     const int group = rows_[static_cast<std::size_t>(noted.row)].group;
     const std::int64_t start_ns = noted.start_ns, length_ns = noted.end_ns - start_ns;
+    if (!std::exchange(first_, false)) text.append(kSeparator);
+    const auto end = std::back_inserter(text);
     if (noted.what != nullptr) {
-      Event(fmt::format(
-          FMT_COMPILE(R"({{"ph":"i","s":"t","name":"{}","pid":{},"tid":{},"ts":{}.{:03}}})"),
-          noted.what, group, noted.row + 1, start_ns / 1000, start_ns % 1000));
+      fmt::format_to(
+          end, FMT_COMPILE(R"({{"ph":"i","s":"t","name":"{}","pid":{},"tid":{},"ts":{}.{:03}}})"),
+          noted.what, group, noted.row + 1, start_ns / 1000, start_ns % 1000);
     } else {
-      Event(fmt::format(
+      fmt::format_to(
+          end,
           FMT_COMPILE(
               R"({{"ph":"X","name":"run","pid":{},"tid":{},"ts":{}.{:03},"dur":{}.{:03}}})"),
           group, noted.row + 1, start_ns / 1000, start_ns % 1000, length_ns / 1000,
-          length_ns % 1000));
+          length_ns % 1000);
     }
   }
+  std::fwrite(text.data(), 1, text.size(), file_);
   noted_.clear();
 }
 
