@@ -135,7 +135,8 @@ class Engine {
   void HandleFutex(Task& task, const TrappedCall& call);
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);
   std::int64_t CarryOutWake(const Process& process, const TrappedCall& call);
-  std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command);
+  std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command,
+                             const timespec& timeout);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);

@@ -39,12 +39,11 @@ FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
   return KeyOf(process.pid, address, is_private || !is_waited_for);
 }
 
-// From an absolute or relative timeout in the caller's memory to a deadline on its virtual CPU.
-std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int command) {
+// From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
+std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int command,
+                                   const timespec& timeout) {
   task.deadline_ns = shm::kNeverNs;
   if (call.args[3] == 0) return 0;
-  timespec timeout{};
-  if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
   if (timeout.tv_sec < 0 || timeout.tv_nsec < 0 || timeout.tv_nsec >= 1'000'000'000) return -EINVAL;
   constexpr std::int64_t kMostSeconds = shm::kNeverNs / 1'000'000'000 / 4;
   if (timeout.tv_sec > kMostSeconds) return 0;
@@ -62,12 +61,19 @@ std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int comm
 
 std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command) {
   const auto bits = static_cast<std::uint32_t>(call.args[5]);
-  const std::int64_t wrong = FutexDeadline(task, call, command);
-  if (wrong != 0) return wrong;
   if (command == FUTEX_WAIT_BITSET && bits == 0) return -EINVAL;
   if (call.args[0] % sizeof(std::uint32_t) != 0) return -EINVAL;
   std::uint32_t value = 0;
-  if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+  timespec timeout{};
+  const RemotePiece word{call.args[0], &value, sizeof value};
+  if (!(call.args[3] == 0
+            ? ReadMemory(task.process->pid, word.address, word.to, word.size)
+            : ReadMemory(task.process->pid, word, {call.args[3], &timeout, sizeof timeout}))) {
+    return -EFAULT;
+  }
+  if (const std::int64_t wrong = FutexDeadline(task, call, command, timeout); wrong != 0) {
+    return wrong;
+  }
   // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
   if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
   if (const pid_t joined = static_cast<pid_t>(value & FUTEX_TID_MASK); IsEnding(task, joined)) {

@@ -46,7 +46,11 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   if (command == FUTEX_TRYLOCK_PI) return -EAGAIN;
   Task* owner = KnownTask(owner_tid);
   if (owner == nullptr) return -ESRCH;
-  if (const std::int64_t wrong = FutexDeadline(task, call, command); wrong != 0) return wrong;
+  timespec timeout{};
+  if (call.args[3] != 0 && !ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
+  if (const std::int64_t wrong = FutexDeadline(task, call, command, timeout); wrong != 0) {
+    return wrong;
+  }
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   task.lock_owner = owner;

@@ -146,6 +146,14 @@ bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {
   return process_vm_readv(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);
 }
 
+bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second) {
+  const iovec local[] = {{first.to, first.size}, {second.to, second.size}};
+  const iovec remote[] = {{reinterpret_cast<void*>(first.address), first.size},
+                          {reinterpret_cast<void*>(second.address), second.size}};
+  return process_vm_readv(pid, local, 2, remote, 2, 0) ==
+         static_cast<ssize_t>(first.size + second.size);
+}
+
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size) {
   const iovec local{const_cast<void*>(from), size}, remote{reinterpret_cast<void*>(address), size};
   return process_vm_writev(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);

@@ -44,6 +44,13 @@ FutexKey KeyOf(pid_t pid, std::uint64_t address, bool is_private);
 
 // Copies from another process's memory. False if it is not there.
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
+// The same from two places, which costs hardly more than from one.
+struct RemotePiece {
+  std::uint64_t address;
+  void* to;
+  std::size_t size;
+};
+bool ReadMemory(pid_t pid, const RemotePiece& first, const RemotePiece& second);
 bool WriteMemory(pid_t pid, std::uint64_t address, const void* from, std::size_t size);
 
 }  // namespace tcs

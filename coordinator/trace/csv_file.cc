@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <charconv>
 
 namespace tcs {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = 64 << 10;
-// More than any line takes, texts (below) included.
-constexpr std::size_t kLongestLine = 1024;
-constexpr std::size_t kLongestText = 256;
+constexpr std::size_t kNotedBytes = 64 << 10;
+// From ten bytes noted to at most twenty digits and a comma.
+constexpr std::size_t kMostGrowth = 3;
 
 }  // namespace
 
@@ -25,30 +23,44 @@ std::string CsvFile::Open(const std::string& path, std::string_view header) {
   path_ = path;
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
-  buffer_.resize(kBufferBytes);
-  Put(header);
-  Byte('\n');
+  noted_.resize(kNotedBytes);
+  fmt::print(file_, "{}\n", header);
   return {};
 }
 
-void CsvFile::Room() {
-  if (buffer_.size() - used_ < kLongestLine) Flush();
-}
-
-void CsvFile::Flush() {
-  std::fwrite(buffer_.data(), 1, used_, file_);
+void CsvFile::WriteNoted() {
+  std::vector<char> text(kMostGrowth * used_);
+  char* to = text.data();
+  const char* at = noted_.data();
+  const auto take = [&at](auto* what) {
+    memcpy(what, at, sizeof *what);
+    at += sizeof *what;
+  };
+  while (at < noted_.data() + used_) {
+    Mark mark;
+    take(&mark);
+    if (mark == kLineEnd) {
+      to[-1] = '\n';  // for the last comma
+      continue;
+    }
+    if (mark == kNumber) {
+      std::int64_t number;
+      take(&number);
+      to = std::to_chars(to, text.data() + text.size(), number).ptr;
+    } else {
+      memcpy(to, at, mark);
+      at += mark;
+      to += mark;
+    }
+    *to++ = ',';
+  }
+  std::fwrite(text.data(), 1, static_cast<std::size_t>(to - text.data()), file_);
   used_ = 0;
-}
-
-void CsvFile::Put(std::string_view text) {
-  const std::size_t size = std::min(text.size(), kLongestText);
-  memcpy(buffer_.data() + used_, text.data(), size);
-  used_ += size;
 }
 
 std::string CsvFile::Close() {
   if (file_ == nullptr) return {};
-  Flush();
+  WriteNoted();
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;

@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace tcs {
 
 namespace {
+
+constexpr std::size_t kNotedAtOnce = 2048;
+constexpr std::string_view kSeparator = ",\n";
 
 std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
@@ -24,13 +29,13 @@ std::string ScheduleTrace::Open(const std::string& path) {
   path_ = path;
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
+  noted_.reserve(kNotedAtOnce);
   std::fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file_);
   return {};
 }
 
 void ScheduleTrace::Event(std::string_view json) {
-  if (!first_) std::fputs(",\n", file_);
-  first_ = false;
+  if (!std::exchange(first_, false)) std::fwrite(kSeparator.data(), 1, kSeparator.size(), file_);
   std::fwrite(json.data(), 1, json.size(), file_);
 }
 
@@ -51,18 +56,39 @@ int ScheduleTrace::AddRow(const std::string& group, const std::string& name) {
   return tid - 1;
 }
 
-void ScheduleTrace::Write(int row) {
+// Chrome's unit is the microsecond; three decimals keep every nanosecond.
+void ScheduleTrace::WriteNoted() {
+  fmt::memory_buffer text;
+  for (const Noted& noted : noted_) {
+    const int group = rows_[static_cast<std::size_t>(noted.row)].group;
+    const std::int64_t start_ns = noted.start_ns, length_ns = noted.end_ns - start_ns;
+    if (!std::exchange(first_, false)) text.append(kSeparator);
+    const auto end = std::back_inserter(text);
+    if (noted.what != nullptr) {
+      fmt::format_to(
+          end, FMT_COMPILE(R"({{"ph":"i","s":"t","name":"{}","pid":{},"tid":{},"ts":{}.{:03}}})"),
+          noted.what, group, noted.row + 1, start_ns / 1000, start_ns % 1000);
+    } else {
+      fmt::format_to(
+          end,
+          FMT_COMPILE(
+              R"({{"ph":"X","name":"run","pid":{},"tid":{},"ts":{}.{:03},"dur":{}.{:03}}})"),
+          group, noted.row + 1, start_ns / 1000, start_ns % 1000, length_ns / 1000,
+          length_ns % 1000);
+    }
+  }
+  std::fwrite(text.data(), 1, text.size(), file_);
+  noted_.clear();
+}
+
+void ScheduleTrace::Note(const Noted& noted) {
+  if (noted_.size() == kNotedAtOnce) WriteNoted();
+  noted_.push_back(noted);
+}
+
+void ScheduleTrace::NoteSlice(int row) {
   Row& r = rows_[static_cast<std::size_t>(row)];
-  if (!r.has_slice) return;
-  // Chrome's unit is the microsecond; three decimals keep every nanosecond. Compiled: this is
-  // written while the run goes on, at every activation.
-  char json[160];
-  const std::int64_t length_ns = r.end_ns - r.start_ns;
-  const char* end = fmt::format_to(
-      json,
-      FMT_COMPILE(R"({{"ph":"X","name":"run","pid":{},"tid":{},"ts":{}.{:03},"dur":{}.{:03}}})"),
-      r.group, row + 1, r.start_ns / 1000, r.start_ns % 1000, length_ns / 1000, length_ns % 1000);
-  Event({json, static_cast<std::size_t>(end - json)});
+  if (r.has_slice) Note({row, nullptr, r.start_ns, r.end_ns});
   r.has_slice = false;
 }
 
@@ -70,7 +96,7 @@ void ScheduleTrace::Slice(int row, std::int64_t start_ns, std::int64_t end_ns) {
   if (file_ == nullptr || start_ns > end_ns) return;
   Row& r = rows_[static_cast<std::size_t>(row)];
   if (!r.has_slice || start_ns != r.end_ns) {
-    Write(row);
+    NoteSlice(row);
     r.has_slice = true;
     r.start_ns = start_ns;
   }
@@ -79,14 +105,13 @@ void ScheduleTrace::Slice(int row, std::int64_t start_ns, std::int64_t end_ns) {
 
 void ScheduleTrace::Instant(int row, const char* what, std::int64_t at_ns) {
   if (file_ == nullptr) return;
-  Event(fmt::format(R"({{"ph":"i","s":"t","name":"{}","pid":{},"tid":{},"ts":{}.{:03}}})", what,
-                    rows_[static_cast<std::size_t>(row)].group, row + 1, at_ns / 1000,
-                    at_ns % 1000));
+  Note({row, what, at_ns, at_ns});
 }
 
 std::string ScheduleTrace::Close() {
   if (file_ == nullptr) return {};
-  for (int row = 0; row < static_cast<int>(rows_.size()); ++row) Write(row);
+  for (int row = 0; row < static_cast<int>(rows_.size()); ++row) NoteSlice(row);
+  WriteNoted();
   std::fputs("\n]}\n", file_);
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;

@@ -3,7 +3,8 @@
 //
 // A thread's slices that follow each other without a gap become one, so that a planner's second is
 // one bar and not a thousand. Everything written derives from virtual time: two deterministic runs
-// write the same bytes. Not thread-safe. A file that cannot be written is reported by Close().
+// write the same bytes. As in csv_file.h, what happened is noted and becomes text with much else.
+// Not thread-safe. A file that cannot be written is reported by Close().
 #pragma once
 
 #include <cstdint>
@@ -29,7 +30,7 @@ class ScheduleTrace {
   // Row `row` was busy from `start_ns` to `end_ns`, which may be the same; later slices of a row
   // never begin earlier.
   void Slice(int row, std::int64_t start_ns, std::int64_t end_ns);
-  // Something happened at one instant.
+  // Something happened at one instant. `what` is a literal.
   void Instant(int row, const char* what, std::int64_t at_ns);
 
   // Empty on success, else one sentence.
@@ -41,14 +42,23 @@ class ScheduleTrace {
     bool has_slice = false;  // not written yet, for more may follow without a gap
     std::int64_t start_ns = 0, end_ns = 0;
   };
+  // Of a row. An instant where `what` says what happened, else a slice.
+  struct Noted {
+    int row;
+    const char* what;
+    std::int64_t start_ns, end_ns;
+  };
   void Event(std::string_view json);
-  void Write(int row);
+  void Note(const Noted& noted);
+  void NoteSlice(int row);
+  void WriteNoted();
 
   std::FILE* file_ = nullptr;
   std::string path_;
   bool first_ = true;
   std::vector<std::string> groups_;
   std::vector<Row> rows_;
+  std::vector<Noted> noted_;
 };
 
 }  // namespace tcs

@@ -132,6 +132,12 @@ void Arguments() {
     }
   }
   EXPECT(Futex(word, FUTEX_WAIT_BITSET_PRIVATE, 0) == -1 && errno == EINVAL, "no bits");
+  // What cannot be read: the timeout, the word with and without a timeout.
+  const timespec valid{0, 1};
+  Word& nowhere = *reinterpret_cast<Word*>(4096);
+  EXPECT(Futex(word, FUTEX_WAIT_PRIVATE, 0, Number(4096)) == -1 && errno == EFAULT, "no timeout");
+  EXPECT(Futex(nowhere, FUTEX_WAIT_PRIVATE, 0, &valid) == -1 && errno == EFAULT, "no word");
+  EXPECT(Futex(nowhere, FUTEX_WAIT_PRIVATE, 0) == -1 && errno == EFAULT, "nothing");
   pthread_t thread;
   const auto routine = [](void* at) -> void* {
     *static_cast<Word*>(at) = static_cast<std::uint32_t>(gettid());
