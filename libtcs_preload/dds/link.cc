@@ -110,12 +110,21 @@ std::size_t Wait(const std::byte** messages) {
   }
 }
 
+void AwaitDeliverer(GuestThread& t) {
+  if (g_area->delivers.load() == 0 && g_area->due_ns.load() > NowNs(t)) return;
+  Exchange(t, Request{.kind = NotificationKind::kDdsSync});
+}
+
 void Sync() {
   GuestThread* t = Enter();
   if (t == nullptr || g_area == nullptr || t_delivers) return;
   HoldForRead(*t);
-  if (g_area->delivers.load() == 0 && g_area->due_ns.load() > NowNs(*t)) return;
-  Exchange(*t, Request{.kind = NotificationKind::kDdsSync});
+  AwaitDeliverer(*t);
+}
+
+void Settle() {
+  GuestThread* t = Enter();
+  if (t != nullptr && g_area != nullptr && !t_delivers) AwaitDeliverer(*t);
 }
 
 std::int64_t NowOfThread() {
@@ -127,7 +136,7 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, NowOfThread};
+const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, Settle, NowOfThread};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";
