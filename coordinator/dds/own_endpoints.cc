@@ -13,6 +13,10 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
+constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of its GUID
+// ROS 2's middleware takes participants that say so for its own kind, with nodes.
+constexpr const char* kEnclave = "enclave=/;";
+
 DdsMessage Announcement(DdsKind kind, const Guid& guid, int domain) {
   DdsMessage header{};
   header.kind = kind;
@@ -37,12 +41,20 @@ Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
   for (std::size_t i = 0; i < 4; ++i) {
     guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
   }
-  guid[14] = 0x01;
+  guid[14] = kParticipantNumber;
   guid[15] = shm::kDdsParticipantId;
   if (domains_.insert(domain).second) {
-    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain), EncodeParticipant("tcsim"),
-                 now_ns);
+    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain),
+                 EncodeParticipant("tcsim", kEnclave), now_ns);
   }
+  return guid;
+}
+
+Guid OwnEndpoints::ParticipantOf(Index endpoint) const {
+  auto guid = own_[endpoint].guid;
+  guid[12] = guid[13] = 0;
+  guid[14] = kParticipantNumber;
+  guid[15] = shm::kDdsParticipantId;
   return guid;
 }
 

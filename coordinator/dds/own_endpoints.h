@@ -1,8 +1,9 @@
 // The coordinator's own writers and readers: it is one of those that the hub connects, without
 // being a DDS participant. One participant per domain stands for all of its endpoints there.
 //
-// Whether a reader matches is decided where the reader is, by Cyclone: each process with a reader
-// of the topic gets the samples, once.
+// Whether a client's reader matches is decided where it is, by Cyclone: each process with a reader
+// of the topic gets the samples, once. Whether a client's writer suits one of ours is decided by
+// Cyclone, too, where the writer is, and among several of ours of a topic here.
 #pragma once
 
 #include <cstddef>
@@ -47,6 +48,8 @@ class OwnEndpoints {
 
   // What each endpoint is known by: its participant's twelve bytes, then its own four.
   Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
+  // What the participant is known by that it belongs to.
+  Guid ParticipantOf(Index endpoint) const;
 
  private:
   struct Kept {

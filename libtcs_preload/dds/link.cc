@@ -65,10 +65,13 @@ std::uint32_t Join() {
   GuestThread* t = Enter();
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
-  if (reply.values[0] <= 0) return 0;
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  g_area = MapArea(reply.values[1], process);
-  return g_area != nullptr ? process : 0;
+  if (reply.values[0] > 0) g_area = MapArea(reply.values[1], process);
+  if (g_area != nullptr) return process;
+  static const char kLine[] = "tcs: there is no room for this program's DDS: it uses sockets.\n";
+  RawSyscall(SYS_write, STDERR_FILENO, Arg(kLine), sizeof kLine - 1);
+  TellOfSockets(tcs::shm::WhySockets::kNoRoom);
+  return 0;
 }
 
 bool Send(const iovec* parts, int count) {
@@ -151,6 +154,15 @@ const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   memcpy(path, self.dli_fname, folder);
   memcpy(path + folder, kName, sizeof kName);
   return path;
+}
+
+void TellOfSockets(shm::WhySockets why) {
+  static bool told = false;
+  GuestThread* t = Enter();
+  if (t == nullptr || told) return;
+  told = true;
+  Exchange(
+      *t, Request{.kind = NotificationKind::kDdsSockets, .args = {static_cast<std::int64_t>(why)}});
 }
 
 }  // namespace tcs::preload
