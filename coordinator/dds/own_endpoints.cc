@@ -151,6 +151,14 @@ void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> p
   if (remotes_.insert_or_assign(subject, remote).second) Meet(subject, remote, header.time_ns);
 }
 
+// The sample has come for one of our readers; those that the writer does not suit must not have it.
+bool OwnEndpoints::Matches(const Own& reader, const Remote& writer) {
+  const Endpoint &ours = reader.endpoint, &theirs = writer.endpoint;
+  return ours.kind == EndpointKind::kReader && theirs.kind == EndpointKind::kWriter &&
+         reader.domain == writer.domain && ours.topic == theirs.topic && ours.type == theirs.type &&
+         !WhatDoesNotMatch(ours.qos, theirs.qos).has_value();
+}
+
 std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
   while (auto bytes = hub_.TakeOwn(now_ns)) {
     const DdsMessage header = HeaderOf(*bytes);
@@ -162,12 +170,10 @@ std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
     const auto writer = remotes_.find(GuidAt(header.subject));
     if (writer == remotes_.end() || header.sample_kind != shm::kDdsData) continue;
     Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
+    const Guid addressee = GuidAt(header.other);
     for (Index i = 0; i < own_.size(); ++i) {
-      const Own& own = own_[i];
-      if (own.endpoint.kind == EndpointKind::kReader && own.domain == writer->second.domain &&
-          own.endpoint.topic == writer->second.endpoint.topic) {
-        sample.readers.push_back(i);
-      }
+      const bool is_meant = addressee == Guid{} || addressee == own_[i].guid;
+      if (is_meant && Matches(own_[i], writer->second)) sample.readers.push_back(i);
     }
     if (!sample.readers.empty()) return sample;
   }

@@ -38,7 +38,7 @@ class OwnEndpoints {
              std::int64_t due_ns);
 
   struct Sample {
-    std::vector<Index> readers;  // all of its topic
+    std::vector<Index> readers;  // all that the writer suits, or the one that it is addressed to
     std::int64_t at_ns;          // when it was written
     std::vector<std::byte> cdr;
   };
@@ -74,6 +74,7 @@ class OwnEndpoints {
   void Notice(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void Meet(const Guid& guid, const Remote& remote, std::int64_t now_ns);
   void Forget(const Guid& subject);
+  static bool Matches(const Own& reader, const Remote& writer);
   shm::DdsMessage SampleHeader(const Own& writer, std::int64_t timestamp_ns) const;
 
   Hub& hub_;
