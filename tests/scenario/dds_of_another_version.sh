@@ -14,6 +14,16 @@ said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
   <<<"$said") == 2 ]] || fail "not told once by each program: $said"
 grep -Eq 'recvUC|mean .* cnt ' <<<"$said" || fail "they have not met: $said"
 
+# Who has chosen sockets is told what it does not meet before anything starts.
+cat >"$work/chosen.yaml" <<YAML
+duration: 1s
+clock: {}
+robots: {r: {clients: {it: {command: [sleep, "1"], dds: sockets}, other: {command: [sleep, "1"]}}}}
+YAML
+"$tcsim" run "$work/chosen.yaml" --out "$work/chosen" >"$work/said" 2>&1 || fail "$(cat "$work/said")"
+[[ $(grep -c "^tcsim: warning: .*chosen.yaml:3: robots.r.clients.it.dds is sockets, .*(/clock); remove it" "$work/said") == 1 ]] ||
+  fail "not warned, or not once: $(cat "$work/said")"
+
 # With a robot the line would be in a log, so tcsim says at once what the program will not meet.
 warned_of() {  # REASON CLIENT
   cat >"$work/scenario.yaml" <<YAML

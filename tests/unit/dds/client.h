@@ -52,13 +52,12 @@ class Client {
     return guid;
   }
 
-  void Announce(std::uint8_t entity, const Endpoint& endpoint, std::int64_t now_ns, int domain = 0,
-                std::uint16_t flags = 0) {
+  void Announce(std::uint8_t entity, const Endpoint& endpoint, std::int64_t now_ns,
+                int domain = 0) {
     auto header = HeaderOf(shm::DdsKind::kEndpoint, entity, domain);
-    header.flags = flags;
     const Guid participant = GuidOf(0);
     std::copy(participant.begin(), participant.end(), header.other);
-    Send(header, flags == 0 ? EncodeEndpoint(endpoint) : std::vector<std::byte>{}, now_ns);
+    Send(header, EncodeEndpoint(endpoint), now_ns);
   }
   void End(std::uint8_t entity, std::int64_t now_ns) {
     auto header =
@@ -67,12 +66,12 @@ class Client {
     Send(header, {}, now_ns);
   }
 
-  // What a tap sends of a sample, to each process in turn.
   struct Sample {
     std::int64_t stamp_ns = 0;
-    std::uint32_t kind = 2;  // data
-    Guid addressee{};        // one reader
+    std::uint32_t kind = shm::kDdsData;
+    Guid addressee{};  // one reader
   };
+  // What a tap sends of a sample, to each process in turn.
   void Write(std::uint8_t writer, std::string_view text, const std::vector<Hub::Number>& to,
              std::int64_t now_ns, const Sample& sample) {
     for (const Hub::Number process : to) {
