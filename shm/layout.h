@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 7;
+inline constexpr std::uint32_t kVersion = 8;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -80,6 +80,15 @@ enum class NotificationKind : std::uint32_t {
                   // messages in the inbox
   kDdsSync = 28,  // go on once the deliverer has handed over what is due, or waits for others
   kDdsRoom = 29,  // args[0]: go on once less waits for that process, or at the deadline
+  kDdsSockets =
+      30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
+};
+
+enum class WhySockets : std::uint32_t {
+  kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for
+  kLooksUpItself = 2,    // it looks libddsc's functions up by itself, past the shim
+  kNoLibraryOfOurs = 3,  // libtcs_dds.so cannot be loaded
+  kNoRoom = 4            // it could not join
 };
 
 // Kernel objects that cannot be polled. kTerminals is for waking only: what is written to one end

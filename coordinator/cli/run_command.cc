@@ -1,6 +1,7 @@
 #include "coordinator/cli/run_command.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -52,6 +53,10 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   } else if (TerminalLine::IsSeen()) {
     options.on_progress = [&line](const RunProgress& progress) { line.Show(progress); };
   }
+  options.on_warning = [&line](const std::string& warning) {
+    line.Clear();
+    fmt::print(stderr, "tcsim: warning: {}\n", warning);
+  };
   const RunReport report = RunScenario(scenario, options);
   line.Clear();
   if (!report.error.empty()) return Fail(report.error);

@@ -74,7 +74,6 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     fmt::print(stderr, "tcsim: {} ended at {:.3f} s with {}; its last words are in {}/{}.err.log\n",
                c.name, Seconds(c.ended_at_ns), HowItEnded(c.wait_status), directory, base);
   }
-  for (const std::string& w : r.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
 }
 
 std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,

@@ -13,7 +13,7 @@ double OverheadPercent(const RunReport& report);
 // True if a client ended before the run with anything but exit status 0.
 bool HasFailedClient(const RunReport& report);
 
-// To stdout; what went wrong in clients, and the warnings, to stderr.
+// To stdout; what went wrong in clients, to stderr.
 void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
 
 // Empty on success, else one sentence. Times are nanoseconds.

@@ -33,6 +33,8 @@ struct RunOptions {
   std::string allocation_library;  // preloaded besides under fixed accounting
   // Called about five times a real second, if set; what it takes is the coordinator's.
   std::function<void(const RunProgress&)> on_progress;
+  // Called with each warning when it arises, if set.
+  std::function<void(const std::string&)> on_warning;
 };
 
 struct ClientReport {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/scenario/own_topics.h"
 
 namespace tcs {
 
@@ -90,6 +91,9 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       ++waiting_for_room_;
       SetState(task, TaskState::kWaiting);
       break;
+    case shm::NotificationKind::kDdsSockets:
+      WarnOfSockets(process, static_cast<shm::WhySockets>(note.args[0]));
+      break;
     default:
       if (!IsDelivering(process, task.reached_ns)) break;
       task.waits_for_deliverer = true;
@@ -97,6 +101,36 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       SetState(task, TaskState::kWaiting);
       FindPriority(*process.deliverer);
   }
+}
+
+// It says so itself on its stderr, which is a file here that nobody may look into.
+void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
+  if (options_.output_directory.empty()) return;
+  const char* reason = "libtcs_dds.so cannot be loaded into it";
+  const char* mend = "see its .err.log";
+  switch (why) {
+    case shm::WhySockets::kOtherLibrary:
+      reason = "its Cyclone DDS is not Debian 12's libddsc.so.0.10.2";
+      mend = "link it with that one";
+      break;
+    case shm::WhySockets::kLooksUpItself:
+      reason = "it looks up Cyclone DDS's functions by itself, as Python's ctypes does";
+      mend = "use a program that is linked with libddsc";
+      break;
+    case shm::WhySockets::kNoRoom:
+      reason = "there is no room for it in shared memory";
+      mend = "start fewer programs";
+      break;
+    case shm::WhySockets::kNoLibraryOfOurs:
+      break;
+  }
+  const std::string topics = NamesOfOwnTopics(scenario_);
+  const std::string missed = topics.empty()
+                                 ? "programs whose DDS is in shared memory"
+                                 : "the scenario's topics in shared memory (" + topics + ")";
+  const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
+  Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
+                   process.name, reason, missed, mend, other_way));
 }
 
 void Engine::JoinDds(Task& task) {

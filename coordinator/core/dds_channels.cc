@@ -13,6 +13,7 @@ DdsChannels::DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends,
                          std::int64_t realtime_offset_ns)
     : scenario_(scenario),
       ends_(ends),
+      nodes_(scenario),
       realtime_offset_ns_(realtime_offset_ns),
       next_clock_ns_(scenario.clock.has_value() ? 0 : shm::kNeverNs) {
   for (const DdsSensorSpec& spec : scenario.dds_sensors) {
@@ -20,27 +21,31 @@ DdsChannels::DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends,
     for (const int body : spec.bodies) {
       bodies.push_back(scenario.world->bodies[static_cast<std::size_t>(body)].name);
     }
-    const auto writer = Add(dds::EndpointKind::kWriter, spec.end, dds::NameOf(spec.message));
+    const auto writer =
+        Add(dds::EndpointKind::kWriter, spec.end, dds::NameOf(spec.message), spec.bodies.front());
     dds::SensorEncoder encoder(spec.message, std::move(bodies), scenario.world->gravity_mps2);
     sensors_.push_back({&spec, writer, std::move(encoder)});
   }
   for (const DdsCommandSpec& spec : scenario.dds_commands) {
     actuators_.push_back(
-        {&spec, Add(dds::EndpointKind::kReader, spec.end, dds::NameOf(spec.message))});
+        {&spec, Add(dds::EndpointKind::kReader, spec.end, dds::NameOf(spec.message), spec.body)});
   }
   if (scenario.clock.has_value()) {
-    clock_ = Add(dds::EndpointKind::kWriter, scenario.clock->end, dds::kClockMessageName);
+    clock_ = Add(dds::EndpointKind::kWriter, scenario.clock->end, dds::kClockMessageName, {});
   }
+  nodes_.Announce(ends_, realtime_offset_ns_);
 }
 
 dds::OwnEndpoints::Index DdsChannels::Add(dds::EndpointKind kind, const DdsTopicSpec& end,
-                                          std::string_view message) {
+                                          std::string_view message, std::optional<int> body) {
   const dds::Endpoint endpoint{.kind = kind,
                                .topic = dds::DdsTopic(end.topic),
                                .type = dds::DdsType(message),
                                .keyless = true,
                                .qos = end.qos};
-  return ends_.Add(endpoint, end.domain, 0);
+  const dds::OwnEndpoints::Index index = ends_.Add(endpoint, end.domain, 0);
+  nodes_.Add(ends_, index, kind, end.domain, body);
+  return index;
 }
 
 std::int64_t DdsChannels::NextSampleNs() const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "coordinator/core/ros_nodes.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/robot_topics.h"
 #include "coordinator/scenario/scenario.h"
@@ -49,12 +50,13 @@ class DdsChannels {
   };
 
   dds::OwnEndpoints::Index Add(dds::EndpointKind kind, const DdsTopicSpec& end,
-                               std::string_view message);
+                               std::string_view message, std::optional<int> body);
   void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
               std::vector<Command>* commands) const;
 
   const Scenario& scenario_;
   dds::OwnEndpoints& ends_;
+  RosNodes nodes_;
   std::int64_t realtime_offset_ns_;
   std::vector<Sensor> sensors_;
   std::vector<Actuator> actuators_;

@@ -51,6 +51,7 @@ Engine::~Engine() {
 void Engine::Warn(const std::string& text) {
   if (std::find(report_.warnings.begin(), report_.warnings.end(), text) == report_.warnings.end()) {
     report_.warnings.push_back(text);
+    if (options_.on_warning) options_.on_warning(text);
   }
 }
 
@@ -445,6 +446,7 @@ bool Engine::Step() {
 }
 
 RunReport Engine::Run() {
+  for (const std::string& warning : scenario_.warnings) Warn(warning);
   report_.error = Prepare();
   if (report_.error.empty()) report_.error = StartClients();
   start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);

@@ -169,6 +169,7 @@ class Engine {
   void TakeOwnMessages();
   void HandleDds(Task& task, const shm::Notification& note);
   void JoinDds(Task& task);
+  void WarnOfSockets(const Process& process, shm::WhySockets why);
   void LeaveDds(Process& process);
   void AwaitMessages(Task& task);
   bool IsDelivering(const Process& process, std::int64_t now_ns) const;

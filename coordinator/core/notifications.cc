@@ -158,6 +158,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsWait:
     case Kind::kDdsSync:
     case Kind::kDdsRoom:
+    case Kind::kDdsSockets:
       HandleDds(task, note);
       break;
     case Kind::kQueueNotifies:

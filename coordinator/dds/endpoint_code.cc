@@ -99,11 +99,12 @@ std::optional<std::string> TextAt(std::span<const std::byte> payload, DdsBytes w
 
 }  // namespace
 
-std::vector<std::byte> EncodeParticipant(std::string_view name) {
+std::vector<std::byte> EncodeParticipant(std::string_view name, std::string_view user_data) {
   DdsQos qos{};
   Texts texts(sizeof qos);
-  qos.present = shm::kDdsEntityName;
+  qos.present = shm::kDdsEntityName | shm::kDdsUserData;
   qos.entity_name = texts.Add(name);
+  qos.user_data = texts.Add(user_data);
   return texts.After(qos);
 }
 

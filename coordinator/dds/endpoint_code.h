@@ -21,7 +21,8 @@ struct Endpoint {
   Qos qos;
 };
 
-[[nodiscard]] std::vector<std::byte> EncodeParticipant(std::string_view name);
+[[nodiscard]] std::vector<std::byte> EncodeParticipant(std::string_view name,
+                                                       std::string_view user_data);
 [[nodiscard]] std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint);
 
 // None for bytes that are no endpoint: they come from clients.

@@ -13,6 +13,10 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
+constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of its GUID
+// ROS 2's middleware takes participants that say so for its own kind, with nodes.
+constexpr const char* kEnclave = "enclave=/;";
+
 DdsMessage Announcement(DdsKind kind, const Guid& guid, int domain) {
   DdsMessage header{};
   header.kind = kind;
@@ -37,12 +41,20 @@ Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
   for (std::size_t i = 0; i < 4; ++i) {
     guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
   }
-  guid[14] = 0x01;
+  guid[14] = kParticipantNumber;
   guid[15] = shm::kDdsParticipantId;
   if (domains_.insert(domain).second) {
-    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain), EncodeParticipant("tcsim"),
-                 now_ns);
+    hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain),
+                 EncodeParticipant("tcsim", kEnclave), now_ns);
   }
+  return guid;
+}
+
+Guid OwnEndpoints::ParticipantOf(Index endpoint) const {
+  auto guid = own_[endpoint].guid;
+  guid[12] = guid[13] = 0;
+  guid[14] = kParticipantNumber;
+  guid[15] = shm::kDdsParticipantId;
   return guid;
 }
 
@@ -139,6 +151,14 @@ void OwnEndpoints::Notice(const DdsMessage& header, std::span<const std::byte> p
   if (remotes_.insert_or_assign(subject, remote).second) Meet(subject, remote, header.time_ns);
 }
 
+// The sample has come for one of our readers; those that the writer does not suit must not have it.
+bool OwnEndpoints::Matches(const Own& reader, const Remote& writer) {
+  const Endpoint &ours = reader.endpoint, &theirs = writer.endpoint;
+  return ours.kind == EndpointKind::kReader && theirs.kind == EndpointKind::kWriter &&
+         reader.domain == writer.domain && ours.topic == theirs.topic && ours.type == theirs.type &&
+         !WhatDoesNotMatch(ours.qos, theirs.qos).has_value();
+}
+
 std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
   while (auto bytes = hub_.TakeOwn(now_ns)) {
     const DdsMessage header = HeaderOf(*bytes);
@@ -150,12 +170,10 @@ std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
     const auto writer = remotes_.find(GuidAt(header.subject));
     if (writer == remotes_.end() || header.sample_kind != shm::kDdsData) continue;
     Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
+    const Guid addressee = GuidAt(header.other);
     for (Index i = 0; i < own_.size(); ++i) {
-      const Own& own = own_[i];
-      if (own.endpoint.kind == EndpointKind::kReader && own.domain == writer->second.domain &&
-          own.endpoint.topic == writer->second.endpoint.topic) {
-        sample.readers.push_back(i);
-      }
+      const bool is_meant = addressee == Guid{} || addressee == own_[i].guid;
+      if (is_meant && Matches(own_[i], writer->second)) sample.readers.push_back(i);
     }
     if (!sample.readers.empty()) return sample;
   }

@@ -1,8 +1,9 @@
 // The coordinator's own writers and readers: it is one of those that the hub connects, without
 // being a DDS participant. One participant per domain stands for all of its endpoints there.
 //
-// Whether a reader matches is decided where the reader is, by Cyclone: each process with a reader
-// of the topic gets the samples, once.
+// Whether a client's reader matches is decided where it is, by Cyclone: each process with a reader
+// of the topic gets the samples, once. Whether a client's writer suits one of ours is decided by
+// Cyclone, too, where the writer is, and among several of ours of a topic here.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +38,7 @@ class OwnEndpoints {
              std::int64_t due_ns);
 
   struct Sample {
-    std::vector<Index> readers;  // all of its topic
+    std::vector<Index> readers;  // all that the writer suits, or the one that it is addressed to
     std::int64_t at_ns;          // when it was written
     std::vector<std::byte> cdr;
   };
@@ -47,6 +48,8 @@ class OwnEndpoints {
 
   // What each endpoint is known by: its participant's twelve bytes, then its own four.
   Guid GuidOf(Index endpoint) const { return own_[endpoint].guid; }
+  // What the participant is known by that it belongs to.
+  Guid ParticipantOf(Index endpoint) const;
 
  private:
   struct Kept {
@@ -71,6 +74,7 @@ class OwnEndpoints {
   void Notice(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void Meet(const Guid& guid, const Remote& remote, std::int64_t now_ns);
   void Forget(const Guid& subject);
+  static bool Matches(const Own& reader, const Remote& writer);
   shm::DdsMessage SampleHeader(const Own& writer, std::int64_t timestamp_ns) const;
 
   Hub& hub_;

@@ -13,9 +13,9 @@ constexpr std::size_t kLongestTopic = 253;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-bool IsWordCharacter(char c) {
-  return IsDigit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
+bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+bool IsWordCharacter(char c) { return IsDigit(c) || c == '_' || IsLetter(c); }
 
 }  // namespace
 
@@ -63,6 +63,17 @@ std::optional<std::string> WhatIsWrongWithTopic(std::string_view topic) {
     before = c;
   }
   return std::nullopt;
+}
+
+std::string RosToken(std::string_view name) {
+  std::string token;
+  // One that began with '_' would be hidden.
+  if (name.empty() || !IsLetter(name[0])) token = "robot_";
+  for (const char c : name) {
+    const char allowed = IsWordCharacter(c) ? c : '_';
+    if (allowed != '_' || !token.ends_with('_')) token += allowed;
+  }
+  return token;
 }
 
 std::string DdsTopic(std::string_view ros_topic) { return "rt" + std::string(ros_topic); }

@@ -21,6 +21,14 @@ enum class CommandMessage { kWrench };
 [[nodiscard]] const std::vector<std::string>& CommandMessageNames();
 inline constexpr std::string_view kClockMessageName = "rosgraph_msgs/msg/Clock";
 
+// Where ROS 2's middleware says which endpoints are whose (participant_info.h). The name is DDS's.
+inline constexpr std::string_view kDiscoveryTopic = "ros_discovery_info";
+inline constexpr std::string_view kDiscoveryMessageName =
+    "rmw_dds_common/msg/ParticipantEntitiesInfo";
+
+// The releases of ROS 2 that say it in the same form, by the first of them.
+enum class RosRelease { kHumble, kIron };
+
 [[nodiscard]] const std::string& NameOf(SensorMessage message);
 [[nodiscard]] const std::string& NameOf(CommandMessage message);
 
@@ -29,6 +37,10 @@ inline constexpr std::string_view kClockMessageName = "rosgraph_msgs/msg/Clock";
 
 // Why `topic` is no absolute name of a ROS 2 topic, as the rest of a sentence; none if it is one.
 [[nodiscard]] std::optional<std::string> WhatIsWrongWithTopic(std::string_view topic);
+
+// What a name of a scenario becomes as a part of a name of ROS 2's: "r2-d2" is "r2_d2", "7"
+// is "robot_7".
+[[nodiscard]] std::string RosToken(std::string_view name);
 
 [[nodiscard]] std::string DdsTopic(std::string_view ros_topic);
 [[nodiscard]] std::string DdsType(std::string_view ros_message);

@@ -1,6 +1,13 @@
 #include "coordinator/record/recording.h"
 
+#include "coordinator/dds/ros_names.h"
+
 namespace tcs::record {
+
+// ROS 2's own recorder does not keep it either: played back, it would tell of nodes that are gone.
+bool Recording::Keeps(dds::TopicLog::Topic topic) const {
+  return log_.reports()[topic].topic != dds::kDiscoveryTopic;
+}
 
 Recording::Topic& Recording::At(dds::TopicLog::Topic topic) {
   if (topics_.size() <= topic) topics_.resize(topic + 1);
@@ -15,6 +22,7 @@ Recording::Topic& Recording::At(dds::TopicLog::Topic topic) {
 // A reader that asks for no more than DDS's least suits every writer; of what a writer keeps for
 // late readers only one that asks for it hears.
 void Recording::Opened(dds::TopicLog::Topic topic, int domain, const dds::Endpoint& endpoint) {
+  if (!Keeps(topic)) return;
   Topic& known = At(topic);
   if (endpoint.kind == dds::EndpointKind::kWriter) bag_.AddOffer(known.number, endpoint.qos);
   if (known.is_read) return;
@@ -39,7 +47,7 @@ void Recording::ReadNewTopics(std::int64_t now_ns) {
 
 void Recording::Written(dds::TopicLog::Topic topic, std::int64_t at_ns,
                         std::span<const std::byte> cdr) {
-  bag_.Write(At(topic).number, at_ns + realtime_offset_ns_, cdr);
+  if (Keeps(topic)) bag_.Write(At(topic).number, at_ns + realtime_offset_ns_, cdr);
 }
 
 }  // namespace tcs::record

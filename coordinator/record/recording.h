@@ -1,5 +1,5 @@
-// A recording of all topics of a run: a bag, and a reader of each topic, so that writers send what
-// nobody else reads, too.
+// A recording of all topics of a run but ros_discovery_info: a bag, and a reader of each topic, so
+// that writers send what nobody else reads, too.
 #pragma once
 
 #include <cstdint>
@@ -36,6 +36,7 @@ class Recording : public dds::TopicLog::Listener {
     int number = -1;  // in the bag
     bool is_read = false;
   };
+  bool Keeps(dds::TopicLog::Topic topic) const;
   Topic& At(dds::TopicLog::Topic topic);
 
   const dds::TopicLog& log_;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <system_error>
 
+#include "coordinator/scenario/load_dds.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/yaml_reader.h"
 
@@ -43,7 +44,7 @@ std::string FolderOf(const std::string& path) {
 Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   const YamlMap top = ParseYaml(path, ReadFile(path), overrides.set).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
-                 "channels", "clock"});
+                 "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
   scenario.set = overrides.set;
@@ -67,6 +68,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   LoadWorld(top, &scenario);
   LoadRobots(top, FolderOf(path), &scenario);
   LoadChannels(top, &scenario);
+  CheckDdsTransports(top, &scenario);
   return scenario;
 }
 

@@ -131,6 +131,7 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
   Endpoints endpoints;
   DdsTopics topics;
   if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &topics);
+  if (const YamlValue* ros = top.Find("ros")) scenario->ros = LoadRosRelease(*ros);
   const YamlValue* channels = top.Find("channels");
   if (channels == nullptr) return;
   const YamlMap channel_map = channels->AsMap();

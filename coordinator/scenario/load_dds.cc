@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/own_topics.h"
 #include "coordinator/scenario/sections.h"
 
 namespace tcs {
@@ -179,6 +180,45 @@ ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics) {
   clock.end = LoadEnd(map, dds::kClockMessageName, Side::kWriter, clock.end, topics);
   CheckDeadline(map, clock.end, clock.period);
   return clock;
+}
+
+dds::RosRelease LoadRosRelease(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "humble") return dds::RosRelease::kHumble;
+  const std::vector<std::string> later = {"iron", "jazzy", "kilted", "rolling"};
+  if (std::find(later.begin(), later.end(), text) != later.end()) return dds::RosRelease::kIron;
+  std::vector<std::string> known = later;
+  known.insert(known.begin(), "humble");
+  value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "releases"));
+}
+
+void CheckDdsTransports(const YamlMap& top, Scenario* scenario) {
+  const std::string topics = NamesOfOwnTopics(*scenario);
+  if (topics.empty()) return;
+  std::vector<YamlValue> by_sockets;
+  std::size_t clients = 0;
+  const YamlMap robots = top.Find("robots")->AsMap();
+  for (const YamlMap::Entry& robot : robots.entries()) {
+    const YamlMap robot_map = robot.value.AsMap();
+    const YamlMap client_map = robot_map.Find("clients")->AsMap();
+    for (const YamlMap::Entry& entry : client_map.entries()) {
+      ++clients;
+      const YamlMap client = entry.value.AsMap();
+      const YamlValue* dds = client.Find("dds");
+      if (dds != nullptr && dds->AsText() == "sockets") by_sockets.push_back(*dds);
+    }
+  }
+  const std::string rest =
+      " ever meets the scenario's topics in shared memory (" + topics +
+      "); remove it for a Cyclone DDS program, and give any other one channels of the type "
+      "udp_json";
+  if (by_sockets.size() == clients) {
+    by_sockets[0].Fail("is sockets, as for all clients, so that nobody" + rest);
+  }
+  for (const YamlValue& dds : by_sockets) {
+    scenario->warnings.push_back(dds.place().Prefix() + dds.name() +
+                                 " is sockets, so that nothing of this client's" + rest);
+  }
 }
 
 }  // namespace tcs

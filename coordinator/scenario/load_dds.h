@@ -35,4 +35,10 @@ DdsCommandSpec LoadDdsCommands(const YamlMap::Entry& entry, const YamlValue& val
                                const Scenario& scenario, DdsTopics* topics);
 ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
 
+dds::RosRelease LoadRosRelease(const YamlValue& value);
+
+// Once all else is loaded: clients that use sockets never meet the scenario's own topics. A warning
+// for each, as it may have others to talk to; a mistake where nobody is left who meets them.
+void CheckDdsTransports(const YamlMap& top, Scenario* scenario);
+
 }  // namespace tcs

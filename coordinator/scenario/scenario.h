@@ -121,8 +121,11 @@ struct Scenario {
   std::vector<DdsSensorSpec> dds_sensors;
   std::vector<DdsCommandSpec> dds_commands;
   std::optional<ClockSpec> clock;
+  dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
+  // What can be run and is hardly what was meant: a sentence each, with its place.
+  std::vector<std::string> warnings;
 };
 
 }  // namespace tcs

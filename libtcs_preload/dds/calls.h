@@ -15,6 +15,7 @@
 // rtps_ are libddsc's own inner seams: libddsc calls them through its PLT.
 #define TCS_DDS_CHANGING_CALLS(X)  \
   X(dds_create_topic_sertype)      \
+  X(dds_create_writer)             \
   X(dds_delete)                    \
   X(dds_assert_liveliness)         \
   X(dds_lookup_participant)        \

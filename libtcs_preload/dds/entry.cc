@@ -120,6 +120,7 @@ const dds::Hook* Load(const char* path) {
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   if (library == nullptr) {
     Say("tcs: this program's Cyclone DDS is not Debian's libddsc.so.0debian: it uses sockets.\n");
+    TellOfSockets(shm::WhySockets::kOtherLibrary);
     return kNoHooks;
   }
   void* hooks = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -127,11 +128,14 @@ const dds::Hook* Load(const char* path) {
     Say("tcs: cannot load libtcs_dds.so, and DDS uses sockets: ");
     Say(dlerror());
     Say("\n");
+    TellOfSockets(shm::WhySockets::kNoLibraryOfOurs);
     return kNoHooks;
   }
   auto start = reinterpret_cast<dds::Start>(dlsym(hooks, dds::kStartSymbol));
   const dds::Hook* table = start != nullptr ? start(kDdsLink) : nullptr;
-  return table != nullptr ? table : kNoHooks;
+  if (table != nullptr) return table;
+  TellOfSockets(shm::WhySockets::kOtherLibrary);
+  return kNoHooks;
 }
 
 void Start() {
@@ -147,6 +151,7 @@ void StartPastUs() {
   char buffer[kDdsPathSize];
   if (DdsLibrary(buffer) != nullptr) {
     Say("tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets.\n");
+    TellOfSockets(shm::WhySockets::kLooksUpItself);
   }
   __atomic_store_n(&g_hooks, &kNoHooks[0], __ATOMIC_RELEASE);
 }

@@ -65,10 +65,13 @@ std::uint32_t Join() {
   GuestThread* t = Enter();
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
-  if (reply.values[0] <= 0) return 0;
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  g_area = MapArea(reply.values[1], process);
-  return g_area != nullptr ? process : 0;
+  if (reply.values[0] > 0) g_area = MapArea(reply.values[1], process);
+  if (g_area != nullptr) return process;
+  static const char kLine[] = "tcs: there is no room for this program's DDS: it uses sockets.\n";
+  RawSyscall(SYS_write, STDERR_FILENO, Arg(kLine), sizeof kLine - 1);
+  TellOfSockets(tcs::shm::WhySockets::kNoRoom);
+  return 0;
 }
 
 bool Send(const iovec* parts, int count) {
@@ -110,12 +113,21 @@ std::size_t Wait(const std::byte** messages) {
   }
 }
 
+void AwaitDeliverer(GuestThread& t) {
+  if (g_area->delivers.load() == 0 && g_area->due_ns.load() > NowNs(t)) return;
+  Exchange(t, Request{.kind = NotificationKind::kDdsSync});
+}
+
 void Sync() {
   GuestThread* t = Enter();
   if (t == nullptr || g_area == nullptr || t_delivers) return;
   HoldForRead(*t);
-  if (g_area->delivers.load() == 0 && g_area->due_ns.load() > NowNs(*t)) return;
-  Exchange(*t, Request{.kind = NotificationKind::kDdsSync});
+  AwaitDeliverer(*t);
+}
+
+void Settle() {
+  GuestThread* t = Enter();
+  if (t != nullptr && g_area != nullptr && !t_delivers) AwaitDeliverer(*t);
 }
 
 std::int64_t NowOfThread() {
@@ -127,7 +139,7 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, NowOfThread};
+const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, Settle, NowOfThread};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";
@@ -142,6 +154,15 @@ const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   memcpy(path, self.dli_fname, folder);
   memcpy(path + folder, kName, sizeof kName);
   return path;
+}
+
+void TellOfSockets(shm::WhySockets why) {
+  static bool told = false;
+  GuestThread* t = Enter();
+  if (t == nullptr || told) return;
+  told = true;
+  Exchange(
+      *t, Request{.kind = NotificationKind::kDdsSockets, .args = {static_cast<std::int64_t>(why)}});
 }
 
 }  // namespace tcs::preload

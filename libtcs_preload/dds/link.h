@@ -33,6 +33,9 @@ struct Link {
   // or its listeners need.
   void (*sync)();
 
+  // The same for what is due by now: does not wait for what others may still send from before.
+  void (*settle)();
+
   // The calling thread's virtual time, ns since the run's start.
   std::int64_t (*now)();
 };

@@ -269,8 +269,11 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
                                 1, &bytes, message.payload_size);
   if (sample == nullptr) {
     if (!endpoint.warned) {
-      Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ",
-          endpoint.what.topic.c_str(), endpoint.what.type.c_str());
+      const bool is_nodes = endpoint.what.topic == "ros_discovery_info";
+      Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ%s",
+          endpoint.what.topic.c_str(), endpoint.what.type.c_str(),
+          is_nodes ? "; say in the scenario which release of ROS 2 they have, like ros: humble"
+                   : "");
     }
     endpoint.warned = true;
     return;

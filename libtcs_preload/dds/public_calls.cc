@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "libtcs_preload/dds/deliverer.h"
+#include "libtcs_preload/dds/listening.h"
+#include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/program.h"
 
 namespace tcs::dds {
@@ -48,6 +50,15 @@ dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertyp
     LookAgain();
   }
   return topic;
+}
+
+// A writer has met all readers that there are before its program goes on: what it writes at once
+// reaches them, too, be they volatile, and recordings have it at its time.
+dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* qos,
+                          const dds_listener_t* listener) {
+  const dds_entity_t writer = Real().dds_create_writer(of, topic, qos, listener);
+  if (writer > 0 && !IsDeliverer() && !IsListening()) TheLink().settle();
+  return writer;
 }
 
 // The types are let go before the participant goes, the shadows after it: the program's readers and

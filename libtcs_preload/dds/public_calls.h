@@ -10,6 +10,8 @@ dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
 dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertype** type,
                          const dds_qos_t* qos, const dds_listener_t* listener,
                          const ddsi_plist* discovery);
+dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* qos,
+                          const dds_listener_t* listener);
 dds_return_t Delete(dds_entity_t entity);
 dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participants,
                                 std::size_t size);

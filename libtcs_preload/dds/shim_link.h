@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libtcs_preload/dds/link.h"
+#include "shm/layout.h"
 
 namespace tcs::preload {
 
@@ -11,5 +12,8 @@ extern const dds::Link kDdsLink;
 // sockets. Writes the path, which is next to the shim, into the buffer.
 inline constexpr std::size_t kDdsPathSize = 4096;
 const char* DdsLibrary(char (&path)[kDdsPathSize]);
+
+// Tells the coordinator that the process's DDS uses sockets all the same. The first reason counts.
+void TellOfSockets(shm::WhySockets why);
 
 }  // namespace tcs::preload

@@ -27,6 +27,7 @@ const Hook* Hooks() {
   static const auto* hooks =
       new std::vector<Hook>{TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
                             TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
+                            TCS_DDS_HOOK(dds_create_writer, CreateWriter),
                             TCS_DDS_HOOK(dds_delete, Delete),
                             TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
                             TCS_DDS_HOOK(dds_lookup_participant, LookUpParticipants),

@@ -14,6 +14,31 @@ said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
   <<<"$said") == 2 ]] || fail "not told once by each program: $said"
 grep -Eq 'recvUC|mean .* cnt ' <<<"$said" || fail "they have not met: $said"
 
+# Who has chosen sockets is told what it does not meet before anything starts.
+cat >"$work/chosen.yaml" <<YAML
+duration: 1s
+clock: {}
+robots: {r: {clients: {it: {command: [sleep, "1"], dds: sockets}, other: {command: [sleep, "1"]}}}}
+YAML
+"$tcsim" run "$work/chosen.yaml" --out "$work/chosen" >"$work/said" 2>&1 || fail "$(cat "$work/said")"
+[[ $(grep -c "^tcsim: warning: .*chosen.yaml:3: robots.r.clients.it.dds is sockets, .*(/clock); remove it" "$work/said") == 1 ]] ||
+  fail "not warned, or not once: $(cat "$work/said")"
+
+# With a robot the line would be in a log, so tcsim says at once what the program will not meet.
+warned_of() {  # REASON CLIENT
+  cat >"$work/scenario.yaml" <<YAML
+duration: 1s
+clock: {}
+robots: {r: {clients: {it: $2, other: {command: [sleep, "1"]}}}}
+YAML
+  "$build/bin/in_own_network" "$tcsim" run "$work/scenario.yaml" --out "$work/run" >"$work/said" 2>&1 || fail "$(cat "$work/said")"
+  [[ $(grep -c "^tcsim: warning: the DDS of r/it uses sockets, as $1, so that it never meets the scenario's topics in shared memory (/clock); .*udp_json$" \
+    "$work/said") == 1 ]] || fail "not warned, or not once: $(cat "$work/said" "$work/run/"*.err.log)"
+  grep -q "the DDS of r/it uses sockets" "$work/run/summary.json" || fail "the summary does not have the warning"
+}
+warned_of "its Cyclone DDS is not Debian 12's libddsc.so.0.10.2" \
+  "{command: [ddsperf, -D, '0.5', pub, 10Hz], environment: {LD_LIBRARY_PATH: '$work'}}"
+
 # So is one that brings a library with another name for itself, and looks functions up in it.
 sed 's/libddsc\.so\.0debian/libddsc.so.0bundle/' "$work/libddsc.so.9.9.9" >"$work/libddsc-bundled.so"
 cmp -s "$work/libddsc.so.9.9.9" "$work/libddsc-bundled.so" && fail "the library has not been renamed"
@@ -26,3 +51,5 @@ print("participant", participant > 0, "deleted", ddsc.dds_delete(participant))
 grep -q "tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets" <<<"$said" ||
   fail "not told: $said"
 grep -q 'participant True deleted 0' <<<"$said" || fail "it does not work: $said"
+warned_of "it looks up Cyclone DDS's functions by itself, as Python's ctypes does" \
+  "{command: [python3, -c, 'import ctypes; ctypes.CDLL(\"$work/libddsc-bundled.so\").dds_create_participant(0, None, None)']}"

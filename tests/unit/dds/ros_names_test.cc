@@ -26,6 +26,16 @@ TEST(RosNames, TheFolderOfMessagesMayBeLeftOut) {
   EXPECT_EQ(FullMessageName("Odometry"), "Odometry");
 }
 
+TEST(RosNames, NamesOfScenariosBecomePartsOfThem) {
+  EXPECT_EQ(RosToken("hunter"), "hunter");
+  EXPECT_EQ(RosToken("r2-d2"), "r2_d2");
+  EXPECT_EQ(RosToken("7"), "robot_7");
+  EXPECT_EQ(RosToken("_x"), "robot_x") << "one that begins with '_' is hidden";
+  for (const char* name : {"a.-b", "9.", "x_-_y", "a__b"}) {
+    EXPECT_EQ(WhatIsWrongWithTopic("/" + RosToken(name) + "/tcsim"), std::nullopt) << name;
+  }
+}
+
 TEST(RosNames, GoodTopicsAreGood) {
   for (const char* topic : {"/odom", "/a/b_c/d9", "/_hidden", "/X"}) {
     EXPECT_EQ(WhatIsWrongWithTopic(topic), std::nullopt) << topic;

@@ -11,8 +11,10 @@
 namespace tcs {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 constexpr auto Ms = VirtualDuration::Milliseconds;
@@ -126,6 +128,31 @@ TEST_F(LoadDdsTest, ChannelsOfBothTypesStandSideBySide) {
   EXPECT_EQ(scenario.sensors.size(), 1u);
 }
 
+// It may have others to talk to, so it is no mistake.
+TEST_F(LoadDdsTest, AClientThatUsesSocketsIsWarnedOfTopicsInMemory) {
+  EXPECT_THAT(
+      Load(kGoodDdsScenario).warnings,
+      ElementsAre(AllOf(HasSubstr("s.yaml:10: robots.hunter.clients.controller.dds is sockets"),
+                        HasSubstr("in shared memory (/odom, /joint_states, /cmd and 2 more);"),
+                        HasSubstr("remove it for a Cyclone DDS program"), HasSubstr("udp_json"))));
+  EXPECT_THAT(Load(WithReplaced("dds: sockets", "dds: endpoints", kGoodDdsScenario)).warnings,
+              IsEmpty());
+  // The same client, and nothing of the simulation's on DDS.
+  EXPECT_THAT(Load(WithReplaced("        body: predator\n", "        dds: sockets\n")).warnings,
+              IsEmpty());
+}
+
+TEST_F(LoadDdsTest, TheReleaseOfRosDecidesTheFormOfWhatItsToolsAreTold) {
+  EXPECT_EQ(Load(kGoodDdsScenario).ros, dds::RosRelease::kIron);
+  const auto with = [this](const std::string& release) {
+    return Load("ros: " + release + "\n" + std::string(kGoodDdsScenario)).ros;
+  };
+  EXPECT_EQ(with("humble"), dds::RosRelease::kHumble);
+  for (const char* later : {"iron", "jazzy", "kilted", "rolling"}) {
+    EXPECT_EQ(with(later), dds::RosRelease::kIron);
+  }
+}
+
 struct Mistake {
   std::string_view name;
   std::string_view from;  // in kGoodDdsScenario
@@ -156,6 +183,17 @@ const Mistake kMistakes[] = {
      "dds: socket",
      10,
      {"robots.hunter.clients.controller.dds is the unknown 'socket'", "'sockets'?"}},
+    {"NobodyIsLeftWhoMeetsTheTopics",
+     "dds: endpoints}\n      other: {command: [./controller]}\n",
+     "dds: sockets}\n",
+     10,
+     {"robots.hunter.clients.controller.dds is sockets, as for all clients",
+      "nobody ever meets the scenario's topics in shared memory (/odom,", "udp_json"}},
+    {"UnknownRelease",
+     "name: pursuit\n",
+     "ros: jazy\n",
+     1,
+     {"ros is the unknown 'jazy'", "did you mean 'jazzy'?"}},
     {"UnknownType",
      "  odometry:\n    type: dds",
      "  odometry:\n    type: ddz",

@@ -1,0 +1,37 @@
+// What ROS 2's graph tools are told of the simulation's own endpoints, on `ros_discovery_info`: to
+// which node each belongs. A robot's are those of the node /ROBOT/tcsim; what no robot's client has
+// as its body, and the clock, are the node /tcsim's.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/participant_info.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class RosNodes {
+ public:
+  // The scenario outlives this.
+  explicit RosNodes(const Scenario& scenario) : scenario_(scenario) {}
+
+  // An endpoint that has to do with the body, if with any; an index into the world's.
+  void Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpoint, dds::EndpointKind kind,
+           int domain, std::optional<int> body);
+
+  // Tells them, in each domain, whoever comes and whenever. `timestamp_ns` is DDS's source
+  // timestamp.
+  void Announce(dds::OwnEndpoints& ends, std::int64_t timestamp_ns) const;
+
+ private:
+  std::string NamespaceOf(std::optional<int> body) const;
+
+  const Scenario& scenario_;
+  std::map<int, dds::ParticipantInfo> by_domain_;
+};
+
+}  // namespace tcs

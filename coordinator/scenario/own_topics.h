@@ -1,0 +1,14 @@
+// The topics whose other end is the simulation's: those of channels of the type `dds`, and the
+// clock's. They are in shared memory, where DDS that uses sockets never meets them.
+#pragma once
+
+#include <string>
+
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+// For a sentence: "/odom, /wrench and /clock"; the first few of many. Empty: there are none.
+[[nodiscard]] std::string NamesOfOwnTopics(const Scenario& scenario);
+
+}  // namespace tcs

@@ -1,0 +1,146 @@
+// What is counted of what goes through the hub.
+#include "coordinator/dds/topic_log.h"
+
+#include <gmock/gmock.h>
+
+#include "coordinator/dds/own_endpoints.h"
+#include "tests/unit/dds/client.h"
+
+namespace tcs::dds {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+
+struct Heard : TopicLog::Listener {
+  void Opened(TopicLog::Topic topic, int domain, const Endpoint& endpoint) override {
+    opened.emplace_back(topic, domain);
+    kinds.push_back(endpoint.kind);
+  }
+  void Written(TopicLog::Topic, std::int64_t at_ns, std::span<const std::byte> cdr) override {
+    written.emplace_back(at_ns, std::string(reinterpret_cast<const char*>(cdr.data()), cdr.size()));
+  }
+  std::vector<std::pair<TopicLog::Topic, int>> opened;
+  std::vector<EndpointKind> kinds;
+  std::vector<std::pair<std::int64_t, std::string>> written;
+};
+
+class TopicLogTest : public testing::Test {
+ protected:
+  TopicLogTest() {
+    log_.Tell(&heard_);
+    hub_.Observe(&log_);
+  }
+
+  Hub hub_;
+  TopicLog log_{[](Hub::Number number) {
+    return number == 0 ? Speaker{"tcsim", ""} : Speaker{"r/" + std::to_string(number), "r"};
+  }};
+  Heard heard_;
+};
+
+TEST_F(TopicLogTest, ASampleCountsOnceForHoweverManyItIs) {
+  Client writer(hub_, 0), one(hub_, 0), other(hub_, 0);
+  writer.Announce(1, AWriter("rt/odom"), 5);
+  const std::vector<Hub::Number> both = {one.number(), other.number()};
+  writer.Write(1, "abc", both, 100, {.stamp_ns = 90});
+  writer.Write(1, "abc", both, 350, {.stamp_ns = 340});
+  // Written twice with the same stamp, by a program that sets it itself.
+  writer.Write(1, "de", both, 600, {.stamp_ns = 590});
+  writer.Write(1, "de", both, 600, {.stamp_ns = 590});
+  ASSERT_THAT(log_.reports(), SizeIs(1));
+  const TopicReport& report = log_.reports()[0];
+  EXPECT_EQ(report.topic, "/odom");
+  EXPECT_EQ(report.type, "std_msgs/msg/Header");
+  EXPECT_EQ(report.samples, 4);
+  EXPECT_EQ(report.bytes, 10);
+  EXPECT_EQ(report.first_ns, 100);
+  EXPECT_EQ(report.last_ns, 600);
+  EXPECT_DOUBLE_EQ(report.RateHz(), 3 / 500e-9);
+  EXPECT_THAT(heard_.written,
+              ElementsAre(Pair(100, "abc"), Pair(350, "abc"), Pair(600, "de"), Pair(600, "de")));
+}
+
+TEST_F(TopicLogTest, TheEndOfAnInstanceIsNoSample) {
+  Client writer(hub_, 0), reader(hub_, 0);
+  writer.Announce(1, AWriter("rt/odom"), 5);
+  writer.Write(1, "key", {reader.number()}, 100, {.stamp_ns = 100, .kind = 1});
+  EXPECT_EQ(log_.reports()[0].samples, 0);
+  EXPECT_THAT(heard_.written, IsEmpty());
+}
+
+TEST_F(TopicLogTest, WhatLateReadersAreToldAgainDoesNotCount) {
+  OwnEndpoints ends(hub_);
+  const auto map = ends.Add(AWriter("rt/map", kLatched), 0, 0);
+  ends.Write(map, BytesOf("one"), 1'010, 10);
+  Client late(hub_, 0);
+  late.Announce(1, AReader("rt/map", kLatched), 50);
+  EXPECT_FALSE(ends.Take(50).has_value());
+  EXPECT_THAT(late.Take(shm::DdsKind::kSample, 50), SizeIs(1)) << "it has been told";
+  ends.Write(map, BytesOf("two"), 1'060, 60);
+  EXPECT_EQ(log_.reports()[0].samples, 2);
+  EXPECT_THAT(heard_.written, ElementsAre(Pair(10, "one"), Pair(60, "two")));
+}
+
+// A recorder's reader is late by no fault of the writer's: what was written before it has not been
+// counted yet.
+TEST_F(TopicLogTest, WhatNobodyWasThereForCountsWhenTheCoordinatorHearsOfIt) {
+  Client writer(hub_, 0), reader(hub_, 0);
+  writer.Announce(1, AWriter("rt/map", kLatched), 5);
+  const Guid ours{1}, theirs{2};
+  const std::vector<Hub::Number> us = {shm::kDdsCoordinator}, them = {reader.number()};
+  writer.Write(1, "one", them, 10, {.stamp_ns = 3, .addressee = theirs});
+  EXPECT_EQ(log_.reports()[0].samples, 0) << "it is the coordinator's that counts";
+  writer.Write(1, "one", us, 11, {.stamp_ns = 3, .addressee = ours});
+  writer.Write(1, "two", us, 11, {.stamp_ns = 4, .addressee = ours});
+  writer.Write(1, "two", us, 20, {.stamp_ns = 4, .addressee = ours});
+  EXPECT_THAT(heard_.written, ElementsAre(Pair(11, "one"), Pair(11, "two")));
+}
+
+TEST_F(TopicLogTest, TopicsAreApartByTypeAndDomainAndKeepTheirEnds) {
+  Client client(hub_, 0);
+  Qos careful;
+  careful.depth = 3;
+  client.Announce(1, AWriter("rt/odom"), 5);
+  client.Announce(2, AReader("rt/odom", careful), 6);
+  client.Announce(2, AReader("rt/odom", kCareless), 7);  // another QoS, the same reader
+  client.Announce(3, AWriter("rt/odom"), 8, 7);
+  Endpoint foreign = AWriter("DDSPerfRDataKS");
+  foreign.type = "KeyedSeq";
+  client.Announce(4, foreign, 9);
+  client.End(1, 10);
+  ASSERT_THAT(log_.reports(), SizeIs(3));
+  const TopicReport& odom = log_.reports()[0];
+  ASSERT_THAT(odom.endpoints, SizeIs(2)) << "those that there ever were, each once";
+  EXPECT_EQ(odom.endpoints[0].kind, EndpointKind::kWriter);
+  EXPECT_EQ(odom.endpoints[0].process, "r/1");
+  EXPECT_EQ(odom.endpoints[1].qos, careful);
+  EXPECT_EQ(log_.reports()[1].domain, 7);
+  EXPECT_EQ(log_.reports()[2].topic, "DDSPerfRDataKS");
+  EXPECT_EQ(log_.reports()[2].type, "KeyedSeq");
+  EXPECT_THAT(heard_.opened, ElementsAre(Pair(0, 0), Pair(0, 0), Pair(1, 7), Pair(2, 0)));
+}
+
+TEST_F(TopicLogTest, SamplesOfWritersThatWereNeverAnnouncedAreNobodys) {
+  Client client(hub_, 0), reader(hub_, 0);
+  client.Write(9, "abc", {reader.number()}, 100, {.stamp_ns = 100});
+  EXPECT_THAT(log_.reports(), IsEmpty());
+}
+
+TEST_F(TopicLogTest, DropsCountOnceForEachReaderThatMissesASample) {
+  Client writer(hub_, 0);
+  writer.Announce(1, AWriter("rt/image"), 5);
+  writer.Announce(2, AWriter("rt/scan"), 5);
+  shm::DdsMessage sample{};
+  const Guid guid = writer.GuidOf(2);
+  std::copy(guid.begin(), guid.end(), sample.subject);
+  log_.Dropped(sample, 7);
+  log_.Dropped(sample, 8);
+  EXPECT_EQ(log_.reports()[0].drops, 0);
+  EXPECT_EQ(log_.reports()[1].drops, 2);
+}
+
+}  // namespace
+}  // namespace tcs::dds
