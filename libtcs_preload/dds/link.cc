@@ -21,6 +21,7 @@ using tcs::shm::NotificationKind;
 namespace {
 
 DdsArea* g_area = nullptr;
+std::int64_t g_behind_ns = 0;
 __thread bool t_delivers __attribute__((tls_model("initial-exec"))) = false;
 
 char* Outbox() { return reinterpret_cast<char*>(g_area) + tcs::shm::kDdsHeaderSize; }
@@ -67,7 +68,9 @@ std::uint32_t Join() {
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
   if (reply.values[0] <= 0) return 0;
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  g_area = MapArea(reply.values[1], process);
+  constexpr int kDescriptorBits = 16;
+  g_behind_ns = t->slot->cores > 1 ? reply.values[1] >> kDescriptorBits : 0;
+  g_area = MapArea(reply.values[1] & ((1 << kDescriptorBits) - 1), process);
   return g_area != nullptr ? process : 0;
 }
 
@@ -87,15 +90,16 @@ bool Send(const iovec* parts, int count) {
   return true;
 }
 
-void AwaitRoom(std::int64_t most_ns) {
-  if (g_area == nullptr || t_delivers) return;
-  const std::uint32_t full = g_area->full.load();
-  if (full == 0) return;
-  GuestThread* t = Current();
-  if (t == nullptr) return;
-  Exchange(*t, Request{.kind = NotificationKind::kDdsRoom,
-                       .deadline_ns = NowNs(*t) + most_ns,
-                       .args = {full}});
+bool AnyIsFull() { return g_area != nullptr && g_area->full_count.load() != 0; }
+
+bool IsFull(std::uint32_t process) { return g_area != nullptr && g_area->IsFull(process); }
+
+bool AwaitRoom(std::uint32_t process, std::int64_t until_ns) {
+  GuestThread* t = Enter();
+  if (t == nullptr || g_area == nullptr) return false;
+  Exchange(*t,
+           Request{.kind = NotificationKind::kDdsRoom, .deadline_ns = until_ns, .args = {process}});
+  return !IsShutDown();
 }
 
 std::size_t Wait(const std::byte** messages) {
@@ -118,6 +122,8 @@ void Sync() {
   Exchange(*t, Request{.kind = NotificationKind::kDdsSync});
 }
 
+std::int64_t BehindNs() { return g_behind_ns; }
+
 std::int64_t NowOfThread() {
   GuestThread* t = Current();
   return t == nullptr ? 0 : NowNs(*t);
@@ -127,7 +133,8 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, NowOfThread};
+const dds::Link kDdsLink{Join, Send, AnyIsFull, IsFull,     AwaitRoom,
+                         Wait, Sync, BehindNs,  NowOfThread};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";
