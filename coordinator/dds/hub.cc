@@ -25,6 +25,10 @@ constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
 // Full beyond that: some milliseconds' work for who takes it. Cyclone's writers stop at half of it.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
+// Who has been missed is found again that much later. Over a network that takes as long as the next
+// announcement; Cyclone needs some of it to collect what it knew under the same GUID.
+constexpr std::int64_t kRediscoveryNs = 100'000'000;
+
 std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
   return ns < 0 || ns > shm::kNeverNs - now_ns ? shm::kNeverNs : now_ns + ns;
 }
@@ -189,9 +193,9 @@ void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
       Bytes bytes = *known.message;
       DdsMessage header = HeaderOf(bytes);
       if (!comes) header.flags = shm::kDdsGone;
-      header.time_ns = now_ns;
+      header.time_ns = comes ? now_ns + kRediscoveryNs : now_ns;
       memcpy(bytes.data(), &header, sizeof header);
-      Queue(to, now_ns, std::make_shared<const Bytes>(std::move(bytes)));
+      Queue(to, header.time_ns, std::make_shared<const Bytes>(std::move(bytes)));
     }
   }
 }
