@@ -19,8 +19,12 @@
 // before its own time any more (kRead), and then until the deliverer is done (kDdsSync): meanwhile
 // it lends it its priority.
 //
-// Whoever writes faster than others take waits after sending (kDdsRoom), as a reliable DDS writer
-// does, as long as its QoS say: nothing is lost by that, and nobody waits for ever.
+// A process for which more waits than it can take at once is *full*: it takes more slowly than
+// others write, or hangs. The coordinator shows in all areas which are. What then becomes of a
+// sample is as DDS has it (DdsMessage::keep_last, kDdsUnreliable): a reliable writer that keeps all
+// waits before it writes the next one (kDdsRoom), for as long as its QoS say, and then its write
+// fails; of one that keeps the last few, more of an instance replace what waits; what is promised
+// to nobody is dropped and counted.
 //
 // The coordinator remembers participants and endpoints: who joins later is told of them, and when a
 // process dies its participants are reported as gone once their leases are over. It trusts nothing
@@ -47,14 +51,22 @@ inline constexpr std::uint32_t kDdsData = 2;
 
 // Written by the coordinator.
 struct alignas(64) DdsArea {
-  std::atomic<std::int64_t> due_ns;     // of the earliest message not handed over; kNeverNs
-  std::atomic<std::uint32_t> delivers;  // 1: the deliverer has not come back for more yet
-  std::uint32_t process;                // its number
-  std::atomic<std::uint32_t> full;      // a process for which too much waited after the last send
+  std::atomic<std::int64_t> due_ns;       // of the earliest message not handed over; kNeverNs
+  std::atomic<std::uint32_t> delivers;    // 1: the deliverer has not come back for more yet
+  std::uint32_t process;                  // its number
+  std::atomic<std::uint32_t> full_count;  // processes that are full
   std::uint32_t reserved32;
   std::uint64_t reserved[5];
+  std::atomic<std::uint64_t> full[kDdsMostProcesses / 64];  // which: bit 0 of the first is number 1
+
+  bool IsFull(std::uint32_t number) const {
+    return number > 0 && number <= kDdsMostProcesses &&
+           (full[(number - 1) / 64].load() >> ((number - 1) % 64) & 1) != 0;
+  }
 };
-static_assert(sizeof(DdsArea) == 64);
+static_assert(sizeof(DdsArea) == 192);
+static_assert(offsetof(DdsArea, full) == 64);
+static_assert(sizeof(DdsArea) <= kDdsHeaderSize);
 
 enum class DdsKind : std::uint16_t {
   kParticipant = 1,  // subject: its GUID; payload: DdsQos
@@ -71,6 +83,8 @@ inline constexpr std::uint16_t kDdsGone = 1;  // the subject is no more
 // The subject stays alive for lease_ns only, unless its process says so (DDS's automatic
 // liveliness): reported as lost, that long after the process's death.
 inline constexpr std::uint16_t kDdsLeased = 2;
+// No reader in the process that the sample is for has been promised it.
+inline constexpr std::uint16_t kDdsUnreliable = 4;
 
 struct DdsMessage {
   std::uint32_t size;  // of all, a multiple of 8: this, the payload, zeros
@@ -87,10 +101,16 @@ struct DdsMessage {
   std::uint32_t status_info;  // of samples: Cyclone's NN_STATUSINFO_* bits
   std::uint32_t sample_kind;  // of samples, Cyclone's ddsi_serdata_kind: kDdsData or of a key only
   std::uint32_t payload_size;
+  // Of samples for all readers: of a reliable writer that keeps only so many of an instance, 0:
+  // all; and the instance, by its number in the writer's process.
+  std::uint32_t keep_last;
+  std::uint32_t reserved;
+  std::uint64_t instance;
 };
-static_assert(sizeof(DdsMessage) == 88);
+static_assert(sizeof(DdsMessage) == 104);
 static_assert(offsetof(DdsMessage, subject) == 24);
 static_assert(offsetof(DdsMessage, source_timestamp_ns) == 56);
+static_assert(offsetof(DdsMessage, instance) == 96);
 
 inline constexpr std::uint32_t DdsMessageSize(std::uint32_t payload_size) {
   return static_cast<std::uint32_t>((sizeof(DdsMessage) + payload_size + 7) / 8 * 8);

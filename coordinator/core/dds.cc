@@ -43,6 +43,22 @@ std::string Engine::CloseDds() {
   return error;
 }
 
+void Engine::WarnOfDrops() {
+  const dds::Hub::Drops& drops = hub_.drops();
+  const auto say = [this](std::uint64_t count, const char* what) {
+    if (count > 0) Warn(fmt::format("{} DDS samples {}", count, what));
+  };
+  say(drops.lost,
+      "were dropped, because a program has stopped taking what is sent to it and 256 MiB were "
+      "waiting: look for a listener that never returns");
+  say(drops.unreliable,
+      "that no reader was promised (best effort) were dropped, because 1 MiB was waiting for a "
+      "program that takes more slowly: tcsim topics says of which topics");
+  say(drops.replaced,
+      "were replaced by later ones of writers that keep the last, because 1 MiB was waiting for a "
+      "program that takes more slowly: tcsim topics says of which topics");
+}
+
 dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
   if (number == shm::kDdsCoordinator) return {"tcsim", ""};
   for (const Process* process : dds_processes_) {
@@ -138,7 +154,7 @@ void Engine::JoinDds(Task& task) {
   LeaveDds(process);
   process.dds_number = hub_.Join(event_ns_);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
-  task.reply[1] = hub_.fd();
+  task.reply[1] = hub_.fd() | scenario_.drift_bound.ns() << 16;
   if (process.dds_number != 0) dds_processes_.push_back(&process);
 }
 

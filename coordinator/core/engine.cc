@@ -360,6 +360,7 @@ void Engine::PollUnseen() {
     event_ns_ = std::max(event_ns_, task.reached_ns);
     MakeReady(task, shm::WakeReason::kGo);
     task.parked = false;
+    NoteWhetherStopped(*task.process);
   }
 }
 

@@ -166,6 +166,8 @@ class Engine {
   std::string OpenDds();
   std::string CloseDds();
   dds::Speaker WhoIs(dds::Hub::Number number) const;
+  void WarnOfDrops();
+  void NoteWhetherStopped(const Process& process);
   void TakeOwnMessages();
   void HandleDds(Task& task, const shm::Notification& note);
   void JoinDds(Task& task);

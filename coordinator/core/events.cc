@@ -96,7 +96,11 @@ bool Engine::BlockedInKernel() {
   if (!stopped && held_turns_ < turns) return false;
   SetState(*running_, TaskState::kUnseen);
   running_->parked = false;
-  if (stopped) return true;
+  if (stopped) {
+    event_ns_ = std::max(event_ns_, running_->reached_ns);
+    NoteWhetherStopped(*running_->process);
+    return true;
+  }
   Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
       running_->process->name, ThreadSystemCall(running_->tid)));

@@ -56,12 +56,7 @@ void Engine::Shutdown() {
 
 void Engine::Report(RunReport* report) {
   report->virtual_ns = world_.present() ? world_.progress_ns() : 0;
-  if (hub_.dropped() > 0) {
-    Warn(
-        fmt::format("{} DDS samples were dropped, because a program has stopped taking what is "
-                    "sent to it and 256 MiB were waiting: look for a listener that never returns",
-                    hub_.dropped()));
-  }
+  WarnOfDrops();
   for (const VirtualCpu& cpu : cpus_) {
     report->virtual_ns = std::max(report->virtual_ns, cpu.progress_ns);
   }

@@ -18,10 +18,11 @@ constexpr std::int64_t kLookEveryNs = 10'000'000;  // real time
 
 constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
 
+constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
+
 // What of `pending` makes a thread with these sets run or end. What only stops it does so when it
 // runs next.
 std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::uint64_t blocked) {
-  constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
   return pending & ~blocked & ~(kStops & ~sets.caught);
 }
 
@@ -115,8 +116,30 @@ void Engine::AnswerAhead(Task& task) {
 
 void Engine::WakeSignalled(pid_t receiver) {
   for (Process& process : processes_) {
-    if (!process.dead && (receiver <= 0 || process.pid == receiver)) WakeForSignals(process);
+    if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
+    WakeForSignals(process);
+    NoteWhetherStopped(process);
   }
+}
+
+// Others miss a stopped program that speaks DDS when its leases are over. It is stopped as a whole
+// from when a signal that does so is there, though its threads notice one after another.
+void Engine::NoteWhetherStopped(const Process& process) {
+  if (process.dds_number == 0) return;
+  bool stopped = false;
+  for (const Task& task : tasks_) {
+    if (task.process != &process || task.state == TaskState::kDead) continue;
+    const SignalSets sets = ReadSignalSets(task.tid);
+    const std::uint64_t ignored = sets.blocked | sets.caught;
+    stopped |= ThreadState(task.tid) == 'T' ||
+               ((sets.own_pending | sets.shared_pending) & kStops & ~ignored) != 0;
+  }
+  if (stopped) {
+    hub_.Stop(process.dds_number, event_ns_);
+  } else {
+    hub_.Continue(process.dds_number, event_ns_);
+  }
+  ShowDeliverersTheirDeadlines();
 }
 
 }  // namespace tcs

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -21,11 +22,23 @@ using shm::DdsMessage;
 
 // What may wait for one process. Whoever lets more wait has stopped taking it.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
-// Some milliseconds' work for who takes it. Cyclone's writers stop at half of that.
+// Full beyond that: some milliseconds' work for who takes it. Cyclone's writers stop at half of it.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
+
+// Who has been missed is found again that much later. Over a network that takes as long as the next
+// announcement; Cyclone needs some of it to collect what it knew under the same GUID.
+constexpr std::int64_t kRediscoveryNs = 100'000'000;
 
 std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
   return ns < 0 || ns > shm::kNeverNs - now_ns ? shm::kNeverNs : now_ns + ns;
+}
+
+// A writer that keeps the last ones has room for it at the cost of an earlier one. What ends an
+// instance is not replaced, and does not replace.
+bool IsReplaceable(const DdsMessage& header) {
+  return header.kind == DdsKind::kSample && header.keep_last > 0 && header.status_info == 0 &&
+         std::all_of(std::begin(header.other), std::end(header.other),
+                     [](std::uint8_t byte) { return byte == 0; });
 }
 
 bool IsKnownKind(DdsKind kind) {
@@ -43,6 +56,18 @@ Hub::~Hub() {
 
 void Hub::Member::ShowDue() const {
   shown().due_ns.store(queue.empty() ? shm::kNeverNs : queue.begin()->first);
+}
+
+void Hub::Member::ShowFull(Number number, bool is_full) const {
+  const std::uint64_t bit = std::uint64_t{1} << (number - 1) % 64;
+  std::atomic<std::uint64_t>& word = shown().full[(number - 1) / 64];
+  if (is_full) {
+    word.fetch_or(bit);
+    shown().full_count.fetch_add(1);
+  } else {
+    word.fetch_and(~bit);
+    shown().full_count.fetch_sub(1);
+  }
 }
 
 Hub::Member* Hub::Find(Number number) {
@@ -74,6 +99,9 @@ Hub::Number Hub::Join(std::int64_t now_ns) {
   auto* area = new (at) shm::DdsArea{};
   area->process = number;
   member.ShowDue();
+  for (Number other = 1; other < number; ++other) {
+    if (members_[other - 1].full && Find(other) != nullptr) member.ShowFull(other, true);
+  }
   for (const Known& known : known_) Queue(number, now_ns, known.message);
   return number;
 }
@@ -83,7 +111,10 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return;
   munmap(member->area, shm::kDdsAreaSize);
+  const bool was_full = member->full, was_stopped = member->stopped;
   *member = Member{};
+  // Who waits for it goes on when others miss it.
+  member->full = was_full;
   fallocate(fd_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
             static_cast<off_t>((number - 1) * shm::kDdsAreaSize),
             static_cast<off_t>(shm::kDdsAreaSize));
@@ -92,8 +123,15 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
     if (known.from == number) left.push_back(known);
     return known.from == number;
   });
-  // Nobody has said so: others notice when the leases are over.
-  for (const Known& known : left) {
+  // If it was stopped, its leases run out as they do already.
+  if (!was_stopped) EndLeases(number, left, now_ns);
+}
+
+// Nobody says so: others notice.
+std::vector<Hub::Message> Hub::EndLeases(Number number, const std::vector<Known>& of,
+                                         std::int64_t now_ns) {
+  std::vector<Message> ends;
+  for (const Known& known : of) {
     const bool is_participant = known.kind == DdsKind::kParticipant;
     if (!is_participant && (known.flags & shm::kDdsLeased) == 0) continue;
     const std::int64_t due = After(now_ns, known.lease_ns);
@@ -106,7 +144,59 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
     header.time_ns = due;
     Bytes bytes(sizeof header);
     memcpy(bytes.data(), &header, sizeof header);
-    QueueForOthers(number, due, std::make_shared<const Bytes>(std::move(bytes)));
+    ends.push_back(std::make_shared<const Bytes>(std::move(bytes)));
+    QueueForOthers(number, due, ends.back());
+  }
+  return ends;
+}
+
+void Hub::Stop(Number number, std::int64_t now_ns) {
+  Member* member = Find(number);
+  if (member == nullptr || std::exchange(member->stopped, true)) return;
+  std::vector<Known> own;
+  std::ranges::copy_if(known_, std::back_inserter(own),
+                       [number](const Known& known) { return known.from == number; });
+  member->lease_ends = EndLeases(number, own, now_ns);
+}
+
+void Hub::Continue(Number number, std::int64_t now_ns) {
+  Member* member = Find(number);
+  if (member == nullptr || !std::exchange(member->stopped, false)) return;
+  bool is_missed = false;
+  for (const Message& end : std::exchange(member->lease_ends, {})) {
+    const DdsMessage header = HeaderOf(*end);
+    if (header.time_ns <= now_ns) {
+      is_missed |= header.kind == DdsKind::kParticipant;
+      continue;
+    }
+    const auto is_it = [&end](const auto& queued) { return queued.second == end; };
+    std::erase_if(own_, is_it);
+    for (Member& other : members_) {
+      if (std::erase_if(other.queue, is_it) == 0) continue;
+      other.queued_bytes -= end->size();
+      other.ShowDue();
+    }
+  }
+  if (!is_missed) return;
+  for (Number other = shm::kDdsCoordinator; other <= count(); ++other) {
+    if (other == number) continue;
+    Introduce(other, number, now_ns);
+    if (other != shm::kDdsCoordinator) Introduce(number, other, now_ns);
+  }
+}
+
+// As if it had gone and come back.
+void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
+  for (const bool comes : {false, true}) {
+    for (const Known& known : known_) {
+      if (known.from != whom || (!comes && known.kind != DdsKind::kParticipant)) continue;
+      Bytes bytes = *known.message;
+      DdsMessage header = HeaderOf(bytes);
+      if (!comes) header.flags = shm::kDdsGone;
+      header.time_ns = comes ? now_ns + kRediscoveryNs : now_ns;
+      memcpy(bytes.data(), &header, sizeof header);
+      Queue(to, header.time_ns, std::make_shared<const Bytes>(std::move(bytes)));
+    }
   }
 }
 
@@ -114,7 +204,6 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const Member* member = Find(from);
   if (member == nullptr) return "it has not joined";
   if (bytes > shm::kDdsBoxSize) return "its messages are longer than its outbox";
-  member->shown().full.store(0);
   const char* at = member->outbox();
   const char* const end = at + bytes;
   while (at != end) {
@@ -203,18 +292,61 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
   Member* member = Find(to);
   if (member == nullptr) return;
   const DdsMessage header = HeaderOf(*message);
-  if (header.kind == DdsKind::kSample &&
-      member->queued_bytes + message->size() > kMostQueuedBytes) {
-    ++dropped_;
-    if (observer_ != nullptr) observer_->Dropped(header, to);
-    return;
+  if (header.kind == DdsKind::kSample) {
+    if (member->full && (header.flags & shm::kDdsUnreliable) != 0) {
+      return Drop(header, to, drops_.unreliable);
+    }
+    if (member->queued_bytes + message->size() > kMostQueuedBytes) {
+      return Drop(header, to, drops_.lost);
+    }
   }
   member->queued_bytes += message->size();
-  member->queue.emplace(due_ns, message);
-  if (header.kind == DdsKind::kSample && IsFull(to)) {
-    if (const Member* sender = Find(header.from)) sender->shown().full.store(to);
-  }
+  const auto place = member->queue.emplace(due_ns, message);
+  ShowFull(to);
+  if (member->full) Replace(to, place);
   member->ShowDue();
+}
+
+void Hub::Drop(const DdsMessage& header, Number to, std::uint64_t& count) {
+  ++count;
+  if (observer_ != nullptr) observer_->Dropped(header, to);
+}
+
+// A full process has one message more; if it is of a writer that keeps the last, those are kept.
+void Hub::Replace(Number to, Queued::iterator latest) {
+  const DdsMessage header = HeaderOf(*latest->second);
+  if (!IsReplaceable(header)) return;
+  Member& member = members_[to - 1];
+  const auto note = [&member](Queued::iterator place) {
+    const DdsMessage noted = HeaderOf(*place->second);
+    if (!IsReplaceable(noted)) return;
+    member.replaceable[{GuidAt(noted.subject), noted.instance}].push_back(place);
+  };
+  if (member.replaceable.empty()) {
+    for (auto place = member.queue.begin(); place != member.queue.end(); ++place) note(place);
+  } else {
+    note(latest);
+  }
+  auto& kept = member.replaceable[{GuidAt(header.subject), header.instance}];
+  while (kept.size() > header.keep_last) {
+    const Queued::iterator earlier = kept.front();
+    kept.pop_front();
+    Drop(HeaderOf(*earlier->second), to, drops_.replaced);
+    member.queued_bytes -= earlier->second->size();
+    member.queue.erase(earlier);
+  }
+  ShowFull(to);
+}
+
+// In all areas, when it has changed.
+void Hub::ShowFull(Number number) {
+  Member& member = members_[number - 1];
+  const bool full = IsFull(number);
+  if (std::exchange(member.full, full) == full) return;
+  if (!full) member.replaceable.clear();
+  for (const Member& other : members_) {
+    if (other.area != nullptr) other.ShowFull(number, full);
+  }
 }
 
 std::int64_t Hub::DueNs(Number number) const {
@@ -226,6 +358,7 @@ std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return 0;
   std::size_t filled = 0;
+  member->replaceable.clear();  // it refers to the queue's begin
   while (!member->queue.empty() && member->queue.begin()->first <= now_ns) {
     const Bytes& message = *member->queue.begin()->second;
     if (filled + message.size() > shm::kDdsBoxSize) break;
@@ -247,11 +380,13 @@ void Hub::CameBack(Number number) {
   member->delivers = false;
   member->delivered_bytes = 0;
   member->shown().delivers.store(0);
+  ShowFull(number);
 }
 
 bool Hub::IsFull(Number number) const {
   const Member* member = Find(number);
-  return member != nullptr && member->queued_bytes + member->delivered_bytes > kFullBytes;
+  if (member == nullptr) return number > 0 && number <= count() && members_[number - 1].full;
+  return member->queued_bytes + member->delivered_bytes > kFullBytes;
 }
 
 bool Hub::IsDelivering(Number number) const {

@@ -8,11 +8,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/dds/message.h"
@@ -47,6 +49,10 @@ class Hub {
   Number Join(std::int64_t now_ns);
   // It has died, or executes another program.
   void Leave(Number number, std::int64_t now_ns);
+  // It is stopped, so that it renews no lease: others miss it as they miss the dead, until it goes
+  // on. If they do by then, it and they find each other anew.
+  void Stop(Number number, std::int64_t now_ns);
+  void Continue(Number number, std::int64_t now_ns);
 
   // Takes the messages in the first `bytes` of its outbox, sent at `now_ns`. Says what is wrong
   // with the first one that is not as it must be: it is dropped, and what follows it.
@@ -59,7 +65,8 @@ class Hub {
   std::size_t Deliver(Number number, std::int64_t now_ns);
   void CameBack(Number number);
   bool IsDelivering(Number number) const;
-  // More waits for it, or is in its hands, than it should: senders wait until it is not so.
+  // More waits for it, or is in its hands, than it can take at once (shm/dds_exchange.h). It stays
+  // so if it dies then.
   bool IsFull(Number number) const;
 
   // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
@@ -78,23 +85,35 @@ class Hub {
   Number count() const { return static_cast<Number>(members_.size()); }
   // Of the memory with the areas; -1 before the first process has joined.
   int fd() const { return fd_; }
-  // Samples that were not delivered because too many wait for a process that does not take them.
-  std::uint64_t dropped() const { return dropped_; }
+  // Samples that a process did not get because too much waits for it.
+  struct Drops {
+    std::uint64_t unreliable = 0;  // promised to nobody
+    std::uint64_t replaced = 0;    // by later ones of a writer that keeps the last ones
+    std::uint64_t lost = 0;        // promised, but it does not take anything any more
+  };
+  const Drops& drops() const { return drops_; }
 
  private:
   using Message = std::shared_ptr<const Bytes>;
+  using Queued = std::multimap<std::int64_t, Message>;  // by the time when it is due
 
   struct Member {
     char* area = nullptr;  // null: it has left
     bool delivers = false;
-    std::multimap<std::int64_t, Message> queue;  // by the time when it is due
+    bool full = false;
+    bool stopped = false;
+    std::vector<Message> lease_ends;  // of one that is stopped, where others do not have them yet
+    Queued queue;
     std::size_t queued_bytes = 0;
     std::size_t delivered_bytes = 0;  // in its inbox until it comes back for more
+    // While it is full: what may be replaced of the queue, by writer and instance.
+    std::map<std::pair<Guid, std::uint64_t>, std::deque<Queued::iterator>> replaceable;
 
     shm::DdsArea& shown() const { return *reinterpret_cast<shm::DdsArea*>(area); }
     char* outbox() const { return area + shm::kDdsHeaderSize; }
     char* inbox() const { return outbox() + shm::kDdsBoxSize; }
     void ShowDue() const;
+    void ShowFull(Number number, bool is_full) const;  // of another, in its area
   };
   // A participant or an endpoint.
   struct Known {
@@ -110,16 +129,22 @@ class Hub {
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);
+  // What others get when the leases of what a process has are over.
+  std::vector<Message> EndLeases(Number number, const std::vector<Known>& of, std::int64_t now_ns);
+  void Introduce(Number to, Number whom, std::int64_t now_ns);
   void QueueForOthers(Number from, std::int64_t due_ns, const Message& message);
   void Remember(const shm::DdsMessage& header, const Message& message);
+  void Drop(const shm::DdsMessage& header, Number to, std::uint64_t& count);
+  void Replace(Number to, Queued::iterator latest);
+  void ShowFull(Number number);
 
   int fd_ = -1;
   HubObserver* observer_ = nullptr;
   bool tells_own_ = false;
-  std::multimap<std::int64_t, Message> own_;  // for the coordinator
-  std::vector<Member> members_;               // of number i + 1
-  std::vector<Known> known_;                  // in the order in which they came
-  std::uint64_t dropped_ = 0;
+  Queued own_;                   // for the coordinator
+  std::vector<Member> members_;  // of number i + 1
+  std::vector<Known> known_;     // in the order in which they came
+  Drops drops_;
 };
 
 }  // namespace tcs::dds

@@ -79,6 +79,9 @@ DdsMessage OwnEndpoints::SampleHeader(const Own& writer, std::int64_t timestamp_
   DdsMessage header = Announcement(DdsKind::kSample, writer.guid, writer.domain);
   header.source_timestamp_ns = timestamp_ns;
   header.sample_kind = shm::kDdsData;
+  const Qos& qos = writer.endpoint.qos;
+  if (qos.reliability == Reliability::kBestEffort) header.flags |= shm::kDdsUnreliable;
+  if (qos.history == History::kKeepLast) header.keep_last = static_cast<std::uint32_t>(qos.depth);
   return header;
 }
 

@@ -85,10 +85,28 @@
   X(dds_wait_for_acks)                         \
   X(dds_reader_wait_for_historical_data)
 
+// Those that write, by the entity that is their first argument.
+#define TCS_DDS_WRITING_CALLS(X) \
+  X(dds_write)                   \
+  X(dds_write_ts)                \
+  X(dds_writecdr)                \
+  X(dds_forwardcdr)              \
+  X(dds_writedispose)            \
+  X(dds_writedispose_ts)         \
+  X(dds_dispose)                 \
+  X(dds_dispose_ts)              \
+  X(dds_dispose_ih)              \
+  X(dds_dispose_ih_ts)           \
+  X(dds_unregister_instance)     \
+  X(dds_unregister_instance_ts)  \
+  X(dds_unregister_instance_ih)  \
+  X(dds_unregister_instance_ih_ts)
+
 #define TCS_DDS_CALLS(X)    \
   TCS_DDS_STARTING_CALLS(X) \
   TCS_DDS_CHANGING_CALLS(X) \
-  TCS_DDS_READING_CALLS(X)
+  TCS_DDS_READING_CALLS(X)  \
+  TCS_DDS_WRITING_CALLS(X)
 
 namespace tcs::dds {
 

@@ -6,16 +6,22 @@
 #include "libtcs_preload/dds/program.h"
 
 namespace tcs::dds {
+
+void Refuse(const Guid& reader);
+
 namespace {
 
 thread_local int t_making_readers;
+thread_local Forwarding* t_forwarding;
 
 // Found from a covered cache by its operations, which are its own copy.
 struct Cover {
   dds_rhc_ops operations;  // first
   const dds_rhc_ops* real;
   ddsi_domaingv* gv;
-  bool waits_for_history;
+  Guid reader;
+  bool has_history;        // transient local
+  bool waits_for_history;  // and reliable
   std::mutex mutex;
   // Shadow writers that this reader has met: whether their history has ended.
   std::unordered_map<Guid, bool, GuidHash> caught_up;
@@ -35,7 +41,7 @@ bool HasHistory(const ddsi_domaingv& gv, const ddsi_guid_t& guid) {
 }
 
 bool IsDropped(Cover& cover, const ddsi_guid_t& writer) {
-  if (t_making_readers == 0 && !cover.waits_for_history) return false;
+  if (!cover.has_history || (t_making_readers == 0 && !cover.waits_for_history)) return false;
   if (!IsShadow(writer)) return false;
   if (!cover.waits_for_history) return true;
   const std::lock_guard lock(cover.mutex);
@@ -48,7 +54,10 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
            ddsi_tkmap_instance* instance) {
   Cover& cover = *CoverOf(rhc);
   if (IsDropped(cover, info->guid)) return true;
-  return cover.real->rhc_ops.store(rhc, info, sample, instance);
+  if (cover.real->rhc_ops.store(rhc, info, sample, instance)) return true;
+  if (t_forwarding == nullptr || !IsShadow(info->guid)) return false;
+  Refuse(cover.reader);
+  return true;
 }
 
 void Free(ddsi_rhc* rhc) {
@@ -60,8 +69,15 @@ void Free(ddsi_rhc* rhc) {
 
 }  // namespace
 
+void Refuse(const Guid& reader) { t_forwarding->refused_.push_back(reader); }
+
+Forwarding::Forwarding() { t_forwarding = this; }
+Forwarding::~Forwarding() { t_forwarding = nullptr; }
+
 void CoverHistoryCache(ddsi_rhc* rhc, ddsi_domaingv* gv, const dds_qos_t& qos) {
-  if (rhc == nullptr || qos.durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
+  const bool is_reliable = qos.reliability.kind == DDS_RELIABILITY_RELIABLE;
+  const bool has_history = qos.durability.kind >= DDS_DURABILITY_TRANSIENT_LOCAL;
+  if (rhc == nullptr || (!is_reliable && !has_history)) return;
   auto* cover = new Cover;
   // dds_rhc is a ddsi_rhc with more operations.
   cover->real = reinterpret_cast<const dds_rhc_ops*>(rhc->ops);
@@ -69,26 +85,30 @@ void CoverHistoryCache(ddsi_rhc* rhc, ddsi_domaingv* gv, const dds_qos_t& qos) {
   cover->operations.rhc_ops.store = Store;
   cover->operations.rhc_ops.free = Free;
   cover->gv = gv;
-  cover->waits_for_history = qos.reliability.kind == DDS_RELIABILITY_RELIABLE;
+  cover->has_history = has_history;
+  cover->waits_for_history = is_reliable && has_history;
   rhc->ops = &cover->operations.rhc_ops;
+}
+
+void NameCover(const ddsi_reader& reader) {
+  if (Cover* cover = CoverOf(reader.rhc)) cover->reader = Guid::Of(reader.e.guid);
 }
 
 MakingReader::MakingReader() { ++t_making_readers; }
 MakingReader::~MakingReader() { --t_making_readers; }
 
-void StoreAddressed(const ddsi_reader& reader, const ddsi_writer& shadow, ddsi_serdata* sample) {
+bool StoreAddressed(const ddsi_reader& reader, const ddsi_writer& shadow, ddsi_serdata* sample) {
   ddsi_writer_info info;
   ddsi_make_writer_info(&info, &shadow.e, shadow.xqos, sample->statusinfo);
   ddsi_tkmap* map = shadow.e.gv->m_tkmap;
   ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, sample);
-  if (instance == nullptr) return;
+  if (instance == nullptr) return true;
   Cover* cover = CoverOf(reader.rhc);
-  if (cover != nullptr) {
-    cover->real->rhc_ops.store(reader.rhc, &info, sample, instance);
-  } else {
-    ddsi_rhc_store(reader.rhc, &info, sample, instance);
-  }
+  const bool stored = cover != nullptr
+                          ? cover->real->rhc_ops.store(reader.rhc, &info, sample, instance)
+                          : ddsi_rhc_store(reader.rhc, &info, sample, instance);
   ddsi_tkmap_instance_unref(map, instance);
+  return stored;
 }
 
 void EndHistory(const ddsi_reader& reader, const ddsi_guid_t& shadow) {

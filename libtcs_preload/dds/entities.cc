@@ -104,7 +104,10 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
   }
   if (result < 0) return result;
   matches.Made(*guid);
-  if (!builtin) AnnounceReader(**reader);
+  if (!builtin) {
+    NameCover(**reader);
+    AnnounceReader(**reader);
+  }
   return result;
 }
 

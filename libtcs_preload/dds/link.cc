@@ -21,6 +21,7 @@ using tcs::shm::NotificationKind;
 namespace {
 
 DdsArea* g_area = nullptr;
+std::int64_t g_behind_ns = 0;
 __thread bool t_delivers __attribute__((tls_model("initial-exec"))) = false;
 
 char* Outbox() { return reinterpret_cast<char*>(g_area) + tcs::shm::kDdsHeaderSize; }
@@ -66,7 +67,11 @@ std::uint32_t Join() {
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  if (reply.values[0] > 0) g_area = MapArea(reply.values[1], process);
+  constexpr int kDescriptorBits = 16;
+  if (reply.values[0] > 0) {
+    g_behind_ns = t->slot->cores > 1 ? reply.values[1] >> kDescriptorBits : 0;
+    g_area = MapArea(reply.values[1] & ((1 << kDescriptorBits) - 1), process);
+  }
   if (g_area != nullptr) return process;
   static const char kLine[] = "tcs: there is no room for this program's DDS: it uses sockets.\n";
   RawSyscall(SYS_write, STDERR_FILENO, Arg(kLine), sizeof kLine - 1);
@@ -90,15 +95,16 @@ bool Send(const iovec* parts, int count) {
   return true;
 }
 
-void AwaitRoom(std::int64_t most_ns) {
-  if (g_area == nullptr || t_delivers) return;
-  const std::uint32_t full = g_area->full.load();
-  if (full == 0) return;
-  GuestThread* t = Current();
-  if (t == nullptr) return;
-  Exchange(*t, Request{.kind = NotificationKind::kDdsRoom,
-                       .deadline_ns = NowNs(*t) + most_ns,
-                       .args = {full}});
+bool AnyIsFull() { return g_area != nullptr && g_area->full_count.load() != 0; }
+
+bool IsFull(std::uint32_t process) { return g_area != nullptr && g_area->IsFull(process); }
+
+bool AwaitRoom(std::uint32_t process, std::int64_t until_ns) {
+  GuestThread* t = Enter();
+  if (t == nullptr || g_area == nullptr) return false;
+  Exchange(*t,
+           Request{.kind = NotificationKind::kDdsRoom, .deadline_ns = until_ns, .args = {process}});
+  return !IsShutDown();
 }
 
 std::size_t Wait(const std::byte** messages) {
@@ -130,6 +136,8 @@ void Settle() {
   if (t != nullptr && g_area != nullptr && !t_delivers) AwaitDeliverer(*t);
 }
 
+std::int64_t BehindNs() { return g_behind_ns; }
+
 std::int64_t NowOfThread() {
   GuestThread* t = Current();
   return t == nullptr ? 0 : NowNs(*t);
@@ -139,7 +147,8 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, AwaitRoom, Wait, Sync, Settle, NowOfThread};
+const dds::Link kDdsLink{Join, Send, AnyIsFull, IsFull,   AwaitRoom,
+                         Wait, Sync, Settle,    BehindNs, NowOfThread};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";

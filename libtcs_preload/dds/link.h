@@ -19,9 +19,13 @@ struct Link {
   // threads may send at the same time. False: it is larger than the outbox, and was not sent.
   bool (*send)(const iovec* parts, int count);
 
-  // After a send: if more waits for a process that the message was for than it can take at once,
-  // waits until that is not so, for as long as that at most. Nothing for the deliverer.
-  void (*await_room)(std::int64_t most_ns);
+  // Whether any process is full (shm/dds_exchange.h), which costs next to nothing to ask, and
+  // whether that one is.
+  bool (*any_is_full)();
+  bool (*is_full)(std::uint32_t process);
+  // Waits until that process is not full, or has left, or it is `until_ns`. Not for the deliverer.
+  // False: the run is over.
+  bool (*await_room)(std::uint32_t process, std::int64_t until_ns);
 
   // For the deliverer, a thread that makes itself known by calling this first: waits until messages
   // are due. They stand one after another at `*messages`, until the next call. Returns their bytes
@@ -35,6 +39,9 @@ struct Link {
 
   // The same for what is due by now: does not wait for what others may still send from before.
   void (*settle)();
+
+  // How much earlier than others of its process, on other cores, the calling thread may be at most.
+  std::int64_t (*behind_ns)();
 
   // The calling thread's virtual time, ns since the run's start.
   std::int64_t (*now)();

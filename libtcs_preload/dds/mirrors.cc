@@ -1,5 +1,6 @@
 #include "libtcs_preload/dds/mirrors.h"
 
+#include <utility>
 #include <vector>
 
 #include "libtcs_preload/dds/catch_up.h"
@@ -41,13 +42,30 @@ dds_qos_t* ShadowQos(const Payload& payload) {
   return qos;
 }
 
-bool CatchesUp(const dds_qos_t* qos) {
+// How often a reader that is full is tried, as by Cyclone's own threads.
+constexpr dds_duration_t kTryAgain = DDS_MSECS(1);
+
+// False: the reader is full.
+bool StoreIn(ddsi_domaingv* gv, const Guid& guid, const ddsi_guid_t& shadow_guid,
+             ddsi_serdata* sample) {
+  const Awake awake(gv);
+  const ddsi_guid_t inner = guid.Inner();
+  const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
+  const ddsi_writer* shadow = entidx_lookup_writer_guid(gv->entity_index, &shadow_guid);
+  return reader == nullptr || shadow == nullptr || StoreAddressed(*reader, *shadow, sample);
+}
+
+bool IsReliable(const dds_qos_t* qos) {
   dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
-  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
   dds_duration_t blocking = 0;
   dds_qget_reliability(qos, &reliability, &blocking);
+  return reliability == DDS_RELIABILITY_RELIABLE;
+}
+
+bool IsTransientLocal(const dds_qos_t* qos) {
+  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
   dds_qget_durability(qos, &durability);
-  return reliability == DDS_RELIABILITY_RELIABLE && durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
+  return durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
 }
 
 }  // namespace
@@ -243,8 +261,8 @@ void Mirrors::MakeWriter(Endpoint& endpoint, dds_entity_t participant, dds_entit
 
 void Mirrors::MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv,
                          dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos) {
-  Tap* tap =
-      NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic, CatchesUp(qos));
+  Tap* tap = NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic,
+                    IsReliable(qos), IsReliable(qos) && IsTransientLocal(qos));
   {
     const MakingTap making(tap);
     endpoint.shadow = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
@@ -281,17 +299,20 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
   sample->timestamp.v = message.source_timestamp_ns;
   sample->statusinfo = message.status_info;
 
-  const Guid reader_guid = Guid::FromBytes(message.other);
-  if (reader_guid.IsZero()) {
-    dds_forwardcdr(endpoint.shadow, sample);
-    return;
+  if (std::exchange(endpoint.not_alive, false)) {
+    RegainLiveliness(gv, endpoint.inner, ReadersOf(endpoint.domain, endpoint.what.topic));
   }
-  {
-    const Awake awake(gv);
-    const ddsi_guid_t inner = reader_guid.Inner();
-    const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
-    const ddsi_writer* shadow = entidx_lookup_writer_guid(gv->entity_index, &endpoint.inner);
-    if (reader != nullptr && shadow != nullptr) StoreAddressed(*reader, *shadow, sample);
+  const Guid reader = Guid::FromBytes(message.other);
+  std::vector<Guid> waiting;
+  if (reader.IsZero()) {
+    const Forwarding forwarding;
+    Real().dds_forwardcdr(endpoint.shadow, ddsi_serdata_ref(sample));
+    waiting = forwarding.refused();
+  } else {
+    waiting = {reader};
+  }
+  for (const Guid& guid : waiting) {
+    while (!StoreIn(gv, guid, endpoint.inner, sample)) dds_sleepfor(kTryAgain);
   }
   ddsi_serdata_unref(sample);
 }
@@ -317,10 +338,11 @@ void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
   }
   const auto found = endpoints_.find(guid);
   if (found == endpoints_.end() || found->second.shadow <= 0) return;
-  const Endpoint& endpoint = found->second;
+  Endpoint& endpoint = found->second;
   if ((message.flags & shm::kDdsGone) == 0) {
     Real().dds_assert_liveliness(endpoint.shadow);
   } else if (ddsi_domaingv* gv = DomainOf(endpoint.domain); gv != nullptr) {
+    endpoint.not_alive = true;
     LoseLiveliness(gv, endpoint.inner, ReadersOf(endpoint.domain, endpoint.what.topic));
   }
 }

@@ -49,6 +49,7 @@ class Mirrors {
     dds_entity_t shadow = 0;
     ddsi_guid_t inner{};  // the shadow's
     const ddsi_sertype* type = nullptr;
+    bool not_alive = false;  // its lease is over, and it has not written since
     bool warned = false;
   };
   using Participants = std::unordered_map<Guid, Participant, GuidHash>;

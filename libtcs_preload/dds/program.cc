@@ -24,12 +24,21 @@ struct Shipped {
   const Tap* by = nullptr;
 };
 
+// Of the process's readers of a writer's topic; looked at again when the taps have changed.
+struct Promise {
+  std::uint64_t taps_version = 0;
+  bool is_made = false;
+};
+
 struct Writer {
   std::uint32_t domain = 0;
   std::string topic;
   bool has_history = false;
+  bool is_reliable = false;
   std::int64_t blocks_ns = 0;
+  std::uint32_t keeps_last = 0;
   std::map<std::uint32_t, Shipped> shipped;  // by process
+  std::map<std::uint32_t, Promise> promises;
   std::unordered_map<std::uint64_t, ddsi_tkmap_instance*> instances;
 };
 
@@ -48,6 +57,7 @@ struct State {
   std::unordered_map<Guid, Writer, GuidHash> writers;
   std::unordered_map<Guid, Reader, GuidHash> readers;
   std::vector<const Tap*> taps;
+  std::uint64_t taps_version = 1;
 };
 
 // Never destroyed: the deliverer and Cyclone's threads outlive main.
@@ -177,8 +187,10 @@ bool AddWriter(const ddsi_writer& writer) {
   if (!is_new) return false;
   place->second.domain = writer.e.gv->config.domainId;
   place->second.topic = writer.xqos->topic_name;
-  if (writer.xqos->reliability.kind == DDS_RELIABILITY_RELIABLE) {
-    place->second.blocks_ns = writer.xqos->reliability.max_blocking_time;
+  place->second.is_reliable = writer.xqos->reliability.kind == DDS_RELIABILITY_RELIABLE;
+  place->second.blocks_ns = writer.xqos->reliability.max_blocking_time;
+  if (writer.xqos->history.kind == DDS_HISTORY_KEEP_LAST) {
+    place->second.keeps_last = static_cast<std::uint32_t>(writer.xqos->history.depth);
   }
   place->second.has_history = writer.xqos->durability.kind >= DDS_DURABILITY_TRANSIENT_LOCAL;
   return true;
@@ -209,18 +221,60 @@ std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
   return LockedWritersOf(state, domain, topic, false);
 }
 
+std::optional<std::int64_t> MostBlocking(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto found = state.writers.find(guid);
+  if (found == state.writers.end()) return std::nullopt;
+  const Writer& writer = found->second;
+  if (!writer.is_reliable || writer.keeps_last > 0) return std::nullopt;
+  return writer.blocks_ns;
+}
+
+namespace {
+
+bool IsReadReliably(const State& state, const Writer& writer, std::uint32_t process) {
+  return std::ranges::any_of(state.taps, [&](const Tap* tap) {
+    return tap->process == process && tap->is_reliable && tap->domain == writer.domain &&
+           tap->topic == writer.topic;
+  });
+}
+
+bool LockedHasPromised(const State& state, Writer& writer, std::uint32_t process) {
+  if (!writer.is_reliable) return false;
+  Promise& promise = writer.promises[process];
+  if (promise.taps_version != state.taps_version) {
+    promise = {state.taps_version, IsReadReliably(state, writer, process)};
+  }
+  return promise.is_made;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> PromisedProcesses(const Guid& guid) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<std::uint32_t> processes;
+  const auto found = state.writers.find(guid);
+  if (found == state.writers.end()) return processes;
+  for (const auto& [process, shipped] : found->second.shipped) {
+    if (LockedHasPromised(state, found->second, process)) processes.push_back(process);
+  }
+  return processes;
+}
+
 namespace {
 
 // `*unneeded`: to be unreferred to without the lock, since that may run a serdata's own code.
 Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const Tap& tap,
                             ddsi_serdata* sample, ddsi_tkmap_instance* instance,
-                            ddsi_serdata** unneeded, std::int64_t* blocks_ns) {
+                            ddsi_serdata** unneeded, WriterKeeps* keeps) {
   const auto found = state.writers.find(Guid::Of(writer_guid));
   if (found == state.writers.end()) {
     return state.shadows.contains(PrefixOf(writer_guid)) ? Carries::kNo : Carries::kUnknownWriter;
   }
   Writer& writer = found->second;
-  *blocks_ns = writer.blocks_ns;
+  *keeps = {writer.keeps_last, LockedHasPromised(state, writer, tap.process)};
   Shipped& shipped = writer.shipped[tap.process];
   if (shipped.sample == sample && shipped.by != &tap) return Carries::kNo;
   *unneeded = shipped.sample;
@@ -241,13 +295,13 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
 }  // namespace
 
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
-                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns) {
+                      ddsi_tkmap_instance* instance, WriterKeeps* keeps) {
   State& state = Get();
   ddsi_serdata* unneeded = nullptr;
   Carries carries;
   {
     const std::lock_guard lock(state.mutex);
-    carries = LockedCarriesSample(state, writer, tap, sample, instance, &unneeded, blocks_ns);
+    carries = LockedCarriesSample(state, writer, tap, sample, instance, &unneeded, keeps);
   }
   if (unneeded != nullptr) ddsi_serdata_unref(unneeded);
   return carries;
@@ -279,12 +333,14 @@ void AddTap(const Tap* tap) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
   state.taps.push_back(tap);
+  ++state.taps_version;
 }
 
 void RemoveTap(const Tap* tap) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
   std::erase(state.taps, tap);
+  ++state.taps_version;
 }
 
 std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic) {

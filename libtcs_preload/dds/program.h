@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,10 +46,19 @@ std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
 // Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
 // process the first that sees it. Keeps the sample's instance alive, since Cyclone would otherwise
 // make and collect one for each write. Kind of writer: unknown, to be announced first.
-// `*blocks_ns`: how long its writer may wait for readers that cannot keep up.
 enum class Carries { kNo, kYes, kUnknownWriter };
+struct WriterKeeps {
+  std::uint32_t last = 0;  // samples of an instance for who has not taken them yet; 0: all
+  bool promised = false;   // to a reader of that process: both are reliable
+};
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
-                      ddsi_tkmap_instance* instance, std::int64_t* blocks_ns);
+                      ddsi_tkmap_instance* instance, WriterKeeps* keeps);
+
+// How long a write of the program's may wait for readers that cannot keep up; none if it never
+// waits, as one that keeps only the last samples.
+std::optional<std::int64_t> MostBlocking(const Guid& writer);
+// The processes with readers that what the writer writes has been promised to.
+std::vector<std::uint32_t> PromisedProcesses(const Guid& writer);
 
 // Readers.
 void AddReader(const ddsi_reader& reader);

@@ -1,5 +1,8 @@
 #include "libtcs_preload/dds/reading.h"
 
+#include <algorithm>
+#include <type_traits>
+
 #include "libtcs_preload/dds/cyclone.h"
 #include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/listening.h"
@@ -28,6 +31,30 @@ class Reading {
   bool outermost_;
 };
 
+template <class First, class... Others>
+const dds_sample_info_t* InfosOf(First first, Others... others) {
+  if constexpr (std::is_same_v<First, dds_sample_info_t*>) {
+    return first;
+  } else {
+    return InfosOf(others...);
+  }
+}
+
+// The samples lie in memory that all of the program's threads share, and one on another core may
+// have put them there at a time that the caller has not come to yet: it goes on when it has. What
+// is further ahead has a timestamp of its writer's making. The deliverer goes on: others wait for
+// what else it has.
+void AwaitWrites(const dds_sample_info_t* infos, dds_return_t count) {
+  const std::int64_t most = TheLink().behind_ns();
+  if (most == 0 || IsDeliverer()) return;
+  dds_time_t latest = 0;
+  for (dds_return_t i = 0; i < count; ++i) {
+    latest = std::max(latest, infos[i].source_timestamp);
+  }
+  const dds_duration_t ahead = latest - dds_time();
+  if (ahead > 0 && ahead <= most) dds_sleepfor(ahead);
+}
+
 template <auto RealCalls::*kCall, class Function>
 struct Hooked;
 
@@ -35,7 +62,11 @@ template <auto RealCalls::*kCall, class Result, class... Arguments>
 struct Hooked<kCall, Result (*)(Arguments...)> {
   static Result Do(Arguments... arguments) {
     const Reading reading;
-    return (Real().*kCall)(arguments...);
+    const Result result = (Real().*kCall)(arguments...);
+    if constexpr ((std::is_same_v<Arguments, dds_sample_info_t*> || ...)) {
+      if (result > 0) AwaitWrites(InfosOf(arguments...), static_cast<dds_return_t>(result));
+    }
+    return result;
   }
 };
 

@@ -12,6 +12,7 @@
 #include "libtcs_preload/dds/public_calls.h"
 #include "libtcs_preload/dds/reading.h"
 #include "libtcs_preload/dds/silence.h"
+#include "libtcs_preload/dds/writing.h"
 
 namespace tcs::dds {
 namespace {
@@ -24,6 +25,7 @@ Hook HookOf(const char* name, Function RealCalls::*, Function hook) {
 const Hook* Hooks() {
 #define TCS_DDS_HOOK(name, hook) HookOf(#name, &RealCalls::name, hook)
 #define TCS_DDS_READING_HOOK(name) {#name, ReadingHook(kCall_##name)},
+#define TCS_DDS_WRITING_HOOK(name) {#name, WritingHook(kCall_##name)},
   static const auto* hooks =
       new std::vector<Hook>{TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
                             TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
@@ -44,7 +46,9 @@ const Hook* Hooks() {
                             TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
                             TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
                             TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),
-                            TCS_DDS_READING_CALLS(TCS_DDS_READING_HOOK){nullptr, nullptr}};
+                            TCS_DDS_READING_CALLS(TCS_DDS_READING_HOOK)
+                                TCS_DDS_WRITING_CALLS(TCS_DDS_WRITING_HOOK){nullptr, nullptr}};
+#undef TCS_DDS_WRITING_HOOK
 #undef TCS_DDS_READING_HOOK
 #undef TCS_DDS_HOOK
   return hooks->data();

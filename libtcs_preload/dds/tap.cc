@@ -9,9 +9,6 @@
 namespace tcs::dds {
 namespace {
 
-// Of a writer that would wait for ever. Cyclone's locks are held meanwhile.
-constexpr std::int64_t kMostBlockingNs = 1'000'000'000;
-
 thread_local const Tap* t_making;
 
 // As many as threads can be writing at a time, and more.
@@ -19,10 +16,25 @@ constexpr std::size_t kMostHad = 64;
 
 Tap& TapOf(ddsi_rhc* rhc) { return *reinterpret_cast<Tap*>(rhc); }
 
-void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample, bool addressed) {
+// Of a sample that a tap carries for all readers of its process, what becomes of it where too many
+// wait.
+struct Carried {
+  WriterKeeps keeps;
+  std::uint64_t instance;
+};
+
+// To the tap's reader alone unless it is carried for all.
+void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
+          const Carried* carried) {
   shm::DdsMessage message = MessageOf(shm::DdsKind::kSample, tap.domain, Guid::Of(writer));
   message.to = tap.process;
-  if (addressed) tap.reader.To(message.other);
+  if (carried == nullptr) {
+    tap.reader.To(message.other);
+  } else {
+    message.keep_last = carried->keeps.last;
+    message.instance = carried->instance;
+    if (!carried->keeps.promised) message.flags |= shm::kDdsUnreliable;
+  }
   message.source_timestamp_ns = sample.timestamp.v;
   message.status_info = sample.statusinfo;
   message.sample_kind = sample.kind;
@@ -37,7 +49,7 @@ void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
     ddsi_serdata_unref(tap.had.front());
     tap.had.pop_front();
   }
-  Ship(tap, writer, *sample, true);
+  Ship(tap, writer, *sample, nullptr);
 }
 
 // The program's listener may write while its writer is still being made: others have to know the
@@ -59,19 +71,15 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
     return true;
   }
   if (!tap.catching_up && std::ranges::count(tap.had, sample) != 0) return true;
-  std::int64_t blocks_ns = 0;
-  Carries carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
+  Carried carried{{}, instance->m_iid};
+  Carries carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
-    carries = CarriesSample(info->guid, tap, sample, instance, &blocks_ns);
+    carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
   }
-  if (carries == Carries::kYes) {
-    Ship(tap, info->guid, *sample, false);
-  }
+  if (carries == Carries::kYes) Ship(tap, info->guid, *sample, &carried);
   if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
     ShipAlone(tap, info->guid, sample);
   }
-  if (lock.owns_lock()) lock.unlock();
-  if (blocks_ns > 0) TheLink().await_room(std::min(blocks_ns, kMostBlockingNs));
   return true;
 }
 
@@ -114,8 +122,9 @@ constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnersh
 }  // namespace
 
 Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
-            const std::string& topic, bool catches_up) {
-  Tap* tap = new Tap{{}, gv, domain, process, reader, topic, catches_up, false, catches_up, {}, {}};
+            const std::string& topic, bool is_reliable, bool catches_up) {
+  Tap* tap = new Tap{{},          gv,         domain, process,    reader, topic,
+                     is_reliable, catches_up, false,  catches_up, {},     {}};
   tap->rhc.common.ops = &kOperations;
   AddTap(tap);
   return tap;

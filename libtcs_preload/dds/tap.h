@@ -20,6 +20,7 @@ struct Tap {
   std::uint32_t process;
   Guid reader;
   std::string topic;
+  bool is_reliable;
   bool catches_up;   // reliable and transient local: gets what writers have when they meet
   bool is_complete;  // CompleteTap has been called
   // Samples of all threads go to this reader alone until its history's end has been sent.
@@ -33,7 +34,7 @@ struct Tap {
 
 // Belongs to the shadow reader that is made with it, and goes with it.
 Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
-            const std::string& topic, bool catches_up);
+            const std::string& topic, bool is_reliable, bool catches_up);
 
 // While it lives, the calling thread makes the tap's shadow reader, and what it stores in the tap
 // is what writers had already.

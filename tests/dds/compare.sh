@@ -43,6 +43,7 @@ END
     status=$?
   local wanted="0 0" ended
   [[ $name == killed_writer ]] && wanted="9 0" && status=0
+  [[ $name == killed_reader ]] && wanted="0 9" && status=0
   ended=$(grep -o '"wait_status": [0-9]*' "$work/out/summary.json" | cut -d ' ' -f 2 | xargs) || true
   [[ $ended == "$wanted" ]] || status="of the two, '$ended',"
   told=$(for who in left-writer right-reader; do

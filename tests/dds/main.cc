@@ -93,7 +93,8 @@ int StartBoth(const Scenario& scenario, char** argv) {
     int status;
     while (waitpid(pids[i], &status, 0) < 0 && errno == EINTR) {
     }
-    if (!EndedAsExpected(status, i == 0 && scenario.end == End::kWriterKilled)) {
+    const End killed = i == 0 ? End::kWriterKilled : End::kReaderKilled;
+    if (!EndedAsExpected(status, scenario.end == killed)) {
       fprintf(stderr, "the %s ended with status 0x%x\n", kRoles[i], status);
       result = 1;
     }

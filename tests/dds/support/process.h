@@ -34,8 +34,8 @@ struct Process {
   dds_entity_t Reader(dds_entity_t topic, const Qos& qos = Plain()) const;
 };
 
-// Whether the writer's process ends as it should, or kills itself.
-enum class End { kOrderly, kWriterKilled };
+// Whether the processes end as they should, or one of them kills itself or goes as it is.
+enum class End { kOrderly, kWriterKilled, kReaderKilled, kWriterExits };
 
 struct Scenario {
   Scenario(const char* scenario_name, void (*writer)(Process&), void (*reader)(Process&),

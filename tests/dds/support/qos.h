@@ -15,9 +15,10 @@ class Qos {
 
   const dds_qos_t* get() const { return qos_; }
 
-  // Without a limit to how long a write waits for slow readers: tests have limits of their own.
-  Qos& Reliable() {
-    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, DDS_INFINITY);
+  // Without an argument there is no limit to how long a write waits for slow readers: tests have
+  // limits of their own.
+  Qos& Reliable(dds_duration_t most_blocking = DDS_INFINITY) {
+    dds_qset_reliability(qos_, DDS_RELIABILITY_RELIABLE, most_blocking);
     return *this;
   }
   Qos& BestEffort() {
@@ -30,6 +31,11 @@ class Qos {
   }
   Qos& KeepLast(int depth) {
     dds_qset_history(qos_, DDS_HISTORY_KEEP_LAST, depth);
+    return *this;
+  }
+  // A reader that has so many samples takes no more until the program has taken some.
+  Qos& AtMost(int samples) {
+    dds_qset_resource_limits(qos_, samples, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
     return *this;
   }
   // Of a writer: `kept` samples of each instance for those who come later, 0: all.

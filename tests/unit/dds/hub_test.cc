@@ -174,9 +174,9 @@ TEST(DdsHub, SaysWhatIsWrongWithAMessageAndKeepsThoseBefore) {
   EXPECT_EQ(b.Take(1).size(), 1u);
   wrong = Message(DdsKind::kSample, 2);
   wrong.payload_size = 4000;
-  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 88");
+  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 104");
   wrong.payload_size = UINT32_MAX - 3;
-  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 88");
+  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 104");
   memset(a.outbox(), 0xff, 200);
   EXPECT_EQ(hub.Send(a.number(), 200, 1), "a message has a wrong size, 4294967295");
   EXPECT_EQ(hub.Send(a.number(), 8, 1), "a message is cut off");
@@ -204,30 +204,120 @@ TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   large.payload_size = shm::kDdsMostPayload;
   large.size = shm::DdsMessageSize(large.payload_size);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(a.Send(i, {large}), "");
-  EXPECT_EQ(hub.dropped(), 4u);
+  EXPECT_EQ(hub.drops().lost, 4u);
   EXPECT_EQ(a.Send(20, {Message(DdsKind::kParticipant, 2)}), "");
-  EXPECT_EQ(hub.dropped(), 4u) << "who is there is never dropped";
+  EXPECT_EQ(hub.drops().lost, 4u) << "who is there is never dropped";
 }
 
-TEST(DdsHub, WhoSendsMoreThanOneTakesIsTold) {
+TEST(DdsHub, AllSeeWhoIsFull) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0), c(hub, 0);
   DdsMessage sample = Message(DdsKind::kSample, 1, b.number());
   sample.payload_size = 600'000;
   sample.size = shm::DdsMessageSize(sample.payload_size);
   EXPECT_EQ(a.Send(1, {sample}), "");
-  EXPECT_EQ(a.shown().full, 0u);
+  EXPECT_EQ(a.shown().full_count, 0u);
   EXPECT_EQ(a.Send(2, {sample}), "");
-  EXPECT_EQ(a.shown().full, b.number());
+  EXPECT_EQ(a.shown().full_count, 1u);
+  EXPECT_TRUE(a.shown().IsFull(b.number()));
   EXPECT_TRUE(hub.IsFull(b.number()));
   EXPECT_FALSE(hub.IsFull(c.number()));
   hub.Deliver(b.number(), 2);
   EXPECT_TRUE(hub.IsFull(b.number())) << "it still has them in its hands";
   hub.CameBack(b.number());
   EXPECT_FALSE(hub.IsFull(b.number()));
-  sample.to = c.number();
-  EXPECT_EQ(a.Send(3, {sample}), "");
-  EXPECT_EQ(a.shown().full, 0u) << "of the last message only";
+  EXPECT_EQ(a.shown().full_count, 0u);
+}
+
+DdsMessage Large(std::uint8_t subject, std::uint32_t payload_size) {
+  DdsMessage message = Message(DdsKind::kSample, subject);
+  message.payload_size = payload_size;
+  message.size = shm::DdsMessageSize(payload_size);
+  return message;
+}
+
+std::vector<int> TimesOf(const std::vector<DdsMessage>& messages, std::uint8_t subject) {
+  std::vector<int> times;
+  for (const DdsMessage& message : messages) {
+    if (message.subject[0] == subject) times.push_back(static_cast<int>(message.time_ns));
+  }
+  return times;
+}
+
+TEST(DdsHub, OfWhoKeepsTheLastThoseAreLeftForWhoIsFull) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage sample = Message(DdsKind::kSample, 1);
+  sample.keep_last = 2;
+  DdsMessage end = sample;
+  end.status_info = 1;
+  int now = 0;
+  for (; now < 5; ++now) {
+    sample.instance = static_cast<std::uint64_t>(now % 2);
+    EXPECT_EQ(a.Send(now, {sample}), "");
+  }
+  EXPECT_EQ(a.Send(5, {Large(2, 2'000'000)}), "") << "now it is full";
+  EXPECT_EQ(hub.drops().replaced, 0u);
+  EXPECT_EQ(a.Send(6, {end}), "");
+  sample.instance = 0;
+  EXPECT_EQ(a.Send(7, {sample}), "");
+  EXPECT_EQ(a.Send(8, {sample}), "");
+  EXPECT_EQ(hub.drops().replaced, 3u) << "0, 2 and 4 of instance 0";
+  const auto taken = b.Take(10);
+  EXPECT_EQ(TimesOf(taken, 1), (std::vector<int>{1, 3, 6, 7, 8}));
+  EXPECT_EQ(TimesOf(taken, 2), std::vector<int>{5});
+  for (now = 11; now < 15; ++now) EXPECT_EQ(a.Send(now, {sample}), "");
+  EXPECT_EQ(b.Take(20).size(), 4u) << "it is not full any more";
+}
+
+TEST(DdsHub, WhatIsPromisedToNobodyIsDroppedForWhoIsFull) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage sample = Message(DdsKind::kSample, 1);
+  sample.flags = shm::kDdsUnreliable;
+  EXPECT_EQ(a.Send(1, {sample, Large(2, 2'000'000), sample, sample}), "");
+  EXPECT_EQ(hub.drops().unreliable, 2u);
+  EXPECT_EQ(hub.drops().lost, 0u);
+  EXPECT_EQ(b.Take(10).size(), 2u);
+}
+
+TEST(DdsHub, AStoppedProcessIsMissedUnlessItGoesOnInTime) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage participant = Message(DdsKind::kParticipant, 1);
+  participant.lease_ns = 10'000;
+  DdsMessage writer = Message(DdsKind::kEndpoint, 2);
+  writer.other[0] = 1;
+  writer.flags = shm::kDdsLeased;
+  writer.lease_ns = 300;
+  EXPECT_EQ(a.Send(5, {participant, writer}), "");
+  EXPECT_EQ(b.Take(5).size(), 2u);
+  hub.Stop(a.number(), 100);
+  hub.Continue(a.number(), 399);
+  EXPECT_EQ(hub.DueNs(b.number()), shm::kNeverNs);
+
+  hub.Stop(a.number(), 1'000);
+  hub.Stop(a.number(), 1'100);
+  const auto lost = b.Take(1'300);
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].kind, DdsKind::kLiveliness);
+  hub.Continue(a.number(), 2'000);
+  EXPECT_EQ(hub.DueNs(b.number()), shm::kNeverNs) << "its next sample says that it is alive";
+
+  EXPECT_EQ(b.Send(2'500, {Message(DdsKind::kParticipant, 7)}), "");
+  EXPECT_EQ(a.Take(2'500).size(), 1u);
+  hub.Stop(a.number(), 3'000);
+  EXPECT_EQ(b.Take(13'000).size(), 2u);
+  hub.Continue(a.number(), 20'000);
+  const auto again = b.Take(100'020'000);
+  ASSERT_EQ(again.size(), 3u) << "gone, there, its writer";
+  EXPECT_EQ(again[0].flags, shm::kDdsGone);
+  EXPECT_EQ(again[1].flags, 0);
+  EXPECT_EQ(again[2].subject[0], 2);
+  const auto others = a.Take(100'020'000);
+  ASSERT_EQ(others.size(), 2u);
+  EXPECT_EQ(others[0].flags, shm::kDdsGone);
+  EXPECT_EQ(others[1].subject[0], 7);
 }
 
 TEST(DdsHub, TheCoordinatorIsOneOfThem) {

@@ -1,0 +1,77 @@
+#include "libtcs_preload/dds/writing.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "libtcs_preload/dds/cyclone.h"
+#include "libtcs_preload/dds/deliverer.h"
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+// Who waits for a reader looks that often whether it still is one.
+constexpr std::int64_t kLookAgainNs = 10'000'000;
+
+// 0: none.
+std::uint32_t FullReaderOf(const Guid& writer) {
+  for (const std::uint32_t process : PromisedProcesses(writer)) {
+    if (TheLink().is_full(process)) return process;
+  }
+  return 0;
+}
+
+// As Cyclone does it over a network: a reliable writer that has to keep all that others have not
+// taken yet waits before it writes, and gives up after max_blocking_time, having written nothing.
+// The deliverer never waits: others may be waiting for what it takes.
+bool HasRoom(dds_entity_t writer) {
+  dds_guid_t wire;
+  if (IsDeliverer() || dds_get_guid(writer, &wire) != DDS_RETCODE_OK) return true;
+  const Guid guid = Guid::FromBytes(wire.v);
+  const std::optional<std::int64_t> most = MostBlocking(guid);
+  if (!most.has_value()) return true;
+  const std::int64_t start = TheLink().now();
+  const std::int64_t end = *most > INT64_MAX - start ? INT64_MAX : start + *most;
+  while (const std::uint32_t process = FullReaderOf(guid)) {
+    const std::int64_t now = TheLink().now();
+    if (now >= end) return false;
+    if (!TheLink().await_room(process, std::min(end, now + kLookAgainNs))) return true;
+  }
+  return true;
+}
+
+// What a write takes over, whether it succeeds or not.
+void Release(ddsi_serdata* sample) { ddsi_serdata_unref(sample); }
+template <class Argument>
+void Release(const Argument&) {}
+
+template <auto RealCalls::*kCall, class Function>
+struct Hooked;
+
+template <auto RealCalls::*kCall, class... Arguments>
+struct Hooked<kCall, dds_return_t (*)(dds_entity_t, Arguments...)> {
+  static dds_return_t Do(dds_entity_t writer, Arguments... arguments) {
+    if (!TheLink().any_is_full() || HasRoom(writer)) {
+      return (Real().*kCall)(writer, arguments...);
+    }
+    (Release(arguments), ...);
+    return DDS_RETCODE_TIMEOUT;
+  }
+};
+
+}  // namespace
+
+void* WritingHook(Call call) {
+  switch (call) {
+#define TCS_DDS_HOOK(name) \
+  case kCall_##name:       \
+    return reinterpret_cast<void*>(Hooked<&RealCalls::name, decltype(RealCalls::name)>::Do);
+    TCS_DDS_WRITING_CALLS(TCS_DDS_HOOK)
+#undef TCS_DDS_HOOK
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,46 @@
+// A writer's program ends without deleting anything: when its lease is over the reader sees the
+// writer not alive and its instance without writers, and keeps the sample.
+#include <stdlib.h>
+
+#include "tests/dds/support/process.h"
+#include "tests/dds/support/samples.h"
+
+namespace {
+
+using namespace dds_test;
+
+constexpr dds_duration_t kLease = DDS_MSECS(500);
+
+Qos Leased() { return Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease); }
+
+void Writer(Process& self) {
+  const dds_entity_t writer = self.Writer(self.Topic(), Leased().UnregisterDoesNotDispose());
+  WaitForReaders(writer, 1);
+  self.peer.Meet("matched");
+  Write(writer, 1, 1);
+  self.peer.Await("received");
+  Event("exits");
+  exit(0);
+}
+
+void Reader(Process& self) {
+  const dds_entity_t reader = self.Reader(self.Topic(), Leased());
+  WaitForWriters(reader, 1);
+  self.peer.Meet("matched");
+  WaitForSample<1>(reader);
+  self.peer.Reached("received");
+  WaitForState(reader, DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
+                           DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
+                           DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE);
+  WaitForStatus(reader, DDS_LIVELINESS_CHANGED_STATUS, [=] {
+    dds_liveliness_changed_status_t status;
+    OK(dds_get_liveliness_changed_status(reader, &status));
+    return status.alive_count == 0;
+  });
+  Event("no writer is alive");
+  TakeAndTell(reader, "reader");
+}
+
+}  // namespace
+
+TCS_DDS_SCENARIO(exited_writer, Writer, Reader, ::dds_test::End::kWriterExits);
