@@ -10,22 +10,42 @@ namespace {
 // An allocation stands for what a program computes until the next one, 2 us unless told; taking
 // and releasing a lock is 20 ns of processor time natively.
 constexpr std::int64_t kLocksPerAllocation = 100;
+// So many locks in a row without anything that costs: it waits for others by looking again and
+// again. The locks between a program's calls and allocations cost nothing; how many they are may
+// depend on addresses.
+constexpr int kSpins = 1000;
 
-// Charges the calling thread, and lets others have their turn where that takes it to its horizon.
-// Never attaches: a thread that has not registered, and the child of a fork before its first call,
-// allocate for nothing. Async-signal-safe; errno stays.
-void ChargeShare(std::int64_t divisor) {
-  if (g_process->mode != ProcessState::kAttached) return;
+// Null where nothing is charged: by a thread that has not registered, and in the child of a fork
+// before its first call. Never attaches.
+GuestThread* Charged() {
+  if (g_process->mode != ProcessState::kAttached) return nullptr;
   GuestThread& thread = t_thread;
-  if (thread.slot == nullptr || thread.attaching) return;
-  tcs::shm::ClockPage& page = thread.slot->clock;
-  if (page.allocation_cost_ns == 0) return;
-  Charge(page, page.allocation_cost_ns / divisor);
-  NowNs(thread);
+  const bool is_charged =
+      thread.slot != nullptr && !thread.attaching && thread.slot->clock.allocation_cost_ns != 0;
+  return is_charged ? &thread : nullptr;
 }
 
 }  // namespace
 
-TCS_EXPORT void tcs_charge_allocation() noexcept { ChargeShare(1); }
+// Both charge the calling thread, and let others have their turn where that takes it to its
+// horizon. Async-signal-safe; errno stays.
 
-TCS_EXPORT void tcs_charge_lock() noexcept { ChargeShare(kLocksPerAllocation); }
+TCS_EXPORT void tcs_charge_allocation() noexcept {
+  GuestThread* thread = Charged();
+  if (thread == nullptr) return;
+  Charge(thread->slot->clock, thread->slot->clock.allocation_cost_ns);
+  NowNs(*thread);
+}
+
+TCS_EXPORT void tcs_charge_lock() noexcept {
+  GuestThread* thread = Charged();
+  if (thread == nullptr) return;
+  tcs::shm::ClockPage& page = thread->slot->clock;
+  if (const std::int64_t now = tcs::shm::ReadClock(page).time_ns; now != thread->locks_at_ns) {
+    thread->locks_at_ns = now;
+    thread->locks = 0;
+  }
+  if (++thread->locks <= kSpins) return;
+  Charge(page, page.allocation_cost_ns / kLocksPerAllocation);
+  thread->locks_at_ns = NowNs(*thread);
+}

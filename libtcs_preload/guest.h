@@ -27,6 +27,9 @@ struct GuestThread {
   std::uint32_t index = 0;
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
+  // Locks taken while its time stood still at `locks_at_ns`; under fixed accounting.
+  int locks = 0;
+  std::int64_t locks_at_ns = 0;
 };
 
 // Kept in a page that a fork leaves zeroed in the child, so that the child knows it has no slot

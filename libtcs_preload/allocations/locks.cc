@@ -1,5 +1,5 @@
-// Taking a lock has a set cost, too, in the same runs: a loop that looks whether others are done
-// takes and releases a lock and does nothing else that could be counted (OMPL's
+// The shim is told of each lock taken, too, in the same runs: a loop that looks whether others are
+// done takes and releases a lock and does nothing else that could be counted (OMPL's
 // AnytimePathShortening). Waiting for a lock that another thread has is the shim's business.
 #include <pthread.h>
 

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Under fixed accounting each allocation costs what it is said to, whatever function makes it and in
-# each thread, and each lock a hundredth of that; computing costs nothing. 1000 of them stand between two readings of the clock, the
+# each thread, and from 1000 locks in a row on each a hundredth of that; computing costs nothing. 1000 of them stand between two readings of the clock, the
 # second of which costs 1 us; a thread that has just begun may owe one more, or have paid it.
 costs() {
   local each=$1 said names
   shift
   said=$("$tcsim" exec --accounting fixed "$@" -- "$build/bin/allocating")
   names=$(awk -v each="$each" '{
-      cost = $1 == "computing" ? 0 : $1 ~ /mutex|rwlock/ ? int(each / 100) : each
+      cost = $1 ~ /computing|locks/ ? 0 : $1 ~ /mutex|rwlock/ ? int(each / 100) : each
       rest = $2 - 1000 * cost
       if (rest == 1000 || ($1 == "thread" && rest >= 0 && rest <= 2000)) print $1
     }' <<<"$said")
-  [[ $(wc -w <<<"$names") == 12 ]] || fail "$*: not $each ns for each allocation and a hundredth for each lock: $said"
+  [[ $(wc -w <<<"$names") == 13 ]] || fail "$*: not $each ns for each allocation and a hundredth for each lock of many: $said"
 }
 costs 2000
 costs 150 --allocation-cost 150ns
