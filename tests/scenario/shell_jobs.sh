@@ -6,7 +6,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 begin='sleep 0.$(printf %09d $((1000000000 - 1$(date +%N) + 1000000000)))'
 expect() {
   local wanted=$1 said accounting
-  for accounting in measured fixed; do
+  for accounting in ${only:-measured fixed}; do
     said=$("$tcsim" exec --accounting "$accounting" --allocation-cost 0 -- \
       bash -c "$begin; exec bash -c \"\$1\"" bash "$2" 2>&1 | grep -v 'tcsim: other runs')
     [[ $said == "$wanted" ]] || fail "$accounting: '$2' says '$said' instead of '$wanted'"
@@ -25,6 +25,7 @@ expect '3' 'TIMEFORMAT=%0R; time sleep 3'
 expect 'alarm after 7' "perl -e '\$start = time; sleep 2; select(undef, undef, undef, 2);
   \$SIG{ALRM} = sub { die qq(alarm) }; eval { alarm 3; sleep 100 }; \$@ =~ /alarm/ and
   printf qq(alarm after %d), time - \$start'"
-# Stopped while it waits, and before it has begun.
+# Stopped while it waits, and before it has begun: where computing takes time, on a slow host bash's
+# turn is over before it sends the signal.
 expect '0 at 6' 'sleep 3 & sleep 1; kill -STOP $!; sleep 5; kill -CONT $!; wait $!; echo $? at $SECONDS'
-expect '0 at 4' 'sleep 3 & kill -STOP $!; sleep 1; kill -CONT $!; wait $!; echo $? at $SECONDS'
+only=fixed expect '0 at 4' 'sleep 3 & kill -STOP $!; sleep 1; kill -CONT $!; wait $!; echo $? at $SECONDS'

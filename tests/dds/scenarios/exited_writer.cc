@@ -29,14 +29,8 @@ void Reader(Process& self) {
   self.peer.Meet("matched");
   WaitForSample<1>(reader);
   self.peer.Reached("received");
-  WaitForState(reader, DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
-                           DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
-                           DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE);
-  WaitForStatus(reader, DDS_LIVELINESS_CHANGED_STATUS, [=] {
-    dds_liveliness_changed_status_t status;
-    OK(dds_get_liveliness_changed_status(reader, &status));
-    return status.alive_count == 0;
-  });
+  WaitForState(reader, kNotAlive);
+  WaitForLiveWriters(reader, 0);
   Event("no writer is alive");
   TakeAndTell(reader, "reader");
 }

@@ -35,14 +35,8 @@ void Reader(Process& self) {
   Write(own, 2, 1);
   WaitForSample<2>(reader);
   self.peer.Reached("received");
-  WaitForState(reader, DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
-                           DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
-                           DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE);
-  WaitForStatus(reader, DDS_LIVELINESS_CHANGED_STATUS, [=] {
-    dds_liveliness_changed_status_t status;
-    OK(dds_get_liveliness_changed_status(reader, &status));
-    return status.alive_count == 1;
-  });
+  WaitForState(reader, kNotAlive);
+  WaitForLiveWriters(reader, 1);
   Event("one writer is alive");
   TakeAndTell(reader, "reader");
   Write(own, 2, 2);

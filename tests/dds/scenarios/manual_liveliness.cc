@@ -79,9 +79,7 @@ void Reader(Process& self) {
   changes.WaitFor(3);
   changes.WaitFor(4);
   OK(dds_set_listener(reader, nullptr));
-  WaitForState(reader, DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
-                           DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
-                           DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE);
+  WaitForState(reader, kNotAlive);
   TakeAndTell(reader, "reader");
 }
 

@@ -32,6 +32,11 @@ void WaitForSample(dds_entity_t reader) {
   OK(dds_delete(condition));
 }
 
+// Of samples whose instance is disposed or has no writer.
+constexpr std::uint32_t kNotAlive = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
+                                    DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
+                                    DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
+
 // Waits until there is a sample in one of these states.
 inline void WaitForState(dds_entity_t reader, std::uint32_t states) {
   const dds_entity_t condition = OK(dds_create_readcondition(reader, states));

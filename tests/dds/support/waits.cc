@@ -32,6 +32,14 @@ void WaitForWriters(dds_entity_t reader, std::uint32_t count) {
   });
 }
 
+void WaitForLiveWriters(dds_entity_t reader, std::uint32_t count) {
+  WaitForStatus(reader, DDS_LIVELINESS_CHANGED_STATUS, [=] {
+    dds_liveliness_changed_status_t status;
+    OK(dds_get_liveliness_changed_status(reader, &status));
+    return status.alive_count == count;
+  });
+}
+
 void WaitUntil(const char* what, const std::function<bool()>& holds) {
   const dds_time_t end = dds_time() + kPatience;
   while (!holds()) {

@@ -19,6 +19,8 @@ void WaitForStatus(dds_entity_t entity, std::uint32_t status, const std::functio
 // Until exactly so many readers (writers) are matched.
 void WaitForReaders(dds_entity_t writer, std::uint32_t count);
 void WaitForWriters(dds_entity_t reader, std::uint32_t count);
+// Until exactly so many writers that it has matched are alive.
+void WaitForLiveWriters(dds_entity_t reader, std::uint32_t count);
 
 // Looks again and again, for what nothing announces.
 void WaitUntil(const char* what, const std::function<bool()>& holds);
