@@ -160,7 +160,8 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max(task.reached_ns, event_ns_);
-  if (task.waits_for_messages) task.messages_until_ns = std::max(event_ns_, task.deadline_ns);
+  // What is due later than that, though others have come to that time already, it gets in its own.
+  if (task.waits_for_messages) task.messages_until_ns = std::min(event_ns_, task.deadline_ns);
   if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
   LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.
