@@ -74,7 +74,8 @@ enum class NotificationKind : std::uint32_t {
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).
   kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the coordinator's
-                  // descriptor of the memory with the areas, and from bit 16 on the drift bound, ns
+                  // descriptor of the memory with the areas, and from bit
+                  // kDdsDescriptorBits on the drift bound, ns
   kDdsSend = 26,  // args[0]: bytes of messages in the outbox
   kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
                   // messages in the inbox
@@ -83,6 +84,8 @@ enum class NotificationKind : std::uint32_t {
   kDdsSockets =
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
 };
+
+inline constexpr int kDdsDescriptorBits = 16;
 
 enum class WhySockets : std::uint32_t {
   kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for

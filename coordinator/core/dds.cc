@@ -154,7 +154,7 @@ void Engine::JoinDds(Task& task) {
   LeaveDds(process);
   process.dds_number = hub_.Join(event_ns_);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
-  task.reply[1] = hub_.fd() | scenario_.drift_bound.ns() << 16;
+  task.reply[1] = hub_.fd() | scenario_.drift_bound.ns() << shm::kDdsDescriptorBits;
   if (process.dds_number != 0) dds_processes_.push_back(&process);
 }
 

@@ -160,8 +160,11 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max(task.reached_ns, event_ns_);
-  // What is due later than that, though others have come to that time already, it gets in its own.
-  if (task.waits_for_messages) task.messages_until_ns = std::min(event_ns_, task.deadline_ns);
+  // Others may have come further: what is due later than its own time it gets then.
+  if (task.waits_for_messages) {
+    task.messages_until_ns =
+        reason == shm::WakeReason::kDeadline ? task.deadline_ns : task.reached_ns;
+  }
   if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
   LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.

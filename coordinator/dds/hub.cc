@@ -37,8 +37,7 @@ std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
 // instance is not replaced, and does not replace.
 bool IsReplaceable(const DdsMessage& header) {
   return header.kind == DdsKind::kSample && header.keep_last > 0 && header.status_info == 0 &&
-         std::all_of(std::begin(header.other), std::end(header.other),
-                     [](std::uint8_t byte) { return byte == 0; });
+         !IsAddressed(header);
 }
 
 bool IsKnownKind(DdsKind kind) {
@@ -143,7 +142,7 @@ std::vector<Hub::Message> Hub::EndLeases(Number number, const std::vector<Known>
     header.flags = shm::kDdsGone;
     header.time_ns = due;
     Bytes bytes(sizeof header);
-    memcpy(bytes.data(), &header, sizeof header);
+    PutHeader(header, bytes);
     ends.push_back(std::make_shared<const Bytes>(std::move(bytes)));
     QueueForOthers(number, due, ends.back());
   }
@@ -194,7 +193,7 @@ void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
       DdsMessage header = HeaderOf(bytes);
       if (!comes) header.flags = shm::kDdsGone;
       header.time_ns = comes ? now_ns + kRediscoveryNs : now_ns;
-      memcpy(bytes.data(), &header, sizeof header);
+      PutHeader(header, bytes);
       Queue(to, header.time_ns, std::make_shared<const Bytes>(std::move(bytes)));
     }
   }
@@ -221,7 +220,7 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
     header.time_ns = now_ns;
     const auto* bytes_at = reinterpret_cast<const std::byte*>(at);
     Bytes copy(bytes_at, bytes_at + header.size);
-    memcpy(copy.data(), &header, sizeof header);
+    PutHeader(header, copy);
     at += header.size;
     Enter(header, std::move(copy));
   }
@@ -234,7 +233,7 @@ void Hub::SendOwn(DdsMessage header, std::span<const std::byte> payload, std::in
   header.from = shm::kDdsCoordinator;
   header.time_ns = due_ns;
   Bytes bytes(header.size);
-  memcpy(bytes.data(), &header, sizeof header);
+  PutHeader(header, bytes);
   std::copy(payload.begin(), payload.end(), bytes.begin() + sizeof header);
   Enter(header, std::move(bytes));
 }

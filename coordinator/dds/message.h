@@ -30,6 +30,14 @@ inline shm::DdsMessage HeaderOf(std::span<const std::byte> message) {
   return header;
 }
 
+// The same with this header.
+inline void PutHeader(const shm::DdsMessage& header, std::span<std::byte> message) {
+  std::memcpy(message.data(), &header, sizeof header);
+}
+
+// Whether it is for one endpoint only.
+inline bool IsAddressed(const shm::DdsMessage& header) { return GuidAt(header.other) != Guid{}; }
+
 // Of a whole message whose header is true.
 inline std::span<const std::byte> PayloadOf(std::span<const std::byte> message) {
   return message.subspan(sizeof(shm::DdsMessage), HeaderOf(message).payload_size);

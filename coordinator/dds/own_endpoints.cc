@@ -17,6 +17,14 @@ constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of its 
 // ROS 2's middleware takes participants that say so for its own kind, with nodes.
 constexpr const char* kEnclave = "enclave=/;";
 
+// From any GUID of a participant's to its own.
+Guid WithParticipantId(Guid guid) {
+  guid[12] = guid[13] = 0;
+  guid[14] = kParticipantNumber;
+  guid[15] = shm::kDdsParticipantId;
+  return guid;
+}
+
 DdsMessage Announcement(DdsKind kind, const Guid& guid, int domain) {
   DdsMessage header{};
   header.kind = kind;
@@ -41,8 +49,7 @@ Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
   for (std::size_t i = 0; i < 4; ++i) {
     guid[8 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(domain) >> (24 - 8 * i));
   }
-  guid[14] = kParticipantNumber;
-  guid[15] = shm::kDdsParticipantId;
+  guid = WithParticipantId(guid);
   if (domains_.insert(domain).second) {
     hub_.SendOwn(Announcement(DdsKind::kParticipant, guid, domain),
                  EncodeParticipant("tcsim", kEnclave), now_ns);
@@ -51,11 +58,7 @@ Guid OwnEndpoints::ParticipantOf(int domain, std::int64_t now_ns) {
 }
 
 Guid OwnEndpoints::ParticipantOf(Index endpoint) const {
-  auto guid = own_[endpoint].guid;
-  guid[12] = guid[13] = 0;
-  guid[14] = kParticipantNumber;
-  guid[15] = shm::kDdsParticipantId;
-  return guid;
+  return WithParticipantId(own_[endpoint].guid);
 }
 
 OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std::int64_t now_ns) {
@@ -173,9 +176,8 @@ std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
     const auto writer = remotes_.find(GuidAt(header.subject));
     if (writer == remotes_.end() || header.sample_kind != shm::kDdsData) continue;
     Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
-    const Guid addressee = GuidAt(header.other);
     for (Index i = 0; i < own_.size(); ++i) {
-      const bool is_meant = addressee == Guid{} || addressee == own_[i].guid;
+      const bool is_meant = !IsAddressed(header) || GuidAt(header.other) == own_[i].guid;
       if (is_meant && Matches(own_[i], writer->second)) sample.readers.push_back(i);
     }
     if (!sample.readers.empty()) return sample;

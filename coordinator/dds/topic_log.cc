@@ -11,11 +11,6 @@ namespace {
 using shm::DdsKind;
 using shm::DdsMessage;
 
-bool IsAddressed(const DdsMessage& header) {
-  return std::any_of(std::begin(header.other), std::end(header.other),
-                     [](std::uint8_t byte) { return byte != 0; });
-}
-
 }  // namespace
 
 void TopicLog::Entered(const DdsMessage& header, std::span<const std::byte> payload) {

@@ -67,7 +67,7 @@ std::uint32_t Join() {
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  constexpr int kDescriptorBits = 16;
+  constexpr int kDescriptorBits = tcs::shm::kDdsDescriptorBits;
   if (reply.values[0] > 0) {
     g_behind_ns = t->slot->cores > 1 ? reply.values[1] >> kDescriptorBits : 0;
     g_area = MapArea(reply.values[1] & ((1 << kDescriptorBits) - 1), process);

@@ -14,11 +14,9 @@ constexpr dds_duration_t kLease = DDS_MSECS(400);
 constexpr dds_duration_t kComputingFor = 3 * kLease;
 constexpr int kSamples = 100;
 
-Qos Leased() { return Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease); }
-
 void Writer(Process& self) {
   const dds_entity_t topic = self.Topic(), back = self.Topic("b");
-  const dds_entity_t writer = self.Writer(topic), reader = self.Reader(back, Leased());
+  const dds_entity_t writer = self.Writer(topic), reader = self.Reader(back, Leased(kLease));
   WaitForReaders(writer, 1);
   WaitForWriters(reader, 1);
   self.peer.Meet("matched");
@@ -42,7 +40,7 @@ void Reader(Process& self) {
   const dds_entity_t reader =
       OK(dds_create_reader(self.participant, topic, Plain().get(), listener));
   dds_delete_listener(listener);
-  const dds_entity_t writer = self.Writer(back, Leased());
+  const dds_entity_t writer = self.Writer(back, Leased(kLease));
   WaitForWriters(reader, 1);
   WaitForReaders(writer, 1);
   self.peer.Meet("matched");

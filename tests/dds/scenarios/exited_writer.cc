@@ -11,10 +11,8 @@ using namespace dds_test;
 
 constexpr dds_duration_t kLease = DDS_MSECS(500);
 
-Qos Leased() { return Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease); }
-
 void Writer(Process& self) {
-  const dds_entity_t writer = self.Writer(self.Topic(), Leased().UnregisterDoesNotDispose());
+  const dds_entity_t writer = self.Writer(self.Topic(), Leased(kLease).UnregisterDoesNotDispose());
   WaitForReaders(writer, 1);
   self.peer.Meet("matched");
   Write(writer, 1, 1);
@@ -24,7 +22,7 @@ void Writer(Process& self) {
 }
 
 void Reader(Process& self) {
-  const dds_entity_t reader = self.Reader(self.Topic(), Leased());
+  const dds_entity_t reader = self.Reader(self.Topic(), Leased(kLease));
   WaitForWriters(reader, 1);
   self.peer.Meet("matched");
   WaitForSample<1>(reader);

@@ -14,14 +14,8 @@ using namespace dds_test;
 
 constexpr std::uint32_t kBytes = 20'000;
 
-// In the domain beside the scenario's, whose leases are shorter than ten seconds.
 dds_entity_t ShortLived(Process& self) {
-  OK(dds_create_domain(self.domain + 1,
-                       "<CycloneDDS><Domain><General><Interfaces>"
-                       "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
-                       "<Discovery><LeaseDuration>2s</LeaseDuration></Discovery>"
-                       "</Domain></CycloneDDS>"));
-  self.participant = self.Participant(1);
+  self.UseShortLease("2s");
   return self.Topic("block", &dds_test_Block_desc);
 }
 

@@ -13,8 +13,7 @@ using namespace dds_test;
 constexpr dds_duration_t kLease = DDS_MSECS(500);
 
 void Writer(Process& self) {
-  const dds_entity_t writer =
-      self.Writer(self.Topic(), Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease));
+  const dds_entity_t writer = self.Writer(self.Topic(), Leased(kLease));
   WaitForReaders(writer, 1);
   self.peer.Meet("matched");
   Write(writer, 1, 1);
@@ -25,7 +24,7 @@ void Writer(Process& self) {
 
 void Reader(Process& self) {
   const dds_entity_t topic = self.Topic();
-  const Qos qos = Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease);
+  const Qos qos = Leased(kLease);
   const dds_entity_t reader = self.Reader(topic, qos);
   WaitForWriters(reader, 1);
   self.peer.Meet("matched");

@@ -10,14 +10,8 @@ namespace {
 
 using namespace dds_test;
 
-// In the domain beside the scenario's, whose leases are shorter than ten seconds.
 dds_entity_t ShortLived(Process& self) {
-  OK(dds_create_domain(self.domain + 1,
-                       "<CycloneDDS><Domain><General><Interfaces>"
-                       "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
-                       "<Discovery><LeaseDuration>1s</LeaseDuration></Discovery>"
-                       "</Domain></CycloneDDS>"));
-  self.participant = self.Participant(1);
+  self.UseShortLease("1s");
   return self.Topic();
 }
 

@@ -14,10 +14,8 @@ using namespace dds_test;
 
 constexpr dds_duration_t kLease = DDS_MSECS(500);
 
-Qos Leased() { return Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, kLease); }
-
 void Writer(Process& self) {
-  const dds_entity_t writer = self.Writer(self.Topic(), Leased().UnregisterDoesNotDispose());
+  const dds_entity_t writer = self.Writer(self.Topic(), Leased(kLease).UnregisterDoesNotDispose());
   WaitForReaders(writer, 1);
   self.peer.Meet("matched");
   Write(writer, 1, 1);
@@ -38,7 +36,7 @@ void WaitForAlive(dds_entity_t reader, std::uint32_t alive, std::uint32_t not_al
 }
 
 void Reader(Process& self) {
-  const dds_entity_t reader = self.Reader(self.Topic(), Leased());
+  const dds_entity_t reader = self.Reader(self.Topic(), Leased(kLease));
   WaitForWriters(reader, 1);
   self.peer.Meet("matched");
   WaitForSample<1>(reader);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include <string>
+
 namespace dds_test {
 
 namespace {
@@ -26,6 +28,16 @@ const Scenario* FindScenario(const char* name) {
 
 dds_entity_t Process::Participant(dds_domainid_t beside) const {
   return OK(dds_create_participant(domain + beside, nullptr, nullptr));
+}
+
+void Process::UseShortLease(const char* lease) {
+  const std::string configuration =
+      "<CycloneDDS><Domain><General><Interfaces>"
+      "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
+      "<Discovery><LeaseDuration>" +
+      std::string(lease) + "</LeaseDuration></Discovery></Domain></CycloneDDS>";
+  OK(dds_create_domain(domain + 1, configuration.c_str()));
+  participant = Participant(1);
 }
 
 dds_entity_t Process::Topic(const char* name, const dds_topic_descriptor_t* type) const {

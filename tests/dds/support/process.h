@@ -27,6 +27,9 @@ struct Process {
 
   // One more participant, in the scenario's domain or in one beside it.
   dds_entity_t Participant(dds_domainid_t beside = 0) const;
+  // Goes over to the domain beside the scenario's, with a lease of so long (Cyclone's form: "2s")
+  // rather than ten seconds.
+  void UseShortLease(const char* lease);
   // Topics of a scenario are told apart by a letter.
   dds_entity_t Topic(const char* name = "a",
                      const dds_topic_descriptor_t* type = &dds_test_Sample_desc) const;

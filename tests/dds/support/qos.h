@@ -94,5 +94,9 @@ class Qos {
 
 // Reliable and keeping everything: what most scenarios want of both ends.
 inline Qos Plain() { return Qos().Reliable().KeepAll(); }
+// Alive as long as the program is.
+inline Qos Leased(dds_duration_t lease) {
+  return Plain().Liveliness(DDS_LIVELINESS_AUTOMATIC, lease);
+}
 
 }  // namespace dds_test
