@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "coordinator/os/own_network.h"
+#include "tests/bench/attempt.h"
 #include "tests/bench/child.h"
 
 namespace tcs::bench {
@@ -23,9 +24,6 @@ namespace {
 
 // The first second is for finding each other; ddsperf's pings begin after it.
 constexpr char kDuration[] = "-D2";
-// On a busy host the first second may not do, and a match that ddsperf is told of before it knows
-// the participant it misses: either ends it with an error.
-constexpr int kAttempts = 3;
 constexpr double kCosted = 100'000;
 // Other runs of tcsim may have the processors, and are waited for.
 constexpr std::chrono::seconds kLongestRun{300};
@@ -223,10 +221,9 @@ void PrepareForDdsperf() {
 }
 
 std::optional<DdsperfNumbers> RunDdsperf(const DdsperfCase& what, Carrier carrier, bool gently) {
-  for (int attempt = 1; attempt < kAttempts; ++attempt) {
-    if (const auto numbers = RunOnce(what, carrier, gently)) return numbers;
-  }
-  return RunOnce(what, carrier, gently);
+  // On a busy host the first second may not do, and a match that ddsperf is told of before it knows
+  // the participant it misses: either ends it with an error.
+  return Attempt([&] { return RunOnce(what, carrier, gently); });
 }
 
 }  // namespace tcs::bench

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "tests/bench/attempt.h"
 #include "tests/bench/child.h"
 
 namespace tcs::bench {
@@ -30,9 +31,7 @@ std::vector<std::string> CommandFor(const Probe& probe) {
   return {program, "native", probe.what, probe.steps};
 }
 
-}  // namespace
-
-std::optional<double> RunProbe(const Probe& probe) {
+std::optional<double> RunOnce(const Probe& probe) {
   const ChildResult run = RunChild(CommandFor(probe));
   if (!run.error.empty()) {
     fmt::print(stderr, "tcs_bench: {}: {}\n", probe.what, run.error);
@@ -45,6 +44,12 @@ std::optional<double> RunProbe(const Probe& probe) {
     return std::nullopt;
   }
   return number;
+}
+
+}  // namespace
+
+std::optional<double> RunProbe(const Probe& probe) {
+  return Attempt([&] { return RunOnce(probe); });
 }
 
 }  // namespace tcs::bench
