@@ -233,6 +233,7 @@ class Engine {
   void EndThreadsLostInExec(pid_t pid);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
+  void LetDie(const Process& process);
   Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);

@@ -25,7 +25,6 @@ constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
 // So long the threads of a process that ends as a whole have to be gone, too.
 constexpr int kExitTurns = 20;
-constexpr std::uint64_t kKilled = std::uint64_t{1} << (SIGKILL - 1);
 
 }  // namespace
 
@@ -68,17 +67,27 @@ void Engine::RearmDetector() {
 // itself), and its process goes on.
 bool Engine::HasExited(const Task& task) const {
   const std::vector<pid_t> threads = ThreadsOf(task.process->pid);
-  return std::any_of(threads.begin(), threads.end(), [&](pid_t tid) {
-    const char state = ThreadState(tid);
-    return tid != task.tid && state != 'Z' && state != 'X' &&
-           (ReadSignalSets(tid).own_pending & kKilled) == 0;
-  });
+  return std::any_of(threads.begin(), threads.end(),
+                     [&](pid_t tid) { return tid != task.tid && !IsDying(tid); });
+}
+
+// The others of a process that ends as a whole are at nobody's turn any more, and have to get it
+// over with: one that the kernel kept from its last step, where it removes its entry in /proc,
+// would make whoever reaps the process wait for that in the kernel, spinning, and at a real-time
+// priority for ever.
+void Engine::LetDie(const Process& process) {
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->level == Level::kActive || !IsDying(task->tid)) continue;
+    SetLevel(task->tid, Level::kActive);
+    task->level = Level::kActive;
+  }
 }
 
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
   const char state = ThreadState(running_->tid);
+  if (state != 'S' && running_->process->threads > 1) LetDie(*running_->process);
   if ((state == 'Z' || state == 'X') && held_turns_ > kExitTurns && HasExited(*running_)) {
     Task& ended = *running_;
     Settle(ended);

@@ -50,7 +50,9 @@ void Engine::Shutdown() {
     ReleaseTrapped();
     std::erase_if(ends, [this](const pollfd& end) { return end.fd != epoll_ && end.revents != 0; });
   }
-  // Everything that descends from this process and lost its parent is ours to end, too.
+  // Everything that descends from this process and lost its parent is ours to end and to reap, too:
+  // not at a real-time priority, which would keep the last steps of their threads from being made.
+  LeaveRealTime(0);
   KillDescendants();
 }
 

@@ -46,6 +46,8 @@ void PassOn(int signal) {
 void EndIt(const char* sentence) {
   const ssize_t n = write(STDERR_FILENO, sentence, strlen(sentence));
   static_cast<void>(n);
+  // In the kernel it may spin for something that its priority prevents.
+  LeaveRealTime(static_cast<pid_t>(g_coordinator));
   kill(static_cast<pid_t>(g_coordinator), SIGKILL);
 }
 

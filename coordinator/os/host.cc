@@ -9,6 +9,7 @@
 #include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 #include <x86intrin.h>
@@ -99,17 +100,48 @@ std::int64_t ReadThreadCpuClock(int fd) {
   return strtoll(text, nullptr, 10);
 }
 
-char ThreadState(pid_t tid) {
+namespace {
+
+struct ThreadStat {
+  char state = 'X';
+  unsigned flags = 0;  // the kernel's PF_*
+};
+
+ThreadStat ReadThreadStat(pid_t tid) {
   char path[64], text[512];
   snprintf(path, sizeof path, "/proc/%d/stat", tid);
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return 'X';
+  if (fd < 0) return {};
   const ssize_t n = read(fd, text, sizeof text - 1);
   close(fd);
-  if (n <= 0) return 'X';
-  text[n] = '\0';
+  text[std::max<ssize_t>(n, 0)] = '\0';
+  // The name may hold anything; the state follows its last parenthesis.
   const char* end = strrchr(text, ')');
-  return end != nullptr && end + 2 < text + n ? end[2] : 'X';
+  ThreadStat stat;
+  if (end == nullptr) return {};
+  const int found = sscanf(end + 1, " %c %*d %*d %*d %*d %*d %u", &stat.state, &stat.flags);
+  return found == 2 ? stat : ThreadStat{};
+}
+
+}  // namespace
+
+char ThreadState(pid_t tid) { return ReadThreadStat(tid).state; }
+
+bool IsDying(pid_t tid) {
+  constexpr unsigned kExiting = 0x4;  // PF_EXITING
+  const ThreadStat stat = ReadThreadStat(tid);
+  if (stat.state == 'Z' || stat.state == 'X' || (stat.flags & kExiting) != 0) return true;
+  return (ReadSignalSets(tid).own_pending >> (SIGKILL - 1) & 1) != 0;
+}
+
+std::optional<int> WaitStatusOf(pid_t child) {
+  siginfo_t info{};
+  if (waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      info.si_pid != child) {
+    return std::nullopt;
+  }
+  if (info.si_code == CLD_EXITED) return W_EXITCODE(info.si_status, 0);
+  return W_EXITCODE(0, info.si_status) | (info.si_code == CLD_DUMPED ? WCOREFLAG : 0);
 }
 
 SignalSets ReadSignalSets(pid_t tid) {

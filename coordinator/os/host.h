@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,12 @@ std::int64_t ReadThreadCpuClock(int fd);
 
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
+
+// The thread is on its way out: it was killed, or ends with its process.
+bool IsDying(pid_t tid);
+
+// How a child of this process has ended, as of waitpid, which still finds it; none if it lives.
+std::optional<int> WaitStatusOf(pid_t child);
 
 // The signals that a thread's process catches, that the thread blocks, and that wait for delivery
 // to the thread or to any of its process; bit 0 is signal 1.
