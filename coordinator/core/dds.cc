@@ -57,6 +57,13 @@ void Engine::WarnOfDrops() {
   say(drops.replaced,
       "were replaced by later ones of writers that keep the last, because 1 MiB was waiting for a "
       "program that takes more slowly: tcsim topics says of which topics");
+  if (!topic_log_.is_whole()) {
+    Warn(fmt::format(
+        "the programs have made more than {} different writers and readers of DDS "
+        "topics: topics.json{} of the first ones only; do names or QoS have a counter "
+        "in them?",
+        dds::TopicLog::kMostEnds, recording_.has_value() ? " and bag/ tell" : " tells"));
+  }
 }
 
 dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
@@ -87,16 +94,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       JoinDds(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      if (const std::string wrong =
-              hub_.Send(process.dds_number, static_cast<std::size_t>(note.args[0]), event_ns_);
-          !wrong.empty()) {
-        Warn(
-            fmt::format("{} sends DDS messages that are not as they must be ({}): they are lost; "
-                        "is its libtcs_dds.so of another version?",
-                        process.name, wrong));
-      }
-      if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
-      ShowDeliverersTheirDeadlines();
+      SendDds(process, static_cast<std::size_t>(note.args[0]));
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
@@ -117,6 +115,16 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       SetState(task, TaskState::kWaiting);
       FindPriority(*process.deliverer);
   }
+}
+
+// What is wrong is said once of each process: it may send as often as it likes.
+void Engine::SendDds(Process& process, std::size_t bytes) {
+  const std::string wrong = hub_.Send(process.dds_number, bytes, event_ns_);
+  if (!wrong.empty() && !std::exchange(process.dds_warned, true)) {
+    Warn(fmt::format("{} {}", process.name, wrong));
+  }
+  if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
+  ShowDeliverersTheirDeadlines();
 }
 
 // It says so itself on its stderr, which is a file here that nobody may look into.
@@ -160,8 +168,12 @@ void Engine::JoinDds(Task& task) {
 
 // It has died, or executes another program.
 void Engine::LeaveDds(Process& process) {
+  process.dds_warned = false;
+  if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
+    deliverer->is_deliverer = false;
+    ReleaseThoseAwaitingDeliverer(process);
+  }
   if (process.dds_number == 0) return;
-  process.deliverer = nullptr;
   std::erase(dds_processes_, &process);
   const std::uint32_t number = std::exchange(process.dds_number, 0);
   hub_.Leave(number, event_ns_);

@@ -96,12 +96,11 @@ std::optional<std::vector<DdsChannels::Command>> DdsChannels::TakeCommands(std::
 }
 
 void DdsChannels::Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
-                         std::vector<Command>* commands) const {
+                         std::vector<Command>* commands) {
   const DdsCommandSpec& spec = *actuator.spec;
   const auto wrench = dds::DecodeCommand(spec.message, sample.cdr);
   if (const auto* error = std::get_if<dds::MessageError>(&wrench)) {
-    fmt::print(stderr, "tcsim: channel {}: a sample on {} {}\n", spec.name, spec.end.topic,
-               error->message);
+    complaints_.Say(spec.name, fmt::format("a sample on {} {}", spec.end.topic, error->message));
     return;
   }
   commands->push_back({sample.at_ns + spec.latency.ns(), spec.body, std::get<Wrench>(wrench)});

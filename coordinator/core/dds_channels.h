@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "coordinator/core/complaints.h"
 #include "coordinator/core/ros_nodes.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/robot_topics.h"
@@ -34,7 +35,7 @@ class DdsChannels {
     Wrench wrench;
   };
   // The commands of the next sample that was written by `now_ns`; none: there is no such sample.
-  // A sample that cannot be read is named on stderr and yields no commands.
+  // A sample that cannot be read is complained of and yields no commands.
   std::optional<std::vector<Command>> TakeCommands(std::int64_t now_ns);
 
  private:
@@ -52,7 +53,7 @@ class DdsChannels {
   dds::OwnEndpoints::Index Add(dds::EndpointKind kind, const DdsTopicSpec& end,
                                std::string_view message, std::optional<int> body);
   void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
-              std::vector<Command>* commands) const;
+              std::vector<Command>* commands);
 
   const Scenario& scenario_;
   dds::OwnEndpoints& ends_;
@@ -60,6 +61,7 @@ class DdsChannels {
   std::int64_t realtime_offset_ns_;
   std::vector<Sensor> sensors_;
   std::vector<Actuator> actuators_;
+  Complaints complaints_;
   std::optional<dds::OwnEndpoints::Index> clock_;
   std::int64_t next_clock_ns_;
 };

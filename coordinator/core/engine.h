@@ -171,6 +171,7 @@ class Engine {
   void TakeOwnMessages();
   void HandleDds(Task& task, const shm::Notification& note);
   void JoinDds(Task& task);
+  void SendDds(Process& process, std::size_t bytes);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
   void LeaveDds(Process& process);
   void AwaitMessages(Task& task);

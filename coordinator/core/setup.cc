@@ -76,8 +76,11 @@ std::string Engine::Prepare() {
 }
 
 std::string Engine::PrepareSegment() {
-  memfd_ = memfd_create("tcs", MFD_CLOEXEC);
-  if (memfd_ < 0 || fchmod(memfd_, 0600) != 0 || ftruncate(memfd_, shm::kSegmentSize) != 0) {
+  // Sealed: a program that has it cannot make it shorter under everybody's feet.
+  constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
+  memfd_ = memfd_create("tcs", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  if (memfd_ < 0 || fchmod(memfd_, 0600) != 0 || ftruncate(memfd_, shm::kSegmentSize) != 0 ||
+      fcntl(memfd_, F_ADD_SEALS, kSeals) != 0) {
     return fmt::format("the shared memory cannot be made: {}", strerror(errno));
   }
   void* at = mmap(nullptr, shm::kSegmentSize, PROT_READ | PROT_WRITE, MAP_SHARED, memfd_, 0);

@@ -160,6 +160,7 @@ struct Process {
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
+  bool dds_warned = false;        // of what it sends
   Task* deliverer = nullptr;      // its thread that takes what is for it
   int waiting_for_deliverer = 0;  // threads
   bool dead = false;

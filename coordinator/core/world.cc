@@ -168,7 +168,7 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
     if (datagram == nullptr || !datagram->has_value()) return;
     auto wrench = DecodeCommandDatagram((*datagram)->payload);
     if (auto* error = std::get_if<DecodeError>(&wrench)) {
-      fmt::print(stderr, "tcsim: channel {}: {}\n", spec.name, error->message);
+      complaints_.Say(spec.name, error->message);
       continue;
     }
     Apply(std::max(now_ns, settled_ns_) + spec.latency.ns(), spec.body, std::get<Wrench>(wrench));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/channel/udp_socket.h"
+#include "coordinator/core/complaints.h"
 #include "coordinator/core/dds_channels.h"
 #include "coordinator/scenario/scenario.h"
 
@@ -78,6 +79,7 @@ class World {
   std::vector<TimedCommand> since_checkpoint_;
   std::vector<Sensor> sensors_;
   std::vector<UdpSocket> command_sockets_;
+  Complaints complaints_;
   std::vector<int> command_fds_;
   std::optional<UdpSocket> out_;
   std::optional<DdsChannels> dds_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "shm/dds_endpoint.h"
 
@@ -90,11 +91,29 @@ Qos FromShared(const DdsQos& shared, EndpointKind kind) {
   return qos;
 }
 
+bool IsInside(std::span<const std::byte> payload, DdsBytes where) {
+  return where.offset <= payload.size() && where.size <= payload.size() - where.offset;
+}
+
 std::optional<std::string> TextAt(std::span<const std::byte> payload, DdsBytes where) {
-  if (where.offset > payload.size() || where.size > payload.size() - where.offset) {
-    return std::nullopt;
-  }
+  if (!IsInside(payload, where)) return std::nullopt;
   return std::string(reinterpret_cast<const char*>(payload.data()) + where.offset, where.size);
+}
+
+bool TextsAreInside(std::span<const std::byte> payload, const DdsQos& qos) {
+  const std::pair<std::uint32_t, DdsBytes> texts[] = {
+      {shm::kDdsUserData, qos.user_data},
+      {shm::kDdsTopicData, qos.topic_data},
+      {shm::kDdsGroupData, qos.group_data},
+      {shm::kDdsEntityName, qos.entity_name},
+      {shm::kDdsPartition, qos.partition},
+      {shm::kDdsProperties, qos.properties},
+      {shm::kDdsBinaryProperties, qos.binary_properties},
+      {shm::kDdsDataRepresentation, qos.data_representation},
+  };
+  return std::ranges::all_of(texts, [&](const auto& text) {
+    return (qos.present & text.first) == 0 || IsInside(payload, text.second);
+  });
 }
 
 }  // namespace
@@ -124,6 +143,7 @@ std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
   if (payload.size() < sizeof shared) return std::nullopt;
   memcpy(&shared, payload.data(), sizeof shared);
   if (shared.kind != shm::kDdsWriter && shared.kind != shm::kDdsReader) return std::nullopt;
+  if (!TextsAreInside(payload, shared.qos)) return std::nullopt;
   auto topic = TextAt(payload, shared.topic), type = TextAt(payload, shared.type);
   if (!topic.has_value() || !type.has_value()) return std::nullopt;
   Endpoint endpoint;
@@ -133,6 +153,13 @@ std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
   endpoint.keyless = shared.keyless != 0;
   endpoint.qos = FromShared(shared.qos, endpoint.kind);
   return endpoint;
+}
+
+bool IsParticipant(std::span<const std::byte> payload) {
+  DdsQos qos;
+  if (payload.size() < sizeof qos) return false;
+  memcpy(&qos, payload.data(), sizeof qos);
+  return TextsAreInside(payload, qos);
 }
 
 }  // namespace tcs::dds

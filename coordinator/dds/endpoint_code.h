@@ -25,7 +25,10 @@ struct Endpoint {
                                                        std::string_view user_data);
 [[nodiscard]] std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint);
 
-// None for bytes that are no endpoint: they come from clients.
+// None for bytes that are no endpoint: they come from clients. Of what is none of our business,
+// too, every text lies inside the payload.
 [[nodiscard]] std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload);
+// The same of a participant.
+[[nodiscard]] bool IsParticipant(std::span<const std::byte> payload);
 
 }  // namespace tcs::dds

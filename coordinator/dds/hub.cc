@@ -8,10 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <iterator>
 #include <new>
 #include <utility>
+
+#include "coordinator/dds/well_formed.h"
 
 namespace tcs::dds {
 
@@ -22,6 +25,11 @@ using shm::DdsMessage;
 
 // What may wait for one process. Whoever lets more wait has stopped taking it.
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
+// What of that may besides be news of participants, endpoints and liveliness, of which a program
+// should not miss any for as long as it may still go on.
+constexpr std::size_t kMostQueuedNewsBytes = std::size_t{64} << 20;
+// What one process may have told of its participants and endpoints: some ten thousands of them.
+constexpr std::size_t kMostKnownBytes = std::size_t{64} << 20;
 // Full beyond that: some milliseconds' work for who takes it. Cyclone's writers stop at half of it.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
@@ -40,8 +48,17 @@ bool IsReplaceable(const DdsMessage& header) {
          !IsAddressed(header);
 }
 
-bool IsKnownKind(DdsKind kind) {
-  return kind >= DdsKind::kParticipant && kind <= DdsKind::kLiveliness;
+bool IsNewsOfEntity(const DdsMessage& header) {
+  return header.kind == DdsKind::kParticipant || header.kind == DdsKind::kEndpoint;
+}
+
+// The file cannot be made shorter by a program that has it, so that nobody's access fails.
+int MakeFile() {
+  const int fd = memfd_create("tcs-dds", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  if (fd < 0) return -1;
+  if (fchmod(fd, 0600) == 0 && fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL) == 0) return fd;
+  close(fd);
+  return -1;
 }
 
 }  // namespace
@@ -80,10 +97,7 @@ const Hub::Member* Hub::Find(Number number) const {
 }
 
 Hub::Number Hub::Join(std::int64_t now_ns) {
-  if (fd_ < 0) {
-    fd_ = memfd_create("tcs-dds", MFD_CLOEXEC);
-    if (fd_ < 0 || fchmod(fd_, 0600) != 0) return 0;
-  }
+  if (fd_ < 0 && (fd_ = MakeFile()) < 0) return 0;
   if (members_.size() == shm::kDdsMostProcesses) {
     errno = ENOSPC;
     return 0;
@@ -124,6 +138,8 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
   });
   // If it was stopped, its leases run out as they do already.
   if (!was_stopped) EndLeases(number, left, now_ns);
+  std::erase_if(owners_, [number](const auto& owner) { return owner.second == number; });
+  if (observer_ != nullptr) observer_->Left(number);
 }
 
 // Nobody says so: others notice.
@@ -201,30 +217,73 @@ void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
 
 std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   const Member* member = Find(from);
-  if (member == nullptr) return "it has not joined";
-  if (bytes > shm::kDdsBoxSize) return "its messages are longer than its outbox";
-  const char* at = member->outbox();
-  const char* const end = at + bytes;
+  if (member == nullptr) {
+    return "sends DDS messages in a child that it has forked, where its participants are not: they "
+           "are lost; let the child make its own, after executing a program";
+  }
+  if (bytes > shm::kDdsBoxSize) {
+    return fmt::format(
+        "sends {} bytes of DDS messages at once, more than there is room for: they "
+        "are lost; is its libtcs_dds.so of another version?",
+        bytes);
+  }
+  const auto* at = reinterpret_cast<const std::byte*>(member->outbox());
+  const std::byte* const end = at + bytes;
   while (at != end) {
     const std::span left{at, end};
-    if (left.size() < sizeof(DdsMessage)) return "a message is cut off";
-    DdsMessage header = HeaderOf(std::as_bytes(left));
-    if (header.size > left.size() || header.payload_size > shm::kDdsMostPayload ||
-        header.size != shm::DdsMessageSize(header.payload_size)) {
-      return fmt::format("a message has a wrong size, {}", header.size);
-    }
-    if (!IsKnownKind(header.kind)) {
-      return fmt::format("a message has an unknown kind, {}", static_cast<int>(header.kind));
-    }
+    DdsMessage header{};
+    if (left.size() >= sizeof header) header = HeaderOf(left);
+    // The program may write there still: what has been checked is not to be read again.
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+    if (auto wrong = WhatIsWrongWithSize(header, left.size())) return *wrong;
     header.from = from;
     header.time_ns = now_ns;
-    const auto* bytes_at = reinterpret_cast<const std::byte*>(at);
-    Bytes copy(bytes_at, bytes_at + header.size);
+    Bytes copy(at, at + header.size);
     PutHeader(header, copy);
+    if (auto wrong = WhyNot(header, PayloadOf(copy))) return *wrong;
     at += header.size;
     Enter(header, std::move(copy));
   }
   return {};
+}
+
+// Of one whose size is right.
+std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
+                                       std::span<const std::byte> payload) const {
+  if (auto wrong = WhatIsWrong(header, payload)) return wrong;
+  if (header.to != shm::kDdsEverybody && header.to > count()) {
+    return fmt::format(
+        "sends a DDS message to a process that does not exist, {}: it and what it "
+        "sent with it are lost; is its libtcs_dds.so of another version?",
+        header.to);
+  }
+  if (IsAnothers(GuidAt(header.subject), header.from) ||
+      (header.kind == DdsKind::kEndpoint && IsAnothers(GuidAt(header.other), header.from))) {
+    return "speaks for a DDS participant of another program: that is lost; GUIDs must not be "
+           "copied "
+           "from one program into another";
+  }
+  if (!IsNewsOfEntity(header) || (header.flags & shm::kDdsGone) != 0) return std::nullopt;
+  const auto before = KnownAs(header.from, GuidAt(header.subject));
+  const std::size_t had = before == known_.end() ? 0 : before->message->size();
+  if (Find(header.from)->known_bytes - had + header.size > kMostKnownBytes) {
+    return "has made so many DDS participants, writers and readers that what they say of "
+           "themselves "
+           "takes 64 MiB: nobody is told of further ones; delete those that are not needed any "
+           "more";
+  }
+  return std::nullopt;
+}
+
+std::vector<Hub::Known>::const_iterator Hub::KnownAs(Number from, const Guid& subject) const {
+  return std::ranges::find_if(
+      known_, [&](const Known& known) { return known.from == from && known.subject == subject; });
+}
+
+// Whether the participant that the GUID belongs to is another process's.
+bool Hub::IsAnothers(const Guid& guid, Number number) const {
+  const auto owner = owners_.find(PrefixOf(guid));
+  return owner != owners_.end() && owner->second != number;
 }
 
 void Hub::SendOwn(DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns) {
@@ -259,25 +318,34 @@ void Hub::Enter(const DdsMessage& header, Bytes bytes) {
 }
 
 void Hub::Remember(const DdsMessage& header, const Message& message) {
-  if (header.kind != DdsKind::kParticipant && header.kind != DdsKind::kEndpoint) return;
+  if (!IsNewsOfEntity(header)) return;
   const Guid subject = GuidAt(header.subject);
-  if ((header.flags & shm::kDdsGone) != 0) {
-    std::erase_if(known_, [&](const Known& known) {
-      return known.from == header.from &&
-             (known.subject == subject || known.participant == subject);
-    });
-    return;
-  }
+  if ((header.flags & shm::kDdsGone) != 0) return Forget(header.from, subject);
+  if (header.kind == DdsKind::kParticipant) owners_[PrefixOf(subject)] = header.from;
+  Member* member = Find(header.from);  // null: the coordinator
+  if (member != nullptr) member->known_bytes += message->size();
   Known now{header.from,  header.kind,     subject, GuidAt(header.other),
             header.flags, header.lease_ns, message};
-  const auto before = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
-    return known.from == header.from && known.subject == subject;
-  });
-  if (before != known_.end()) {
-    *before = std::move(now);
-  } else {
+  const auto before = KnownAs(header.from, subject);
+  if (before == known_.end()) {
     known_.push_back(std::move(now));
+    return;
   }
+  if (member != nullptr) member->known_bytes -= before->message->size();
+  known_[static_cast<std::size_t>(before - known_.begin())] = std::move(now);
+}
+
+// A participant takes its endpoints along.
+void Hub::Forget(Number from, const Guid& subject) {
+  Member* member = Find(from);
+  std::erase_if(known_, [&](const Known& known) {
+    if (known.from != from || (known.subject != subject && known.participant != subject)) {
+      return false;
+    }
+    if (known.kind == DdsKind::kParticipant) owners_.erase(PrefixOf(known.subject));
+    if (member != nullptr) member->known_bytes -= known.message->size();
+    return true;
+  });
 }
 
 void Hub::QueueForOthers(Number from, std::int64_t due_ns, const Message& message) {
@@ -295,10 +363,10 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
     if (member->full && (header.flags & shm::kDdsUnreliable) != 0) {
       return Drop(header, to, drops_.unreliable);
     }
-    if (member->queued_bytes + message->size() > kMostQueuedBytes) {
-      return Drop(header, to, drops_.lost);
-    }
   }
+  const std::size_t most =
+      header.kind == DdsKind::kSample ? kMostQueuedBytes : kMostQueuedBytes + kMostQueuedNewsBytes;
+  if (member->queued_bytes + message->size() > most) return Drop(header, to, drops_.lost);
   member->queued_bytes += message->size();
   const auto place = member->queue.emplace(due_ns, message);
   ShowFull(to);
@@ -308,7 +376,7 @@ void Hub::Queue(Number to, std::int64_t due_ns, const Message& message) {
 
 void Hub::Drop(const DdsMessage& header, Number to, std::uint64_t& count) {
   ++count;
-  if (observer_ != nullptr) observer_->Dropped(header, to);
+  if (observer_ != nullptr && header.kind == DdsKind::kSample) observer_->Dropped(header, to);
 }
 
 // A full process has one message more; if it is of a writer that keeps the last, those are kept.

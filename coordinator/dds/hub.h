@@ -32,6 +32,8 @@ class HubObserver {
   virtual void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) = 0;
   // Process `to` does not get this sample.
   virtual void Dropped(const shm::DdsMessage& header, std::uint32_t to) = 0;
+  // A process has died, or executes another program: nothing more comes from it.
+  virtual void Left(std::uint32_t from) = 0;
 };
 
 class Hub {
@@ -55,7 +57,8 @@ class Hub {
   void Continue(Number number, std::int64_t now_ns);
 
   // Takes the messages in the first `bytes` of its outbox, sent at `now_ns`. Says what is wrong
-  // with the first one that is not as it must be: it is dropped, and what follows it.
+  // with the first one that is not as it must be, as the rest of a sentence about the process: it
+  // is dropped, and what follows it.
   [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns);
 
   // When the process's next message is due.
@@ -106,6 +109,7 @@ class Hub {
     Queued queue;
     std::size_t queued_bytes = 0;
     std::size_t delivered_bytes = 0;  // in its inbox until it comes back for more
+    std::size_t known_bytes = 0;      // of what is known of it
     // While it is full: what may be replaced of the queue, by writer and instance.
     std::map<std::pair<Guid, std::uint64_t>, std::deque<Queued::iterator>> replaceable;
 
@@ -126,6 +130,11 @@ class Hub {
   };
 
   void Enter(const shm::DdsMessage& header, Bytes bytes);
+  std::optional<std::string> WhyNot(const shm::DdsMessage& header,
+                                    std::span<const std::byte> payload) const;
+  std::vector<Known>::const_iterator KnownAs(Number from, const Guid& subject) const;
+  bool IsAnothers(const Guid& guid, Number number) const;
+  void Forget(Number from, const Guid& subject);
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);
@@ -141,9 +150,10 @@ class Hub {
   int fd_ = -1;
   HubObserver* observer_ = nullptr;
   bool tells_own_ = false;
-  Queued own_;                   // for the coordinator
-  std::vector<Member> members_;  // of number i + 1
-  std::vector<Known> known_;     // in the order in which they came
+  Queued own_;                           // for the coordinator
+  std::vector<Member> members_;          // of number i + 1
+  std::vector<Known> known_;             // in the order in which they came
+  std::map<GuidPrefix, Number> owners_;  // of participants that are there
   Drops drops_;
 };
 

@@ -66,7 +66,7 @@ OwnEndpoints::Index OwnEndpoints::Add(const Endpoint& endpoint, int domain, std:
   const Guid participant = ParticipantOf(domain, now_ns);
   Own& own = own_.emplace_back(Own{endpoint, domain, participant, {}});
   const auto number = static_cast<std::uint32_t>(own_.size());
-  own.guid[12] = 0;
+  own.guid[12] = static_cast<std::uint8_t>(number >> 16);
   own.guid[13] = static_cast<std::uint8_t>(number >> 8);
   own.guid[14] = static_cast<std::uint8_t>(number);
   const bool writes = endpoint.kind == EndpointKind::kWriter;

@@ -14,38 +14,67 @@ using shm::DdsMessage;
 }  // namespace
 
 void TopicLog::Entered(const DdsMessage& header, std::span<const std::byte> payload) {
+  const bool is_news = header.kind == DdsKind::kParticipant || header.kind == DdsKind::kEndpoint;
+  if (is_news && (header.flags & shm::kDdsGone) != 0) return Forget(GuidAt(header.subject));
   if (header.kind == DdsKind::kEndpoint) NoteEndpoint(header, payload);
   if (header.kind == DdsKind::kSample) NoteSample(header, payload);
 }
 
-TopicLog::Topic TopicLog::TopicOf(const Endpoint& endpoint, int domain) {
+// The topic that the endpoint is counted with; none: there is no room for it.
+std::optional<TopicLog::Topic> TopicLog::Note(const Endpoint& endpoint, int domain,
+                                              Speaker speaker) {
   const std::string topic = RosTopic(endpoint.topic), type = RosType(endpoint.type);
-  for (Topic i = 0; i < reports_.size(); ++i) {
-    const TopicReport& report = reports_[i];
-    if (report.topic == topic && report.type == type && report.domain == domain) return i;
+  auto report = std::ranges::find_if(reports_, [&](const TopicReport& known) {
+    return known.topic == topic && known.type == type && known.domain == domain;
+  });
+  const EndpointReport end{.kind = endpoint.kind,
+                           .process = std::move(speaker.process),
+                           .robot = std::move(speaker.robot),
+                           .qos = endpoint.qos};
+  const auto is_like = [&end](const EndpointReport& other) { return other.IsLike(end); };
+  if (report != reports_.end()) {
+    const auto like = std::ranges::find_if(report->endpoints, is_like);
+    if (like != report->endpoints.end()) {
+      ++like->count;
+      return report - reports_.begin();
+    }
   }
-  TopicReport& report = reports_.emplace_back();
-  report.topic = topic;
-  report.type = type;
-  report.domain = domain;
-  return reports_.size() - 1;
+  if (ends_ == kMostEnds) {
+    is_whole_ = false;
+    return std::nullopt;
+  }
+  ++ends_;
+  if (report == reports_.end()) {
+    report = reports_.emplace(report);
+    report->topic = topic;
+    report->type = type;
+    report->domain = domain;
+  }
+  report->endpoints.push_back(end);
+  return report - reports_.begin();
 }
 
 // New, or gone, or with another QoS.
 void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte> payload) {
   const Guid guid = GuidAt(header.subject);
-  if ((header.flags & shm::kDdsGone) != 0 || known_.contains(guid)) return;
+  if (known_.contains(guid)) return;
   const auto endpoint = DecodeEndpoint(payload);
   if (!endpoint.has_value()) return;
   const int domain = static_cast<int>(header.domain);
-  const Topic topic = TopicOf(*endpoint, domain);
-  known_[guid].topic = topic;
-  Speaker speaker = who_(header.from);
-  reports_[topic].endpoints.push_back({.kind = endpoint->kind,
-                                       .process = std::move(speaker.process),
-                                       .robot = std::move(speaker.robot),
-                                       .qos = endpoint->qos});
-  if (listener_ != nullptr) listener_->Opened(topic, domain, *endpoint);
+  const auto topic = Note(*endpoint, domain, who_(header.from));
+  if (!topic.has_value()) return;
+  known_[guid] = {.topic = *topic, .from = header.from, .participant = GuidAt(header.other)};
+  if (listener_ != nullptr) listener_->Opened(*topic, domain, *endpoint);
+}
+
+void TopicLog::Forget(const Guid& subject) {
+  std::erase_if(known_, [&subject](const auto& known) {
+    return known.first == subject || known.second.participant == subject;
+  });
+}
+
+void TopicLog::Left(std::uint32_t from) {
+  std::erase_if(known_, [from](const auto& known) { return known.second.from == from; });
 }
 
 void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> payload) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -40,26 +41,36 @@ class TopicLog : public HubObserver {
   void Tell(Listener* listener) { listener_ = listener; }
 
   const std::vector<TopicReport>& reports() const { return reports_; }
+  // False: a program has made ever other topics, or writers and readers of ever other QoS. Of those
+  // beyond kMostEnds nothing is known.
+  bool is_whole() const { return is_whole_; }
+  static constexpr std::size_t kMostEnds = 10'000;
 
   void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) override;
   void Dropped(const shm::DdsMessage& header, std::uint32_t to) override;
+  void Left(std::uint32_t from) override;
 
  private:
   struct Known {
     Topic topic;
+    Hub::Number from;
+    Guid participant;
     // The last sample, and whom it was sent to so far.
     std::int64_t timestamp_ns = INT64_MIN;
     std::uint32_t payload_size = 0;
     std::set<std::uint32_t> sent_to;
   };
-  Topic TopicOf(const Endpoint& endpoint, int domain);
+  std::optional<Topic> Note(const Endpoint& endpoint, int domain, Speaker speaker);
+  void Forget(const Guid& subject);
   void NoteEndpoint(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void NoteSample(const shm::DdsMessage& header, std::span<const std::byte> payload);
 
   std::function<Speaker(Hub::Number)> who_;
   Listener* listener_ = nullptr;
   std::vector<TopicReport> reports_;
-  std::map<Guid, Known> known_;
+  std::map<Guid, Known> known_;  // that are there
+  std::size_t ends_ = 0;         // in reports_
+  bool is_whole_ = true;
 };
 
 }  // namespace tcs::dds

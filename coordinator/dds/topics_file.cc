@@ -48,6 +48,7 @@ OrderedJson ToJson(const TopicReport& topic) {
     json["endpoints"].push_back({{"kind", end.kind == EndpointKind::kWriter ? "writer" : "reader"},
                                  {"process", end.process},
                                  {"robot", end.robot},
+                                 {"count", end.count},
                                  {"qos", ToJson(end.qos)}});
   }
   return json;
@@ -91,7 +92,7 @@ EndpointReport ToEndpoint(const Json& json) {
   if (kind != "writer" && kind != "reader") throw UnknownName();
   return {kind == "writer" ? EndpointKind::kWriter : EndpointKind::kReader,
           json.at("process").get<std::string>(), json.at("robot").get<std::string>(),
-          ToQos(json.at("qos"))};
+          ToQos(json.at("qos")), json.value("count", std::int64_t{1})};
 }
 
 TopicReport ToTopic(const Json& json) {

@@ -22,6 +22,12 @@ struct EndpointReport {
   std::string process;  // the client's name, "ROBOT/CLIENT", or "tcsim"
   std::string robot;    // empty: the coordinator's
   Qos qos;
+  std::int64_t count = 1;  // how many there were that are the same in all of that
+
+  bool IsLike(const EndpointReport& other) const {
+    return kind == other.kind && process == other.process && robot == other.robot &&
+           qos == other.qos;
+  }
 };
 
 struct TopicReport {
@@ -32,7 +38,7 @@ struct TopicReport {
   std::int64_t first_ns = 0, last_ns = 0;  // when the first and the last one were, in virtual time
   std::int64_t drops =
       0;  // samples that a matching reader did not get, each counted once per reader
-  std::vector<EndpointReport> endpoints;  // that there ever were, each once
+  std::vector<EndpointReport> endpoints;  // that there ever were, those that are alike once
 
   // One more sample, in the order of virtual time.
   void Count(std::int64_t at_ns, std::size_t size) {

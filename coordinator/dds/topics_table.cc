@@ -26,15 +26,15 @@ std::string DurationText(VirtualDuration duration) {
 
 // "tcsim, hunter/planner x2"; "-" for nobody.
 std::string Who(const TopicReport& topic, EndpointKind kind) {
-  std::vector<std::pair<std::string, int>> processes;
+  std::vector<std::pair<std::string, std::int64_t>> processes;
   for (const EndpointReport& end : topic.endpoints) {
     if (end.kind != kind) continue;
     const auto same = std::find_if(processes.begin(), processes.end(),
                                    [&](const auto& p) { return p.first == end.process; });
     if (same == processes.end()) {
-      processes.emplace_back(end.process, 1);
+      processes.emplace_back(end.process, end.count);
     } else {
-      ++same->second;
+      same->second += end.count;
     }
   }
   std::string text;
@@ -86,9 +86,9 @@ std::string TopicsTable(const std::vector<TopicReport>& topics, bool with_qos) {
     table += line + "\n";
     if (r == 0 || !with_qos) continue;
     for (const EndpointReport& end : topics[r - 1].endpoints) {
-      table +=
-          fmt::format("    {} {}: {}\n", end.kind == EndpointKind::kWriter ? "writer" : "reader",
-                      end.process, QosText(end.qos));
+      table += fmt::format("    {} {}{}: {}\n",
+                           end.kind == EndpointKind::kWriter ? "writer" : "reader", end.process,
+                           end.count > 1 ? fmt::format(" x{}", end.count) : "", QosText(end.qos));
     }
   }
   return table;

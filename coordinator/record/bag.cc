@@ -61,6 +61,9 @@ std::string Bag::Open(const std::string& folder) {
   folder_ = folder;
   metadata_ = {};
   metadata_.file = NameOf(folder) + "_0.db3";
+  topics_.clear();
+  names_.clear();
+  other_offers_.clear();
   in_batches_ = metadata_;
   path_ = folder + "/" + metadata_.file;
   is_in_batch_ = false;
@@ -97,35 +100,36 @@ std::string Bag::Open(const std::string& folder) {
   return fmt::format("the recording {} cannot be made: {}", path_, failure_);
 }
 
-int Bag::AddTopic(std::string_view name, std::string_view type) {
-  std::string unique(name);
-  int others = 1;
-  const auto has_name = [&unique](const BagTopic& topic) { return topic.name == unique; };
-  std::vector<BagTopic>& topics = metadata_.topics;
-  for (auto same = std::find_if(topics.begin(), topics.end(), has_name); same != topics.end();
-       same = std::find_if(topics.begin(), topics.end(), has_name)) {
-    if (same->type == type) return static_cast<int>(same - topics.begin());
-    unique = fmt::format("{}_{}", name, ++others);
+std::string Bag::UniqueName(const std::string& name) {
+  int& wanted = names_[name];
+  std::string unique = name;
+  while (wanted++ > 0) {
+    unique = fmt::format("{}_{}", name, wanted);
+    if (names_.emplace(unique, 1).second) break;
   }
-  topics.push_back({unique, std::string(type), {}, 0});
-  const int topic = static_cast<int>(topics.size()) - 1;
+  return unique;
+}
+
+int Bag::AddTopic(std::string_view name, std::string_view type) {
+  const int next = static_cast<int>(metadata_.topics.size());
+  const auto [known, is_new] = topics_.try_emplace({std::string(name), std::string(type)}, next);
+  if (!is_new) return known->second;
+  const std::string unique = UniqueName(std::string(name));
+  metadata_.topics.push_back({unique, std::string(type), {}, 0});
   if (Begin()) {
     BindText(insert_topic_.get(), 1, unique);
-    BindText(insert_topic_.get(), 2, topics.back().type);
-    sqlite3_bind_int64(insert_topic_.get(), 3, IdOf(topic));
+    BindText(insert_topic_.get(), 2, metadata_.topics.back().type);
+    sqlite3_bind_int64(insert_topic_.get(), 3, IdOf(next));
     Step(insert_topic_.get());
   }
-  return topic;
+  return next;
 }
 
 void Bag::AddOffer(int topic, const dds::Qos& qos) {
   std::vector<dds::Qos>& offered = metadata_.topics.at(static_cast<std::size_t>(topic)).offered;
   if (std::find(offered.begin(), offered.end(), qos) != offered.end()) return;
   offered.push_back(qos);
-  if (!Begin()) return;
-  BindText(update_topic_.get(), 1, OfferedQosYaml(offered));
-  sqlite3_bind_int64(update_topic_.get(), 2, IdOf(topic));
-  Step(update_topic_.get());
+  if (Begin()) other_offers_.insert(topic);
 }
 
 void Bag::Write(int topic, std::int64_t stamp_ns, std::span<const std::byte> cdr) {
@@ -204,6 +208,12 @@ bool Bag::Begin() {
 bool Bag::EndBatch() {
   if (!failure_.empty()) return false;
   if (!is_in_batch_) return true;
+  for (const int topic : std::exchange(other_offers_, {})) {
+    BindText(update_topic_.get(), 1,
+             OfferedQosYaml(metadata_.topics[static_cast<std::size_t>(topic)].offered));
+    sqlite3_bind_int64(update_topic_.get(), 2, IdOf(topic));
+    if (!Step(update_topic_.get())) return false;
+  }
   if (!Run("COMMIT")) return false;
   is_in_batch_ = false;
   batch_began_ns_.reset();

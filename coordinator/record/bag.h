@@ -10,11 +10,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "coordinator/dds/qos.h"
 #include "coordinator/os/files.h"
@@ -65,6 +68,7 @@ class Bag {
   bool Step(sqlite3_stmt* statement);
   bool Begin();
   bool EndBatch();
+  std::string UniqueName(const std::string& name);
   bool WriteMetadata(Withstands what);
   bool Fail(const std::string& why);
 
@@ -72,7 +76,10 @@ class Bag {
   sqlite3* database_ = nullptr;
   Statement insert_topic_, update_topic_, insert_message_;
   BagMetadata metadata_;
-  BagMetadata in_batches_;  // the same as of the last batch that was written whole
+  std::map<std::pair<std::string, std::string>, int> topics_;  // as they were asked for, with types
+  std::map<std::string, int> names_;  // that are taken, and how many topics wanted them
+  std::set<int> other_offers_;        // topics whose offers have changed in this batch
+  BagMetadata in_batches_;            // the same as of the last batch that was written whole
   bool is_in_batch_ = false;
   std::optional<std::int64_t> batch_began_ns_;  // none: no message in it
   std::size_t batch_bytes_ = 0;

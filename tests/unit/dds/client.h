@@ -119,7 +119,7 @@ class Client {
     header.size = shm::DdsMessageSize(header.payload_size);
     char* outbox = area_ + shm::kDdsHeaderSize;
     memcpy(outbox, &header, sizeof header);
-    memcpy(outbox + sizeof header, payload.data(), payload.size());
+    std::copy(payload.begin(), payload.end(), reinterpret_cast<std::byte*>(outbox) + sizeof header);
     EXPECT_EQ(hub_.Send(number_, header.size, now_ns), "");
   }
 

@@ -1,12 +1,18 @@
 // The hub as processes see it: two mappings of one area, like theirs.
 #include "coordinator/dds/hub.h"
 
-#include <gtest/gtest.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <gmock/gmock.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
+
+#include "shm/dds_endpoint.h"
 
 namespace tcs::dds {
 namespace {
@@ -35,6 +41,11 @@ class Peer {
     std::size_t size = 0;
     for (const DdsMessage& message : messages) {
       memcpy(outbox() + size, &message, sizeof message);
+      memset(outbox() + size + sizeof message, 0, std::min(message.payload_size, 256u));
+      if (message.kind == DdsKind::kEndpoint) {
+        const shm::DdsEndpoint endpoint{.kind = shm::kDdsWriter};
+        memcpy(outbox() + size + sizeof message, &endpoint, sizeof endpoint);
+      }
       size += message.size;
     }
     return hub_.Send(number_, size, now_ns);
@@ -61,9 +72,24 @@ class Peer {
   char* area_;
 };
 
+// The least that a message of that kind has: an endpoint's policies, a sample's encapsulation.
+std::uint32_t PayloadSizeOf(DdsKind kind) {
+  switch (kind) {
+    case DdsKind::kParticipant:
+      return sizeof(shm::DdsQos);
+    case DdsKind::kEndpoint:
+      return sizeof(shm::DdsEndpoint);
+    case DdsKind::kSample:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
 DdsMessage Message(DdsKind kind, std::uint8_t subject, std::uint32_t to = shm::kDdsEverybody) {
   DdsMessage message{};
-  message.size = shm::DdsMessageSize(0);
+  message.payload_size = PayloadSizeOf(kind);
+  message.size = shm::DdsMessageSize(message.payload_size);
   message.kind = kind;
   message.to = to;
   message.subject[0] = subject;
@@ -165,24 +191,129 @@ TEST(DdsHub, TheDeadAreMissedWhenTheirLeasesAreOver) {
   EXPECT_EQ(gone[0].time_ns, 11'000);
 }
 
+using testing::HasSubstr;
+
 TEST(DdsHub, SaysWhatIsWrongWithAMessageAndKeepsThoseBefore) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage wrong = Message(DdsKind::kSample, 2);
   wrong.kind = static_cast<DdsKind>(77);
-  EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1), wrong}), "a message has an unknown kind, 77");
+  EXPECT_THAT(a.Send(1, {Message(DdsKind::kSample, 1), wrong}),
+              HasSubstr("an unknown kind, 77: it"));
   EXPECT_EQ(b.Take(1).size(), 1u);
   wrong = Message(DdsKind::kSample, 2);
   wrong.payload_size = 4000;
-  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 104");
+  EXPECT_THAT(a.Send(1, {wrong}), HasSubstr("of a wrong size, 112: it"));
   wrong.payload_size = UINT32_MAX - 3;
-  EXPECT_EQ(a.Send(1, {wrong}), "a message has a wrong size, 104");
+  EXPECT_THAT(a.Send(1, {wrong}), HasSubstr("of a wrong size, 112: it"));
   memset(a.outbox(), 0xff, 200);
-  EXPECT_EQ(hub.Send(a.number(), 200, 1), "a message has a wrong size, 4294967295");
-  EXPECT_EQ(hub.Send(a.number(), 8, 1), "a message is cut off");
-  EXPECT_EQ(hub.Send(a.number(), shm::kDdsBoxSize + 8, 1),
-            "its messages are longer than its outbox");
-  EXPECT_EQ(hub.Send(99, 0, 1), "it has not joined");
+  EXPECT_THAT(hub.Send(a.number(), 200, 1), HasSubstr("of a wrong size, 4294967295: it"));
+  EXPECT_THAT(hub.Send(a.number(), 8, 1), HasSubstr("of a wrong size, 0: it"));
+  EXPECT_THAT(hub.Send(a.number(), shm::kDdsBoxSize + 8, 1), HasSubstr("than there is room for"));
+  EXPECT_THAT(hub.Send(99, 0, 1), HasSubstr("in a child that it has forked"));
+  EXPECT_EQ(hub.DueNs(b.number()), shm::kNeverNs);
+}
+
+TEST(DdsHub, TakesNoSampleThatIsTooShortToBeCdr) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage sample = Message(DdsKind::kSample, 1);
+  sample.payload_size = 3;
+  EXPECT_THAT(a.Send(1, {sample}), HasSubstr("a sample of 3 bytes, too few for any CDR"));
+  EXPECT_EQ(hub.DueNs(b.number()), shm::kNeverNs);
+}
+
+TEST(DdsHub, TakesNoNewsWhoseTextsLieOutsideIt) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  const auto send = [&](DdsKind kind, const auto& payload) {
+    DdsMessage message = Message(kind, 1);
+    memcpy(a.outbox(), &message, sizeof message);
+    memcpy(a.outbox() + sizeof message, &payload, sizeof payload);
+    return hub.Send(a.number(), message.size, 1);
+  };
+  shm::DdsQos qos{};
+  qos.user_data = {sizeof qos, 1};
+  EXPECT_EQ(send(DdsKind::kParticipant, qos), "") << "the policy is not there";
+  qos.present = shm::kDdsUserData;
+  EXPECT_THAT(send(DdsKind::kParticipant, qos), HasSubstr("a participant that cannot be read"));
+  EXPECT_THAT(send(DdsKind::kEndpoint, shm::DdsEndpoint{.kind = 3}),
+              HasSubstr("an endpoint that cannot be read"));
+  EXPECT_THAT(
+      send(DdsKind::kEndpoint, shm::DdsEndpoint{.kind = shm::kDdsReader, .topic = {8, 999}}),
+      HasSubstr("an endpoint that cannot be read"));
+  EXPECT_THAT(send(DdsKind::kEndpoint, shm::DdsEndpoint{.kind = shm::kDdsReader, .qos = qos}), "")
+      << "one byte beyond the policies is inside an endpoint";
+  qos.partition = {UINT32_MAX, UINT32_MAX};
+  qos.present = shm::kDdsPartition;
+  EXPECT_THAT(send(DdsKind::kEndpoint, shm::DdsEndpoint{.kind = shm::kDdsReader, .qos = qos}),
+              HasSubstr("an endpoint that cannot be read"));
+  EXPECT_EQ(b.Take(1).size(), 2u);
+}
+
+TEST(DdsHub, NobodySpeaksForAnothersParticipant) {
+  Hub hub;
+  hub.TellOwn();
+  Peer a(hub, 0), b(hub, 0), c(hub, 0);
+  EXPECT_EQ(a.Send(1, {Message(DdsKind::kParticipant, 1)}), "");
+  DdsMessage gone = Message(DdsKind::kParticipant, 1);
+  gone.flags = shm::kDdsGone;
+  const DdsMessage sample = Message(DdsKind::kSample, 1);
+  DdsMessage endpoint = Message(DdsKind::kEndpoint, 2);
+  endpoint.other[0] = 1;
+  for (const DdsMessage& lie : {gone, sample, endpoint}) {
+    EXPECT_THAT(b.Send(2, {lie}), HasSubstr("of another program"));
+  }
+  EXPECT_EQ(c.Take(9).size(), 1u);
+  EXPECT_EQ(a.Send(3, {endpoint, sample, gone}), "");
+  EXPECT_EQ(b.Send(4, {Message(DdsKind::kParticipant, 1)}), "") << "nobody's any more";
+  hub.Leave(b.number(), 5);
+  EXPECT_EQ(a.Send(6, {Message(DdsKind::kParticipant, 1)}), "") << "the dead speak no more";
+}
+
+TEST(DdsHub, NobodyIsSentToWhoNeverWas) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  hub.Leave(b.number(), 1);
+  EXPECT_EQ(a.Send(2, {Message(DdsKind::kSample, 1, b.number())}), "") << "it has been there";
+  EXPECT_THAT(a.Send(2, {Message(DdsKind::kSample, 1, b.number() + 1)}),
+              HasSubstr("to a process that does not exist, 3"));
+}
+
+TEST(DdsHub, TheFileOfTheAreasCannotBeCutOff) {
+  Hub hub;
+  Peer a(hub, 0);
+  EXPECT_EQ(ftruncate(hub.fd(), 0), -1);
+  EXPECT_EQ(errno, EPERM);
+  EXPECT_EQ(fcntl(hub.fd(), F_ADD_SEALS, F_SEAL_GROW), -1);
+  Peer b(hub, 0);
+  EXPECT_NE(b.number(), 0u) << "it grows still";
+}
+
+TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
+  Hub hub;
+  Peer a(hub, 0), other(hub, 0);
+  DdsMessage endpoint = Message(DdsKind::kEndpoint, 2);
+  endpoint.payload_size = 1 << 20;
+  endpoint.size = shm::DdsMessageSize(endpoint.payload_size);
+  std::uint8_t made = 0;
+  std::string refused;
+  for (; made < 200 && refused.empty(); ++made) {
+    endpoint.subject[1] = made;
+    refused = a.Send(made, {endpoint});
+  }
+  EXPECT_EQ(made, 64);
+  EXPECT_THAT(refused, HasSubstr("takes 64 MiB: nobody is told of further ones"));
+  endpoint.subject[1] = 0;
+  EXPECT_EQ(a.Send(200, {endpoint}), "") << "another QoS of one that is known";
+  endpoint.flags = shm::kDdsGone;
+  EXPECT_EQ(a.Send(201, {endpoint}), "");
+  endpoint.flags = 0;
+  EXPECT_EQ(a.Send(202, {endpoint}), "") << "one for one";
+  EXPECT_EQ(other.Send(203, {endpoint}), "") << "each has its own";
+  ++endpoint.payload_size;
+  endpoint.size = shm::DdsMessageSize(endpoint.payload_size);
+  EXPECT_THAT(other.Send(204, {endpoint}), HasSubstr("1048577 bytes, more than 1 MiB"));
 }
 
 TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
@@ -206,7 +337,17 @@ TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(a.Send(i, {large}), "");
   EXPECT_EQ(hub.drops().lost, 4u);
   EXPECT_EQ(a.Send(20, {Message(DdsKind::kParticipant, 2)}), "");
-  EXPECT_EQ(hub.drops().lost, 4u) << "who is there is never dropped";
+  EXPECT_EQ(hub.drops().lost, 4u) << "who is there is not dropped";
+}
+
+TEST(DdsHub, NewsForWhoDoesNotTakeThemHaveALimitToo) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage asserted = Message(DdsKind::kLiveliness, 1);
+  asserted.payload_size = 8 << 20;
+  asserted.size = shm::DdsMessageSize(asserted.payload_size);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(a.Send(i, {asserted}), "");
+  EXPECT_EQ(hub.drops().lost, 11u) << "320 MiB wait";
 }
 
 TEST(DdsHub, AllSeeWhoIsFull) {

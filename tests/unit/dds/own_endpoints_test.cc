@@ -181,14 +181,14 @@ TEST_F(OwnEndpointsTest, TakeOnlyDataOfWritersThatSuitTheReader) {
   client.Announce(5, AWriter("rt/wrench"), 1, 7);
   const auto write_all = [&client](std::int64_t at_ns) {
     for (std::uint8_t writer = 1; writer <= 6; ++writer) {
-      client.Write(writer, std::to_string(writer), {shm::kDdsCoordinator}, at_ns,
+      client.Write(writer, "from " + std::to_string(writer), {shm::kDdsCoordinator}, at_ns,
                    {.stamp_ns = at_ns});
     }
   };
   write_all(10);
-  EXPECT_THAT(TakeFor(strict, 10), ElementsAre("1")) << "not what is offered best effort";
+  EXPECT_THAT(TakeFor(strict, 10), ElementsAre("from 1")) << "not what is offered best effort";
   write_all(20);
-  EXPECT_THAT(TakeFor(any, 20), ElementsAre("1", "2"));
+  EXPECT_THAT(TakeFor(any, 20), ElementsAre("from 1", "from 2"));
   // The end of an instance is no command.
   client.Write(1, "gone", {shm::kDdsCoordinator}, 30, {.stamp_ns = 30, .kind = 1});
   EXPECT_FALSE(ends_.Take(30).has_value());
@@ -200,12 +200,12 @@ TEST_F(OwnEndpointsTest, TakeWhatIsAddressedToOneReaderForThatOneOnly) {
   const auto recorder = ends_.Add(AReader("rt/wrench", kLatched), 0, 0);
   Client client(hub_, 0);
   client.Announce(1, AWriter("rt/wrench", kLatched), 1);
-  client.Write(1, "old", {shm::kDdsCoordinator}, 10,
+  client.Write(1, "older", {shm::kDdsCoordinator}, 10,
                {.stamp_ns = 5, .addressee = ends_.GuidOf(recorder)});
   EXPECT_THAT(TakeFor(command, 10), IsEmpty());
-  client.Write(1, "old", {shm::kDdsCoordinator}, 20,
+  client.Write(1, "older", {shm::kDdsCoordinator}, 20,
                {.stamp_ns = 5, .addressee = ends_.GuidOf(recorder)});
-  EXPECT_THAT(TakeFor(recorder, 20), ElementsAre("old"));
+  EXPECT_THAT(TakeFor(recorder, 20), ElementsAre("older"));
 }
 
 }  // namespace

@@ -45,28 +45,28 @@ TEST_F(TopicLogTest, ASampleCountsOnceForHoweverManyItIs) {
   Client writer(hub_, 0), one(hub_, 0), other(hub_, 0);
   writer.Announce(1, AWriter("rt/odom"), 5);
   const std::vector<Hub::Number> both = {one.number(), other.number()};
-  writer.Write(1, "abc", both, 100, {.stamp_ns = 90});
-  writer.Write(1, "abc", both, 350, {.stamp_ns = 340});
+  writer.Write(1, "abcd", both, 100, {.stamp_ns = 90});
+  writer.Write(1, "abcd", both, 350, {.stamp_ns = 340});
   // Written twice with the same stamp, by a program that sets it itself.
-  writer.Write(1, "de", both, 600, {.stamp_ns = 590});
-  writer.Write(1, "de", both, 600, {.stamp_ns = 590});
+  writer.Write(1, "efg!", both, 600, {.stamp_ns = 590});
+  writer.Write(1, "efg!", both, 600, {.stamp_ns = 590});
   ASSERT_THAT(log_.reports(), SizeIs(1));
   const TopicReport& report = log_.reports()[0];
   EXPECT_EQ(report.topic, "/odom");
   EXPECT_EQ(report.type, "std_msgs/msg/Header");
   EXPECT_EQ(report.samples, 4);
-  EXPECT_EQ(report.bytes, 10);
+  EXPECT_EQ(report.bytes, 16);
   EXPECT_EQ(report.first_ns, 100);
   EXPECT_EQ(report.last_ns, 600);
   EXPECT_DOUBLE_EQ(report.RateHz(), 3 / 500e-9);
-  EXPECT_THAT(heard_.written,
-              ElementsAre(Pair(100, "abc"), Pair(350, "abc"), Pair(600, "de"), Pair(600, "de")));
+  EXPECT_THAT(heard_.written, ElementsAre(Pair(100, "abcd"), Pair(350, "abcd"), Pair(600, "efg!"),
+                                          Pair(600, "efg!")));
 }
 
 TEST_F(TopicLogTest, TheEndOfAnInstanceIsNoSample) {
   Client writer(hub_, 0), reader(hub_, 0);
   writer.Announce(1, AWriter("rt/odom"), 5);
-  writer.Write(1, "key", {reader.number()}, 100, {.stamp_ns = 100, .kind = 1});
+  writer.Write(1, "a key", {reader.number()}, 100, {.stamp_ns = 100, .kind = 1});
   EXPECT_EQ(log_.reports()[0].samples, 0);
   EXPECT_THAT(heard_.written, IsEmpty());
 }
@@ -91,12 +91,12 @@ TEST_F(TopicLogTest, WhatNobodyWasThereForCountsWhenTheCoordinatorHearsOfIt) {
   writer.Announce(1, AWriter("rt/map", kLatched), 5);
   const Guid ours{1}, theirs{2};
   const std::vector<Hub::Number> us = {shm::kDdsCoordinator}, them = {reader.number()};
-  writer.Write(1, "one", them, 10, {.stamp_ns = 3, .addressee = theirs});
+  writer.Write(1, "first", them, 10, {.stamp_ns = 3, .addressee = theirs});
   EXPECT_EQ(log_.reports()[0].samples, 0) << "it is the coordinator's that counts";
-  writer.Write(1, "one", us, 11, {.stamp_ns = 3, .addressee = ours});
-  writer.Write(1, "two", us, 11, {.stamp_ns = 4, .addressee = ours});
-  writer.Write(1, "two", us, 20, {.stamp_ns = 4, .addressee = ours});
-  EXPECT_THAT(heard_.written, ElementsAre(Pair(11, "one"), Pair(11, "two")));
+  writer.Write(1, "first", us, 11, {.stamp_ns = 3, .addressee = ours});
+  writer.Write(1, "second", us, 11, {.stamp_ns = 4, .addressee = ours});
+  writer.Write(1, "second", us, 20, {.stamp_ns = 4, .addressee = ours});
+  EXPECT_THAT(heard_.written, ElementsAre(Pair(11, "first"), Pair(11, "second")));
 }
 
 TEST_F(TopicLogTest, TopicsAreApartByTypeAndDomainAndKeepTheirEnds) {
@@ -125,7 +125,7 @@ TEST_F(TopicLogTest, TopicsAreApartByTypeAndDomainAndKeepTheirEnds) {
 
 TEST_F(TopicLogTest, SamplesOfWritersThatWereNeverAnnouncedAreNobodys) {
   Client client(hub_, 0), reader(hub_, 0);
-  client.Write(9, "abc", {reader.number()}, 100, {.stamp_ns = 100});
+  client.Write(9, "abcd", {reader.number()}, 100, {.stamp_ns = 100});
   EXPECT_THAT(log_.reports(), IsEmpty());
 }
 

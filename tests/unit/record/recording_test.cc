@@ -124,13 +124,14 @@ TEST_F(RecordingTest, HasEachSampleOnceAtTheTimeWhenItWasWritten) {
   other.Announce(1, dds::AReader("rt/cmd"), 100);
   other.Announce(2, dds::AReader("rt/odom"), 100);
   Go(100);
-  client.Write(1, "c1", {shm::kDdsCoordinator, other.number()}, 123'456'789, {.stamp_ns = kEpoch});
+  client.Write(1, "cmd1", {shm::kDdsCoordinator, other.number()}, 123'456'789,
+               {.stamp_ns = kEpoch});
   ends_.Write(odom, dds::BytesOf("o2"), kEpoch + 200'000'000, 200'000'000);
   // To both of them, but it is the program's clock that the other one has come to.
-  client.Write(1, "c2", {other.number(), shm::kDdsCoordinator}, 300'000'000,
+  client.Write(1, "cmd2", {other.number(), shm::kDdsCoordinator}, 300'000'000,
                {.stamp_ns = kEpoch + 1});
-  EXPECT_THAT(Close(), ElementsAre("/odom 0 o1", "/cmd 123456789 c1", "/odom 200000000 o2",
-                                   "/cmd 300000000 c2"));
+  EXPECT_THAT(Close(), ElementsAre("/odom 0 o1", "/cmd 123456789 cmd1", "/odom 200000000 o2",
+                                   "/cmd 300000000 cmd2"));
   EXPECT_EQ(Metadata()["message_count"].as<int>(), 4);
   EXPECT_EQ(Metadata()["duration"]["nanoseconds"].as<std::int64_t>(), 300'000'000);
   EXPECT_EQ(Metadata()["starting_time"]["nanoseconds_since_epoch"].as<std::int64_t>(), kEpoch);
@@ -160,8 +161,8 @@ TEST_F(RecordingTest, LeavesOutWhatRosSaysOfItsNodes) {
   client.Announce(1, dds::AWriter("ros_discovery_info", dds::kLatched), 10);
   client.Announce(2, dds::AWriter("rt/odom"), 10);
   Go(10);
-  client.Write(2, "o", {shm::kDdsCoordinator}, 20, {.stamp_ns = kEpoch});
-  EXPECT_THAT(Close(), ElementsAre("/odom 20 o"));
+  client.Write(2, "odom", {shm::kDdsCoordinator}, 20, {.stamp_ns = kEpoch});
+  EXPECT_THAT(Close(), ElementsAre("/odom 20 odom"));
   EXPECT_EQ(Metadata()["topics_with_message_count"].size(), 1u);
 }
 
