@@ -191,8 +191,9 @@ void Engine::Attach(int connection) {
     free_slots_.pop_front();
     by_slot_[static_cast<std::size_t>(task.slot)] = &task;
     new (&Slot(task)) shm::ThreadSlot{};
-  } else {
-    DeletePosixTimers(*task.process);  // it has executed another program
+  }
+  if (hello.tid == hello.pid) {  // a new process; or it has executed another program
+    DeletePosixTimers(*task.process);
     LeaveDds(*task.process);
   }
   shm::ThreadSlot& slot = Slot(task);

@@ -3,6 +3,7 @@
 // others get is well-formed. Most is found by the sanitizers (the preset asan).
 #include <gmock/gmock.h>
 #include <stdlib.h>
+#include <yaml-cpp/yaml.h>
 
 #include <atomic>
 #include <filesystem>
@@ -170,6 +171,13 @@ TEST_F(HostileMessagesTest, WhatIsAcceptedIsWellFormed) {
   const auto read = dds::ReadTopics(folder_);
   ASSERT_TRUE(std::holds_alternative<std::vector<dds::TopicReport>>(read));
   EXPECT_EQ(std::get<0>(read).size(), log_.reports().size());
+  const YAML::Node bag =
+      YAML::LoadFile(folder_ + "/bag/metadata.yaml")["rosbag2_bagfile_information"];
+  EXPECT_EQ(bag["topics_with_message_count"].size(), log_.reports().size());
+  std::int64_t samples = 0;
+  for (const dds::TopicReport& topic : log_.reports()) samples += topic.samples;
+  EXPECT_EQ(bag["message_count"].as<std::int64_t>(), samples);
+  EXPECT_GT(samples, 500);
 }
 
 // It is copied, then checked, and then nobody looks into the outbox any more.
