@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "coordinator/core/complaints.h"
+#include "coordinator/channel/complaints.h"
 #include "coordinator/core/ros_nodes.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/robot_topics.h"

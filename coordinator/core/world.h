@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/channel/complaints.h"
 #include "coordinator/channel/udp_socket.h"
-#include "coordinator/core/complaints.h"
 #include "coordinator/core/dds_channels.h"
 #include "coordinator/scenario/scenario.h"
 

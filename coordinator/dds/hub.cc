@@ -29,7 +29,7 @@ constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
 // should not miss any for as long as it may still go on.
 constexpr std::size_t kMostQueuedNewsBytes = std::size_t{64} << 20;
 // What one process may have told of its participants and endpoints: some ten thousands of them.
-constexpr std::size_t kMostKnownBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostKnownBytes = std::size_t{16} << 20;
 // Full beyond that: some milliseconds' work for who takes it. Cyclone's writers stop at half of it.
 constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 
@@ -269,7 +269,7 @@ std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
   if (Find(header.from)->known_bytes - had + header.size > kMostKnownBytes) {
     return "has made so many DDS participants, writers and readers that what they say of "
            "themselves "
-           "takes 64 MiB: nobody is told of further ones; delete those that are not needed any "
+           "takes 16 MiB: nobody is told of further ones; delete those that are not needed any "
            "more";
   }
   return std::nullopt;

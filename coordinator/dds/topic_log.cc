@@ -14,9 +14,10 @@ using shm::DdsMessage;
 }  // namespace
 
 void TopicLog::Entered(const DdsMessage& header, std::span<const std::byte> payload) {
-  const bool is_news = header.kind == DdsKind::kParticipant || header.kind == DdsKind::kEndpoint;
-  if (is_news && (header.flags & shm::kDdsGone) != 0) return Forget(GuidAt(header.subject));
-  if (header.kind == DdsKind::kEndpoint) NoteEndpoint(header, payload);
+  const bool is_gone = (header.flags & shm::kDdsGone) != 0;
+  if (header.kind == DdsKind::kParticipant && is_gone) ForgetAllOf(GuidAt(header.subject));
+  if (header.kind == DdsKind::kEndpoint && is_gone) known_.erase(GuidAt(header.subject));
+  if (header.kind == DdsKind::kEndpoint && !is_gone) NoteEndpoint(header, payload);
   if (header.kind == DdsKind::kSample) NoteSample(header, payload);
 }
 
@@ -54,7 +55,7 @@ std::optional<TopicLog::Topic> TopicLog::Note(const Endpoint& endpoint, int doma
   return report - reports_.begin();
 }
 
-// New, or gone, or with another QoS.
+// New, or with another QoS.
 void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte> payload) {
   const Guid guid = GuidAt(header.subject);
   if (known_.contains(guid)) return;
@@ -67,9 +68,9 @@ void TopicLog::NoteEndpoint(const DdsMessage& header, std::span<const std::byte>
   if (listener_ != nullptr) listener_->Opened(*topic, domain, *endpoint);
 }
 
-void TopicLog::Forget(const Guid& subject) {
-  std::erase_if(known_, [&subject](const auto& known) {
-    return known.first == subject || known.second.participant == subject;
+void TopicLog::ForgetAllOf(const Guid& participant) {
+  std::erase_if(known_, [&participant](const auto& known) {
+    return known.second.participant == participant;
   });
 }
 

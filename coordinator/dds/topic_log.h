@@ -61,7 +61,7 @@ class TopicLog : public HubObserver {
     std::set<std::uint32_t> sent_to;
   };
   std::optional<Topic> Note(const Endpoint& endpoint, int domain, Speaker speaker);
-  void Forget(const Guid& subject);
+  void ForgetAllOf(const Guid& participant);
   void NoteEndpoint(const shm::DdsMessage& header, std::span<const std::byte> payload);
   void NoteSample(const shm::DdsMessage& header, std::span<const std::byte> payload);
 

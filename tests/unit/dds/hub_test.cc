@@ -302,8 +302,8 @@ TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
     endpoint.subject[1] = made;
     refused = a.Send(made, {endpoint});
   }
-  EXPECT_EQ(made, 64);
-  EXPECT_THAT(refused, HasSubstr("takes 64 MiB: nobody is told of further ones"));
+  EXPECT_EQ(made, 16);
+  EXPECT_THAT(refused, HasSubstr("takes 16 MiB: nobody is told of further ones"));
   endpoint.subject[1] = 0;
   EXPECT_EQ(a.Send(200, {endpoint}), "") << "another QoS of one that is known";
   endpoint.flags = shm::kDdsGone;

@@ -43,6 +43,13 @@ class TopicsFileTest : public testing::Test {
   std::string folder_;
 };
 
+TEST_F(TopicsFileTest, SaysHowManyEndpointsWereAlike) {
+  std::vector<TopicReport> topics = {SomeTopics()[1]};
+  topics[0].endpoints[0].count = 300;
+  ASSERT_EQ(WriteTopics(topics, Path()), "");
+  EXPECT_EQ(std::get<0>(ReadTopics(folder_))[0].endpoints[0].count, 300);
+}
+
 TEST_F(TopicsFileTest, ComesBackAsItWasInTheOrderOfNames) {
   ASSERT_EQ(WriteTopics(SomeTopics(), Path()), "");
   const auto read = ReadTopics(folder_);

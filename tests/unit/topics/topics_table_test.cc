@@ -40,6 +40,16 @@ TEST(TopicsTable, HasALinePerEndpointIfAsked) {
                                "transient_local, manual_by_topic\n"));
 }
 
+TEST(TopicsTable, CountsEndpointsThatAreAlike) {
+  TopicReport topic{"/call", "a/msg/A"};
+  topic.endpoints = {{EndpointKind::kWriter, "hunter/planner", "hunter", {}, 300},
+                     {EndpointKind::kWriter, "hunter/planner", "hunter", {.depth = 1}}};
+  const std::string table = TopicsTable({topic}, true);
+  EXPECT_THAT(table, HasSubstr(" hunter/planner x301 "));
+  EXPECT_THAT(table, HasSubstr("\n    writer hunter/planner x300: reliable, keep_last 10, "));
+  EXPECT_THAT(table, HasSubstr("\n    writer hunter/planner: reliable, keep_last 1, "));
+}
+
 TEST(TopicWarnings, NameReadersThatNoWriterSuits) {
   TopicReport topic{"/odom", "nav_msgs/msg/Odometry"};
   Qos best_effort;
