@@ -1,6 +1,7 @@
 #include "coordinator/os/guardian.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -23,7 +24,11 @@ int StatusOf(pid_t pid) {
   return status;
 }
 
+// At a real-time priority, as a coordinator has it: at another one it would not have the processor
+// for itself on a machine that does other things, too.
 int GoAstray() {
+  const sched_param param{.sched_priority = 1};
+  sched_setscheduler(0, SCHED_FIFO, &param);
   for (volatile int forever = 1; forever != 0;) {
   }
   return 0;

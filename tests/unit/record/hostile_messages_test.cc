@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "coordinator/dds/well_formed.h"
@@ -173,9 +174,13 @@ TEST_F(HostileMessagesTest, WhatIsAcceptedIsWellFormed) {
   EXPECT_EQ(std::get<0>(read).size(), log_.reports().size());
   const YAML::Node bag =
       YAML::LoadFile(folder_ + "/bag/metadata.yaml")["rosbag2_bagfile_information"];
-  EXPECT_EQ(bag["topics_with_message_count"].size(), log_.reports().size());
+  std::set<std::pair<std::string, std::string>> topics;  // bags know no domains
   std::int64_t samples = 0;
-  for (const dds::TopicReport& topic : log_.reports()) samples += topic.samples;
+  for (const dds::TopicReport& topic : log_.reports()) {
+    topics.emplace(topic.topic, topic.type);
+    samples += topic.samples;
+  }
+  EXPECT_EQ(bag["topics_with_message_count"].size(), topics.size());
   EXPECT_EQ(bag["message_count"].as<std::int64_t>(), samples);
   EXPECT_GT(samples, 500);
 }
