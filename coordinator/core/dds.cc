@@ -143,7 +143,7 @@ void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
       break;
     case shm::WhySockets::kNoRoom:
       reason = "there is no room for it in shared memory";
-      mend = "start fewer programs";
+      mend = "a run has room for 1024 of them, those that have ended included: start fewer";
       break;
     case shm::WhySockets::kNoLibraryOfOurs:
       break;
