@@ -227,21 +227,23 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
         "are lost; is its libtcs_dds.so of another version?",
         bytes);
   }
-  const auto* at = reinterpret_cast<const std::byte*>(member->outbox());
-  const std::byte* const end = at + bytes;
-  while (at != end) {
-    const std::span left{at, end};
+  return EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
+}
+
+// Of messages in memory that the program may write to all the while.
+std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns) {
+  while (!left.empty()) {
     DdsMessage header{};
     if (left.size() >= sizeof header) header = HeaderOf(left);
-    // The program may write there still: what has been checked is not to be read again.
+    // What has been checked is not to be read again.
     std::atomic_signal_fence(std::memory_order_seq_cst);
     if (auto wrong = WhatIsWrongWithSize(header, left.size())) return *wrong;
     header.from = from;
     header.time_ns = now_ns;
-    Bytes copy(at, at + header.size);
+    Bytes copy(left.begin(), left.begin() + header.size);
     PutHeader(header, copy);
     if (auto wrong = WhyNot(header, PayloadOf(copy))) return *wrong;
-    at += header.size;
+    left = left.subspan(header.size);
     Enter(header, std::move(copy));
   }
   return {};

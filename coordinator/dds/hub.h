@@ -129,6 +129,7 @@ class Hub {
     Message message;
   };
 
+  std::string EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns);
   void Enter(const shm::DdsMessage& header, Bytes bytes);
   std::optional<std::string> WhyNot(const shm::DdsMessage& header,
                                     std::span<const std::byte> payload) const;
