@@ -27,18 +27,10 @@ class Qos {
   dds_qos_t* qos_;
 };
 
-// Of an endpoint, as its shadow has them: it must match what is in its own process, and never wait.
+// Of an endpoint, as its shadow has them: it is to match what is in this process.
 dds_qos_t* ShadowQos(const Payload& payload) {
   dds_qos_t* qos = DecodeQos(payload, false);
-  if (dds_ignorelocal_kind_t kind{};
-      dds_qget_ignorelocal(qos, &kind) && kind == DDS_IGNORELOCAL_PROCESS) {
-    dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
-  }
-  dds_reliability_kind_t reliability{};
-  dds_duration_t blocking = 0;
-  if (dds_qget_reliability(qos, &reliability, &blocking)) {
-    dds_qset_reliability(qos, reliability, DDS_INFINITY);
-  }
+  dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_NONE);
   return qos;
 }
 
