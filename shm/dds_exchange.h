@@ -38,7 +38,10 @@
 namespace tcs::shm {
 
 inline constexpr std::size_t kDdsHeaderSize = 4096;
-inline constexpr std::size_t kDdsBoxSize = std::size_t{16} << 20;
+inline constexpr std::size_t kDdsBoxSize = std::size_t{128} << 20;
+// Messages are handed over so many at a time, but for one that is larger, which comes alone; the
+// memory of what is larger is given back.
+inline constexpr std::size_t kDdsUsualSize = std::size_t{16} << 20;
 inline constexpr std::size_t kDdsAreaSize = kDdsHeaderSize + 2 * kDdsBoxSize;
 inline constexpr std::uint32_t kDdsMostProcesses = 1024;
 
