@@ -93,6 +93,7 @@ void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload)
   const bool changed = participant.shadow > 0 && participant.payload != payload;
   participant.domain = message.domain;
   participant.process = message.from;
+  participant.tag = message.instance;
   participant.payload = std::move(payload);
   if (changed) {
     const Qos qos(DecodeQos(participant.payload, true));
@@ -174,7 +175,12 @@ void Mirrors::Close(std::uint32_t domain) {
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
-  if (participant.shadow > 0 || DomainOf(participant.domain) == nullptr) return;
+  const ddsi_domaingv* gv = DomainOf(participant.domain);
+  if (participant.shadow > 0 || gv == nullptr) return;
+  if (participant.process != shm::kDdsCoordinator &&
+      participant.tag != shm::DdsTag(gv->config.domainTag)) {
+    return;
+  }
   AddShadow(guid);
   const Qos qos(DecodeQos(participant.payload, true));
   const MakingShadow making(guid);
