@@ -62,7 +62,7 @@ extern "C" __attribute__((visibility("default"))) const tcs::dds::Hook* tcs_dds_
     const tcs::dds::Link& link);
 
 extern "C" const tcs::dds::Hook* tcs_dds_start(const tcs::dds::Link& link) {
-  if (!tcs::dds::FindCyclone() || !tcs::dds::Join(link)) return nullptr;
+  if (!tcs::dds::FindCyclone(link) || !tcs::dds::Join(link)) return nullptr;
   tcs::dds::StartDeliverer();
   return tcs::dds::Hooks();
 }
