@@ -38,7 +38,10 @@
 namespace tcs::shm {
 
 inline constexpr std::size_t kDdsHeaderSize = 4096;
-inline constexpr std::size_t kDdsBoxSize = std::size_t{16} << 20;
+inline constexpr std::size_t kDdsBoxSize = std::size_t{128} << 20;
+// Messages are handed over so many at a time, but for one that is larger, which comes alone; the
+// memory of what is larger is given back.
+inline constexpr std::size_t kDdsUsualSize = std::size_t{16} << 20;
 inline constexpr std::size_t kDdsAreaSize = kDdsHeaderSize + 2 * kDdsBoxSize;
 inline constexpr std::uint32_t kDdsMostProcesses = 1024;
 
@@ -102,7 +105,8 @@ struct DdsMessage {
   std::uint32_t sample_kind;  // of samples, Cyclone's ddsi_serdata_kind: kDdsData or of a key only
   std::uint32_t payload_size;
   // Of samples for all readers: of a reliable writer that keeps only so many of an instance, 0:
-  // all; and the instance, by its number in the writer's process.
+  // all; and the instance, by its number in the writer's process. Of participants, `instance` is
+  // DdsTag of their domain.
   std::uint32_t keep_last;
   std::uint32_t reserved;
   std::uint64_t instance;
@@ -111,6 +115,15 @@ static_assert(sizeof(DdsMessage) == 104);
 static_assert(offsetof(DdsMessage, subject) == 24);
 static_assert(offsetof(DdsMessage, source_timestamp_ns) == 56);
 static_assert(offsetof(DdsMessage, instance) == 96);
+
+// Of the tag that Cyclone's configuration may give a domain (Discovery/Tag): participants of
+// domains with different ones do not meet. The coordinator meets all.
+inline constexpr std::uint64_t DdsTag(const char* tag) {
+  if (tag == nullptr || *tag == '\0') return 0;
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (; *tag != '\0'; ++tag) hash = (hash ^ static_cast<unsigned char>(*tag)) * 0x100000001b3u;
+  return hash;
+}
 
 inline constexpr std::uint32_t DdsMessageSize(std::uint32_t payload_size) {
   return static_cast<std::uint32_t>((sizeof(DdsMessage) + payload_size + 7) / 8 * 8);

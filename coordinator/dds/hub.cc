@@ -227,7 +227,10 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
         "are lost; is its libtcs_dds.so of another version?",
         bytes);
   }
-  return EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
+  std::string wrong =
+      EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
+  GiveBack(from, shm::kDdsHeaderSize, bytes);
+  return wrong;
 }
 
 // Of messages in memory that the program may write to all the while.
@@ -286,6 +289,14 @@ std::vector<Hub::Known>::const_iterator Hub::KnownAs(Number from, const Guid& su
 bool Hub::IsAnothers(const Guid& guid, Number number) const {
   const auto owner = owners_.find(PrefixOf(guid));
   return owner != owners_.end() && owner->second != number;
+}
+
+// Of a box of which so many bytes have been used.
+void Hub::GiveBack(Number number, std::size_t box, std::size_t bytes) const {
+  if (bytes <= shm::kDdsUsualSize) return;
+  fallocate(fd_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+            static_cast<off_t>((number - 1) * shm::kDdsAreaSize + box + shm::kDdsUsualSize),
+            static_cast<off_t>(bytes - shm::kDdsUsualSize));
 }
 
 void Hub::SendOwn(DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns) {
@@ -430,7 +441,8 @@ std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
   member->replaceable.clear();  // it refers to the queue's begin
   while (!member->queue.empty() && member->queue.begin()->first <= now_ns) {
     const Bytes& message = *member->queue.begin()->second;
-    if (filled + message.size() > shm::kDdsBoxSize) break;
+    const bool fits = filled + message.size() <= shm::kDdsUsualSize;
+    if (!fits && (filled > 0 || message.size() > shm::kDdsBoxSize)) break;
     memcpy(member->inbox() + filled, message.data(), message.size());
     filled += message.size();
     member->queued_bytes -= message.size();
@@ -447,6 +459,7 @@ void Hub::CameBack(Number number) {
   Member* member = Find(number);
   if (member == nullptr) return;
   member->delivers = false;
+  GiveBack(number, shm::kDdsHeaderSize + shm::kDdsBoxSize, member->delivered_bytes);
   member->delivered_bytes = 0;
   member->shown().delivers.store(0);
   ShowFull(number);

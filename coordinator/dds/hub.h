@@ -147,6 +147,7 @@ class Hub {
   void Drop(const shm::DdsMessage& header, Number to, std::uint64_t& count);
   void Replace(Number to, Queued::iterator latest);
   void ShowFull(Number number);
+  void GiveBack(Number number, std::size_t box, std::size_t bytes) const;
 
   int fd_ = -1;
   HubObserver* observer_ = nullptr;

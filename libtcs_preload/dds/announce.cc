@@ -43,6 +43,7 @@ void AnnounceParticipant(const ddsi_participant& participant) {
   shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, participant.e.gv->config.domainId,
                                       Guid::Of(participant.e.guid));
   SetLease(message, participant.lease_duration);
+  message.instance = shm::DdsTag(participant.e.gv->config.domainTag);
   Send(message, EncodeParticipant(&participant.plist->qos));
 }
 

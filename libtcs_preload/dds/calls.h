@@ -19,6 +19,7 @@
   X(dds_delete)                    \
   X(dds_assert_liveliness)         \
   X(dds_lookup_participant)        \
+  X(dds_get_children)              \
   X(dds_reader_data_available_cb)  \
   X(ddsi_new_participant)          \
   X(ddsi_delete_participant)       \

@@ -17,12 +17,12 @@ constexpr char kFile[] = "libddsc.so." DDS_VERSION;
 
 RealCalls g_real;
 
-bool FindAll(void* library) {
-#define TCS_DDS_FIND(name)                                                      \
-  g_real.name = reinterpret_cast<decltype(g_real.name)>(dlsym(library, #name)); \
-  if (g_real.name == nullptr) {                                                 \
-    Say("the program's %s has no %s, and DDS uses sockets", kLibrary, #name);   \
-    return false;                                                               \
+bool FindAll(const Link& link, void* library) {
+#define TCS_DDS_FIND(name)                                                             \
+  g_real.name = reinterpret_cast<decltype(g_real.name)>(link.look_up(library, #name)); \
+  if (g_real.name == nullptr) {                                                        \
+    Say("the program's %s has no %s, and DDS uses sockets", kLibrary, #name);          \
+    return false;                                                                      \
   }
   TCS_DDS_CALLS(TCS_DDS_FIND)
 #undef TCS_DDS_FIND
@@ -33,7 +33,7 @@ bool FindAll(void* library) {
 
 const RealCalls& Real() { return g_real; }
 
-bool FindCyclone() {
+bool FindCyclone(const Link& link) {
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   link_map* map = nullptr;
   if (library == nullptr || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) {
@@ -49,7 +49,7 @@ bool FindCyclone() {
         file != nullptr ? file : map->l_name);
   }
   free(file);
-  return same && FindAll(library);
+  return same && FindAll(link, library);
 }
 
 bool LayoutIsAsCompiled(const ddsi_domaingv& gv, const ddsi_participant& participant) {

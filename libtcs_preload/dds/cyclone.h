@@ -23,6 +23,7 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include <dds/version.h>
 
 #include "libtcs_preload/dds/calls.h"
+#include "libtcs_preload/dds/link.h"
 
 namespace tcs::dds {
 
@@ -39,7 +40,7 @@ const RealCalls& Real();
 
 // Fills Real(). False, and one line on stderr, if the program's libddsc is not the version whose
 // inner structures this library was compiled with.
-bool FindCyclone();
+bool FindCyclone(const Link& link);
 
 // The same of what can be seen only once there is a participant: whether its structures lie where
 // the headers say.

@@ -16,6 +16,24 @@ bool IsBuiltin(const ddsi_participant& participant, const ddsi_sertype* type) {
   return builtintopic_is_builtintopic(participant.e.gv->builtin_topic_interface, type);
 }
 
+// What a shadow is made with: others' endpoints show of which type they are, a program's own do
+// not.
+class WithTypeInformation {
+ public:
+  WithTypeInformation(const dds_qos_t* qos, const ddsi_sertype* type) : qos_(ddsi_xqos_dup(qos)) {
+    if ((qos_->present & QP_TYPE_INFORMATION) != 0) return;
+    qos_->type_information = ddsi_sertype_typeinfo(type);
+    if (qos_->type_information != nullptr) qos_->present |= QP_TYPE_INFORMATION;
+  }
+  ~WithTypeInformation() { dds_delete_qos(qos_); }
+  WithTypeInformation(const WithTypeInformation&) = delete;
+  WithTypeInformation& operator=(const WithTypeInformation&) = delete;
+  const dds_qos_t* get() const { return qos_; }
+
+ private:
+  dds_qos_t* qos_;
+};
+
 }  // namespace
 
 dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags,
@@ -54,8 +72,9 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
                        ddsi_participant* participant, const char* topic, const ddsi_sertype* type,
                        const dds_qos_t* qos, whc* cache, ddsi_status_cb_t status, void* argument) {
   if (IsShadow(participant->e.guid)) {
-    return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, qos, cache, status,
-                                  argument);
+    const WithTypeInformation all(qos, type);
+    return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, all.get(), cache,
+                                  status, argument);
   }
   ddsi_domaingv* gv = participant->e.gv;
   OwnMatches matches(gv, qos, ReadersOf(gv->config.domainId, topic));
@@ -89,8 +108,9 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
                        const dds_qos_t* qos, ddsi_rhc* cache, ddsi_status_cb_t status,
                        void* argument) {
   if (IsShadow(participant->e.guid)) {
-    return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, qos, cache, status,
-                                  argument);
+    const WithTypeInformation all(qos, type);
+    return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, all.get(), cache,
+                                  status, argument);
   }
   ddsi_domaingv* gv = participant->e.gv;
   const bool builtin = IsBuiltin(*participant, type);

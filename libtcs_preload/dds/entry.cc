@@ -63,8 +63,28 @@ __asm__(
   }
 TCS_DDS_CALLS(TCS_DDS_DOOR)
 
+// A program that looks a function up in libddsc itself, as Python's ctypes does, is led to the door
+// as well. Where that is not so, the C library's own dlsym goes on in this one's place: RTLD_NEXT
+// depends on who has called.
+extern "C" {
+__attribute__((visibility("hidden"))) void* (*tcs_dds_real_dlsym)(void* library, const char* name);
+__attribute__((visibility("hidden"), used)) void* tcs_dds_looked_up(void* library,
+                                                                    const char* name);
+}
+TCS_EXPORT __attribute__((naked)) void* dlsym(void*, const char*) noexcept {
+  __asm__(
+      "endbr64\n\tpushq %rdi\n\tpushq %rsi\n\tsubq $8, %rsp\n\t"
+      "call tcs_dds_looked_up\n\t"
+      "addq $8, %rsp\n\tpopq %rsi\n\tpopq %rdi\n\t"
+      "testq %rax, %rax\n\tjz 1f\n\tret\n"
+      "1:\tmovq tcs_dds_real_dlsym(%rip), %r11\n\tjmp *%r11\n");
+}
+
 namespace tcs::preload {
 namespace {
+
+#define TCS_DDS_ADDRESS(name) reinterpret_cast<void*>(name),
+void* const kDoors[kCalls] = {TCS_DDS_CALLS(TCS_DDS_ADDRESS)};
 
 #define TCS_DDS_NAME(name) #name,
 constexpr const char* kNames[kCalls] = {TCS_DDS_CALLS(TCS_DDS_NAME)};
@@ -104,13 +124,34 @@ void* AnyLibrary() {
   return dl_iterate_phdr(is_it, nullptr) != 0 ? dlopen(path, RTLD_LAZY | RTLD_NOLOAD) : nullptr;
 }
 
+}  // namespace
+
+void* LookUp(void* library, const char* name) {
+  if (tcs_dds_real_dlsym == nullptr) {
+    tcs_dds_real_dlsym =
+        reinterpret_cast<decltype(tcs_dds_real_dlsym)>(dlvsym(RTLD_NEXT, "dlsym", "GLIBC_2.2.5"));
+  }
+  return name != nullptr ? tcs_dds_real_dlsym(library, name) : nullptr;
+}
+
+namespace {
+
+// Under the package's name, whichever of its links has led to it; copies that others bring are not
+// meant.
+bool IsInDebians(void* function) {
+  Dl_info info{};
+  if (function == nullptr || dladdr(function, &info) == 0) return false;
+  const char* slash = strrchr(info.dli_fname, '/');
+  return slash != nullptr && strncmp(slash, "/libddsc.so", 11) == 0;
+}
+
 // libddsc's own function.
 void* Real(unsigned call) {
   if (void* found = dlsym(RTLD_NEXT, kNames[call]); found != nullptr) return found;
   // libddsc is there, but not for all: some library's, which was loaded later.
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   if (library == nullptr) library = AnyLibrary();
-  void* found = library != nullptr ? dlsym(library, kNames[call]) : nullptr;
+  void* found = library != nullptr ? LookUp(library, kNames[call]) : nullptr;
   if (found == nullptr) DieWithout(kNames[call]);
   return found;
 }
@@ -165,6 +206,19 @@ void* HookOf(const dds::Hook* hooks, const char* name) {
 
 }  // namespace
 }  // namespace tcs::preload
+
+// Null: dlsym itself is to answer.
+void* tcs_dds_looked_up(void* library, const char* name) {
+  using namespace tcs::preload;
+  if (tcs_dds_real_dlsym == nullptr) LookUp(nullptr, nullptr);
+  if (library == RTLD_DEFAULT || library == RTLD_NEXT || name == nullptr) return nullptr;
+  if (strncmp(name, "dds", 3) != 0) return nullptr;
+  for (unsigned call = 0; call < kCalls; ++call) {
+    if (strcmp(kNames[call], name) != 0) continue;
+    return IsInDebians(LookUp(library, name)) ? kDoors[call] : nullptr;
+  }
+  return nullptr;
+}
 
 void* tcs_dds_resolve(unsigned call) {
   using namespace tcs::preload;

@@ -151,8 +151,8 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send, AnyIsFull, IsFull,   AwaitRoom,
-                         Wait, Sync, Settle,    BehindNs, NowOfThread};
+const dds::Link kDdsLink{Join, Send,   AnyIsFull, IsFull,      AwaitRoom, Wait,
+                         Sync, Settle, BehindNs,  NowOfThread, LookUp};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";

@@ -45,6 +45,9 @@ struct Link {
 
   // The calling thread's virtual time, ns since the run's start.
   std::int64_t (*now)();
+
+  // dlsym, which leads programs that look up libddsc's functions to the shim's.
+  void* (*look_up)(void* library, const char* name);
 };
 
 // One function of libddsc (calls.h) that libtcs_dds.so does otherwise. A table of them ends with

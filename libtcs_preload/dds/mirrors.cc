@@ -27,18 +27,10 @@ class Qos {
   dds_qos_t* qos_;
 };
 
-// Of an endpoint, as its shadow has them: it must match what is in its own process, and never wait.
+// Of an endpoint, as its shadow has them: it is to match what is in this process.
 dds_qos_t* ShadowQos(const Payload& payload) {
   dds_qos_t* qos = DecodeQos(payload, false);
-  if (dds_ignorelocal_kind_t kind{};
-      dds_qget_ignorelocal(qos, &kind) && kind == DDS_IGNORELOCAL_PROCESS) {
-    dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
-  }
-  dds_reliability_kind_t reliability{};
-  dds_duration_t blocking = 0;
-  if (dds_qget_reliability(qos, &reliability, &blocking)) {
-    dds_qset_reliability(qos, reliability, DDS_INFINITY);
-  }
+  dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_NONE);
   return qos;
 }
 
@@ -101,6 +93,7 @@ void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload)
   const bool changed = participant.shadow > 0 && participant.payload != payload;
   participant.domain = message.domain;
   participant.process = message.from;
+  participant.tag = message.instance;
   participant.payload = std::move(payload);
   if (changed) {
     const Qos qos(DecodeQos(participant.payload, true));
@@ -182,7 +175,12 @@ void Mirrors::Close(std::uint32_t domain) {
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
-  if (participant.shadow > 0 || DomainOf(participant.domain) == nullptr) return;
+  const ddsi_domaingv* gv = DomainOf(participant.domain);
+  if (participant.shadow > 0 || gv == nullptr) return;
+  if (participant.process != shm::kDdsCoordinator &&
+      participant.tag != shm::DdsTag(gv->config.domainTag)) {
+    return;
+  }
   AddShadow(guid);
   const Qos qos(DecodeQos(participant.payload, true));
   const MakingShadow making(guid);

@@ -36,6 +36,7 @@ class Mirrors {
   struct Participant {
     std::uint32_t domain;
     std::uint32_t process;
+    std::uint64_t tag;
     Payload payload;
     dds_entity_t shadow = 0;
     std::map<std::pair<std::string, std::string>, dds_entity_t> topics;

@@ -30,6 +30,20 @@ bool IsShadowHandle(dds_entity_t participant) {
          IsShadow(Guid::FromBytes(guid.v).Inner());
 }
 
+// What `list` has, but for shadows, as Cyclone's own calls return it.
+template <class List>
+dds_return_t WithoutShadows(dds_entity_t* entities, std::size_t size, List list) {
+  const dds_return_t count = list(nullptr, 0);
+  // Wrong arguments are Cyclone's to find.
+  if (count <= 0 || (entities == nullptr) != (size == 0)) return list(entities, size);
+  std::vector<dds_entity_t> all(static_cast<std::size_t>(count));
+  const dds_return_t now = list(all.data(), all.size());
+  all.resize(static_cast<std::size_t>(std::clamp(now, 0, count)));
+  std::erase_if(all, IsShadowHandle);
+  std::copy_n(all.begin(), std::min(size, all.size()), entities);
+  return static_cast<dds_return_t>(all.size());
+}
+
 }  // namespace
 
 dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
@@ -73,17 +87,17 @@ dds_return_t Delete(dds_entity_t entity) {
 
 dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participants,
                                 std::size_t size) {
-  const dds_return_t count = Real().dds_lookup_participant(domain, nullptr, 0);
-  // Wrong arguments are Cyclone's to find.
-  if (count <= 0 || (participants == nullptr) != (size == 0)) {
-    return Real().dds_lookup_participant(domain, participants, size);
-  }
-  std::vector<dds_entity_t> all(static_cast<std::size_t>(count));
-  const dds_return_t now = Real().dds_lookup_participant(domain, all.data(), all.size());
-  all.resize(static_cast<std::size_t>(std::clamp(now, 0, count)));
-  std::erase_if(all, IsShadowHandle);
-  std::copy_n(all.begin(), std::min(size, all.size()), participants);
-  return static_cast<dds_return_t>(all.size());
+  return WithoutShadows(participants, size, [domain](dds_entity_t* all, std::size_t most) {
+    return Real().dds_lookup_participant(domain, all, most);
+  });
+}
+
+// A domain's are participants.
+dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size) {
+  if (dds_get_participant(entity) > 0) return Real().dds_get_children(entity, children, size);
+  return WithoutShadows(children, size, [entity](dds_entity_t* all, std::size_t most) {
+    return Real().dds_get_children(entity, all, most);
+  });
 }
 
 }  // namespace tcs::dds

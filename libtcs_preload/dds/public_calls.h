@@ -15,5 +15,6 @@ dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* 
 dds_return_t Delete(dds_entity_t entity);
 dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participants,
                                 std::size_t size);
+dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size);
 
 }  // namespace tcs::dds

@@ -1,5 +1,7 @@
 #include "libtcs_preload/dds/qos_code.h"
 
+#include <dds/ddsi/ddsi_xqos.h>
+
 #include <cstring>
 #include <string_view>
 
@@ -78,37 +80,32 @@ void EncodeTexts(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   }
 }
 
+// Those that others are to see. Programs' own are not among them: Cyclone keeps them to itself.
 void EncodeProperties(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
-  std::uint32_t count = 0;
-  char** names = nullptr;
-  if (dds_qget_propnames(qos, &count, &names)) {
-    std::string all;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      char* value = nullptr;
-      if (!dds_qget_prop(qos, names[i], &value)) continue;
-      all.append(names[i]).push_back('\0');
-      all.append(value).push_back('\0');
-      dds_free(value);
-    }
+  if ((qos->present & QP_PROPERTY_LIST) == 0) return;
+  const auto& text = qos->property.value;
+  const auto& binary = qos->property.binary_value;
+  std::string all;
+  for (std::uint32_t i = 0; i < text.n; ++i) {
+    if (text.props[i].propagate == 0) continue;
+    all.append(text.props[i].name).push_back('\0');
+    all.append(text.props[i].value).push_back('\0');
+  }
+  if (!all.empty()) {
     to.present |= shm::kDdsProperties;
     to.properties = texts.Add(all);
-    FreeNames(names, count);
   }
-  if (dds_qget_bpropnames(qos, &count, &names)) {
-    std::string all;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      void* value = nullptr;
-      std::size_t size = 0;
-      if (!dds_qget_bprop(qos, names[i], &value, &size)) continue;
-      const auto size32 = static_cast<std::uint32_t>(size);
-      all.append(names[i]).push_back('\0');
-      all.append(reinterpret_cast<const char*>(&size32), sizeof(size32));
-      all.append(static_cast<const char*>(value), size);
-      dds_free(value);
-    }
+  all.clear();
+  for (std::uint32_t i = 0; i < binary.n; ++i) {
+    if (binary.props[i].propagate == 0) continue;
+    const auto& value = binary.props[i].value;
+    all.append(binary.props[i].name).push_back('\0');
+    all.append(reinterpret_cast<const char*>(&value.length), sizeof(value.length));
+    all.append(reinterpret_cast<const char*>(value.value), value.length);
+  }
+  if (!all.empty()) {
     to.present |= shm::kDdsBinaryProperties;
     to.binary_properties = texts.Add(all);
-    FreeNames(names, count);
   }
 }
 

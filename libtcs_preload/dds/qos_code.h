@@ -1,4 +1,4 @@
-// QoS as numbers and texts (shm/dds_endpoint.h), and back, through Cyclone's public accessors.
+// QoS as numbers and texts (shm/dds_endpoint.h), and back.
 #pragma once
 
 #include <cstddef>

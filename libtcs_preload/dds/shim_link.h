@@ -8,6 +8,9 @@ namespace tcs::preload {
 
 extern const dds::Link kDdsLink;
 
+// The C library's dlsym, for handles of libraries.
+void* LookUp(void* library, const char* name);
+
 // The library that knows Cyclone DDS, for processes that are to use it; null: their DDS uses
 // sockets. Writes the path, which is next to the shim, into the buffer.
 inline constexpr std::size_t kDdsPathSize = 4096;

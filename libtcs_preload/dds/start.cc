@@ -33,6 +33,7 @@ const Hook* Hooks() {
                             TCS_DDS_HOOK(dds_delete, Delete),
                             TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
                             TCS_DDS_HOOK(dds_lookup_participant, LookUpParticipants),
+                            TCS_DDS_HOOK(dds_get_children, GetChildren),
                             TCS_DDS_HOOK(dds_reader_data_available_cb, DataAvailable),
                             TCS_DDS_HOOK(ddsi_new_participant, NewParticipant),
                             TCS_DDS_HOOK(ddsi_delete_participant, DeleteParticipant),
@@ -61,7 +62,7 @@ extern "C" __attribute__((visibility("default"))) const tcs::dds::Hook* tcs_dds_
     const tcs::dds::Link& link);
 
 extern "C" const tcs::dds::Hook* tcs_dds_start(const tcs::dds::Link& link) {
-  if (!tcs::dds::FindCyclone() || !tcs::dds::Join(link)) return nullptr;
+  if (!tcs::dds::FindCyclone(link) || !tcs::dds::Join(link)) return nullptr;
   tcs::dds::StartDeliverer();
   return tcs::dds::Hooks();
 }

@@ -1,6 +1,8 @@
 // Children in all the ways they are made, and waiting for their end.
+#include <pty.h>
 #include <spawn.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
@@ -119,6 +121,50 @@ void Programs() {
   ExpectLived(start, "popen");
 }
 
+// Whose first parent ends at once: it is no less part of the program.
+void Daemons() {
+  int fds[2];
+  EXPECT(pipe(fds) == 0, "pipe");
+  const std::int64_t start = Now();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    if (daemon(0, 0) != 0) _exit(1);
+    usleep(kLife / 1000);
+    struct stat out {
+    }, null{};
+    char where[8] = "";
+    const bool apart = fstat(STDOUT_FILENO, &out) == 0 && stat("/dev/null", &null) == 0 &&
+                       out.st_rdev == null.st_rdev && getsid(0) == getpid() &&
+                       getcwd(where, sizeof where) != nullptr && strcmp(where, "/") == 0;
+    const char said = apart ? 'y' : 'n';
+    _exit(write(fds[1], &said, 1) == 1 ? 0 : 1);
+  }
+  close(fds[1]);
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "a daemon's parent: %x", status);
+  char said = 0;
+  EXPECT(read(fds[0], &said, 1) == 1 && said == 'y', "a daemon: %d", said);
+  ExpectLived(start, "a daemon");
+  close(fds[0]);
+}
+
+void Terminals() {
+  int leader = -1;
+  const std::int64_t start = Now();
+  const pid_t pid = forkpty(&leader, nullptr, nullptr, nullptr);
+  if (pid == 0) {
+    usleep(kLife / 1000);
+    _exit(isatty(STDOUT_FILENO) == 1 && write(STDOUT_FILENO, "x", 1) == 1 ? 8 : 1);
+  }
+  EXPECT(pid > 0, "forkpty: %s", strerror(errno));
+  char said = 0;
+  EXPECT(read(leader, &said, 1) == 1 && said == 'x', "a terminal's child said %d", said);
+  ExpectLived(start, "a terminal's child");
+  int status = 0;
+  EXPECT(waitpid(pid, &status, 0) == pid && WEXITSTATUS(status) == 8, "forkpty: %x", status);
+  close(leader);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -127,4 +173,6 @@ int main(int argc, char** argv) {
   WaitsBesideOneThatEnded();
   ClocksGoOnInAChild();
   Programs();
+  Daemons();
+  Terminals();
 }

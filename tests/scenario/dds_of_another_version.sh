@@ -53,3 +53,18 @@ grep -q "tcs: this program looks up Cyclone DDS's functions by itself: its DDS u
 grep -q 'participant True deleted 0' <<<"$said" || fail "it does not work: $said"
 warned_of "it looks up Cyclone DDS's functions by itself, as Python's ctypes does" \
   "{command: [python3, -c, 'import ctypes; ctypes.CDLL(\"$work/libddsc-bundled.so\").dds_create_participant(0, None, None)']}"
+
+# Who looks functions up in Debian's own has no sockets.
+said=$("$tcsim" exec -- python3 -c '
+import ctypes, os
+ddsc = ctypes.CDLL("libddsc.so.0debian")
+participant = ddsc.dds_create_participant(0, None, None)
+sockets = 0
+for fd in range(64):
+    try:
+        sockets += os.readlink(f"/proc/self/fd/{fd}").startswith("socket:")
+    except OSError:
+        pass
+print("participant", participant > 0, "sockets", sockets, "deleted", ddsc.dds_delete(participant))
+' 2>&1 | grep -v 'tcsim: other runs')
+[[ $said == "participant True sockets 0 deleted 0" ]] || fail "looked up in Debian's: $said"

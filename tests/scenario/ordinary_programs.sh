@@ -53,3 +53,7 @@ if command -v socat >/dev/null; then
   like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat & sleep 0.5
     echo hello | socat -t1 - TCP:127.0.0.1:5599; kill $!'
 fi
+# One that goes into the background by itself is waited for, and so is one on a terminal of its own.
+like_native 'python3 -c "import ctypes, time
+ctypes.CDLL(None).daemon(1, 1); time.sleep(1); print(7)" | cat'
+like_native 'python3 -c "import pty; pty.spawn([\"sh\", \"-c\", \"sleep 1; echo 7\"])"'

@@ -9,7 +9,7 @@ namespace {
 
 using namespace dds_test;
 
-constexpr std::uint32_t kSizes[] = {0, 1, 1'000, 20'000, 70'000, 300'000};
+constexpr std::uint32_t kSizes[] = {0, 1, 1'000, 20'000, 70'000, 300'000, 20'000'000};
 
 void Fill(std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < bytes.size(); i++)

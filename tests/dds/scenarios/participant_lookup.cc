@@ -1,4 +1,5 @@
-// A program that looks up participants finds its own, and not those of others.
+// A program that looks up participants, or asks for what a domain has, finds its own, and not those
+// of others.
 #include "tests/dds/support/process.h"
 #include "tests/dds/support/waits.h"
 
@@ -17,6 +18,9 @@ void Play(Process& self) {
   Event("participants: %d", OK(dds_lookup_participant(domain, found, 4)));
   Event("%s", found[0] == self.participant && found[1] == 0 ? "its own" : "another one");
   Event("counted: %d", OK(dds_lookup_participant(domain, nullptr, 0)));
+  Event("children of the domain: %d",
+        OK(dds_get_children(dds_get_parent(self.participant), found, 4)));
+  Event("children of the participant: %d", OK(dds_get_children(self.participant, found, 4)));
   self.peer.Meet("told");
 }
 

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -320,7 +321,7 @@ TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage large = Message(DdsKind::kSample, 1);
-  large.payload_size = shm::kDdsMostPayload / 3;
+  large.payload_size = shm::kDdsUsualSize / 3;
   large.size = shm::DdsMessageSize(large.payload_size);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(a.Send(i, {large}), "");
   EXPECT_EQ(b.Take(10).size(), 2u);
@@ -328,11 +329,31 @@ TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
   EXPECT_EQ(b.Take(10).size(), 2u);
 }
 
+TEST(DdsHub, ALargeSampleComesAloneAndItsMemoryIsGivenBack) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  const auto held = [&hub] {
+    struct stat status {};
+    fstat(hub.fd(), &status);
+    return static_cast<std::size_t>(status.st_blocks) * 512;
+  };
+  DdsMessage large = Message(DdsKind::kSample, 1);
+  large.payload_size = shm::kDdsUsualSize * 3;
+  large.size = shm::DdsMessageSize(large.payload_size);
+  EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1)}), "");
+  EXPECT_EQ(a.Send(2, {large}), "");
+  EXPECT_EQ(b.Take(10).size(), 1u);
+  EXPECT_EQ(hub.Deliver(b.number(), 10), large.size);
+  EXPECT_GT(held(), shm::kDdsUsualSize * 3);
+  hub.CameBack(b.number());
+  EXPECT_LT(held(), shm::kDdsUsualSize * 3);
+}
+
 TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
   DdsMessage large = Message(DdsKind::kSample, 1);
-  large.payload_size = shm::kDdsMostPayload;
+  large.payload_size = shm::kDdsUsualSize - sizeof(DdsMessage) - 8;
   large.size = shm::DdsMessageSize(large.payload_size);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(a.Send(i, {large}), "");
   EXPECT_EQ(hub.drops().lost, 4u);

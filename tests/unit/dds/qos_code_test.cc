@@ -1,6 +1,7 @@
 // The QoS of a DDS entity survive being told to another process.
 #include "libtcs_preload/dds/qos_code.h"
 
+#include <dds/ddsi/ddsi_xqos.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,6 +17,13 @@ using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
 
 Qos None() { return Qos(dds_create_qos()); }
 
+// As Cyclone has those that go over a network.
+void LetOthersSeeProperties(dds_qos_t* qos, bool see) {
+  auto& [text, binary] = qos->property;
+  for (std::uint32_t i = 0; i < text.n; ++i) text.props[i].propagate = see;
+  for (std::uint32_t i = 0; i < binary.n; ++i) binary.props[i].propagate = see;
+}
+
 // Each policy, with values that are nobody's default.
 Qos All() {
   Qos all = None();
@@ -29,6 +37,7 @@ Qos All() {
   dds_qset_prop(qos, "name", "value");
   dds_qset_prop(qos, "empty", "");
   dds_qset_bprop(qos, "bytes", "\0\1\2", 3);
+  LetOthersSeeProperties(qos, true);
   const dds_data_representation_id_t representations[] = {DDS_DATA_REPRESENTATION_XCDR2,
                                                           DDS_DATA_REPRESENTATION_XCDR1};
   dds_qset_data_representation(qos, 2, representations);
@@ -62,9 +71,20 @@ Payload Encoded(const dds_qos_t* qos) {
 TEST(QosCode, KeepsAllPolicies) {
   const Qos all = All();
   const Qos back(DecodeQos(Encoded(all.get()), false));
+  LetOthersSeeProperties(back.get(), true);
   EXPECT_TRUE(dds_qos_equal(all.get(), back.get()));
   const Qos of_participant(DecodeQos(EncodeParticipant(all.get()), true));
+  LetOthersSeeProperties(of_participant.get(), true);
   EXPECT_TRUE(dds_qos_equal(all.get(), of_participant.get()));
+}
+
+TEST(QosCode, KeepsPropertiesOfTheProgramsOwnToItself) {
+  const Qos all = All();
+  LetOthersSeeProperties(all.get(), false);
+  const Qos back(DecodeQos(Encoded(all.get()), false));
+  std::uint32_t count = 0;
+  EXPECT_FALSE(dds_qget_propnames(back.get(), &count, nullptr) && count > 0);
+  EXPECT_FALSE(dds_qget_bpropnames(back.get(), &count, nullptr) && count > 0);
 }
 
 TEST(QosCode, KeepsWhatIsNotSetUnset) {
