@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "coordinator/core/command_input.h"
 #include "coordinator/core/ros_nodes.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/robot_topics.h"
@@ -19,7 +20,9 @@ namespace tcs {
 class DdsChannels {
  public:
   // Announces the scenario's channels. The endpoints and the scenario outlive this.
-  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
+  // `input` hears what comes in on the channels of commands.
+  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns,
+              CommandInput& input);
 
   // When the dynamics have to be looked at next, and when something next leaves them.
   std::int64_t NextSampleNs() const;
@@ -34,7 +37,7 @@ class DdsChannels {
     Wrench wrench;
   };
   // The commands of the next sample that was written by `now_ns`; none: there is no such sample.
-  // A sample that cannot be read is named on stderr and yields no commands.
+  // A sample that cannot be read yields no commands.
   std::optional<std::vector<Command>> TakeCommands(std::int64_t now_ns);
 
  private:
@@ -52,10 +55,11 @@ class DdsChannels {
   dds::OwnEndpoints::Index Add(dds::EndpointKind kind, const DdsTopicSpec& end,
                                std::string_view message, std::optional<int> body);
   void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
-              std::vector<Command>* commands) const;
+              std::vector<Command>* commands);
 
   const Scenario& scenario_;
   dds::OwnEndpoints& ends_;
+  CommandInput& input_;
   RosNodes nodes_;
   std::int64_t realtime_offset_ns_;
   std::vector<Sensor> sensors_;
