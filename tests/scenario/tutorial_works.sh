@@ -13,7 +13,8 @@ ln -s "$source_root/coordinator" "$work/coordinator"
 sed -n 's/^    \$ //p' "$source_root/docs/TUTORIAL.md" >"$work/commands"
 (($(wc -l <"$work/commands") > 15)) || fail "the tutorial has lost its commands"
 (cd "$work" && bash -ex ./commands) >"$work/said" 2>&1 || fail "$(tail -n 20 "$work/said")"
-! grep -q 'warning:' "$work/said" || fail "$(grep 'warning:' "$work/said")"
+# Those of the slow computer, which the tutorial tells of.
+(($(grep -c 'warning:' "$work/said") == 2)) || fail "not two warnings: $(grep 'warning:' "$work/said")"
 
 near() {  # FOLDER: whether the drone ended within 20 mm of 1, 2, 3
   tail -n 1 "$work/my_robot/$1/bodies.csv" |
