@@ -8,6 +8,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <utility>
 
 namespace tcs {
@@ -134,6 +137,28 @@ std::variant<std::optional<Datagram>, SocketError> UdpSocket::Receive() {
   return SocketError{"cannot receive on " + local.host + ":" + std::to_string(local.port) + ": " +
                          std::strerror(error),
                      error};
+}
+
+bool IsListenedTo(const UdpEndpoint& endpoint) {
+  const auto address = ToAddress(endpoint);
+  if (!address || endpoint.host.rfind("127.", 0) != 0) return true;
+  for (const bool v6 : {false, true}) {
+    std::ifstream table(v6 ? "/proc/net/udp6" : "/proc/net/udp");
+    if (!table && !v6) return true;
+    std::string line, slot, local;
+    std::getline(table, line);  // the head
+    while (std::getline(table, line)) {
+      std::istringstream(line) >> slot >> local;
+      const std::size_t colon = local.find(':');
+      if (colon == std::string::npos) continue;
+      if (std::stoul(local.substr(colon + 1), nullptr, 16) != endpoint.port) continue;
+      // Of sockets of the other family it is enough that the port is theirs.
+      if (v6) return true;
+      const unsigned long host = std::stoul(local.substr(0, colon), nullptr, 16);
+      if (host == 0 || host == address->sin_addr.s_addr) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace tcs

@@ -52,4 +52,8 @@ class UdpSocket {
   int fd_ = -1;
 };
 
+// Whether some socket of this machine gets what is sent to `endpoint`; true where that is not for
+// this machine to know.
+[[nodiscard]] bool IsListenedTo(const UdpEndpoint& endpoint);
+
 }  // namespace tcs

@@ -6,6 +6,7 @@
 
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/os/say.h"
 #include "coordinator/scenario/executable.h"
 
 namespace tcs {
@@ -41,7 +42,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   const RunReport report = RunScenario(scenario, options);
-  for (const std::string& w : report.warnings) fmt::print(stderr, "tcsim: warning: {}\n", w);
+  for (const std::string& w : report.warnings) Say("warning: " + w);
   if (!report.error.empty()) return Fail(report.error);
   return report.interrupted ? kInterrupted : report.exit_status;
 }

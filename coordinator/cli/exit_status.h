@@ -1,10 +1,9 @@
 // What tcsim itself exits with; `exec` otherwise passes on its program's own status.
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <string>
+
+#include "coordinator/os/say.h"
 
 namespace tcs {
 
@@ -16,7 +15,7 @@ inline constexpr int kInterrupted = 130;    // by ^C, SIGTERM or SIGHUP
 
 // The one clear sentence of a failure.
 inline int Fail(const std::string& sentence, int status = kCannotRun) {
-  fmt::print(stderr, "tcsim: {}\n", sentence);
+  Say(sentence);
   return status;
 }
 

@@ -3,20 +3,52 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/preload_library.h"
+#include "coordinator/cli/print.h"
 #include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
 #include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
+#include "coordinator/scenario/nearest.h"
 
 namespace {
+
+// What was mistyped in "tcsim COMMAND --option"; empty where it is something else. CLI11 would only
+// say that a command is required, or that something was not expected.
+std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::vector<std::string> commands;
+  const CLI::App* used = nullptr;
+  for (const CLI::App* sub : app.get_subcommands(nullptr)) {
+    commands.push_back(sub->get_name());
+    if (sub->get_name() == argv[1]) used = sub;
+  }
+  if (used == nullptr) {
+    return fmt::format("there is no command '{}'; {}", argv[1],
+                       tcs::Suggest(argv[1], commands, "commands"));
+  }
+  for (int i = 2; i < argc && std::strcmp(argv[i], "--") != 0; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (word.rfind("--", 0) != 0 || used->get_option_no_throw(word) != nullptr) continue;
+    std::vector<std::string> options;
+    for (const CLI::Option* option : used->get_options()) {
+      if (!option->get_lnames().empty() && !option->get_group().empty()) {
+        options.push_back("--" + option->get_lnames().front());
+      }
+    }
+    return fmt::format("{} has no option {}; {}", used->get_name(), word,
+                       tcs::Suggest(word, options, "options"));
+  }
+  return {};
+}
 
 // CLI11's own sentences, with our status: nothing was run.
 int Parse(CLI::App& app, int argc, char** argv) {
@@ -24,7 +56,13 @@ int Parse(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    tcs::Fail(std::string(error.what()) + "; `tcsim --help` shows what there is");
+    const std::string mistyped = WhatWasMistyped(app, argc, argv);
+    const auto used = app.get_subcommands();
+    const std::string help =
+        used.empty() ? "tcsim --help" : "tcsim " + used[0]->get_name() + " --help";
+    tcs::Fail(!mistyped.empty()
+                  ? mistyped
+                  : std::string(error.what()) + "; `" + help + "` shows what there is");
     return tcs::kCannotRun;
   }
   return -1;
@@ -137,11 +175,11 @@ int main(int argc, char** argv) {
   if (doctor->parsed()) {
     const auto findings = tcs::Examine(options.preload_library);
     const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
-    fmt::print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
-    return tcs::CanRun(findings) ? 0 : 1;
+    tcs::Print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
+    return tcs::FlushStdout(tcs::CanRun(findings) ? 0 : 1);
   }
-  if (report->parsed()) return tcs::ReportCommand(report_arguments);
-  if (topics->parsed()) return tcs::TopicsCommand(topics_arguments);
+  if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
+  if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");
@@ -163,6 +201,6 @@ int main(int argc, char** argv) {
                                    dds == "sockets" ? tcs::DdsTransport::kSockets
                                                     : tcs::DdsTransport::kEndpoints},
                                   options)
-               : tcs::RunCommand(arguments, options);
+               : tcs::FlushStdout(tcs::RunCommand(arguments, options));
   });
 }

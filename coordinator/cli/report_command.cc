@@ -1,6 +1,7 @@
 #include "coordinator/cli/report_command.h"
 
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/print.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/text.h"
@@ -24,7 +25,7 @@ int ReportCommand(const ReportArguments& arguments) {
   const report::Page page =
       report::MakePage(std::get<report::Results>(read), {arguments.title, arguments.marks});
   for (const std::string& warning : page.warnings) {
-    fmt::print(stderr, "tcsim: warning: {}\n", warning);
+    Say("warning: " + warning);
   }
   const auto files = arguments.figures == "svg"   ? report::FigureFiles::kSvg
                      : arguments.figures == "png" ? report::FigureFiles::kPng
@@ -32,7 +33,7 @@ int ReportCommand(const ReportArguments& arguments) {
   std::vector<std::string> written;
   const std::string error = report::WritePage(page, arguments.out, files, &written);
   if (!error.empty()) return Fail(error);
-  fmt::print("{}\nwritten: {}\n", page.text, report::Listed(written));
+  Print("{}\nwritten: {}\n", page.text, report::Listed(written));
   return kSucceeded;
 }
 

@@ -55,7 +55,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   }
   options.on_warning = [&line](const std::string& warning) {
     line.Clear();
-    fmt::print(stderr, "tcsim: warning: {}\n", warning);
+    Say("warning: " + warning);
   };
   const RunReport report = RunScenario(scenario, options);
   line.Clear();

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"
+#include "coordinator/os/say.h"
 
 namespace tcs {
 
@@ -20,6 +22,15 @@ double Milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 std::string HowItEnded(int wait_status) {
   if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
   return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
+}
+
+// Of the client whose logs begin with `base`: what it said last, and where the rest stands.
+std::string LastWordsOf(const std::string& base) {
+  for (const char* log : {".err.log", ".out.log"}) {
+    const std::string line = LastLine(base + log);
+    if (!line.empty()) return fmt::format("\"{}\" ({}{})", line, base, log);
+  }
+  return fmt::format("it said nothing ({}.err.log and .out.log are empty)", base);
 }
 
 std::int64_t NotOnOurCpu(const RunReport& r) {
@@ -45,34 +56,39 @@ bool HasFailedClient(const RunReport& report) {
 }
 
 void PrintSummary(const Scenario& scenario, const RunReport& r, const std::string& directory) {
-  fmt::print("{}{:.3f} s of virtual time in {:.3f} s: {:.2f} x real time\n",
-             r.interrupted ? "interrupted; " : "", Seconds(r.virtual_ns), Seconds(r.real_ns),
-             Seconds(r.virtual_ns) / std::max(1e-9, Seconds(r.real_ns)));
-  fmt::print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns\n", Milliseconds(r.drift_ns),
-             Milliseconds(scenario.drift_bound.ns()), r.staleness_ns);
-  fmt::print(
+  Print("{}{:.3f} s of virtual time in {:.3f} s: {:.2f} x real time\n",
+        r.interrupted ? "interrupted; " : "", Seconds(r.virtual_ns), Seconds(r.real_ns),
+        Seconds(r.virtual_ns) / std::max(1e-9, Seconds(r.real_ns)));
+  const bool all_ended = std::all_of(r.clients.begin(), r.clients.end(),
+                                     [](const ClientReport& c) { return c.ended_at_ns >= 0; });
+  if (!r.interrupted && all_ended && r.virtual_ns < scenario.duration.ns()) {
+    Print("ended before its {:.3f} s, as all programs had ended\n",
+          Seconds(scenario.duration.ns()));
+  }
+  Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns\n", Milliseconds(r.drift_ns),
+        Milliseconds(scenario.drift_bound.ns()), r.staleness_ns);
+  Print(
       "coordinating {:.3f} s = {:.2f} % overhead, clients {:.3f} s, dynamics {:.3f} s, "
       "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
       Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
       Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
   std::size_t width = 6;
   for (const ClientReport& c : r.clients) width = std::max(width, c.name.size());
-  fmt::print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
-             "its CPU clock", "stolen", "activations", "overruns");
+  Print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
+        "its CPU clock", "stolen", "activations", "overruns");
   for (const ClientReport& c : r.clients) {
     const std::string own =
         c.host_cpu_ns < 0 ? "-" : fmt::format("{:.3f} s", Seconds(c.host_cpu_ns));
-    fmt::print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
-               Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
+    Print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
+          Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
   }
-  fmt::print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n",
-             directory);
+  Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
   for (const ClientReport& c : r.clients) {
     if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
     std::string base = c.name;
     std::replace(base.begin(), base.end(), '/', '-');
-    fmt::print(stderr, "tcsim: {} ended at {:.3f} s with {}; its last words are in {}/{}.err.log\n",
-               c.name, Seconds(c.ended_at_ns), HowItEnded(c.wait_status), directory, base);
+    Say(fmt::format("{} ended at {:.3f} s with {}: {}", c.name, Seconds(c.ended_at_ns),
+                    HowItEnded(c.wait_status), LastWordsOf(directory + "/" + base)));
   }
 }
 

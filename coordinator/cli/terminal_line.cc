@@ -1,6 +1,5 @@
 #include "coordinator/cli/terminal_line.h"
 
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -17,13 +16,13 @@ std::size_t TerminalLine::Columns() {
 }
 
 void TerminalLine::Show(const std::string& text) {
-  fmt::print(stderr, "\r\033[K{}", text);
+  std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
   shown_ = true;
 }
 
 void TerminalLine::Clear() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) std::fputs("\r\033[K", stderr);
   shown_ = false;
 }
 

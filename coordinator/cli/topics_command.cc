@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/print.h"
 #include "coordinator/dds/topics_file.h"
 #include "coordinator/dds/topics_table.h"
 
@@ -14,9 +15,9 @@ int TopicsCommand(const TopicsArguments& arguments) {
   const auto read = dds::ReadTopics(arguments.folder);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
   const auto& topics = std::get<std::vector<dds::TopicReport>>(read);
-  fmt::print("{}", dds::TopicsTable(topics, arguments.with_qos));
+  Print("{}", dds::TopicsTable(topics, arguments.with_qos));
   for (const std::string& warning : dds::TopicWarnings(topics)) {
-    fmt::print(stderr, "tcsim: warning: {}\n", warning);
+    Say("warning: " + warning);
   }
   return kSucceeded;
 }

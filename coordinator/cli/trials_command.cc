@@ -12,6 +12,7 @@
 
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/guardian.h"
@@ -110,8 +111,8 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   options.whole_cores = arguments.options.accounting == "measured";
   options.at_once = arguments.jobs > 0 ? arguments.jobs : RunsAtOnce(cpus, options.whole_cores);
   if (options.at_once > cpu_count) {
-    fmt::print(stderr, "tcsim: --jobs {}: each run needs a processor of its own; {} at a time\n",
-               arguments.jobs, cpu_count);
+    Say(fmt::format("--jobs {}: each run needs a processor of its own; {} at a time",
+                    arguments.jobs, cpu_count));
     options.at_once = cpu_count;
   }
   std::string why_not;
@@ -123,10 +124,10 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   }
   options.own_networks = why_not.empty();
   if (!options.own_networks) {
-    fmt::print(stderr,
-               "tcsim: trials run one at a time, in this machine's network, since they cannot have "
-               "networks of their own ({})\n",
-               why_not);
+    Say(
+        fmt::format("trials run one at a time, in this machine's network, since they cannot have "
+                    "networks of their own ({})",
+                    why_not));
     options.at_once = 1;
   }
   return options;
@@ -154,7 +155,7 @@ void PrintEnd(const TrialsPlan& plan, const TrialEnd& end, const TrialsProgress&
                         static_cast<double>(end.outcome->virtual_ns) /
                             static_cast<double>(std::max<std::int64_t>(1, end.outcome->real_ns)))
           : Failure(plan, end, folder);
-  fmt::print("{}; {} of {}\n", how, progress.done + progress.failed, progress.total);
+  Print("{}; {} of {}\n", how, progress.done + progress.failed, progress.total);
   std::fflush(stdout);
 }
 
@@ -183,8 +184,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
     if (const std::string error = WhyNoRealTime(); !error.empty()) return Fail(error);
     const RunnerOptions options = ShareMachine(arguments, scenarios.front());
     if (!earlier.empty()) {
-      fmt::print("{} of {} trials are done already\n", earlier.size(),
-                 earlier.size() + todo.size());
+      Print("{} of {} trials are done already\n", earlier.size(), earlier.size() + todo.size());
       std::fflush(stdout);
     }
     TerminalLine line;
@@ -196,7 +196,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
       events.on_end = [&](const TrialEnd& end, const TrialsProgress&) {
         if (end.outcome.has_value()) return;
         line.Clear();
-        fmt::print(stderr, "tcsim: {}\n", Failure(plan, end, folder));
+        Say(Failure(plan, end, folder));
       };
     } else {
       events.on_end = [&](const TrialEnd& end, const TrialsProgress& progress) {
@@ -205,7 +205,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
     }
     events.on_stopping = [&line] {
       line.Clear();
-      fmt::print(stderr, "tcsim: ending the running trials\n");
+      Say("ending the running trials");
     };
     report = RunTrials(plan, folder, todo, earlier, duration_ns, options, events);
     line.Clear();
@@ -216,11 +216,11 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
     if (end.outcome.has_value()) groups[end.trial.group].done.push_back(*end.outcome);
     failed += end.outcome.has_value() ? 0 : 1;
   }
-  fmt::print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
-             TrialsTable(groups), arguments.out);
+  Print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
+        TrialsTable(groups), arguments.out);
   std::fflush(stdout);
   for (const TrialEnd& end : report.ends) {
-    if (!end.outcome.has_value()) fmt::print(stderr, "tcsim: {}\n", Failure(plan, end, folder));
+    if (!end.outcome.has_value()) Say(Failure(plan, end, folder));
   }
   if (report.interrupted) {
     return Fail(fmt::format("interrupted; {} of {} trials are done, and the same call goes on from "
@@ -249,12 +249,12 @@ int TrialsCommand(const TrialsArguments& arguments) {
       return Fail(error);
     }
     if (folder.has_trials && !folder.changed_program.empty()) {
-      fmt::print(stderr,
-                 "tcsim: warning: {} has changed since the first trials in '{}'; --restart runs "
-                 "them all as it is now\n",
-                 folder.changed_program, arguments.out);
+      Say(
+          fmt::format("warning: {} has changed since the first trials in '{}'; --restart runs "
+                      "them all as it is now",
+                      folder.changed_program, arguments.out));
     }
-    return RunPlan(arguments, plan, scenarios);
+    return FlushStdout(RunPlan(arguments, plan, scenarios));
   };
   return RunGuarded(all, {.stop_within_s = kStopWithinS});
 }

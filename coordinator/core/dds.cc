@@ -24,7 +24,11 @@ std::string Engine::OpenDds() {
   if (options_.record) {
     recording_.emplace(topic_log_, ends_, header_->realtime_offset_ns);
     topic_log_.Tell(&*recording_);
-    if (std::string error = recording_->Open(directory + "/bag"); !error.empty()) return error;
+    if (std::string error = recording_->Open(directory + "/bag"); !error.empty()) {
+      topic_log_.Tell(nullptr);
+      recording_.reset();
+      return error;
+    }
   }
   world_.OpenDds(ends_, header_->realtime_offset_ns);
   if (recording_.has_value()) recording_->ReadNewTopics(0);

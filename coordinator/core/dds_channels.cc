@@ -10,9 +10,10 @@
 namespace tcs {
 
 DdsChannels::DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends,
-                         std::int64_t realtime_offset_ns)
+                         std::int64_t realtime_offset_ns, CommandInput& input)
     : scenario_(scenario),
       ends_(ends),
+      input_(input),
       nodes_(scenario),
       realtime_offset_ns_(realtime_offset_ns),
       next_clock_ns_(scenario.clock.has_value() ? 0 : shm::kNeverNs) {
@@ -100,9 +101,10 @@ void DdsChannels::Decode(const Actuator& actuator, const dds::OwnEndpoints::Samp
   const DdsCommandSpec& spec = *actuator.spec;
   const auto wrench = dds::DecodeCommand(spec.message, sample.cdr);
   if (const auto* error = std::get_if<dds::MessageError>(&wrench)) {
-    complaints_.Say(spec.name, fmt::format("a sample on {} {}", spec.end.topic, error->message));
+    input_.Refused(spec.name, fmt::format("a sample on {} {}", spec.end.topic, error->message));
     return;
   }
+  input_.Took(spec.name);
   commands->push_back({sample.at_ns + spec.latency.ns(), spec.body, std::get<Wrench>(wrench)});
 }
 

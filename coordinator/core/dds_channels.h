@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "coordinator/channel/complaints.h"
+#include "coordinator/core/command_input.h"
 #include "coordinator/core/ros_nodes.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/robot_topics.h"
@@ -20,7 +20,9 @@ namespace tcs {
 class DdsChannels {
  public:
   // Announces the scenario's channels. The endpoints and the scenario outlive this.
-  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
+  // `input` hears what comes in on the channels of commands.
+  DdsChannels(const Scenario& scenario, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns,
+              CommandInput& input);
 
   // When the dynamics have to be looked at next, and when something next leaves them.
   std::int64_t NextSampleNs() const;
@@ -35,7 +37,7 @@ class DdsChannels {
     Wrench wrench;
   };
   // The commands of the next sample that was written by `now_ns`; none: there is no such sample.
-  // A sample that cannot be read is complained of and yields no commands.
+  // A sample that cannot be read yields no commands.
   std::optional<std::vector<Command>> TakeCommands(std::int64_t now_ns);
 
  private:
@@ -57,11 +59,11 @@ class DdsChannels {
 
   const Scenario& scenario_;
   dds::OwnEndpoints& ends_;
+  CommandInput& input_;
   RosNodes nodes_;
   std::int64_t realtime_offset_ns_;
   std::vector<Sensor> sensors_;
   std::vector<Actuator> actuators_;
-  Complaints complaints_;
   std::optional<dds::OwnEndpoints::Index> clock_;
   std::int64_t next_clock_ns_;
 };

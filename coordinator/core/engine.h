@@ -250,6 +250,7 @@ class Engine {
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
+  void WarnOfEndsThatDidNotMeet();
   std::int64_t HostCpuOf(Task& task);
 
   void Warn(const std::string& text);
@@ -261,7 +262,8 @@ class Engine {
 
   const Scenario scenario_;
   const RunOptions options_;
-  World world_;
+  CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
+  World world_{command_input_};
   TemporalConsistency root_;
   ScheduleTrace trace_;
   ActivationLog activation_log_;

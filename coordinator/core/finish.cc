@@ -8,7 +8,9 @@
 
 #include <algorithm>
 
+#include "coordinator/channel/udp_socket.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/dds/topics_table.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 
@@ -59,6 +61,7 @@ void Engine::Shutdown() {
 void Engine::Report(RunReport* report) {
   report->virtual_ns = world_.present() ? world_.progress_ns() : 0;
   WarnOfDrops();
+  WarnOfEndsThatDidNotMeet();
   for (const VirtualCpu& cpu : cpus_) {
     report->virtual_ns = std::max(report->virtual_ns, cpu.progress_ns);
   }
@@ -93,6 +96,29 @@ void Engine::Report(RunReport* report) {
       if (task->slot < 0) continue;
       report->staleness_ns = std::max(report->staleness_ns, Slot(*task).clock.staleness_ns.load());
     }
+  }
+}
+
+// A robot that was out of reach of its programs, or they of it, has done nothing of what it was run
+// for, and neither status nor summary would say so. Who failed has said why.
+void Engine::WarnOfEndsThatDidNotMeet() {
+  const auto ended = [](const Process& process) { return process.ended_at_ns >= 0; };
+  const auto failed = [&](const Process& process) {
+    return process.is_client && ended(process) && process.wait_status != 0;
+  };
+  if (!report_.error.empty() || std::any_of(processes_.begin(), processes_.end(), failed)) return;
+  for (const std::string& warning : dds::MismatchWarnings(topic_log_.reports())) Warn(warning);
+  if (!world_.present()) return;
+  for (const std::string& warning : command_input_.Complaints(scenario_)) Warn(warning);
+  // Whoever has ended may have listened before.
+  const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
+  if (std::any_of(processes_.begin(), processes_.end(), gone)) return;
+  for (const SensorChannelSpec& spec : scenario_.sensors) {
+    if (IsListenedTo(spec.to)) continue;
+    Warn(fmt::format(
+        "channel {}: nobody listens on {}:{}, so that its samples are lost; let a client "
+        "bind that port",
+        spec.name, spec.to.host, spec.to.port));
   }
 }
 

@@ -1,6 +1,8 @@
 // What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, when clients
 // were activated, and who had the processor when.
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "coordinator/core/engine.h"
 
@@ -30,7 +32,11 @@ ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
 std::string Engine::OpenRecords() {
   const std::string& directory = options_.output_directory;
   if (directory.empty()) return {};
+  // It says that a run has ended, and that of an earlier one would say it of this one.
+  std::error_code ignored;
+  std::filesystem::remove(directory + "/summary.json", ignored);
   std::string error = trace_.Open(directory + "/trace.json");
+  if (error.empty()) error = world_.OpenCsv(directory + "/bodies.csv");
   if (error.empty()) error = activation_log_.Open(directory + "/activations.csv");
   if (error.empty()) error = dispatch_log_.Open(directory + "/dispatches.csv", !IsFixed());
   return error;
@@ -38,7 +44,7 @@ std::string Engine::OpenRecords() {
 
 std::string Engine::CloseRecords() {
   const std::string errors[] = {trace_.Close(), activation_log_.Close(), dispatch_log_.Close(),
-                                CloseDds()};
+                                world_.CloseCsv(), CloseDds()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;
   }

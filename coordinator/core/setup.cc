@@ -52,15 +52,16 @@ constexpr std::int64_t kMonotonicStartNs = 1'000'000'000'000;
 }  // namespace
 
 std::string Engine::Prepare() {
-  const std::string& directory = options_.output_directory;
-  const std::string csv = directory.empty() ? "" : directory + "/bodies.csv";
-  if (std::string error = world_.Open(scenario_, csv); !error.empty()) return error;
+  // What refuses the run comes first: before others are waited for, and before an earlier run's
+  // results are written over.
+  if (std::string error = WhyNoRealTime(); !error.empty()) return error;
+  if (std::string error = world_.Open(scenario_); !error.empty()) return error;
+  claim_ = ClaimCpu();
+  if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (world_.present()) {
     world_row_ = AddRow("dynamics", "dynamics");
   }
-  claim_ = ClaimCpu();
-  if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);

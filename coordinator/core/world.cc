@@ -5,8 +5,10 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cerrno>
 
 #include "coordinator/channel/json_codec.h"
+#include "coordinator/os/file_errors.h"
 #include "coordinator/os/host.h"
 #include "shm/layout.h"
 
@@ -30,7 +32,7 @@ class Spent {
 
 }  // namespace
 
-std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
+std::string World::Open(const Scenario& scenario) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -46,12 +48,26 @@ std::string World::Open(const Scenario& scenario, const std::string& csv_path) {
   auto out = UdpSocket::ForSending();
   if (auto* error = std::get_if<SocketError>(&out)) return error->message;
   out_.emplace(std::move(std::get<UdpSocket>(out)));
-  if (!csv_path.empty()) {
-    csv_.open(csv_path);
-    csv_ << "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
-  }
   FindNextStop();
   return {};
+}
+
+std::string World::OpenCsv(const std::string& path) {
+  if (!present()) return {};
+  csv_path_ = path;
+  errno = 0;
+  csv_.open(path);
+  if (!csv_) return CannotBeWritten(path);
+  csv_ << "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
+  FindNextStop();
+  return {};
+}
+
+std::string World::CloseCsv() {
+  if (!csv_.is_open()) return {};
+  errno = 0;
+  csv_.close();
+  return csv_ ? "" : NotWrittenWhole(csv_path_);
 }
 
 void World::OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns) {
@@ -60,7 +76,7 @@ void World::OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns) {
       !scenario_.clock.has_value()) {
     return;
   }
-  dds_.emplace(scenario_, ends, realtime_offset_ns);
+  dds_.emplace(scenario_, ends, realtime_offset_ns, input_);
   FindNextStop();
 }
 
@@ -168,9 +184,10 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
     if (datagram == nullptr || !datagram->has_value()) return;
     auto wrench = DecodeCommandDatagram((*datagram)->payload);
     if (auto* error = std::get_if<DecodeError>(&wrench)) {
-      complaints_.Say(spec.name, error->message);
+      input_.Refused(spec.name, error->message);
       continue;
     }
+    input_.Took(spec.name);
     Apply(std::max(now_ns, settled_ns_) + spec.latency.ns(), spec.body, std::get<Wrench>(wrench));
     ++commands_;
   }

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/channel/complaints.h"
 #include "coordinator/channel/udp_socket.h"
+#include "coordinator/core/command_input.h"
 #include "coordinator/core/dds_channels.h"
 #include "coordinator/scenario/scenario.h"
 
@@ -18,8 +18,16 @@ namespace tcs {
 
 class World {
  public:
+  // `input` hears what comes in on the channels of commands; it outlives this.
+  explicit World(CommandInput& input) : input_(input) {}
+
   // Binds the channels' ports. Empty on success, else one sentence.
-  std::string Open(const Scenario& scenario, const std::string& csv_path);
+  std::string Open(const Scenario& scenario);
+
+  // Where the body states are written to; none without a world. Empty on success, else one
+  // sentence.
+  std::string OpenCsv(const std::string& path);
+  std::string CloseCsv();
 
   // The channels on DDS, once there are such endpoints; they outlive this.
   void OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
@@ -63,6 +71,7 @@ class World {
   void FindNextStop();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
+  CommandInput& input_;
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
@@ -79,11 +88,11 @@ class World {
   std::vector<TimedCommand> since_checkpoint_;
   std::vector<Sensor> sensors_;
   std::vector<UdpSocket> command_sockets_;
-  Complaints complaints_;
   std::vector<int> command_fds_;
   std::optional<UdpSocket> out_;
   std::optional<DdsChannels> dds_;
   std::ofstream csv_;
+  std::string csv_path_;
   std::int64_t next_csv_ns_ = 0;
   std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
 };

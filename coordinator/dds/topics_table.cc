@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace tcs::dds {
@@ -55,6 +56,43 @@ std::string QosText(const Qos& qos) {
   return text;
 }
 
+constexpr const char* kSimulation = "tcsim";
+
+// What `tcsim run --record` adds reads everything, and is nobody's other end.
+bool IsRecorder(const EndpointReport& end) {
+  return end.kind == EndpointKind::kReader && end.process == kSimulation &&
+         end.qos.history == History::kKeepAll;
+}
+
+// The first one's process at that end of the topic; none: nobody is there.
+std::optional<std::string> FirstAt(const TopicReport& topic, EndpointKind kind) {
+  for (const EndpointReport& end : topic.endpoints) {
+    if (end.kind == kind && !IsRecorder(end)) return end.process;
+  }
+  return std::nullopt;
+}
+
+// Why the reader of a topic that nobody writes may have been meant for what `other` has.
+std::optional<std::string> WhyApart(const TopicReport& topic, const std::string& reader,
+                                    const TopicReport& other) {
+  const auto writer = FirstAt(other, EndpointKind::kWriter);
+  if (!writer || other.domain != topic.domain) return std::nullopt;
+  if (other.topic == topic.topic) {
+    return fmt::format(
+        "{}: {} reads {} there, but {} writes {}, so that nothing gets across; use "
+        "one type at both ends",
+        topic.topic, reader, topic.type, *writer, other.type);
+  }
+  const bool is_ours = (reader == kSimulation) != (*writer == kSimulation);
+  if (!is_ours || other.type != topic.type || FirstAt(other, EndpointKind::kReader)) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{}: {} reads it, and nobody writes it; {}: {} writes it with the same type, "
+      "and nobody reads it; if they are meant for each other, use one name",
+      topic.topic, reader, other.topic, *writer);
+}
+
 }  // namespace
 
 std::string TopicsTable(const std::vector<TopicReport>& topics, bool with_qos) {
@@ -101,8 +139,17 @@ std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics) {
       warnings.push_back(fmt::format("{}: {} samples did not reach a reader that matched",
                                      topic.topic, topic.drops));
     }
+  }
+  const std::vector<std::string> mismatches = MismatchWarnings(topics);
+  warnings.insert(warnings.end(), mismatches.begin(), mismatches.end());
+  return warnings;
+}
+
+std::vector<std::string> MismatchWarnings(const std::vector<TopicReport>& topics) {
+  std::vector<std::string> warnings;
+  for (const TopicReport& topic : topics) {
     for (const EndpointReport& reader : topic.endpoints) {
-      if (reader.kind != EndpointKind::kReader) continue;
+      if (reader.kind != EndpointKind::kReader || IsRecorder(reader)) continue;
       std::string why;
       bool has_match = false;
       for (const EndpointReport& writer : topic.endpoints) {
@@ -114,6 +161,12 @@ std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics) {
       if (has_match || why.empty()) continue;
       warnings.push_back(fmt::format("{}: the reader of {} gets nothing: it {}", topic.topic,
                                      reader.process, why));
+    }
+    const auto reader = FirstAt(topic, EndpointKind::kReader);
+    if (!reader || FirstAt(topic, EndpointKind::kWriter)) continue;
+    for (const TopicReport& other : topics) {
+      if (&other == &topic) continue;
+      if (const auto why = WhyApart(topic, *reader, other)) warnings.push_back(*why);
     }
   }
   return warnings;

@@ -13,7 +13,11 @@ namespace tcs::dds {
 [[nodiscard]] std::string TopicsTable(const std::vector<TopicReport>& topics, bool with_qos);
 
 // What a user of the topics will want to mend, one sentence each: readers that no writer suits, and
-// samples that were dropped.
+// samples that were dropped, and what MismatchWarnings has.
 [[nodiscard]] std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics);
+
+// Of these, what keeps the two ends of a topic apart: readers that no writer suits, one name with
+// two types, and ends of the simulation and of a program that look like one topic with two names.
+[[nodiscard]] std::vector<std::string> MismatchWarnings(const std::vector<TopicReport>& topics);
 
 }  // namespace tcs::dds

@@ -3,11 +3,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
-#include <stdio.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <vector>
+
+#include "coordinator/os/say.h"
 
 namespace tcs {
 
@@ -54,7 +55,7 @@ CpuClaim ClaimCpu() {
       if (fd != -1) return {cpu, fd < 0 ? -1 : fd};
     }
     if (!said) {
-      fprintf(stderr, "tcsim: other runs of tcsim have the processors; waiting for one of them\n");
+      Say("other runs of tcsim have the processors; waiting for one of them");
     }
     said = true;
   }

@@ -6,8 +6,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -35,7 +37,8 @@ std::string WriteWhole(const std::string& path, const std::string& text, Withsta
   bool done = fd >= 0 && WriteAll(fd, text) && (what == Withstands::kCrash || fsync(fd) == 0);
   done = fd >= 0 && close(fd) == 0 && done;
   if (done && std::rename(unfinished.c_str(), path.c_str()) == 0) return {};
-  return path + " cannot be written: " + strerror(errno);
+  return path + " cannot be written: " + strerror(errno) +
+         "; make room, or choose another folder with --out";
 }
 
 std::string MakeFolder(const std::string& path) {
@@ -45,6 +48,25 @@ std::string MakeFolder(const std::string& path) {
   return "the folder '" + path +
          "' cannot be made: " + (error ? error.message() : "a file has that name") +
          "; choose another one with --out";
+}
+
+std::string LastLine(const std::string& path) {
+  constexpr std::streamoff kLookedAt = 4096;
+  constexpr std::size_t kLongest = 200;
+  std::ifstream file(path, std::ios::ate);
+  if (!file) return {};
+  file.seekg(std::max<std::streamoff>(0, file.tellg() - kLookedAt));
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    // A terminal's colours, or whatever else is none of a sentence's business.
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos) continue;
+    last = line.substr(begin, line.find_last_not_of(' ') + 1 - begin);
+  }
+  if (last.size() > kLongest) last.replace(kLongest, std::string::npos, "…");
+  return last;
 }
 
 FolderLock::FolderLock(const std::string& path)

@@ -17,6 +17,10 @@ enum class Withstands { kCrash, kPowerCut };
 // Makes the folder and those above it. Empty on success, else one sentence that names --out.
 [[nodiscard]] std::string MakeFolder(const std::string& path);
 
+// The last line of a text file that is not empty, cut to what fits a sentence; empty if there is
+// none, or no such file. Reads the file's end only.
+[[nodiscard]] std::string LastLine(const std::string& path);
+
 // A folder that one process at a time works in; free again when its holder ends, however that
 // happens.
 class FolderLock {

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <charconv>
 
+#include "coordinator/os/file_errors.h"
+
 namespace tcs {
 
 namespace {
@@ -22,9 +24,10 @@ CsvFile::~CsvFile() {
 std::string CsvFile::Open(const std::string& path, std::string_view header) {
   path_ = path;
   file_ = std::fopen(path.c_str(), "we");
-  if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
+  if (file_ == nullptr) return CannotBeWritten(path);
   noted_.resize(kNotedBytes);
-  fmt::print(file_, "{}\n", header);
+  std::fwrite(header.data(), 1, header.size(), file_);
+  std::fputc('\n', file_);
   return {};
 }
 
@@ -64,7 +67,7 @@ std::string CsvFile::Close() {
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;
-  if (bad || !closed) return fmt::format("{} was not written whole: {}", path_, strerror(errno));
+  if (bad || !closed) return NotWrittenWhole(path_);
   return {};
 }
 

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "coordinator/os/file_errors.h"
+
 namespace tcs {
 
 namespace {
@@ -28,7 +30,7 @@ ScheduleTrace::~ScheduleTrace() {
 std::string ScheduleTrace::Open(const std::string& path) {
   path_ = path;
   file_ = std::fopen(path.c_str(), "we");
-  if (file_ == nullptr) return fmt::format("{} cannot be written: {}", path, strerror(errno));
+  if (file_ == nullptr) return CannotBeWritten(path);
   noted_.reserve(kNotedAtOnce);
   std::fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file_);
   return {};
@@ -116,7 +118,7 @@ std::string ScheduleTrace::Close() {
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;
-  if (bad || !closed) return fmt::format("{} was not written whole: {}", path_, strerror(errno));
+  if (bad || !closed) return NotWrittenWhole(path_);
   return {};
 }
 

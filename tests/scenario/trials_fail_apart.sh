@@ -7,7 +7,7 @@ trials() { "$tcsim" trials "$out/scenario.yaml" --accounting fixed --out "$out/t
 status=0; FAILING_SEED=2 trials --trials 3 --name "three pilots" >"$out/said" 2>"$out/errors" ||
   status=$?
 ((status == 1)) || fail "exit status $status: $(cat "$out/said" "$out/errors")"
-grep -q "^tcsim: seed 2 failed: r/pilot ended at .* exit status 1; .*$out/t/seed-0002/r-pilot.err.log ($out/t/seed-0002/tcsim.log)" \
+grep -q "^tcsim: seed 2 failed: r/pilot ended at .* exit status 1: \"this seed is not for me\" ($out/t/seed-0002/r-pilot.err.log) ($out/t/seed-0002/tcsim.log)" \
   "$out/errors" || fail "$(cat "$out/errors")"
 (($(grep -c failed: "$out/errors") == 1)) || fail "$(cat "$out/errors")"
 grep -q 'not for me' "$out/t/seed-0002/r-pilot.err.log" || fail "its last words are lost"

@@ -98,6 +98,22 @@ TEST(UdpSocket, SendingToNobodyIsNoError) {
   EXPECT_EQ(Received(&socket), std::nullopt);
 }
 
+TEST(UdpSocket, IsListenedToWhileItIsOpen) {
+  UdpEndpoint endpoint;
+  {
+    const UdpSocket open = Bound();
+    endpoint = open.LocalEndpoint();
+    EXPECT_TRUE(IsListenedTo(endpoint));
+    // Somebody has the port, on another address.
+    EXPECT_FALSE(IsListenedTo({"127.0.0.2", endpoint.port}));
+  }
+  EXPECT_FALSE(IsListenedTo(endpoint));
+  // Not this machine's to know.
+  EXPECT_TRUE(IsListenedTo({"192.0.2.1", endpoint.port}));
+  const auto any = UdpSocket::Bind({"0.0.0.0", 0});
+  EXPECT_TRUE(IsListenedTo({"127.0.0.1", std::get<UdpSocket>(any).LocalEndpoint().port}));
+}
+
 TEST(UdpSocket, MovesWithItsDescriptor) {
   UdpSocket first = Bound();
   const int fd = first.fd();

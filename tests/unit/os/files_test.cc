@@ -29,6 +29,19 @@ class FilesTest : public ::testing::Test {
   std::string folder_;
 };
 
+TEST_F(FilesTest, TheLastLineOfALogIsTheLastThatSaysSomething) {
+  const std::string path = folder_ + "/log";
+  EXPECT_EQ(LastLine(path), "");
+  std::ofstream(path) << "";
+  EXPECT_EQ(LastLine(path), "");
+  std::ofstream(path) << "first\n  the\tlast \n\n \n";
+  EXPECT_EQ(LastLine(path), "the last");
+  std::ofstream(path) << std::string(100'000, 'x') << "\nwithout a line end";
+  EXPECT_EQ(LastLine(path), "without a line end");
+  std::ofstream(path) << std::string(100'000, 'x');
+  EXPECT_LT(LastLine(path).size(), 210u);
+}
+
 TEST_F(FilesTest, AWholeFileTakesThePlaceOfTheOldOne) {
   const std::string path = folder_ + "/file";
   EXPECT_EQ(WriteWhole(path, "a long first text"), "");

@@ -76,5 +76,43 @@ TEST(TopicWarnings, SayNothingOfAReaderWithoutAnyWriter) {
   EXPECT_THAT(TopicWarnings({topic}), IsEmpty());
 }
 
+TEST(TopicWarnings, NameATopicOfTwoTypes) {
+  TopicReport written{"/odom", "sensor_msgs/msg/Imu"}, read{"/odom", "nav_msgs/msg/Odometry"};
+  written.endpoints = {{EndpointKind::kWriter, "tcsim", "", {}}};
+  read.endpoints = {{EndpointKind::kReader, "hunter/planner", "hunter", {}}};
+  EXPECT_THAT(
+      TopicWarnings({written, read}),
+      ElementsAre("/odom: hunter/planner reads nav_msgs/msg/Odometry there, but tcsim writes "
+                  "sensor_msgs/msg/Imu, so that nothing gets across; use one type at both "
+                  "ends"));
+  read.domain = 7;
+  EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());
+}
+
+TEST(TopicWarnings, NameTwoTopicsThatLookLikeOne) {
+  Qos all;
+  all.history = History::kKeepAll;
+  TopicReport written{"/odomm", "nav_msgs/msg/Odometry"}, read{"/odom", "nav_msgs/msg/Odometry"};
+  written.endpoints = {{EndpointKind::kWriter, "tcsim", "", {}},
+                       {EndpointKind::kReader, "tcsim", "", all}};  // a recording
+  read.endpoints = {{EndpointKind::kReader, "hunter/planner", "hunter", {}}};
+  EXPECT_THAT(TopicWarnings({written, read}),
+              ElementsAre("/odom: hunter/planner reads it, and nobody writes it; /odomm: tcsim "
+                          "writes it with the same type, and nobody reads it; if they are meant "
+                          "for each other, use one name"));
+  // Programs may leave topics to others that are not there.
+  written.endpoints[0].process = "hunter/controller";
+  EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());
+  // Commands of another robot have a reader of their own.
+  TopicReport command{"/wrench", "geometry_msgs/msg/Wrench"},
+      of_other{"/other/wrench", command.type};
+  command.endpoints = {{EndpointKind::kReader, "tcsim", "", {}}};
+  of_other.endpoints = {{EndpointKind::kWriter, "other/controller", "other", {}},
+                        {EndpointKind::kReader, "tcsim", "", {}}};
+  EXPECT_THAT(TopicWarnings({command, of_other}), IsEmpty());
+  of_other.endpoints.pop_back();
+  EXPECT_THAT(TopicWarnings({command, of_other}), ElementsAre(HasSubstr("use one name")));
+}
+
 }  // namespace
 }  // namespace tcs::dds

@@ -1,0 +1,17 @@
+// What tcsim says on its stderr.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace tcs {
+
+// One line, "tcsim: SENTENCE". A stderr that cannot be written, on a full disk for one, ends
+// nobody's run.
+inline void Say(const std::string& sentence) {
+  const std::string line = "tcsim: " + sentence + "\n";
+  const std::size_t written = std::fwrite(line.data(), 1, line.size(), stderr);
+  static_cast<void>(written);
+}
+
+}  // namespace tcs
