@@ -46,9 +46,9 @@ std::string LastWords(const std::string& said) {
   std::string sentence, last;
   std::istringstream lines(said);
   for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || begins(line, waiting)) continue;
+    if (line.empty() || begins(line, waiting) || begins(line, warning)) continue;
     last = line;
-    if (begins(line, mark) && !begins(line, warning)) sentence = line.substr(mark.size());
+    if (begins(line, mark)) sentence = line.substr(mark.size());
   }
   return sentence.empty() ? last : sentence;
 }

@@ -19,7 +19,7 @@ std::optional<TrialOutcome> OutcomeFromJson(const std::string& text, std::uint64
 std::optional<TrialOutcome> ReadOutcome(const std::string& folder, std::uint64_t seed);
 
 // The sentence out of what a run printed that says why it failed, without "tcsim: "; its last line
-// if it says none; empty if it said nothing.
+// if it says none; empty if it said nothing but warnings.
 std::string LastWords(const std::string& said);
 
 // The end of a file as text; empty if it cannot be read.

@@ -59,6 +59,10 @@ TEST(TrialLastWords, AreTheLastLineWhereThereIsNoSentence) {
   EXPECT_EQ(LastWords(""), "");
 }
 
+TEST(TrialLastWords, WarningsAreNoReason) {
+  EXPECT_EQ(LastWords("tcsim: warning: channel thrust: nothing came in\n"), "");
+}
+
 TEST(TrialLastWords, ARunThatOnlyWaitedForAProcessorSaidNothing) {
   EXPECT_EQ(LastWords("tcsim: other runs of tcsim have the processors; waiting for one of them\n"),
             "");
