@@ -322,15 +322,14 @@ void Engine::ProcessEnded(std::size_t index) {
   WakeEveryKey();
   LeaveDds(process);
   if (!process.is_client) ended_processes_.push_back(&process);
-  const std::optional<int> ended = WaitStatusOf(process.pid);
-  if (!ended.has_value()) return;  // its parent's to reap
-  const int status = *ended;
-  process.wait_status = status;
+  const std::optional<int> status = WaitStatusOf(process.pid);
+  if (!status.has_value()) return;  // its parent's to reap
+  process.wait_status = *status;
   // Of several threads the last may still be at what LetDie says: those are reaped at the run's
   // end, when nobody here is at a real-time priority any more.
   if (process.threads == 1) waitpid(process.pid, nullptr, WNOHANG);
   if (index == 0) {
-    report_.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    report_.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
   }
 }
 

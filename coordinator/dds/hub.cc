@@ -265,17 +265,15 @@ std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
   if (IsAnothers(GuidAt(header.subject), header.from) ||
       (header.kind == DdsKind::kEndpoint && IsAnothers(GuidAt(header.other), header.from))) {
     return "speaks for a DDS participant of another program: that is lost; GUIDs must not be "
-           "copied "
-           "from one program into another";
+           "copied from one program into another";
   }
   if (!IsNewsOfEntity(header) || (header.flags & shm::kDdsGone) != 0) return std::nullopt;
   const auto before = KnownAs(header.from, GuidAt(header.subject));
   const std::size_t had = before == known_.end() ? 0 : before->message->size();
   if (Find(header.from)->known_bytes - had + header.size > kMostKnownBytes) {
     return "has made so many DDS participants, writers and readers that what they say of "
-           "themselves "
-           "takes 16 MiB: nobody is told of further ones; delete those that are not needed any "
-           "more";
+           "themselves takes 16 MiB: nobody is told of further ones; delete those that are not "
+           "needed any more";
   }
   return std::nullopt;
 }

@@ -82,21 +82,6 @@ void Handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-pid_t ParentOf(const char* pid) {
-  char path[64], text[512];
-  snprintf(path, sizeof path, "/proc/%.20s/stat", pid);
-  FILE* file = fopen(path, "re");
-  if (file == nullptr) return -1;
-  const std::size_t n = fread(text, 1, sizeof text - 1, file);
-  fclose(file);
-  text[n] = '\0';
-  // The name may hold anything; what follows its last parenthesis is: state, parent.
-  const char* name_end = strrchr(text, ')');
-  int parent = -1;
-  if (name_end == nullptr || sscanf(name_end + 1, " %*c %d", &parent) != 1) return -1;
-  return parent;
-}
-
 // All at once, not only the children: one that spins at real-time priority keeps its killed parent
 // from the processor, and with it from dying, for ever.
 void KillTree() {
@@ -104,8 +89,7 @@ void KillTree() {
   if (proc == nullptr) return;
   std::multimap<pid_t, pid_t> children;
   while (const dirent* entry = readdir(proc)) {
-    if (const int pid = atoi(entry->d_name); pid > 0)
-      children.emplace(ParentOf(entry->d_name), pid);
+    if (const int pid = atoi(entry->d_name); pid > 0) children.emplace(ParentOf(pid), pid);
   }
   closedir(proc);
   std::vector<pid_t> parents{getpid()};

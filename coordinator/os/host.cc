@@ -104,6 +104,7 @@ namespace {
 
 struct ThreadStat {
   char state = 'X';
+  pid_t parent = -1;
   unsigned flags = 0;  // the kernel's PF_*
 };
 
@@ -119,13 +120,16 @@ ThreadStat ReadThreadStat(pid_t tid) {
   const char* end = strrchr(text, ')');
   ThreadStat stat;
   if (end == nullptr) return {};
-  const int found = sscanf(end + 1, " %c %*d %*d %*d %*d %*d %u", &stat.state, &stat.flags);
-  return found == 2 ? stat : ThreadStat{};
+  const int found =
+      sscanf(end + 1, " %c %d %*d %*d %*d %*d %u", &stat.state, &stat.parent, &stat.flags);
+  return found == 3 ? stat : ThreadStat{};
 }
 
 }  // namespace
 
 char ThreadState(pid_t tid) { return ReadThreadStat(tid).state; }
+
+pid_t ParentOf(pid_t pid) { return ReadThreadStat(pid).parent; }
 
 bool IsDying(pid_t tid) {
   constexpr unsigned kExiting = 0x4;  // PF_EXITING

@@ -47,6 +47,9 @@ std::int64_t ReadThreadCpuClock(int fd);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
+// -1 if the process has ended.
+pid_t ParentOf(pid_t pid);
+
 // The thread is on its way out: it was killed, or ends with its process.
 bool IsDying(pid_t tid);
 

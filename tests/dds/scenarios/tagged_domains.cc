@@ -13,11 +13,7 @@ struct Domain {
   dds_entity_t domain, writer, reader;
 
   Domain(const Process& self, const std::string& discovery) {
-    const std::string configuration =
-        "<CycloneDDS><Domain><General><Interfaces>"
-        "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>" +
-        discovery + "</Domain></CycloneDDS>";
-    domain = OK(dds_create_domain(self.domain + 1, configuration.c_str()));
+    domain = self.DomainBeside(discovery);
     const dds_entity_t participant = self.Participant(1);
     const dds_entity_t topic =
         OK(dds_create_topic(participant, &dds_test_Sample_desc, "a", nullptr, nullptr));

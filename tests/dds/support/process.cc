@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include <string>
-
 namespace dds_test {
 
 namespace {
@@ -30,13 +28,16 @@ dds_entity_t Process::Participant(dds_domainid_t beside) const {
   return OK(dds_create_participant(domain + beside, nullptr, nullptr));
 }
 
-void Process::UseShortLease(const char* lease) {
+dds_entity_t Process::DomainBeside(const std::string& settings) const {
   const std::string configuration =
       "<CycloneDDS><Domain><General><Interfaces>"
-      "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
-      "<Discovery><LeaseDuration>" +
-      std::string(lease) + "</LeaseDuration></Discovery></Domain></CycloneDDS>";
-  OK(dds_create_domain(domain + 1, configuration.c_str()));
+      "<NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>" +
+      settings + "</Domain></CycloneDDS>";
+  return OK(dds_create_domain(domain + 1, configuration.c_str()));
+}
+
+void Process::UseShortLease(const std::string& lease) {
+  DomainBeside("<Discovery><LeaseDuration>" + lease + "</LeaseDuration></Discovery>");
   participant = Participant(1);
 }
 

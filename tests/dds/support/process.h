@@ -7,6 +7,8 @@
 
 #include <dds/dds.h>
 
+#include <string>
+
 #include "sample.h"
 #include "tests/dds/support/events.h"
 #include "tests/dds/support/peer.h"
@@ -27,9 +29,11 @@ struct Process {
 
   // One more participant, in the scenario's domain or in one beside it.
   dds_entity_t Participant(dds_domainid_t beside = 0) const;
+  // Makes the domain beside the scenario's, with this in its configuration.
+  dds_entity_t DomainBeside(const std::string& settings) const;
   // Goes over to the domain beside the scenario's, with a lease of so long (Cyclone's form: "2s")
   // rather than ten seconds.
-  void UseShortLease(const char* lease);
+  void UseShortLease(const std::string& lease);
   // Topics of a scenario are told apart by a letter.
   dds_entity_t Topic(const char* name = "a",
                      const dds_topic_descriptor_t* type = &dds_test_Sample_desc) const;

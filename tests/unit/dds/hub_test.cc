@@ -87,10 +87,15 @@ std::uint32_t PayloadSizeOf(DdsKind kind) {
   }
 }
 
-DdsMessage Message(DdsKind kind, std::uint8_t subject, std::uint32_t to = shm::kDdsEverybody) {
-  DdsMessage message{};
-  message.payload_size = PayloadSizeOf(kind);
+// The same with a payload of so many bytes.
+DdsMessage Sized(DdsMessage message, std::size_t payload_size) {
+  message.payload_size = static_cast<std::uint32_t>(payload_size);
   message.size = shm::DdsMessageSize(message.payload_size);
+  return message;
+}
+
+DdsMessage Message(DdsKind kind, std::uint8_t subject, std::uint32_t to = shm::kDdsEverybody) {
+  DdsMessage message = Sized({}, PayloadSizeOf(kind));
   message.kind = kind;
   message.to = to;
   message.subject[0] = subject;
@@ -294,9 +299,7 @@ TEST(DdsHub, TheFileOfTheAreasCannotBeCutOff) {
 TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
   Hub hub;
   Peer a(hub, 0), other(hub, 0);
-  DdsMessage endpoint = Message(DdsKind::kEndpoint, 2);
-  endpoint.payload_size = 1 << 20;
-  endpoint.size = shm::DdsMessageSize(endpoint.payload_size);
+  DdsMessage endpoint = Sized(Message(DdsKind::kEndpoint, 2), 1 << 20);
   std::uint8_t made = 0;
   std::string refused;
   for (; made < 200 && refused.empty(); ++made) {
@@ -312,17 +315,14 @@ TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
   endpoint.flags = 0;
   EXPECT_EQ(a.Send(202, {endpoint}), "") << "one for one";
   EXPECT_EQ(other.Send(203, {endpoint}), "") << "each has its own";
-  ++endpoint.payload_size;
-  endpoint.size = shm::DdsMessageSize(endpoint.payload_size);
+  endpoint = Sized(endpoint, endpoint.payload_size + 1);
   EXPECT_THAT(other.Send(204, {endpoint}), HasSubstr("1048577 bytes, more than 1 MiB"));
 }
 
 TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
-  DdsMessage large = Message(DdsKind::kSample, 1);
-  large.payload_size = shm::kDdsUsualSize / 3;
-  large.size = shm::DdsMessageSize(large.payload_size);
+  DdsMessage large = Sized(Message(DdsKind::kSample, 1), shm::kDdsUsualSize / 3);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(a.Send(i, {large}), "");
   EXPECT_EQ(b.Take(10).size(), 2u);
   EXPECT_EQ(hub.DueNs(b.number()), 2) << "the rest is due still";
@@ -337,9 +337,7 @@ TEST(DdsHub, ALargeSampleComesAloneAndItsMemoryIsGivenBack) {
     fstat(hub.fd(), &status);
     return static_cast<std::size_t>(status.st_blocks) * 512;
   };
-  DdsMessage large = Message(DdsKind::kSample, 1);
-  large.payload_size = shm::kDdsUsualSize * 3;
-  large.size = shm::DdsMessageSize(large.payload_size);
+  DdsMessage large = Sized(Message(DdsKind::kSample, 1), shm::kDdsUsualSize * 3);
   EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1)}), "");
   EXPECT_EQ(a.Send(2, {large}), "");
   EXPECT_EQ(b.Take(10).size(), 1u);
@@ -352,9 +350,8 @@ TEST(DdsHub, ALargeSampleComesAloneAndItsMemoryIsGivenBack) {
 TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
-  DdsMessage large = Message(DdsKind::kSample, 1);
-  large.payload_size = shm::kDdsUsualSize - sizeof(DdsMessage) - 8;
-  large.size = shm::DdsMessageSize(large.payload_size);
+  DdsMessage large =
+      Sized(Message(DdsKind::kSample, 1), shm::kDdsUsualSize - sizeof(DdsMessage) - 8);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(a.Send(i, {large}), "");
   EXPECT_EQ(hub.drops().lost, 4u);
   EXPECT_EQ(a.Send(20, {Message(DdsKind::kParticipant, 2)}), "");
@@ -364,9 +361,7 @@ TEST(DdsHub, SamplesForWhoDoesNotTakeThemAreDroppedAndCounted) {
 TEST(DdsHub, NewsForWhoDoesNotTakeThemHaveALimitToo) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
-  DdsMessage asserted = Message(DdsKind::kLiveliness, 1);
-  asserted.payload_size = 8 << 20;
-  asserted.size = shm::DdsMessageSize(asserted.payload_size);
+  DdsMessage asserted = Sized(Message(DdsKind::kLiveliness, 1), 8 << 20);
   for (int i = 0; i < 50; ++i) EXPECT_EQ(a.Send(i, {asserted}), "");
   EXPECT_EQ(hub.drops().lost, 11u) << "320 MiB wait";
 }
@@ -374,9 +369,7 @@ TEST(DdsHub, NewsForWhoDoesNotTakeThemHaveALimitToo) {
 TEST(DdsHub, AllSeeWhoIsFull) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0), c(hub, 0);
-  DdsMessage sample = Message(DdsKind::kSample, 1, b.number());
-  sample.payload_size = 600'000;
-  sample.size = shm::DdsMessageSize(sample.payload_size);
+  const DdsMessage sample = Sized(Message(DdsKind::kSample, 1, b.number()), 600'000);
   EXPECT_EQ(a.Send(1, {sample}), "");
   EXPECT_EQ(a.shown().full_count, 0u);
   EXPECT_EQ(a.Send(2, {sample}), "");
@@ -392,10 +385,7 @@ TEST(DdsHub, AllSeeWhoIsFull) {
 }
 
 DdsMessage Large(std::uint8_t subject, std::uint32_t payload_size) {
-  DdsMessage message = Message(DdsKind::kSample, subject);
-  message.payload_size = payload_size;
-  message.size = shm::DdsMessageSize(payload_size);
-  return message;
+  return Sized(Message(DdsKind::kSample, subject), payload_size);
 }
 
 std::vector<int> TimesOf(const std::vector<DdsMessage>& messages, std::uint8_t subject) {
