@@ -65,8 +65,9 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     Print("ended before its {:.3f} s, as all programs had ended\n",
           Seconds(scenario.duration.ns()));
   }
-  Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns\n", Milliseconds(r.drift_ns),
-        Milliseconds(scenario.drift_bound.ns()), r.staleness_ns);
+  Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns, lateness {:.3f} ms\n",
+        Milliseconds(r.drift_ns), Milliseconds(scenario.drift_bound.ns()), r.staleness_ns,
+        Milliseconds(r.lateness_ns));
   Print(
       "coordinating {:.3f} s = {:.2f} % overhead, clients {:.3f} s, dynamics {:.3f} s, "
       "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
@@ -109,6 +110,7 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
                               {"drift_ns", r.drift_ns},
                               {"drift_bound_ns", scenario.drift_bound.ns()},
                               {"staleness_ns", r.staleness_ns},
+                              {"lateness_ns", r.lateness_ns},
                               {"clients_ns", r.client_ns},
                               {"dynamics_ns", r.dynamics_ns},
                               {"coordinating_ns", r.coordinating_ns},

@@ -73,8 +73,7 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
   task.tid = tid;
   task.priority = process.priority;
   task.parked = false;
-  task.reached_ns = event_ns_;
-  task.activation.release_ns = event_ns_;
+  task.reached_ns = task.activation.release_ns = std::max(event_ns_, EarliestWake());
   process.robot->tasks.push_back(&task);
   SetState(task, TaskState::kStarting);
   Refresh(*process.robot);
@@ -209,7 +208,7 @@ void Engine::Attach(int connection) {
   task.early_trap.reset();
   task.trap_id = 0;
   task.notified_early = false;
-  task.reached_ns = std::max(task.reached_ns, event_ns_);
+  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
   SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;

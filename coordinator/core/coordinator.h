@@ -54,6 +54,9 @@ struct RunReport {
   std::int64_t virtual_ns = 0;
   std::int64_t drift_ns = 0;      // largest difference of progress between two leaves
   std::int64_t staleness_ns = 0;  // largest, over all reads
+  // Between the sending of something and the instant at which the thread that it woke, and that was
+  // to run at once, could run: the largest.
+  std::int64_t lateness_ns = 0;
   std::int64_t real_ns = 0;
   std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
   std::int64_t switches = 0, samples = 0, commands = 0;

@@ -231,7 +231,10 @@ void Engine::ShowDeliverersTheirDeadlines() {
     Task* deliverer = process->deliverer;
     if (deliverer == nullptr || !deliverer->waits_for_messages) continue;
     const std::int64_t due = hub_.DueNs(process->dds_number);
-    if (std::exchange(deliverer->deadline_ns, due) != due) Refresh(*process->robot);
+    if (std::exchange(deliverer->deadline_ns, due) == due) continue;
+    const bool inside = running_ != nullptr && running_->process->robot == process->robot;
+    if (due != shm::kNeverNs && !inside) ReceiveAt(*deliverer, due, GoesFirst(*deliverer, 0));
+    Refresh(*process->robot);
   }
 }
 

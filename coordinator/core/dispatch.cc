@@ -132,6 +132,20 @@ void Engine::Resume(Task& task) {
   RearmDetector();
 }
 
+// The running thread has woken one of another computer, which does not need its core. It goes on,
+// as far as that one now allows.
+void Engine::GoOnBesideWoken() {
+  shm::ClockPage& page = Slot(*running_).clock;
+  const VirtualCpu& cpu = *running_->cpu;
+  std::int64_t idle_until = 0;
+  const std::int64_t allowed = std::max(HorizonFor(*running_, &idle_until), WrittenAt());
+  running_horizon_ns_ = std::min(running_horizon_ns_, allowed);
+  page.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
+  page.idle_until_ns = 0;  // it asks
+  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
+}
+
 // What the coordinator did while the thread was only interrupted is not the thread's.
 void Engine::ContinueClock(Task& task) {
   const std::uint64_t stopped_tsc = stop_tsc_;
@@ -181,7 +195,7 @@ void Engine::CheckCpuClock(Task& task) {
 
 // The virtual time of what the running thread has just done to others: the time that its clock
 // showed when it held for the write.
-std::int64_t Engine::WrittenAt() {
+std::int64_t Engine::WrittenAt() const {
   if (running_ == nullptr || running_->slot < 0) return event_ns_;
   const std::int64_t start = running_->cpu->progress_ns;
   if (IsCallback()) return start;
@@ -215,6 +229,11 @@ void Engine::Settle(Task& task) {
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
+  // Whom it has woken, however long ago it sent what did, it must not have left behind further than
+  // the drift bound: what it has computed beyond is a debt.
+  if (!IsCallback()) {
+    running_horizon_ns_ = std::min(running_horizon_ns_, root_.Horizon(task.cpu->leaf));
+  }
   std::int64_t reached = reading.time_ns - frozen;
   std::int64_t charged = reading.cpu_ns;
   // What the notification itself takes is ours, not the client's: neither its clock nor its charge
@@ -254,6 +273,10 @@ void Engine::Settle(Task& task) {
   }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
+  if (!notified_ && !trapped_.has_value()) {
+    task.cpu->computes = task.order;
+    task.cpu->computes_since_ns = std::max(start, shown);
+  }
   if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on

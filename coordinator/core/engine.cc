@@ -121,8 +121,12 @@ void Engine::Refresh(Robot& robot) {
 // of late. `after_ns`: of theirs, from now on. Who is woken by its own robot's threads waits
 // behind.
 bool Engine::GoesFirst(const Task& task, std::int64_t after_ns) const {
-  return task.policy == SCHED_OTHER && !IsCallback() &&
+  return CanGoFirst(task) &&
          task.share.GoesFirst(after_ns, task.process->robot->ready.CountOf(task.priority));
+}
+
+bool Engine::CanGoFirst(const Task& task) const {
+  return task.policy == SCHED_OTHER && !IsCallback();
 }
 
 // Whether the core has to stop at `due_ns` for a thread that goes first then: of the cores that
@@ -153,13 +157,14 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   const bool outside =
       from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
   const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
+  if (outside && reads && !task.waits_for_messages) ReceiveAt(task, event_ns_, goes_first);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
     task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
-  task.reached_ns = std::max(task.reached_ns, event_ns_);
+  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
   // Others may have come further: what is due later than its own time it gets then.
   if (task.waits_for_messages) {
     task.messages_until_ns =
@@ -174,11 +179,98 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   Refresh(*task.process->robot);
 }
 
+// What arrives later than the drift bound allows for (the kernel may take its time) is seen when
+// that is over, not in the past of those who have gone on.
+std::int64_t Engine::EarliestWake() const {
+  if (IsCallback()) return 0;
+  std::int64_t earliest = root_.EarliestWake();
+  if (running_ != nullptr) earliest = std::max(earliest, WrittenAt() - scenario_.drift_bound.ns());
+  return earliest;
+}
+
+// How far back the core could have been stopped instead of where it was.
+std::int64_t Engine::CanTakeBackTo(const VirtualCpu& cpu) const {
+  const FixedPriority::Thread next = cpu.robot->ready.Next(cpu.core).thread;
+  const bool computes = next != FixedPriority::kNobody && next == cpu.computes &&
+                        tasks_[static_cast<std::size_t>(next)].reached_ns == cpu.progress_ns;
+  return computes ? std::min(cpu.computes_since_ns, cpu.progress_ns) : cpu.progress_ns;
+}
+
+// What its thread has computed beyond is a debt, as if it had been stopped late.
+void Engine::TakeBack(VirtualCpu& cpu, std::int64_t to_ns) {
+  Task& task = tasks_[static_cast<std::size_t>(cpu.computes)];
+  const std::int64_t beyond_ns = cpu.progress_ns - to_ns;
+  task.debt_ns += beyond_ns;
+  task.turn_ns -= beyond_ns;
+  ShareOut(task, -beyond_ns, task.priority, cpu.robot->ready.CountOf(task.priority));
+  cpu.progress_ns = task.reached_ns = to_ns;
+  Requeue(task);
+  Refresh(*cpu.robot);
+}
+
+// What was sent at `sent_ns` wakes a thread. The core that it runs on at once may have come
+// further.
+void Engine::ReceiveAt(const Task& woken, std::int64_t sent_ns, bool goes_first) {
+  if (IsCallback()) return;
+  sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
+  const Robot& robot = *woken.process->robot;
+  VirtualCpu* best = nullptr;
+  std::int64_t start = shm::kNeverNs;
+  for (VirtualCpu* cpu : robot.cpus) {
+    if ((AllowedCores(woken) >> (cpu->core & 63) & 1) == 0) continue;
+    if (!robot.ready.YieldsTo(cpu->core, woken.priority, goes_first)) continue;
+    const std::int64_t its = std::max({CanTakeBackTo(*cpu), sent_ns, EarliestWake()});
+    if (its < start) best = cpu;
+    start = std::min(start, its);
+  }
+  if (best == nullptr) return;
+  if (start < best->progress_ns) TakeBack(*best, start);
+  report_.lateness_ns = std::max(report_.lateness_ns, start - sent_ns);
+}
+
 bool Engine::IsSafe(const Task& task) const {
   if (task.state != TaskState::kHolding) return true;
   const VirtualCpu& cpu = *task.cpu;
   return cpu.progress_ns <= (task.hold == shm::NotificationKind::kRead ? root_.ReadSafe(cpu.leaf)
                                                                        : root_.WriteSafe(cpu.leaf));
+}
+
+// What ends its wait may come from elsewhere.
+bool Engine::AwaitsInput(const Task& task) {
+  return task.waits_for_fds || task.waits_for_key || task.awaited_signals != 0 ||
+         task.waits_for_messages || task.waits_for_room != 0;
+}
+
+// How far a core may run if what others do at `input_ns` could interrupt it. A program acts some
+// time after it is woken, so the core goes on until then: each would stop the other otherwise. With
+// set costs it does not, and at one and the same instant it gives way.
+std::int64_t Engine::PastInput(const VirtualCpu& cpu, std::int64_t input_ns) const {
+  if (input_ns == shm::kNeverNs) return input_ns;
+  if (!IsFixed()) return std::max(input_ns, cpu.progress_ns) + kGrainNs;
+  if (input_ns > cpu.progress_ns) return input_ns;
+  return root_.HasGivenWay(cpu.leaf) ? cpu.progress_ns + kGrainNs : cpu.progress_ns;
+}
+
+// The task's horizon, because input may have `other` run instead at once: being more urgent, or as
+// an equal that goes first. What programs of other computers and the world do can; on a robot of
+// several cores also what happens on the others.
+std::int64_t Engine::HorizonForInput(const Task& task, const Task& other) const {
+  const VirtualCpu& cpu = *task.cpu;
+  const FixedPriority& ready = cpu.robot->ready;
+  const bool by_others = other.trap_wait == TrapWait::kFutex && cpu.robot->cpus.size() > 1;
+  if (other.priority > task.priority) {
+    if (!by_others && !AwaitsInput(other)) return shm::kNeverNs;
+    return std::min(PastInput(cpu, root_.NextInput(cpu.leaf)), root_.NextOutput());
+  }
+  if (other.priority < task.priority || task.policy == SCHED_FIFO || !AwaitsInput(other) ||
+      !CanGoFirst(other) || !ready.YieldsTo(cpu.core, other.priority)) {
+    return shm::kNeverNs;
+  }
+  const std::int64_t from =
+      cpu.progress_ns + other.share.NsUntilFirst(ready.CountOf(other.priority));
+  const std::int64_t sent = std::max(from, root_.NextInputFromOutside(cpu.leaf));
+  const std::int64_t at = std::min(PastInput(cpu, sent), std::max(from, root_.NextOutput()));
+  return MakesRoom(cpu, other, at) ? at : shm::kNeverNs;
 }
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
@@ -217,14 +309,11 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
         limit = std::min(limit, std::max(due, turn_end));
       }
     }
-    if (other->priority <= task.priority) continue;
-    limit = std::min(limit, other->deadline_ns);
-    if (!other->waits_for_fds && !other->waits_for_key && other->awaited_signals == 0 &&
-        !other->waits_for_messages && other->waits_for_room == 0 &&
-        !(other->trap_wait == TrapWait::kFutex && robot.cpus.size() > 1))
-      continue;
-    const std::int64_t input = root_.NextInput(cpu.leaf);
-    limit = std::min(limit, input > cpu.progress_ns ? input : cpu.progress_ns + kGrainNs);
+    if (AwaitsInput(*other)) {
+      idle = std::min({idle, PastInput(cpu, root_.NextInput(cpu.leaf)), root_.NextOutput()});
+    }
+    if (other->priority > task.priority) limit = std::min(limit, other->deadline_ns);
+    limit = std::min(limit, HorizonForInput(task, *other));
   }
   limit = std::min(limit, robot.ready.NextToPrecede(cpu.core));
   if (robot.ready.HasWaitingEqual(cpu.core)) limit = std::min(limit, turn_end);
@@ -275,22 +364,31 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
   // What was due may have woken somebody who acts on another virtual CPU first.
   if (turn.thread == FixedPriority::kNobody || root_.First() != cpu.leaf) return;
-  root_.FirstActs();
   cpu.progress_ns = std::max(cpu.progress_ns, turn.start_ns);
   Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;
-  robot.ready.Ran(cpu.core, task.order);
   if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
   TCS_CHECK(IsSafe(task));
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
+  std::int64_t horizon = HorizonFor(task, &idle_until);
+  if (horizon <= start && root_.NextInput(cpu.leaf) == start && !root_.HasGivenWay(cpu.leaf)) {
+    // At this very instant others may still wake somebody who goes before it.
+    root_.GiveWay(cpu.leaf);
+    return;
+  }
+  root_.FirstActs();
+  robot.ready.Ran(cpu.core, task.order);
   const int priority = task.priority;
   const std::size_t sharing = robot.ready.CountOf(priority);
-  const std::int64_t horizon = KeepWorldNear(task, HorizonFor(task, &idle_until));
+  horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
+  cpu.computes = FixedPriority::kNobody;
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
+    cpu.computes = task.order;
+    cpu.computes_since_ns = start;
   } else {
     Dispatch(task, horizon, idle_until);
     if (has_spinners_ && !task.spins) WakeSpinners();
@@ -303,6 +401,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   }
   Requeue(task);
   Refresh(robot);
+  TCS_CHECK(IsCallback() || root_.drift_ns() <= scenario_.drift_bound.ns());
 }
 
 // Advances the dynamics where the virtual CPUs have come to what is due there, or have left them

@@ -60,6 +60,13 @@ class Engine {
   std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
+  std::int64_t HorizonForInput(const Task& task, const Task& other) const;
+  std::int64_t PastInput(const VirtualCpu& cpu, std::int64_t input_ns) const;
+  static bool AwaitsInput(const Task& task);
+  std::int64_t EarliestWake() const;
+  void ReceiveAt(const Task& woken, std::int64_t sent_ns, bool goes_first);
+  void TakeBack(VirtualCpu& cpu, std::int64_t to_ns);
+  std::int64_t CanTakeBackTo(const VirtualCpu& cpu) const;
   bool IsSafe(const Task& task) const;
   void PollUnseen();
   bool StrangersRun();
@@ -73,6 +80,7 @@ class Engine {
   void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason);
+  bool CanGoFirst(const Task& task) const;
   bool GoesFirst(const Task& task, std::int64_t after_ns) const;
   static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
   static void ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing);
@@ -83,6 +91,7 @@ class Engine {
   void Resume(Task& task);
   void StartClock(Task& task);
   void ContinueClock(Task& task);
+  void GoOnBesideWoken();
   void AwaitStop(Task& task);
   std::int64_t HostNsToHorizon(const Task& task);
   bool ReachedHorizon(Task& task);
@@ -91,7 +100,7 @@ class Engine {
   void StepAside(Task& task);
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
-  std::int64_t WrittenAt();
+  std::int64_t WrittenAt() const;
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
@@ -256,7 +265,7 @@ class Engine {
   void Warn(const std::string& text);
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
-  shm::ThreadSlot& Slot(const Task& task) {
+  shm::ThreadSlot& Slot(const Task& task) const {
     return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
   }
 

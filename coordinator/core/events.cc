@@ -173,7 +173,12 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
             task.state == TaskState::kWaiting && task.waits_for_fds &&
             EventData(tag, index, task.wait_number) == events[i].data.u64) {
           MakeReady(task, shm::WakeReason::kGo);
-          external_event_ = stop = true;
+          external_event_ = true;
+          if (running_ != nullptr && running_->process->robot != task.process->robot) {
+            GoOnBesideWoken();
+          } else {
+            stop = true;
+          }
         }
         break;
       case Tag::kTrap:

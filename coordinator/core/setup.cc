@@ -155,7 +155,7 @@ std::string Engine::StartClients() {
       VirtualCpu& cpu = cpus_.emplace_back();
       cpu.robot = &computer;
       cpu.core = core;
-      cpu.leaf = root_.AddLeaf();
+      cpu.leaf = root_.AddLeaf(static_cast<int>(robots_.size()));
       computer.cpus.push_back(&cpu);
     }
     for (const ClientSpec& client : robot.clients) {

@@ -100,10 +100,10 @@ bool FixedPriority::HasWaitingEqual(std::size_t core) const {
   });
 }
 
-bool FixedPriority::YieldsTo(std::size_t core, int priority) const {
+bool FixedPriority::YieldsTo(std::size_t core, int priority, bool first) const {
   const auto own = Find(turns_[core].thread);
   return own == ready_.end() ||
-         Precedes({.thread = kNobody, .priority = priority, .from_ns = 0, .first = true}, *own);
+         Precedes({.thread = kNobody, .priority = priority, .from_ns = 0, .first = first}, *own);
 }
 
 std::int64_t FixedPriority::NextToPrecede(std::size_t core) const {

@@ -55,8 +55,9 @@ class FixedPriority {
   bool HasWaitingEqual(std::size_t core) const;
   // From when on somebody who precedes the core's thread wants a core; INT64_MAX: nobody.
   std::int64_t NextToPrecede(std::size_t core) const;
-  // Whether a thread of that priority would take the core from its thread if it went first now.
-  bool YieldsTo(std::size_t core, int priority) const;
+  // Whether a thread of that priority would take the core from its thread if it became ready now,
+  // and went before its equals.
+  bool YieldsTo(std::size_t core, int priority, bool first = true) const;
   std::size_t CountOf(int priority) const;
 
   bool IsReady(Thread thread) const;

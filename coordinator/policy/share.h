@@ -27,6 +27,11 @@ class Share {
   bool GoesFirst(std::int64_t ns = 0, std::size_t sharing = 1) const {
     return owed_ns_ + PartOf(ns, sharing) > 0;
   }
+  // How much of theirs it takes until it goes first.
+  std::int64_t NsUntilFirst(std::size_t sharing) const {
+    if (owed_ns_ > 0) return 0;
+    return (1 - owed_ns_) * static_cast<std::int64_t>(std::max<std::size_t>(sharing, 1));
+  }
   std::int64_t owed_ns() const { return owed_ns_; }
 
  private:

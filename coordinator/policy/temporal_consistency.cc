@@ -1,6 +1,8 @@
 #include "coordinator/policy/temporal_consistency.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "shm/layout.h"
 
@@ -8,38 +10,59 @@ namespace tcs {
 
 namespace {
 
+constexpr std::int64_t kNoTimeNs = -1;
+
 std::int64_t After(std::int64_t time_ns, std::int64_t duration_ns) {
   return time_ns > shm::kNeverNs - duration_ns ? shm::kNeverNs : time_ns + duration_ns;
 }
 
 }  // namespace
 
-TemporalConsistency::Leaf TemporalConsistency::AddLeaf() {
-  leaves_.push_back({0, shm::kNeverNs});
+TemporalConsistency::Leaf TemporalConsistency::AddLeaf(int computer) {
+  leaves_.push_back({computer, 0, shm::kNeverNs, kNoTimeNs});
   FindLeast();
   return static_cast<Leaf>(leaves_.size() - 1);
 }
 
+bool TemporalConsistency::ActsBefore(Leaf one, Leaf other) const {
+  const auto rank = [this](Leaf leaf) {
+    return std::tuple(At(leaf).next_ns, HasGivenWay(leaf), leaf != acted_last_, leaf);
+  };
+  return rank(one) < rank(other);
+}
+
 void TemporalConsistency::FindLeast() {
-  first_ = acted_last_;
-  second_ = -1;
-  auto next = [this](Leaf leaf) { return leaves_[static_cast<std::size_t>(leaf)].next_ns; };
+  first_ = second_ = -1;
   for (Leaf leaf = 0; leaf < static_cast<Leaf>(leaves_.size()); ++leaf) {
-    if (leaf == acted_last_) continue;
-    if (first_ < 0 || next(leaf) < next(first_)) {
-      second_ = first_;
-      first_ = leaf;
-    } else if (second_ < 0 || next(leaf) < next(second_)) {
+    if (first_ < 0 || ActsBefore(leaf, first_)) {
+      second_ = std::exchange(first_, leaf);
+    } else if (second_ < 0 || ActsBefore(leaf, second_)) {
       second_ = leaf;
     }
   }
+}
+
+void TemporalConsistency::FirstActs() {
+  acted_last_ = first_;
+  leaves_[static_cast<std::size_t>(first_)].gave_way_ns = kNoTimeNs;
+}
+
+void TemporalConsistency::GiveWay(Leaf leaf) {
+  Times& times = leaves_[static_cast<std::size_t>(leaf)];
+  times.gave_way_ns = times.next_ns;
+  FindLeast();
+}
+
+bool TemporalConsistency::HasGivenWay(Leaf leaf) const {
+  return At(leaf).gave_way_ns == At(leaf).next_ns;
 }
 
 void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns) {
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
   const bool moved = times.next_ns != next_ns;
   const bool progressed = times.progress_ns != progress_ns;
-  times = {progress_ns, next_ns};
+  times.progress_ns = progress_ns;
+  times.next_ns = next_ns;
   if (moved) FindLeast();
   if (progressed) NoteDrift(progress_ns);
 }
@@ -52,13 +75,14 @@ void TemporalConsistency::UpdateDynamics(std::int64_t progress_ns, std::int64_t 
 }
 
 void TemporalConsistency::NoteDrift(std::int64_t progress_ns) {
+  furthest_ns_ = std::max(furthest_ns_, progress_ns);
   std::int64_t least = Least();
   if (has_dynamics_) least = std::min(least, dynamics_ns_);
   if (least != shm::kNeverNs) drift_ns_ = std::max(drift_ns_, progress_ns - least);
 }
 
 std::int64_t TemporalConsistency::Least() const {
-  return first_ < 0 ? shm::kNeverNs : leaves_[static_cast<std::size_t>(first_)].next_ns;
+  return first_ < 0 ? shm::kNeverNs : At(first_).next_ns;
 }
 
 TemporalConsistency::Leaf TemporalConsistency::First() const {
@@ -67,7 +91,7 @@ TemporalConsistency::Leaf TemporalConsistency::First() const {
 
 std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
   const Leaf other = leaf == first_ ? second_ : first_;
-  return other < 0 ? shm::kNeverNs : leaves_[static_cast<std::size_t>(other)].next_ns;
+  return other < 0 ? shm::kNeverNs : At(other).next_ns;
 }
 
 std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
@@ -84,8 +108,16 @@ std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
   return safe;
 }
 
-std::int64_t TemporalConsistency::NextInput(Leaf leaf) const {
-  return has_dynamics_ ? std::min(LeastOther(leaf), output_ns_) : LeastOther(leaf);
+std::int64_t TemporalConsistency::NextInputFromOutside(Leaf leaf) const {
+  std::int64_t next = shm::kNeverNs;
+  for (const Times& times : leaves_) {
+    if (times.computer != At(leaf).computer) next = std::min(next, times.next_ns);
+  }
+  return next;
+}
+
+std::int64_t TemporalConsistency::NextOutput() const {
+  return has_dynamics_ ? output_ns_ : shm::kNeverNs;
 }
 
 }  // namespace tcs

@@ -20,7 +20,8 @@ class TemporalConsistency {
   TemporalConsistency(std::int64_t drift_bound_ns, std::int64_t end_ns)
       : drift_bound_ns_(drift_bound_ns), end_ns_(end_ns) {}
 
-  Leaf AddLeaf();
+  // Of the computer with that number. What its leaves do to each other is inside.
+  Leaf AddLeaf(int computer);
 
   // The leaf has come to `progress_ns` and can neither act nor cause anything before `next_ns`:
   // its progress if it has something to run, later if it idles, never if only others can wake it.
@@ -35,7 +36,10 @@ class TemporalConsistency {
   std::int64_t Least() const;
   Leaf First() const;
   // The first one is about to act.
-  void FirstActs() { acted_last_ = first_; }
+  void FirstActs();
+  // The leaf lets those act first that can act at the same time, until it can act at another one.
+  void GiveWay(Leaf leaf);
+  bool HasGivenWay(Leaf leaf) const;
 
   // How far the leaf may run: the drift bound beyond the slowest other virtual CPU, and the run's
   // end; and beyond the dynamics.
@@ -44,18 +48,28 @@ class TemporalConsistency {
   // Nothing that the leaf could read is produced before this any more. What the dynamics send at an
   // instant is there for a read at that instant.
   std::int64_t ReadSafe(Leaf leaf) const;
-  // When something from outside could next wake a thread of the leaf.
-  std::int64_t NextInput(Leaf leaf) const;
+  // When another leaf could next wake a thread of this one; a leaf of another computer.
+  std::int64_t NextInput(Leaf leaf) const { return LeastOther(leaf); }
+  std::int64_t NextInputFromOutside(Leaf leaf) const;
+  // When the dynamics wake threads next.
+  std::int64_t NextOutput() const;
   // No other leaf can read what is from before this any more.
   std::int64_t WriteSafe(Leaf leaf) const { return LeastOther(leaf); }
 
   // The largest difference of progress between two leaves so far.
   std::int64_t drift_ns() const { return drift_ns_; }
+  // No leaf can be woken at an earlier time any more: others have come further than the drift bound
+  // beyond it.
+  std::int64_t EarliestWake() const { return furthest_ns_ - drift_bound_ns_; }
 
  private:
   struct Times {
+    int computer;
     std::int64_t progress_ns, next_ns;
+    std::int64_t gave_way_ns;  // it gives way to others that can act then
   };
+  const Times& At(Leaf leaf) const { return leaves_[static_cast<std::size_t>(leaf)]; }
+  bool ActsBefore(Leaf one, Leaf other) const;
   std::int64_t LeastOther(Leaf leaf) const;
   void FindLeast();
   void NoteDrift(std::int64_t progress_ns);
@@ -66,7 +80,7 @@ class TemporalConsistency {
   std::int64_t dynamics_ns_ = 0, output_ns_ = 0;
   Leaf first_ = -1, second_ = -1;  // the two that can act soonest
   Leaf acted_last_ = -1;
-  std::int64_t drift_ns_ = 0;
+  std::int64_t drift_ns_ = 0, furthest_ns_ = 0;
 };
 
 }  // namespace tcs

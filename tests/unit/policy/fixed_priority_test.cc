@@ -66,6 +66,8 @@ TEST(FixedPriority, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
   robot.Rotate(kLogger);
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
   EXPECT_TRUE(robot.YieldsTo(0, 10));
+  EXPECT_FALSE(robot.YieldsTo(0, 10, false)) << "one that does not go first waits behind it";
+  EXPECT_TRUE(robot.YieldsTo(0, 11, false));
 }
 
 TEST(FixedPriority, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {

@@ -22,6 +22,16 @@ TEST(Share, WhoeverSleepsIsOwedItsPartOfWhatTheOthersUse) {
   EXPECT_TRUE(sleeper.GoesFirst());
 }
 
+TEST(Share, ItIsKnownHowMuchOfTheOthersUseItTakesUntilItGoesFirst) {
+  Share waiting;
+  waiting.Spend(600);
+  const std::int64_t ns = waiting.NsUntilFirst(3);
+  EXPECT_FALSE(waiting.GoesFirst(ns - 1, 3));
+  EXPECT_TRUE(waiting.GoesFirst(ns, 3));
+  waiting.Earn(ns, 3);
+  EXPECT_EQ(waiting.NsUntilFirst(3), 0);
+}
+
 TEST(Share, WhoRunsAloneStaysEven) {
   Share alone;
   for (int i = 0; i < 100; ++i) {

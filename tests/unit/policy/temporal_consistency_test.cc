@@ -13,7 +13,7 @@ constexpr std::int64_t kNever = shm::kNeverNs;
 
 TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(predator, 500, 500);
   root.Update(prey, 300, 300);
   EXPECT_EQ(root.First(), prey);
@@ -22,7 +22,7 @@ TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
 
 TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(prey, 300, 300);
   root.Update(predator, 300, 300);
   EXPECT_EQ(root.First(), predator);
@@ -30,7 +30,7 @@ TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
 
 TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto a = root.AddLeaf(), b = root.AddLeaf(), c = root.AddLeaf();
+  const auto a = root.AddLeaf(0), b = root.AddLeaf(1), c = root.AddLeaf(2);
   root.Update(a, 0, shm::kNeverNs);
   root.Update(b, 0, 0);
   root.Update(c, 0, shm::kNeverNs);
@@ -48,7 +48,7 @@ TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
 
 TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(prey, 100, kNever);
   root.Update(predator, 5'000'000, 5'000'000);
   EXPECT_EQ(root.First(), predator);
@@ -60,7 +60,7 @@ TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
 
 TEST(TemporalConsistency, AnIdleLeafHoldsOthersBackOnlyFromItsWakeUpOn) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(predator, 0, 0);
   root.Update(prey, 0, 10'000'000);
   EXPECT_EQ(root.Horizon(predator), 10'000'000 + kDrift);
@@ -70,7 +70,7 @@ TEST(TemporalConsistency, AnIdleLeafHoldsOthersBackOnlyFromItsWakeUpOn) {
 
 TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf();
+  const auto predator = root.AddLeaf(0);
   root.Update(predator, 7'000'000, 7'000'000);
   EXPECT_EQ(root.DynamicsHorizon(), kNever);
   root.UpdateDynamics(7'000'000, 10'000'000);
@@ -79,7 +79,7 @@ TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) 
 
 TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf();
+  const auto predator = root.AddLeaf(0);
   root.Update(predator, 0, 0);
   root.UpdateDynamics(0, 10'000'000);
   EXPECT_EQ(root.ReadSafe(predator), 9'999'999);
@@ -87,18 +87,64 @@ TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   EXPECT_EQ(root.ReadSafe(predator), kNever);
 }
 
-TEST(TemporalConsistency, TheNextInputIsTheDynamicsOutputOrWhatAnotherLeafMaySend) {
+TEST(TemporalConsistency, InputComesFromOtherLeavesFromOtherComputersAndFromTheDynamics) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto one = root.AddLeaf(0), two = root.AddLeaf(0), prey = root.AddLeaf(1);
+  EXPECT_EQ(root.NextOutput(), kNever);
   root.UpdateDynamics(0, 10'000'000);
-  EXPECT_EQ(root.NextInput(predator), 10'000'000);
+  EXPECT_EQ(root.NextOutput(), 10'000'000);
+  root.Update(two, 200, 200);
   root.Update(prey, 300, 300);
-  EXPECT_EQ(root.NextInput(predator), 300);
+  EXPECT_EQ(root.NextInput(one), 200);
+  EXPECT_EQ(root.NextInputFromOutside(one), 300);
+  EXPECT_EQ(root.NextInputFromOutside(prey), 200);
+  root.Update(prey, 300, kNever);
+  EXPECT_EQ(root.NextInputFromOutside(one), kNever);
+}
+
+TEST(TemporalConsistency, ALeafGivesWayToOthersOfItsInstantAndToNoneAtTheNext) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
+  root.Update(drone, 300, 300);
+  root.Update(ground, 0, 300);
+  ASSERT_EQ(root.First(), drone);
+  root.GiveWay(drone);
+  EXPECT_TRUE(root.HasGivenWay(drone));
+  EXPECT_EQ(root.First(), ground);
+  EXPECT_EQ(root.ReadSafe(ground), 300);
+  root.Update(ground, 300, 400);
+  EXPECT_EQ(root.First(), drone);
+  root.Update(drone, 400, 400);
+  EXPECT_FALSE(root.HasGivenWay(drone));
+  EXPECT_EQ(root.First(), drone);
+}
+
+TEST(TemporalConsistency, WhereAllGiveWayOneActsAllTheSame) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
+  root.Update(drone, 300, 300);
+  root.Update(ground, 300, 300);
+  root.GiveWay(drone);
+  root.GiveWay(ground);
+  EXPECT_EQ(root.First(), drone);
+  root.FirstActs();
+  EXPECT_FALSE(root.HasGivenWay(drone));
+  EXPECT_EQ(root.First(), drone);
+}
+
+TEST(TemporalConsistency, NobodyIsWokenFurtherBehindTheOthersThanTheDriftBound) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
+  root.Update(ground, 0, kNever);
+  root.Update(drone, 5 * kDrift, 5 * kDrift);
+  EXPECT_EQ(root.EarliestWake(), 4 * kDrift);
+  root.Update(ground, 0, root.EarliestWake());
+  EXPECT_EQ(root.Horizon(drone), 5 * kDrift);
 }
 
 TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
   TemporalConsistency root(kDrift, kEnd);
-  const auto predator = root.AddLeaf(), prey = root.AddLeaf();
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(predator, 0, 0);
   root.Update(prey, 0, 0);
   root.UpdateDynamics(0, kNever);
@@ -111,7 +157,7 @@ TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
 
 TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
   TemporalConsistency root(kNever, kEnd);
-  const auto predator = root.AddLeaf();
+  const auto predator = root.AddLeaf(0);
   root.Update(predator, 1, 1);
   root.UpdateDynamics(1, kNever);
   EXPECT_EQ(root.Horizon(predator), kEnd);

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# Debian's ROS 1, a master, a publisher, a subscriber that measures rates and a recorder, talks over
+# TCP and XML-RPC in Python and C++: half a minute of it at exactly the rate that was asked for.
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+cat >"$out/session.sh" <<'SESSION'
+export ROS_HOME=$PWD ROS_MASTER_URI=http://127.0.0.1:27433 ROS_HOSTNAME=127.0.0.1 PYTHONUNBUFFERED=1
+roscore -p 27433 >core.log 2>&1 & core=$!
+until rostopic list >/dev/null 2>&1; do sleep 0.2; done
+timeout -s INT 30 rostopic hz /chatter >hz.log 2>&1 & hz=$!
+timeout -s INT 30 rosbag record -O chatter.bag /chatter >record.log 2>&1 & record=$!
+timeout -s INT 32 rostopic pub -r 10 /chatter std_msgs/String hello >publish.log 2>&1
+wait "$hz" "$record"
+kill -INT "$core"
+wait "$core"
+SESSION
+(cd "$out" && "$tcsim" exec -- bash session.sh) >"$out/said" 2>&1 || true
+/usr/bin/python3 - "$out" <<'PY' || fail "$(cat "$out/said" "$out"/*.log)"
+import re, sys
+import rosbag
+out = sys.argv[1]
+text = open(out + "/hz.log").read()
+rates = [float(rate) for rate in re.findall(r"average rate: (\S+)", text)]
+least, most = (float(x) for x in re.findall(r"min: (\S+)s max: (\S+)s", text)[-1])
+assert len(rates) >= 25 and all(abs(rate - 10) < 0.02 for rate in rates), rates
+assert 0.098 <= least and most <= 0.102, (least, most)
+with rosbag.Bag(out + "/chatter.bag") as bag:
+    times = [at.to_nsec() for _, _, at in bag.read_messages(topics=["/chatter"])]
+intervals = [after - before for before, after in zip(times, times[1:])]
+assert 270 <= len(times) <= 300, len(times)
+assert 95e6 < min(intervals) and max(intervals) < 105e6, (min(intervals), max(intervals))
+PY
