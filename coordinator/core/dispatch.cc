@@ -390,6 +390,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
   }
   AwaitStop(task);
+  TakeLevelBack();
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   event_ns_ = task.cpu->progress_ns;

@@ -244,6 +244,8 @@ class Engine {
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
+  void LendLevel();
+  void TakeLevelBack();
   Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
   void EndTask(Task& task);
@@ -326,6 +328,7 @@ class Engine {
   std::uint64_t stop_tsc_ = 0;      // when the running thread was last found stopped
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
+  Task* lent_ = nullptr;            // has the active level beside the running thread
   bool stop_requested_ = false;
   bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside

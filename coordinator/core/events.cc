@@ -9,6 +9,8 @@
 #include <x86intrin.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -83,6 +85,30 @@ void Engine::LetDie(const Process& process) {
   }
 }
 
+// The running thread may wait in the kernel for what another one had there when it was preempted: the
+// map of their process's memory, say. That one has to get on with it, and which one it is nobody can
+// see: so those that could run get the active level in turns, the process's own before others.
+void Engine::LendLevel() {
+  std::vector<Task*> own, others;
+  for (Task& task : tasks_) {
+    if (&task == running_ || task.parked || task.state == TaskState::kDead) continue;
+    if (task.level != Level::kWaiting || ThreadState(task.tid) != 'R') continue;
+    (task.process == running_->process ? own : others).push_back(&task);
+  }
+  const std::vector<Task*>& able = own.empty() ? others : own;
+  if (able.empty()) return;
+  lent_ = able[static_cast<std::size_t>(held_turns_) % able.size()];
+  SetLevel(lent_->tid, Level::kActive);
+  lent_->level = Level::kActive;
+}
+
+void Engine::TakeLevelBack() {
+  Task* task = std::exchange(lent_, nullptr);
+  if (task == nullptr || task->state == TaskState::kDead) return;
+  SetLevel(task->tid, Level::kWaiting);
+  task->level = Level::kWaiting;
+}
+
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
@@ -97,7 +123,10 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   const bool stopped = state == 'T';  // by a signal, until another one
-  if (!stopped && (state != 'S' || running_->slot < 0)) return false;
+  if (!stopped && (state != 'S' || running_->slot < 0)) {
+    if (state == 'D') LendLevel();
+    return false;
+  }
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
   // program because of a short system call.
   const bool alone = running_->process->threads == 1;
@@ -126,6 +155,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
   stop_tsc_ = __rdtsc();
   if (n == 0 && running_ != nullptr) {
     if (held) {
+      TakeLevelBack();
       RearmDetector();
     } else {
       preempted_ = true;
@@ -204,6 +234,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         std::uint64_t count;
         if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
         detector_armed_ = false;
+        TakeLevelBack();
         blocked = true;
         break;
       }
