@@ -42,7 +42,7 @@ bool HasHistory(const ddsi_domaingv& gv, const ddsi_guid_t& guid) {
 
 bool IsDropped(Cover& cover, const ddsi_guid_t& writer) {
   if (!cover.has_history || (t_making_readers == 0 && !cover.waits_for_history)) return false;
-  if (!IsShadow(writer)) return false;
+  if (!IsShadow(cover.gv, writer)) return false;
   if (!cover.waits_for_history) return true;
   const std::lock_guard lock(cover.mutex);
   const auto [place, is_new] = cover.caught_up.try_emplace(Guid::Of(writer));
@@ -55,7 +55,7 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
   Cover& cover = *CoverOf(rhc);
   if (IsDropped(cover, info->guid)) return true;
   if (cover.real->rhc_ops.store(rhc, info, sample, instance)) return true;
-  if (t_forwarding == nullptr || !IsShadow(info->guid)) return false;
+  if (t_forwarding == nullptr || !IsShadow(cover.gv, info->guid)) return false;
   Refuse(cover.reader);
   return true;
 }

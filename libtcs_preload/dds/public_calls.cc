@@ -26,8 +26,10 @@ std::vector<std::uint32_t> DomainsThatEndWith(dds_entity_t entity) {
 
 bool IsShadowHandle(dds_entity_t participant) {
   dds_guid_t guid;
+  dds_domainid_t domain = 0;
   return dds_get_guid(participant, &guid) == DDS_RETCODE_OK &&
-         IsShadow(Guid::FromBytes(guid.v).Inner());
+         dds_get_domainid(participant, &domain) == DDS_RETCODE_OK &&
+         IsShadow(domain, Guid::FromBytes(guid.v).Inner());
 }
 
 // What `list` has, but for shadows, as Cyclone's own calls return it.
