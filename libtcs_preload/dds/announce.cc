@@ -24,8 +24,7 @@ void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
   }
-  Send(message, EncodeEndpoint(kind, entity.type->typekind_no_key != 0, qos.topic_name,
-                               entity.type->type_name, &qos));
+  Send(message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
 }
 
 // Readers of other processes that expect what the writer has: it has sent all, or has nothing.

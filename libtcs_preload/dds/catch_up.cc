@@ -100,14 +100,18 @@ MakingReader::~MakingReader() { --t_making_readers; }
 bool StoreAddressed(const ddsi_reader& reader, const ddsi_writer& shadow, ddsi_serdata* sample) {
   ddsi_writer_info info;
   ddsi_make_writer_info(&info, &shadow.e, shadow.xqos, sample->statusinfo);
+  ddsi_serdata* as_its_own = ddsi_serdata_ref_as_type(reader.type, sample);
+  if (as_its_own == nullptr) return true;  // not of its type
   ddsi_tkmap* map = shadow.e.gv->m_tkmap;
-  ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, sample);
-  if (instance == nullptr) return true;
-  Cover* cover = CoverOf(reader.rhc);
-  const bool stored = cover != nullptr
-                          ? cover->real->rhc_ops.store(reader.rhc, &info, sample, instance)
-                          : ddsi_rhc_store(reader.rhc, &info, sample, instance);
-  ddsi_tkmap_instance_unref(map, instance);
+  ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, as_its_own);
+  bool stored = true;
+  if (instance != nullptr) {
+    Cover* cover = CoverOf(reader.rhc);
+    stored = cover != nullptr ? cover->real->rhc_ops.store(reader.rhc, &info, as_its_own, instance)
+                              : ddsi_rhc_store(reader.rhc, &info, as_its_own, instance);
+    ddsi_tkmap_instance_unref(map, instance);
+  }
+  ddsi_serdata_unref(as_its_own);
   return stored;
 }
 

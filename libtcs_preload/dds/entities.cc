@@ -2,6 +2,7 @@
 
 #include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/catch_up.h"
+#include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/listening.h"
@@ -115,6 +116,7 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
   ddsi_domaingv* gv = participant->e.gv;
   const bool builtin = IsBuiltin(*participant, type);
   if (!builtin) CoverHistoryCache(cache, gv, *qos);
+  if (builtin && LookAround()) LookAgain();
   OwnMatches matches(gv, qos, WritersOf(gv->config.domainId, topic));
   dds_return_t result;
   {
@@ -144,6 +146,19 @@ dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
 void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
   Real().ddsi_update_reader_qos(reader, qos);
   if (!IsShadow(reader->e.gv, reader->e.guid)) AnnounceChange(*reader);
+}
+
+// A shadow's topic is there only for its endpoints: it must not be found as one that somebody has.
+dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* participant,
+                      const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
+                      bool is_builtin, bool* is_new) {
+  if (!IsShadow(participant->e.gv, participant->e.guid)) {
+    return Real().ddsi_new_topic(topic, guid, participant, name, type, qos, is_builtin, is_new);
+  }
+  *topic = nullptr;
+  *guid = {};
+  *is_new = false;
+  return DDS_RETCODE_OK;
 }
 
 }  // namespace tcs::dds

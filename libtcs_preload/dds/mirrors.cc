@@ -1,5 +1,6 @@
 #include "libtcs_preload/dds/mirrors.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/liveliness.h"
+#include "libtcs_preload/dds/other_type.h"
 #include "libtcs_preload/dds/own_news.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
@@ -178,6 +180,7 @@ void Mirrors::Close(std::uint32_t domain) {
   for (auto& [guid, participant] : participants_) {
     EndShadow(guid, participant, domain);
   }
+  held_in_.erase(domain);
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
@@ -235,12 +238,26 @@ void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endp
   }
 }
 
-// 0: the program does not have it.
+// The program's own if it is the same; null: the program does not look at the topic.
+ddsi_sertype* Mirrors::TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what) {
+  const std::uint32_t domain = gv->config.domainId;
+  if (ddsi_sertype* own = ReferType(domain, what.topic, what.type)) {
+    if (IsOfType(own, what.type_code)) return own;
+    ddsi_sertype_unref(own);
+  }
+  if (!LooksAround() && !HasTopic(domain, what.topic)) return nullptr;
+  return NewOtherType(what.type, what.keyless, what.type_code);
+}
+
+// 0: the program does not look at it.
 dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
                               ParticipantShadow& participant, const dds_qos_t* qos) {
-  const auto found = participant.topics.find({endpoint.what.topic, endpoint.what.type});
-  if (found != participant.topics.end()) return found->second;
-  ddsi_sertype* type = ReferType(gv->config.domainId, endpoint.what.topic, endpoint.what.type);
+  const DecodedEndpoint& what = endpoint.what;
+  const auto found = std::ranges::find_if(participant.topics, [&what](const ShadowTopic& topic) {
+    return topic.name == what.topic && topic.type == what.type && topic.type_code == what.type_code;
+  });
+  if (found != participant.topics.end()) return found->entity;
+  ddsi_sertype* type = TypeOf(gv, what);
   if (type == nullptr) return 0;
   const Qos topic_qos(dds_create_qos());
   void* data = nullptr;
@@ -251,15 +268,14 @@ dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
   }
   SetNextEntityOutOfTheWay(gv, endpoint.participant);
   ddsi_sertype* consumed = type;
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant.entity, endpoint.what.topic.c_str(), &consumed,
-                                      topic_qos.get(), nullptr, nullptr);
+  const dds_entity_t topic = Real().dds_create_topic_sertype(
+      participant.entity, what.topic.c_str(), &consumed, topic_qos.get(), nullptr, nullptr);
   if (topic <= 0) {
     ddsi_sertype_unref(type);
-    Say("cannot mirror DDS topic %s: %s", endpoint.what.topic.c_str(), dds_strretcode(topic));
+    Say("cannot mirror DDS topic %s: %s", what.topic.c_str(), dds_strretcode(topic));
     return topic;
   }
-  participant.topics[{endpoint.what.topic, endpoint.what.type}] = topic;
+  participant.topics.push_back({what.topic, what.type, what.type_code, topic});
   return topic;
 }
 
@@ -329,6 +345,7 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
   }
   sample->timestamp.v = message.source_timestamp_ns;
   sample->statusinfo = message.status_info;
+  if (IsOfOtherType(sample)) HoldInstance(gv, sample);
 
   const Guid reader = Guid::FromBytes(message.other);
   std::vector<Guid> waiting;
@@ -343,6 +360,14 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
     while (!StoreIn(gv, guid, shadow.inner, sample)) dds_sleepfor(kTryAgain);
   }
   ddsi_serdata_unref(sample);
+}
+
+// Samples of others' types are all one instance, which Cyclone would otherwise make and collect for
+// each of them. It goes with the domain.
+void Mirrors::HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample) {
+  if (!held_in_.insert(gv->config.domainId).second) return;
+  const Awake awake(gv);
+  static_cast<void>(ddsi_tkmap_lookup_instance_ref(gv->m_tkmap, sample));
 }
 
 void Mirrors::HandleHistoryEnd(const shm::DdsMessage& message) {

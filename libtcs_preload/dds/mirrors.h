@@ -5,8 +5,9 @@
 // own shadows, also of what the program itself has in the others.
 //
 // A shadow participant is there while the program has a participant in the domain; a shadow
-// endpoint once the program has its topic and type. Shadow writers write what their originals have
-// written; shadow readers are taps (tap.h).
+// endpoint once the program has its topic, or looks at all that there is. It has the program's type
+// if that is its own, too, and else one that stands for it (other_type.h). Shadow writers write
+// what their originals have written; shadow readers are taps (tap.h).
 //
 // For one thread, the deliverer.
 #pragma once
@@ -14,9 +15,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "libtcs_preload/dds/guid.h"
 #include "libtcs_preload/dds/qos_code.h"
@@ -37,9 +40,14 @@ class Mirrors {
   void Close(std::uint32_t domain);
 
  private:
+  struct ShadowTopic {
+    std::string name, type;
+    TypeCode type_code;
+    dds_entity_t entity;
+  };
   struct ParticipantShadow {
     dds_entity_t entity = 0;
-    std::map<std::pair<std::string, std::string>, dds_entity_t> topics;
+    std::vector<ShadowTopic> topics;
   };
   struct Participant {
     std::uint32_t domain;
@@ -83,6 +91,7 @@ class Mirrors {
   void MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint);
   dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, ParticipantShadow& participant,
                        const dds_qos_t* qos);
+  static ddsi_sertype* TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what);
   EndpointShadow MakeWriter(ddsi_domaingv* gv, dds_entity_t participant, dds_entity_t topic,
                             const dds_qos_t* qos);
   EndpointShadow MakeReader(ddsi_domaingv* gv, const Guid& guid, const Endpoint& endpoint,
@@ -90,6 +99,9 @@ class Mirrors {
   void Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
               const shm::DdsMessage& message, const std::byte* payload);
 
+  void HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample);
+
+  std::set<std::uint32_t> held_in_;  // domains, by the program's numbers
   Participants participants_;
   Endpoints endpoints_;
 };

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "libtcs_preload/dds/other_type.h"
 #include "libtcs_preload/dds/tap.h"
 
 namespace tcs::dds {
@@ -60,6 +61,7 @@ struct State {
   std::unordered_map<Guid, Reader, GuidHash> readers;
   std::vector<const Tap*> taps;
   std::uint64_t taps_version = 1;
+  bool looks_around = false;
 };
 
 // Never destroyed: the deliverer and Cyclone's threads outlive main.
@@ -204,6 +206,26 @@ void ReleaseTypes(std::uint32_t domain) {
   for (const auto& [name, type] : types) ddsi_sertype_unref(type);
 }
 
+bool HasTopic(std::uint32_t domain, const std::string& topic) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto& types = state.domains[domain].types;
+  const auto first = types.lower_bound({topic, ""});
+  return first != types.end() && first->first.first == topic;
+}
+
+bool LookAround() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return !std::exchange(state.looks_around, true);
+}
+
+bool LooksAround() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.looks_around;
+}
+
 bool AddWriter(const ddsi_writer& writer) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
@@ -300,9 +322,13 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
     return is_shadow ? Carries::kNo : Carries::kUnknownWriter;
   }
   Writer& writer = found->second;
-  *keeps = {writer.keeps_last, LockedHasPromised(state, writer, tap.process)};
+  // Which of several instances it is of is not known of such a type.
+  const std::uint32_t keeps_last = IsOfOtherType(sample) ? 0 : writer.keeps_last;
+  *keeps = {keeps_last, LockedHasPromised(state, writer, tap.process)};
   Shipped& shipped = writer.shipped[tap.process];
-  if (shipped.sample == sample && shipped.by != &tap) return Carries::kNo;
+  if (shipped.by != &tap && shipped.sample != nullptr && IsSameSample(shipped.sample, sample)) {
+    return Carries::kNo;
+  }
   *unneeded = shipped.sample;
   shipped = {ddsi_serdata_ref(sample), &tap};
 

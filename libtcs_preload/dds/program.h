@@ -45,6 +45,12 @@ std::vector<std::uint32_t> Domains();
 void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type);
 ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type);
 void ReleaseTypes(std::uint32_t domain);
+bool HasTopic(std::uint32_t domain, const std::string& topic);
+
+// The program has looked at what there is in domains, beyond its own topics: from now on it has
+// shadows of everything. False: it did already.
+bool LookAround();
+bool LooksAround();
 
 // Writers. False: known already.
 bool AddWriter(const ddsi_writer& writer);

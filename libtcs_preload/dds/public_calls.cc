@@ -94,6 +94,48 @@ dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participant
   });
 }
 
+namespace {
+
+// While the calling thread looks for topics in all participants of a domain.
+thread_local bool t_finding;
+
+class Finding {
+ public:
+  Finding() {
+    if (LookAround()) LookAgain();
+    if (!IsDeliverer() && !IsListening()) TheLink().sync();
+    t_finding = true;
+  }
+  ~Finding() { t_finding = false; }
+  Finding(const Finding&) = delete;
+  Finding& operator=(const Finding&) = delete;
+};
+
+}  // namespace
+
+dds_entity_t FindTopic(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                       const dds_typeinfo_t* type, dds_duration_t timeout) {
+  const Finding finding;
+  return Real().dds_find_topic(scope, participant, name, type, timeout);
+}
+
+dds_entity_t FindTopicScoped(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                             dds_duration_t timeout) {
+  const Finding finding;
+  return Real().dds_find_topic_scoped(scope, participant, name, timeout);
+}
+
+// The topics of shadows are not the domain's.
+dds_return_t PinEntity(dds_entity_t handle, dds_entity** entity) {
+  if (t_finding) {
+    t_finding = false;
+    const bool is_shadow = IsShadowHandle(handle);
+    t_finding = true;
+    if (is_shadow) return DDS_RETCODE_BAD_PARAMETER;
+  }
+  return Real().dds_entity_pin(handle, entity);
+}
+
 // A domain's are participants.
 dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size) {
   if (dds_get_participant(entity) > 0) return Real().dds_get_children(entity, children, size);

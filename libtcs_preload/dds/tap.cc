@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libtcs_preload/dds/announce.h"
+#include "libtcs_preload/dds/other_type.h"
 #include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/program.h"
 
@@ -42,9 +43,14 @@ void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
   SendSample(message, sample, tap.topic);
 }
 
+bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
+  return std::ranges::any_of(
+      tap.had, [sample](const ddsi_serdata* had) { return IsSameSample(had, sample); });
+}
+
 // To the tap's reader alone, unless it has had it.
 void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
-  if (std::ranges::count(tap.had, sample) != 0) return;
+  if (HasHad(tap, sample)) return;
   tap.had.push_back(ddsi_serdata_ref(sample));
   if (tap.had.size() > kMostHad) {
     ddsi_serdata_unref(tap.had.front());
@@ -71,7 +77,7 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
     if (tap.catches_up && !IsShadow(tap.gv, info->guid)) ShipAlone(tap, info->guid, sample);
     return true;
   }
-  if (!tap.catching_up && std::ranges::count(tap.had, sample) != 0) return true;
+  if (!tap.catching_up && HasHad(tap, sample)) return true;
   Carried carried{{}, instance->m_iid};
   Carries carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
