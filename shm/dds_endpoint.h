@@ -119,9 +119,12 @@ struct DdsEndpoint {
   std::uint32_t keyless;  // 1: its type has no key
   DdsBytes topic;
   DdsBytes type;  // no zero at the end, as with topic
+  // XTypes' TypeInformation and TypeMapping as XCDR2, little-endian; of types without them empty.
+  DdsBytes type_information;
+  DdsBytes type_mapping;
   DdsQos qos;
 };
-static_assert(sizeof(DdsEndpoint) == 256);
+static_assert(sizeof(DdsEndpoint) == 272);
 
 // The last byte of a GUID.
 inline constexpr std::uint8_t kDdsParticipantId = 0xc1;  // 00 00 01 c1

@@ -88,20 +88,22 @@ inline constexpr std::uint16_t kDdsGone = 1;  // the subject is no more
 inline constexpr std::uint16_t kDdsLeased = 2;
 // No reader in the process that the sample is for has been promised it.
 inline constexpr std::uint16_t kDdsUnreliable = 4;
+// What is for everybody is for the sender, too: it has several domains that are one on the network.
+inline constexpr std::uint16_t kDdsToSender = 8;
 
 struct DdsMessage {
   std::uint32_t size;  // of all, a multiple of 8: this, the payload, zeros
   DdsKind kind;
   std::uint16_t flags;
   std::uint32_t from;    // set by the coordinator
-  std::uint32_t to;      // a process's number, or kDdsEverybody but the sender
+  std::uint32_t to;      // a process's number, or kDdsEverybody but the sender (see kDdsToSender)
   std::int64_t time_ns;  // virtual, when it was sent; set by the coordinator
   std::uint8_t subject[16];
   std::uint8_t other[16];
   std::int64_t source_timestamp_ns;  // DDS's, of samples
   std::int64_t lease_ns;             // of participants and writers, INT64_MAX for ever
-  std::uint32_t domain;
-  std::uint32_t status_info;  // of samples: Cyclone's NN_STATUSINFO_* bits
+  std::uint32_t domain;              // as it is called on the network
+  std::uint32_t status_info;         // of samples: Cyclone's NN_STATUSINFO_* bits
   std::uint32_t sample_kind;  // of samples, Cyclone's ddsi_serdata_kind: kDdsData or of a key only
   std::uint32_t payload_size;
   // Of samples for all readers: of a reliable writer that keeps only so many of an instance, 0:

@@ -143,7 +143,10 @@ std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
   if (payload.size() < sizeof shared) return std::nullopt;
   memcpy(&shared, payload.data(), sizeof shared);
   if (shared.kind != shm::kDdsWriter && shared.kind != shm::kDdsReader) return std::nullopt;
-  if (!TextsAreInside(payload, shared.qos)) return std::nullopt;
+  if (!TextsAreInside(payload, shared.qos) || !IsInside(payload, shared.type_information) ||
+      !IsInside(payload, shared.type_mapping)) {
+    return std::nullopt;
+  }
   auto topic = TextAt(payload, shared.topic), type = TextAt(payload, shared.type);
   if (!topic.has_value() || !type.has_value()) return std::nullopt;
   Endpoint endpoint;

@@ -323,6 +323,10 @@ void Hub::Enter(const DdsMessage& header, Bytes bytes) {
   Remember(header, message);
   if (header.to == shm::kDdsEverybody) {
     QueueForOthers(header.from, header.time_ns, message);
+    const bool to_sender = (header.flags & shm::kDdsToSender) != 0;
+    if (to_sender && header.from != shm::kDdsCoordinator) {
+      Queue(header.from, header.time_ns, message);
+    }
   } else {
     Queue(header.to, header.time_ns, message);
   }

@@ -19,28 +19,27 @@ template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   const dds_qos_t& qos = *entity.xqos;
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kEndpoint, entity.e.gv->config.domainId, Guid::Of(entity.e.guid));
+      MessageOf(shm::DdsKind::kEndpoint, NetworkDomain(*entity.e.gv), Guid::Of(entity.e.guid));
   Guid::Of(entity.c.pp->e.guid).To(message.other);
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
   }
-  Send(message, EncodeEndpoint(kind, entity.type->typekind_no_key != 0, qos.topic_name,
-                               entity.type->type_name, &qos));
+  Send(message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
 }
 
 // Readers of other processes that expect what the writer has: it has sent all, or has nothing.
 void EndHistories(const ddsi_writer& writer) {
   if (writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
-  const std::uint32_t domain = writer.e.gv->config.domainId;
-  for (const LateReader& reader : ReadersThatCatchUp(domain, writer.xqos->topic_name)) {
-    SendHistoryEnd(domain, Guid::Of(writer.e.guid), reader.guid, reader.process);
+  const ddsi_domaingv& gv = *writer.e.gv;
+  for (const LateReader& reader : ReadersThatCatchUp(gv.config.domainId, writer.xqos->topic_name)) {
+    SendHistoryEnd(gv, Guid::Of(writer.e.guid), reader.guid, reader.process);
   }
 }
 
 }  // namespace
 
 void AnnounceParticipant(const ddsi_participant& participant) {
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, participant.e.gv->config.domainId,
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, NetworkDomain(*participant.e.gv),
                                       Guid::Of(participant.e.guid));
   SetLease(message, participant.lease_duration);
   message.instance = shm::DdsTag(participant.e.gv->config.domainTag);

@@ -20,6 +20,9 @@
   X(dds_assert_liveliness)         \
   X(dds_lookup_participant)        \
   X(dds_get_children)              \
+  X(dds_find_topic)                \
+  X(dds_find_topic_scoped)         \
+  X(dds_entity_pin)                \
   X(dds_reader_data_available_cb)  \
   X(ddsi_new_participant)          \
   X(ddsi_delete_participant)       \
@@ -30,6 +33,7 @@
   X(ddsi_new_reader)               \
   X(ddsi_delete_reader)            \
   X(ddsi_update_reader_qos)        \
+  X(ddsi_new_topic)                \
   X(ddsi_iid_gen)                  \
   X(ddsrt_prng_makeseed)           \
   X(rtps_config_prep)

@@ -42,7 +42,7 @@ bool HasHistory(const ddsi_domaingv& gv, const ddsi_guid_t& guid) {
 
 bool IsDropped(Cover& cover, const ddsi_guid_t& writer) {
   if (!cover.has_history || (t_making_readers == 0 && !cover.waits_for_history)) return false;
-  if (!IsShadow(writer)) return false;
+  if (!IsShadow(cover.gv, writer)) return false;
   if (!cover.waits_for_history) return true;
   const std::lock_guard lock(cover.mutex);
   const auto [place, is_new] = cover.caught_up.try_emplace(Guid::Of(writer));
@@ -55,7 +55,7 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
   Cover& cover = *CoverOf(rhc);
   if (IsDropped(cover, info->guid)) return true;
   if (cover.real->rhc_ops.store(rhc, info, sample, instance)) return true;
-  if (t_forwarding == nullptr || !IsShadow(info->guid)) return false;
+  if (t_forwarding == nullptr || !IsShadow(cover.gv, info->guid)) return false;
   Refuse(cover.reader);
   return true;
 }
@@ -100,14 +100,18 @@ MakingReader::~MakingReader() { --t_making_readers; }
 bool StoreAddressed(const ddsi_reader& reader, const ddsi_writer& shadow, ddsi_serdata* sample) {
   ddsi_writer_info info;
   ddsi_make_writer_info(&info, &shadow.e, shadow.xqos, sample->statusinfo);
+  ddsi_serdata* as_its_own = ddsi_serdata_ref_as_type(reader.type, sample);
+  if (as_its_own == nullptr) return true;  // not of its type
   ddsi_tkmap* map = shadow.e.gv->m_tkmap;
-  ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, sample);
-  if (instance == nullptr) return true;
-  Cover* cover = CoverOf(reader.rhc);
-  const bool stored = cover != nullptr
-                          ? cover->real->rhc_ops.store(reader.rhc, &info, sample, instance)
-                          : ddsi_rhc_store(reader.rhc, &info, sample, instance);
-  ddsi_tkmap_instance_unref(map, instance);
+  ddsi_tkmap_instance* instance = ddsi_tkmap_lookup_instance_ref(map, as_its_own);
+  bool stored = true;
+  if (instance != nullptr) {
+    Cover* cover = CoverOf(reader.rhc);
+    stored = cover != nullptr ? cover->real->rhc_ops.store(reader.rhc, &info, as_its_own, instance)
+                              : ddsi_rhc_store(reader.rhc, &info, as_its_own, instance);
+    ddsi_tkmap_instance_unref(map, instance);
+  }
+  ddsi_serdata_unref(as_its_own);
   return stored;
 }
 

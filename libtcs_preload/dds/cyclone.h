@@ -18,12 +18,16 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_tkmap.h>
+#include <dds/ddsi/ddsi_topic.h>
 #include <dds/ddsi/q_bswap.h>
 #include <dds/ddsrt/random.h>
 #include <dds/version.h>
 
 #include "libtcs_preload/dds/calls.h"
 #include "libtcs_preload/dds/link.h"
+
+// In no header of libddsc's: makes sure that an entity stays while it is looked at.
+extern "C" dds_return_t dds_entity_pin(dds_entity_t handle, struct dds_entity** entity);
 
 namespace tcs::dds {
 

@@ -2,6 +2,7 @@
 
 #include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/catch_up.h"
+#include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/listening.h"
@@ -39,7 +40,7 @@ class WithTypeInformation {
 dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags,
                             const ddsi_plist_t* plist) {
   const dds_return_t result = MakeParticipant(guid, gv, flags, plist);
-  if (result < 0 || IsShadow(*guid)) return result;
+  if (result < 0 || IsShadow(gv, *guid)) return result;
   const Awake awake(gv);
   const ddsi_participant* made = entidx_lookup_participant_guid(gv->entity_index, guid);
   if (made == nullptr || !LayoutIsAsCompiled(*gv, *made)) {
@@ -55,8 +56,8 @@ dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags
 
 dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = Guid::Of(*guid);
-  const std::uint32_t domain = gv->config.domainId;
-  const bool own = IsParticipant(key);
+  const std::uint32_t domain = NetworkDomain(*gv);
+  const bool own = IsParticipant(gv, key);
   if (own) RemoveParticipant(gv, key);
   const dds_return_t result = Real().ddsi_delete_participant(gv, guid);
   if (own) AnnounceGone(shm::DdsKind::kParticipant, domain, key);
@@ -65,13 +66,13 @@ dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
 
 void UpdateParticipant(ddsi_participant* participant, const ddsi_plist_t* plist) {
   Real().ddsi_update_participant_plist(participant, plist);
-  if (!IsShadow(participant->e.guid)) AnnounceParticipant(*participant);
+  if (!IsShadow(participant->e.gv, participant->e.guid)) AnnounceParticipant(*participant);
 }
 
 dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_t* group,
                        ddsi_participant* participant, const char* topic, const ddsi_sertype* type,
                        const dds_qos_t* qos, whc* cache, ddsi_status_cb_t status, void* argument) {
-  if (IsShadow(participant->e.guid)) {
+  if (IsShadow(participant->e.gv, participant->e.guid)) {
     const WithTypeInformation all(qos, type);
     return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, all.get(), cache,
                                   status, argument);
@@ -90,24 +91,24 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
 dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = Guid::Of(*guid);
   const dds_return_t result = Real().ddsi_delete_writer(gv, guid);
-  if (IsWriter(key)) {
+  if (IsWriter(gv, key)) {
     RemoveWriter(gv, key);
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
   }
   return result;
 }
 
 void UpdateWriter(ddsi_writer* writer, const dds_qos_t* qos) {
   Real().ddsi_update_writer_qos(writer, qos);
-  if (IsWriter(Guid::Of(writer->e.guid))) AnnounceChange(*writer);
+  if (IsWriter(writer->e.gv, Guid::Of(writer->e.guid))) AnnounceChange(*writer);
 }
 
 dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_t* group,
                        ddsi_participant* participant, const char* topic, const ddsi_sertype* type,
                        const dds_qos_t* qos, ddsi_rhc* cache, ddsi_status_cb_t status,
                        void* argument) {
-  if (IsShadow(participant->e.guid)) {
+  if (IsShadow(participant->e.gv, participant->e.guid)) {
     const WithTypeInformation all(qos, type);
     return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, all.get(), cache,
                                   status, argument);
@@ -115,6 +116,7 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
   ddsi_domaingv* gv = participant->e.gv;
   const bool builtin = IsBuiltin(*participant, type);
   if (!builtin) CoverHistoryCache(cache, gv, *qos);
+  if (builtin && LookAround()) LookAgain();
   OwnMatches matches(gv, qos, WritersOf(gv->config.domainId, topic));
   dds_return_t result;
   {
@@ -134,16 +136,29 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
 dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = Guid::Of(*guid);
   const dds_return_t result = Real().ddsi_delete_reader(gv, guid);
-  if (RemoveReader(key)) {
+  if (RemoveReader(gv, key)) {
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, gv->config.domainId, key);
+    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
   }
   return result;
 }
 
 void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos) {
   Real().ddsi_update_reader_qos(reader, qos);
-  if (!IsShadow(reader->e.guid)) AnnounceChange(*reader);
+  if (!IsShadow(reader->e.gv, reader->e.guid)) AnnounceChange(*reader);
+}
+
+// A shadow's topic is there only for its endpoints: it must not be found as one that somebody has.
+dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* participant,
+                      const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
+                      bool is_builtin, bool* is_new) {
+  if (!IsShadow(participant->e.gv, participant->e.guid)) {
+    return Real().ddsi_new_topic(topic, guid, participant, name, type, qos, is_builtin, is_new);
+  }
+  *topic = nullptr;
+  *guid = {};
+  *is_new = false;
+  return DDS_RETCODE_OK;
 }
 
 }  // namespace tcs::dds

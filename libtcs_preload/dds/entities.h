@@ -23,4 +23,8 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
 dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid);
 void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos);
 
+dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* participant,
+                      const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
+                      bool is_builtin, bool* is_new);
+
 }  // namespace tcs::dds

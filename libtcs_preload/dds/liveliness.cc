@@ -69,7 +69,10 @@ dds_return_t AssertLiveliness(dds_entity_t entity) {
   if (result < 0 || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return result;
   dds_domainid_t domain = 0;
   dds_get_domainid(entity, &domain);
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kLiveliness, domain, Guid::FromBytes(guid.v));
+  const ddsi_domaingv* gv = DomainOf(domain);
+  if (gv == nullptr) return result;
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*gv), Guid::FromBytes(guid.v));
   Send(message, {});
   return result;
 }

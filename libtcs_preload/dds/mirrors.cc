@@ -1,5 +1,6 @@
 #include "libtcs_preload/dds/mirrors.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,8 @@
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/liveliness.h"
+#include "libtcs_preload/dds/other_type.h"
+#include "libtcs_preload/dds/own_news.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
 #include "libtcs_preload/dds/tap.h"
@@ -90,14 +93,14 @@ void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload)
     return;
   }
   Participant& participant = participants_[guid];
-  const bool changed = participant.shadow > 0 && participant.payload != payload;
+  const bool changed = !participant.shadows.empty() && participant.payload != payload;
   participant.domain = message.domain;
   participant.process = message.from;
   participant.tag = message.instance;
   participant.payload = std::move(payload);
   if (changed) {
     const Qos qos(DecodeQos(participant.payload, true));
-    dds_set_qos(participant.shadow, qos.get());
+    for (auto& [domain, shadow] : participant.shadows) dds_set_qos(shadow.entity, qos.get());
   }
   MakeParticipant(guid, participant);
 }
@@ -109,8 +112,9 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
     return;
   }
   Endpoint& endpoint = endpoints_[guid];
-  if (endpoint.shadow > 0) {
+  if (!endpoint.shadows.empty()) {
     if (endpoint.payload != payload) ChangeQos(endpoint, std::move(payload));
+    MakeEndpoint(guid, endpoint);
     return;
   }
   endpoint.participant = Guid::FromBytes(message.other);
@@ -125,15 +129,19 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
   const Qos qos(ShadowQos(endpoint.payload));
-  dds_set_qos(dds_get_topic(endpoint.shadow), qos.get());
-  dds_set_qos(dds_get_parent(endpoint.shadow), qos.get());
-  dds_set_qos(endpoint.shadow, qos.get());
+  for (auto& [domain, shadow] : endpoint.shadows) {
+    dds_set_qos(dds_get_topic(shadow.entity), qos.get());
+    dds_set_qos(dds_get_parent(shadow.entity), qos.get());
+    dds_set_qos(shadow.entity, qos.get());
+  }
 }
 
 void Mirrors::RemoveParticipant(const Guid& guid) {
   const auto found = participants_.find(guid);
   if (found == participants_.end()) return;
-  EndShadow(guid, found->second);
+  while (!found->second.shadows.empty()) {
+    EndShadow(guid, found->second, found->second.shadows.begin()->first);
+  }
   participants_.erase(found);
   std::erase_if(endpoints_,
                 [&guid](const auto& endpoint) { return endpoint.second.participant == guid; });
@@ -142,27 +150,27 @@ void Mirrors::RemoveParticipant(const Guid& guid) {
 void Mirrors::RemoveEndpoint(const Guid& guid) {
   const auto found = endpoints_.find(guid);
   if (found == endpoints_.end()) return;
-  const dds_entity_t shadow = found->second.shadow;
+  const auto shadows = std::move(found->second.shadows);
   endpoints_.erase(found);
-  if (shadow > 0) Real().dds_delete(shadow);
+  for (const auto& [domain, shadow] : shadows) Real().dds_delete(shadow.entity);
 }
 
-void Mirrors::EndShadow(const Guid& guid, Participant& participant) {
-  if (participant.shadow <= 0) return;
-  const dds_entity_t shadow = participant.shadow;
-  participant.shadow = 0;
-  participant.topics.clear();
+void Mirrors::EndShadow(const Guid& guid, Participant& participant, std::uint32_t domain) {
+  const auto found = participant.shadows.find(domain);
+  if (found == participant.shadows.end()) return;
+  const dds_entity_t shadow = found->second.entity;
+  participant.shadows.erase(found);
   for (auto& [key, endpoint] : endpoints_) {
-    if (endpoint.participant == guid) {
-      endpoint.shadow = 0;
-      endpoint.type = nullptr;
-    }
+    if (endpoint.participant == guid) endpoint.shadows.erase(domain);
   }
   Real().dds_delete(shadow);
-  RemoveShadow(guid);
+  RemoveShadow(domain, guid);
 }
 
 void Mirrors::Complete() {
+  for (const OwnNews& news : NewsForItself()) {
+    Handle(news.message, news.payload.data());
+  }
   for (auto& [guid, participant] : participants_) MakeParticipant(guid, participant);
   for (auto& [guid, endpoint] : endpoints_) MakeEndpoint(guid, endpoint);
 }
@@ -170,58 +178,86 @@ void Mirrors::Complete() {
 void Mirrors::Close(std::uint32_t domain) {
   if (DomainOf(domain) != nullptr) return;  // the program has made another participant meanwhile
   for (auto& [guid, participant] : participants_) {
-    if (participant.domain == domain) EndShadow(guid, participant);
+    EndShadow(guid, participant, domain);
   }
+  held_in_.erase(domain);
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
-  const ddsi_domaingv* gv = DomainOf(participant.domain);
-  if (participant.shadow > 0 || gv == nullptr) return;
+  for (ddsi_domaingv* gv : DomainsCalled(participant.domain)) {
+    MakeParticipantIn(gv, guid, participant);
+  }
+}
+
+void Mirrors::MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant& participant) {
+  const std::uint32_t domain = gv->config.domainId;
+  if (participant.shadows.contains(domain) || IsParticipant(gv, guid)) return;
   if (participant.process != shm::kDdsCoordinator &&
       participant.tag != shm::DdsTag(gv->config.domainTag)) {
     return;
   }
-  AddShadow(guid);
+  AddShadow(domain, guid);
   const Qos qos(DecodeQos(participant.payload, true));
   const MakingShadow making(guid);
-  participant.shadow = Real().dds_create_participant(participant.domain, qos.get(), nullptr);
-  if (participant.shadow <= 0) {
-    RemoveShadow(guid);
-    Say("cannot mirror a DDS participant of another program: %s",
-        dds_strretcode(participant.shadow));
+  const dds_entity_t shadow = Real().dds_create_participant(domain, qos.get(), nullptr);
+  if (shadow > 0) {
+    participant.shadows[domain].entity = shadow;
+    return;
   }
+  RemoveShadow(domain, guid);
+  Say("cannot mirror a DDS participant of another program: %s", dds_strretcode(shadow));
 }
 
 void Mirrors::MakeEndpoint(const Guid& guid, Endpoint& endpoint) {
-  if (endpoint.shadow > 0 || endpoint.what.topic.empty()) return;
+  if (endpoint.what.topic.empty()) return;
+  for (ddsi_domaingv* gv : DomainsCalled(endpoint.domain)) MakeEndpointIn(gv, guid, endpoint);
+}
+
+void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint) {
+  const std::uint32_t domain = gv->config.domainId;
+  if (endpoint.shadows.contains(domain)) return;
   const auto owner = participants_.find(endpoint.participant);
-  ddsi_domaingv* gv = DomainOf(endpoint.domain);
-  if (owner == participants_.end() || owner->second.shadow <= 0 || gv == nullptr) return;
-  Participant& participant = owner->second;
+  if (owner == participants_.end() || !owner->second.shadows.contains(domain)) return;
+  ParticipantShadow& participant = owner->second.shadows[domain];
   const Qos qos(ShadowQos(endpoint.payload));
   const dds_entity_t topic = TopicOf(gv, endpoint, participant, qos.get());
   if (topic <= 0) return;
   SetNextEntity(gv, endpoint.participant, guid);
   const ShadowMatches matches(gv);
-  if (endpoint.what.kind == shm::kDdsWriter) {
-    MakeWriter(endpoint, participant.shadow, topic, qos.get());
-  } else {
-    MakeReader(guid, endpoint, gv, participant.shadow, topic, qos.get());
-  }
-  if (endpoint.shadow <= 0 && !endpoint.warned) {
+  const EndpointShadow shadow =
+      endpoint.what.kind == shm::kDdsWriter
+          ? MakeWriter(gv, participant.entity, topic, qos.get())
+          : MakeReader(gv, guid, endpoint, participant.entity, topic, qos.get());
+  if (shadow.entity > 0) {
+    endpoint.shadows[domain] = shadow;
+  } else if (!endpoint.warned) {
     endpoint.warned = true;
     Say("cannot mirror a %s of DDS topic %s of another program: %s",
         endpoint.what.kind == shm::kDdsWriter ? "writer" : "reader", endpoint.what.topic.c_str(),
-        dds_strretcode(endpoint.shadow));
+        dds_strretcode(shadow.entity));
   }
 }
 
-// 0: the program does not have it.
-dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, Participant& participant,
-                              const dds_qos_t* qos) {
-  const auto found = participant.topics.find({endpoint.what.topic, endpoint.what.type});
-  if (found != participant.topics.end()) return found->second;
-  ddsi_sertype* type = ReferType(endpoint.domain, endpoint.what.topic, endpoint.what.type);
+// The program's own if it is the same; null: the program does not look at the topic.
+ddsi_sertype* Mirrors::TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what) {
+  const std::uint32_t domain = gv->config.domainId;
+  if (ddsi_sertype* own = ReferType(domain, what.topic, what.type)) {
+    if (IsOfType(own, what.type_code)) return own;
+    ddsi_sertype_unref(own);
+  }
+  if (!LooksAround() && !HasTopic(domain, what.topic)) return nullptr;
+  return NewOtherType(what.type, what.keyless, what.type_code);
+}
+
+// 0: the program does not look at it.
+dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
+                              ParticipantShadow& participant, const dds_qos_t* qos) {
+  const DecodedEndpoint& what = endpoint.what;
+  const auto found = std::ranges::find_if(participant.topics, [&what](const ShadowTopic& topic) {
+    return topic.name == what.topic && topic.type == what.type && topic.type_code == what.type_code;
+  });
+  if (found != participant.topics.end()) return found->entity;
+  ddsi_sertype* type = TypeOf(gv, what);
   if (type == nullptr) return 0;
   const Qos topic_qos(dds_create_qos());
   void* data = nullptr;
@@ -232,57 +268,70 @@ dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, Parti
   }
   SetNextEntityOutOfTheWay(gv, endpoint.participant);
   ddsi_sertype* consumed = type;
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant.shadow, endpoint.what.topic.c_str(), &consumed,
-                                      topic_qos.get(), nullptr, nullptr);
+  const dds_entity_t topic = Real().dds_create_topic_sertype(
+      participant.entity, what.topic.c_str(), &consumed, topic_qos.get(), nullptr, nullptr);
   if (topic <= 0) {
     ddsi_sertype_unref(type);
-    Say("cannot mirror DDS topic %s: %s", endpoint.what.topic.c_str(), dds_strretcode(topic));
+    Say("cannot mirror DDS topic %s: %s", what.topic.c_str(), dds_strretcode(topic));
     return topic;
   }
-  participant.topics[{endpoint.what.topic, endpoint.what.type}] = topic;
+  participant.topics.push_back({what.topic, what.type, what.type_code, topic});
   return topic;
 }
 
-void Mirrors::MakeWriter(Endpoint& endpoint, dds_entity_t participant, dds_entity_t topic,
-                         dds_qos_t* qos) {
-  endpoint.shadow = dds_create_writer(participant, topic, qos, nullptr);
+Mirrors::EndpointShadow Mirrors::MakeWriter(ddsi_domaingv* gv, dds_entity_t participant,
+                                            dds_entity_t topic, const dds_qos_t* qos) {
+  EndpointShadow shadow;
+  shadow.entity = dds_create_writer(participant, topic, qos, nullptr);
   dds_guid_t wire;
-  if (endpoint.shadow <= 0 || dds_get_guid(endpoint.shadow, &wire) != DDS_RETCODE_OK) return;
-  endpoint.inner = Guid::FromBytes(wire.v).Inner();
-  ddsi_domaingv* gv = DomainOf(endpoint.domain);
-  if (gv == nullptr) return;
+  if (shadow.entity <= 0 || dds_get_guid(shadow.entity, &wire) != DDS_RETCODE_OK) return shadow;
+  shadow.inner = Guid::FromBytes(wire.v).Inner();
   const Awake awake(gv);
-  const ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &endpoint.inner);
-  endpoint.type = writer != nullptr ? writer->type : nullptr;
+  const ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &shadow.inner);
+  shadow.type = writer != nullptr ? writer->type : nullptr;
+  return shadow;
 }
 
-void Mirrors::MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv,
-                         dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos) {
-  Tap* tap = NewTap(gv, endpoint.domain, endpoint.process, guid, endpoint.what.topic,
+Mirrors::EndpointShadow Mirrors::MakeReader(ddsi_domaingv* gv, const Guid& guid,
+                                            const Endpoint& endpoint, dds_entity_t participant,
+                                            dds_entity_t topic, const dds_qos_t* qos) {
+  EndpointShadow shadow;
+  Tap* tap = NewTap(gv, gv->config.domainId, endpoint.process, guid, endpoint.what.topic,
                     IsReliable(qos), IsReliable(qos) && IsTransientLocal(qos));
   {
     const MakingTap making(tap);
-    endpoint.shadow = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
+    shadow.entity = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
   }
-  if (endpoint.shadow <= 0) {
+  if (shadow.entity <= 0) {
     RemoveTap(tap);
-    return;
+  } else if (tap->catches_up) {
+    EndCatchUp(*tap);
   }
-  if (tap->catches_up) EndCatchUp(*tap);
+  return shadow;
 }
 
 void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payload) {
   const auto found = endpoints_.find(Guid::FromBytes(message.subject));
-  if (found == endpoints_.end() || found->second.type == nullptr) return;
+  if (found == endpoints_.end()) return;
   Endpoint& endpoint = found->second;
-  ddsi_domaingv* gv = DomainOf(endpoint.domain);
-  if (gv == nullptr) return;
+  const bool was_not_alive = std::exchange(endpoint.not_alive, false);
+  // Listeners do not reach in here: no shadow goes meanwhile.
+  for (const auto& [domain, shadow] : endpoint.shadows) {
+    ddsi_domaingv* gv = DomainOf(domain);
+    if (gv == nullptr || shadow.type == nullptr) continue;
+    if (was_not_alive) {
+      RegainLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
+    }
+    Inject(gv, endpoint, shadow, message, payload);
+  }
+}
 
+void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
+                     const shm::DdsMessage& message, const std::byte* payload) {
   const ddsrt_iovec_t bytes{const_cast<std::byte*>(payload), message.payload_size};
   ddsi_serdata* sample =
-      ddsi_serdata_from_ser_iov(endpoint.type, static_cast<ddsi_serdata_kind>(message.sample_kind),
-                                1, &bytes, message.payload_size);
+      ddsi_serdata_from_ser_iov(shadow.type, static_cast<ddsi_serdata_kind>(message.sample_kind), 1,
+                                &bytes, message.payload_size);
   if (sample == nullptr) {
     if (!endpoint.warned) {
       const bool is_nodes = endpoint.what.topic == "ros_discovery_info";
@@ -296,52 +345,63 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
   }
   sample->timestamp.v = message.source_timestamp_ns;
   sample->statusinfo = message.status_info;
+  if (IsOfOtherType(sample)) HoldInstance(gv, sample);
 
-  if (std::exchange(endpoint.not_alive, false)) {
-    RegainLiveliness(gv, endpoint.inner, ReadersOf(endpoint.domain, endpoint.what.topic));
-  }
   const Guid reader = Guid::FromBytes(message.other);
   std::vector<Guid> waiting;
   if (reader.IsZero()) {
     const Forwarding forwarding;
-    Real().dds_forwardcdr(endpoint.shadow, ddsi_serdata_ref(sample));
+    Real().dds_forwardcdr(shadow.entity, ddsi_serdata_ref(sample));
     waiting = forwarding.refused();
   } else {
     waiting = {reader};
   }
   for (const Guid& guid : waiting) {
-    while (!StoreIn(gv, guid, endpoint.inner, sample)) dds_sleepfor(kTryAgain);
+    while (!StoreIn(gv, guid, shadow.inner, sample)) dds_sleepfor(kTryAgain);
   }
   ddsi_serdata_unref(sample);
 }
 
+// Samples of others' types are all one instance, which Cyclone would otherwise make and collect for
+// each of them. It goes with the domain.
+void Mirrors::HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample) {
+  if (!held_in_.insert(gv->config.domainId).second) return;
+  const Awake awake(gv);
+  static_cast<void>(ddsi_tkmap_lookup_instance_ref(gv->m_tkmap, sample));
+}
+
 void Mirrors::HandleHistoryEnd(const shm::DdsMessage& message) {
   const auto found = endpoints_.find(Guid::FromBytes(message.subject));
-  if (found == endpoints_.end() || found->second.shadow <= 0) return;
-  ddsi_domaingv* gv = DomainOf(found->second.domain);
-  if (gv == nullptr) return;
-  const Awake awake(gv);
-  const ddsi_guid_t inner = Guid::FromBytes(message.other).Inner();
-  const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
-  if (reader != nullptr) EndHistory(*reader, found->second.inner);
+  if (found == endpoints_.end()) return;
+  for (const auto& [domain, shadow] : found->second.shadows) {
+    ddsi_domaingv* gv = DomainOf(domain);
+    if (gv == nullptr) continue;
+    const Awake awake(gv);
+    const ddsi_guid_t inner = Guid::FromBytes(message.other).Inner();
+    const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
+    if (reader != nullptr) EndHistory(*reader, shadow.inner);
+  }
 }
 
 void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
   const Guid guid = Guid::FromBytes(message.subject);
   if (const auto found = participants_.find(guid); found != participants_.end()) {
-    if ((message.flags & shm::kDdsGone) == 0 && found->second.shadow > 0) {
-      Real().dds_assert_liveliness(found->second.shadow);
+    if ((message.flags & shm::kDdsGone) != 0) return;
+    for (const auto& [domain, shadow] : found->second.shadows) {
+      Real().dds_assert_liveliness(shadow.entity);
     }
     return;
   }
   const auto found = endpoints_.find(guid);
-  if (found == endpoints_.end() || found->second.shadow <= 0) return;
+  if (found == endpoints_.end()) return;
   Endpoint& endpoint = found->second;
-  if ((message.flags & shm::kDdsGone) == 0) {
-    Real().dds_assert_liveliness(endpoint.shadow);
-  } else if (ddsi_domaingv* gv = DomainOf(endpoint.domain); gv != nullptr) {
-    endpoint.not_alive = true;
-    LoseLiveliness(gv, endpoint.inner, ReadersOf(endpoint.domain, endpoint.what.topic));
+  for (const auto& [domain, shadow] : endpoint.shadows) {
+    if ((message.flags & shm::kDdsGone) == 0) {
+      Real().dds_assert_liveliness(shadow.entity);
+    } else if (ddsi_domaingv* gv = DomainOf(domain); gv != nullptr) {
+      endpoint.not_alive = true;
+      LoseLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
+    }
   }
 }
 

@@ -1,9 +1,13 @@
 // Other processes' participants and endpoints, each with a shadow in this process that Cyclone
 // takes for local: so matching, incompatible QoS and all statuses are Cyclone's own.
 //
+// A domain here is a network's (program.h): the program may have several of one name, each with its
+// own shadows, also of what the program itself has in the others.
+//
 // A shadow participant is there while the program has a participant in the domain; a shadow
-// endpoint once the program has its topic and type. Shadow writers write what their originals have
-// written; shadow readers are taps (tap.h).
+// endpoint once the program has its topic, or looks at all that there is. It has the program's type
+// if that is its own, too, and else one that stands for it (other_type.h). Shadow writers write
+// what their originals have written; shadow readers are taps (tap.h).
 //
 // For one thread, the deliverer.
 #pragma once
@@ -11,9 +15,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "libtcs_preload/dds/guid.h"
 #include "libtcs_preload/dds/qos_code.h"
@@ -29,17 +35,31 @@ class Mirrors {
   // Makes the shadows that have become possible.
   void Complete();
 
-  // Ends all shadows in a domain in which the program has no participant any more.
+  // Ends all shadows in a domain, by the program's number of it, in which the program has no
+  // participant any more.
   void Close(std::uint32_t domain);
 
  private:
+  struct ShadowTopic {
+    std::string name, type;
+    TypeCode type_code;
+    dds_entity_t entity;
+  };
+  struct ParticipantShadow {
+    dds_entity_t entity = 0;
+    std::vector<ShadowTopic> topics;
+  };
   struct Participant {
     std::uint32_t domain;
     std::uint32_t process;
     std::uint64_t tag;
     Payload payload;
-    dds_entity_t shadow = 0;
-    std::map<std::pair<std::string, std::string>, dds_entity_t> topics;
+    std::map<std::uint32_t, ParticipantShadow> shadows;  // by the program's number of the domain
+  };
+  struct EndpointShadow {
+    dds_entity_t entity = 0;
+    ddsi_guid_t inner{};
+    const ddsi_sertype* type = nullptr;
   };
   struct Endpoint {
     Guid participant;
@@ -47,9 +67,7 @@ class Mirrors {
     std::uint32_t process;
     Payload payload;
     DecodedEndpoint what;
-    dds_entity_t shadow = 0;
-    ddsi_guid_t inner{};  // the shadow's
-    const ddsi_sertype* type = nullptr;
+    std::map<std::uint32_t, EndpointShadow> shadows;
     bool not_alive = false;  // its lease is over, and it has not written since
     bool warned = false;
   };
@@ -65,16 +83,25 @@ class Mirrors {
   void ChangeQos(Endpoint& endpoint, Payload payload);
   void RemoveParticipant(const Guid& guid);
   void RemoveEndpoint(const Guid& guid);
-  void EndShadow(const Guid& guid, Participant& participant);
+  void EndShadow(const Guid& guid, Participant& participant, std::uint32_t domain);
 
   void MakeParticipant(const Guid& guid, Participant& participant);
+  void MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant& participant);
   void MakeEndpoint(const Guid& guid, Endpoint& endpoint);
-  dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, Participant& participant,
+  void MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint);
+  dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, ParticipantShadow& participant,
                        const dds_qos_t* qos);
-  void MakeWriter(Endpoint& endpoint, dds_entity_t participant, dds_entity_t topic, dds_qos_t* qos);
-  void MakeReader(const Guid& guid, Endpoint& endpoint, ddsi_domaingv* gv, dds_entity_t participant,
-                  dds_entity_t topic, const dds_qos_t* qos);
+  static ddsi_sertype* TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what);
+  EndpointShadow MakeWriter(ddsi_domaingv* gv, dds_entity_t participant, dds_entity_t topic,
+                            const dds_qos_t* qos);
+  EndpointShadow MakeReader(ddsi_domaingv* gv, const Guid& guid, const Endpoint& endpoint,
+                            dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos);
+  void Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
+              const shm::DdsMessage& message, const std::byte* payload);
 
+  void HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample);
+
+  std::set<std::uint32_t> held_in_;  // domains, by the program's numbers
   Participants participants_;
   Endpoints endpoints_;
 };

@@ -4,6 +4,8 @@
 
 #include <mutex>
 
+#include "libtcs_preload/dds/own_news.h"
+#include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
 
 namespace tcs::dds {
@@ -51,6 +53,10 @@ shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& s
 }
 
 void Send(shm::DdsMessage& message, const Payload& payload) {
+  if (message.to == shm::kDdsEverybody) {
+    NoteOwnNews(message, payload);
+    if (MeetsItself(message.domain)) message.flags |= shm::kDdsToSender;
+  }
   if (!SendParts(message, payload.data(), payload.size())) {
     Say("the QoS of a DDS entity is too large to be told to others (%zu bytes), which will not "
         "find it",

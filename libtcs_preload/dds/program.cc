@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "libtcs_preload/dds/other_type.h"
 #include "libtcs_preload/dds/tap.h"
 
 namespace tcs::dds {
@@ -47,17 +48,20 @@ struct Reader {
   std::string topic;
 };
 
+using Prefix = std::pair<std::uint64_t, std::uint32_t>;
+
 // What is kept of a writer that never unregisters its instances.
 constexpr std::size_t kMostInstances = 4096;
 
 struct State {
   std::mutex mutex;
-  std::set<std::pair<std::uint64_t, std::uint32_t>> shadows;
+  std::set<std::pair<std::uint32_t, Prefix>> shadows;  // by domain
   std::map<std::uint32_t, Domain> domains;
   std::unordered_map<Guid, Writer, GuidHash> writers;
   std::unordered_map<Guid, Reader, GuidHash> readers;
   std::vector<const Tap*> taps;
   std::uint64_t taps_version = 1;
+  bool looks_around = false;
 };
 
 // Never destroyed: the deliverer and Cyclone's threads outlive main.
@@ -66,7 +70,7 @@ State& Get() {
   return *state;
 }
 
-std::pair<std::uint64_t, std::uint32_t> PrefixOf(const ddsi_guid_t& guid) {
+Prefix PrefixOf(const ddsi_guid_t& guid) {
   return {std::uint64_t{guid.prefix.u[0]} << 32 | guid.prefix.u[1], guid.prefix.u[2]};
 }
 
@@ -91,22 +95,31 @@ std::vector<Guid> LockedWritersOf(const State& state, std::uint32_t domain,
 
 }  // namespace
 
-void AddShadow(const Guid& participant) {
-  State& state = Get();
-  const std::lock_guard lock(state.mutex);
-  state.shadows.insert(PrefixOf(participant.Inner()));
+std::uint32_t NetworkDomain(const ddsi_domaingv& gv) {
+  const ddsi_config_maybe_uint32& external = gv.config.extDomainId;
+  return external.isdefault != 0 ? gv.config.domainId : external.value;
 }
 
-void RemoveShadow(const Guid& participant) {
+void AddShadow(std::uint32_t domain, const Guid& participant) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  state.shadows.erase(PrefixOf(participant.Inner()));
+  state.shadows.insert({domain, PrefixOf(participant.Inner())});
 }
 
-bool IsShadow(const ddsi_guid_t& entity) {
+void RemoveShadow(std::uint32_t domain, const Guid& participant) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  return state.shadows.contains(PrefixOf(entity));
+  state.shadows.erase({domain, PrefixOf(participant.Inner())});
+}
+
+bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity) {
+  return IsShadow(gv->config.domainId, entity);
+}
+
+bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.shadows.contains({domain, PrefixOf(entity)});
 }
 
 ddsi_domaingv* DomainOf(std::uint32_t domain) {
@@ -116,6 +129,20 @@ ddsi_domaingv* DomainOf(std::uint32_t domain) {
   if (found == state.domains.end() || found->second.participants.empty()) return nullptr;
   return found->second.gv;
 }
+
+std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<ddsi_domaingv*> domains;
+  for (const auto& [id, domain] : state.domains) {
+    if (!domain.participants.empty() && NetworkDomain(*domain.gv) == network_domain) {
+      domains.push_back(domain.gv);
+    }
+  }
+  return domains;
+}
+
+bool MeetsItself(std::uint32_t network_domain) { return DomainsCalled(network_domain).size() > 1; }
 
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
   State& state = Get();
@@ -131,12 +158,11 @@ void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid) {
   std::erase(state.domains[gv->config.domainId].participants, guid);
 }
 
-bool IsParticipant(const Guid& guid) {
+bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  return std::any_of(state.domains.begin(), state.domains.end(), [&guid](const auto& domain) {
-    return std::ranges::count(domain.second.participants, guid) != 0;
-  });
+  const auto found = state.domains.find(gv->config.domainId);
+  return found != state.domains.end() && std::ranges::count(found->second.participants, guid) != 0;
 }
 
 bool IsLastParticipant(const Guid& guid) {
@@ -180,6 +206,26 @@ void ReleaseTypes(std::uint32_t domain) {
   for (const auto& [name, type] : types) ddsi_sertype_unref(type);
 }
 
+bool HasTopic(std::uint32_t domain, const std::string& topic) {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  const auto& types = state.domains[domain].types;
+  const auto first = types.lower_bound({topic, ""});
+  return first != types.end() && first->first.first == topic;
+}
+
+bool LookAround() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return !std::exchange(state.looks_around, true);
+}
+
+bool LooksAround() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  return state.looks_around;
+}
+
 bool AddWriter(const ddsi_writer& writer) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
@@ -202,17 +248,18 @@ void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid) {
   {
     const std::lock_guard lock(state.mutex);
     const auto found = state.writers.find(guid);
-    if (found == state.writers.end()) return;
+    if (found == state.writers.end() || found->second.domain != gv->config.domainId) return;
     writer = std::move(found->second);
     state.writers.erase(found);
   }
   Forget(writer, gv);
 }
 
-bool IsWriter(const Guid& guid) {
+bool IsWriter(const ddsi_domaingv* gv, const Guid& guid) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  return state.writers.contains(guid);
+  const auto found = state.writers.find(guid);
+  return found != state.writers.end() && found->second.domain == gv->config.domainId;
 }
 
 std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
@@ -270,13 +317,18 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
                             ddsi_serdata* sample, ddsi_tkmap_instance* instance,
                             ddsi_serdata** unneeded, WriterKeeps* keeps) {
   const auto found = state.writers.find(Guid::Of(writer_guid));
-  if (found == state.writers.end()) {
-    return state.shadows.contains(PrefixOf(writer_guid)) ? Carries::kNo : Carries::kUnknownWriter;
+  if (found == state.writers.end() || found->second.domain != tap.domain) {
+    const bool is_shadow = state.shadows.contains({tap.domain, PrefixOf(writer_guid)});
+    return is_shadow ? Carries::kNo : Carries::kUnknownWriter;
   }
   Writer& writer = found->second;
-  *keeps = {writer.keeps_last, LockedHasPromised(state, writer, tap.process)};
+  // Which of several instances it is of is not known of such a type.
+  const std::uint32_t keeps_last = IsOfOtherType(sample) ? 0 : writer.keeps_last;
+  *keeps = {keeps_last, LockedHasPromised(state, writer, tap.process)};
   Shipped& shipped = writer.shipped[tap.process];
-  if (shipped.sample == sample && shipped.by != &tap) return Carries::kNo;
+  if (shipped.by != &tap && shipped.sample != nullptr && IsSameSample(shipped.sample, sample)) {
+    return Carries::kNo;
+  }
   *unneeded = shipped.sample;
   shipped = {ddsi_serdata_ref(sample), &tap};
 
@@ -313,10 +365,13 @@ void AddReader(const ddsi_reader& reader) {
   state.readers[Guid::Of(reader.e.guid)] = {reader.e.gv->config.domainId, reader.xqos->topic_name};
 }
 
-bool RemoveReader(const Guid& guid) {
+bool RemoveReader(const ddsi_domaingv* gv, const Guid& guid) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  return state.readers.erase(guid) != 0;
+  const auto found = state.readers.find(guid);
+  if (found == state.readers.end() || found->second.domain != gv->config.domainId) return false;
+  state.readers.erase(found);
+  return true;
 }
 
 std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic) {

@@ -18,16 +18,25 @@ namespace tcs::dds {
 
 struct Tap;
 
+// Domains are told apart by the program's own numbers. What they are called outside, in messages,
+// is NetworkDomain: several of one program may have one name, and then meet as if they were
+// several programs'; each has shadows of what the others have.
+std::uint32_t NetworkDomain(const ddsi_domaingv& gv);
+
 // Shadow participants, by the first part of their GUIDs.
-void AddShadow(const Guid& participant);
-void RemoveShadow(const Guid& participant);
-bool IsShadow(const ddsi_guid_t& entity);
+void AddShadow(std::uint32_t domain, const Guid& participant);
+void RemoveShadow(std::uint32_t domain, const Guid& participant);
+bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity);
+bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity);
 
 // Domains.
 ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
+std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain);
+// Whether the program has several of that name.
+bool MeetsItself(std::uint32_t network_domain);
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
-bool IsParticipant(const Guid& guid);
+bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid);
 bool IsLastParticipant(const Guid& guid);
 std::vector<std::uint32_t> Domains();
 
@@ -36,11 +45,17 @@ std::vector<std::uint32_t> Domains();
 void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type);
 ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type);
 void ReleaseTypes(std::uint32_t domain);
+bool HasTopic(std::uint32_t domain, const std::string& topic);
+
+// The program has looked at what there is in domains, beyond its own topics: from now on it has
+// shadows of everything. False: it did already.
+bool LookAround();
+bool LooksAround();
 
 // Writers. False: known already.
 bool AddWriter(const ddsi_writer& writer);
 void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid);
-bool IsWriter(const Guid& guid);
+bool IsWriter(const ddsi_domaingv* gv, const Guid& guid);
 std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
 
 // Whether `tap` is the one to ship `sample` to its process: of several shadow readers of one
@@ -62,7 +77,7 @@ std::vector<std::uint32_t> PromisedProcesses(const Guid& writer);
 
 // Readers.
 void AddReader(const ddsi_reader& reader);
-bool RemoveReader(const Guid& guid);
+bool RemoveReader(const ddsi_domaingv* gv, const Guid& guid);
 std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic);
 
 // The shadow readers to which writers of the program owe their history's end.

@@ -26,8 +26,10 @@ std::vector<std::uint32_t> DomainsThatEndWith(dds_entity_t entity) {
 
 bool IsShadowHandle(dds_entity_t participant) {
   dds_guid_t guid;
+  dds_domainid_t domain = 0;
   return dds_get_guid(participant, &guid) == DDS_RETCODE_OK &&
-         IsShadow(Guid::FromBytes(guid.v).Inner());
+         dds_get_domainid(participant, &domain) == DDS_RETCODE_OK &&
+         IsShadow(domain, Guid::FromBytes(guid.v).Inner());
 }
 
 // What `list` has, but for shadows, as Cyclone's own calls return it.
@@ -90,6 +92,48 @@ dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participant
   return WithoutShadows(participants, size, [domain](dds_entity_t* all, std::size_t most) {
     return Real().dds_lookup_participant(domain, all, most);
   });
+}
+
+namespace {
+
+// While the calling thread looks for topics in all participants of a domain.
+thread_local bool t_finding;
+
+class Finding {
+ public:
+  Finding() {
+    if (LookAround()) LookAgain();
+    if (!IsDeliverer() && !IsListening()) TheLink().sync();
+    t_finding = true;
+  }
+  ~Finding() { t_finding = false; }
+  Finding(const Finding&) = delete;
+  Finding& operator=(const Finding&) = delete;
+};
+
+}  // namespace
+
+dds_entity_t FindTopic(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                       const dds_typeinfo_t* type, dds_duration_t timeout) {
+  const Finding finding;
+  return Real().dds_find_topic(scope, participant, name, type, timeout);
+}
+
+dds_entity_t FindTopicScoped(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                             dds_duration_t timeout) {
+  const Finding finding;
+  return Real().dds_find_topic_scoped(scope, participant, name, timeout);
+}
+
+// The topics of shadows are not the domain's.
+dds_return_t PinEntity(dds_entity_t handle, dds_entity** entity) {
+  if (t_finding) {
+    t_finding = false;
+    const bool is_shadow = IsShadowHandle(handle);
+    t_finding = true;
+    if (is_shadow) return DDS_RETCODE_BAD_PARAMETER;
+  }
+  return Real().dds_entity_pin(handle, entity);
 }
 
 // A domain's are participants.

@@ -15,6 +15,11 @@ dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* 
 dds_return_t Delete(dds_entity_t entity);
 dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participants,
                                 std::size_t size);
+dds_entity_t FindTopic(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                       const dds_typeinfo_t* type, dds_duration_t timeout);
+dds_entity_t FindTopicScoped(dds_find_scope_t scope, dds_entity_t participant, const char* name,
+                             dds_duration_t timeout);
+dds_return_t PinEntity(dds_entity_t handle, dds_entity** entity);
 dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size);
 
 }  // namespace tcs::dds

@@ -310,14 +310,17 @@ Payload EncodeParticipant(const dds_qos_t* qos) {
   return texts.Behind(encoded);
 }
 
-Payload EncodeEndpoint(std::uint32_t kind, bool keyless, const char* topic, const char* type,
+Payload EncodeEndpoint(std::uint32_t kind, const char* topic, const ddsi_sertype* type,
                        const dds_qos_t* qos) {
   Texts texts(sizeof(DdsEndpoint));
   DdsEndpoint endpoint{};
   endpoint.kind = kind;
-  endpoint.keyless = keyless ? 1 : 0;
+  endpoint.keyless = type->typekind_no_key != 0 ? 1 : 0;
   endpoint.topic = texts.Add(topic);
-  endpoint.type = texts.Add(type);
+  endpoint.type = texts.Add(type->type_name);
+  const TypeCode code = CodeOf(type);
+  endpoint.type_information = texts.Add(code.information.data(), code.information.size());
+  endpoint.type_mapping = texts.Add(code.mapping.data(), code.mapping.size());
   endpoint.qos = Encode(qos, texts);
   return texts.Behind(endpoint);
 }
@@ -329,6 +332,13 @@ DecodedEndpoint DecodeEndpoint(const Payload& payload) {
   decoded.kind = endpoint.kind;
   decoded.topic = View(payload, endpoint.topic);
   decoded.type = View(payload, endpoint.type);
+  decoded.keyless = endpoint.keyless != 0;
+  const auto bytes = [&payload](DdsBytes where) {
+    const std::string_view all = View(payload, where);
+    const auto* start = reinterpret_cast<const std::byte*>(all.data());
+    return Payload(start, start + all.size());
+  };
+  decoded.type_code = Checked({bytes(endpoint.type_information), bytes(endpoint.type_mapping)});
   return decoded;
 }
 

@@ -7,20 +7,21 @@
 #include <vector>
 
 #include "libtcs_preload/dds/cyclone.h"
+#include "libtcs_preload/dds/type_code.h"
 #include "shm/dds_endpoint.h"
 
 namespace tcs::dds {
 
-using Payload = std::vector<std::byte>;
-
 Payload EncodeParticipant(const dds_qos_t* qos);
-Payload EncodeEndpoint(std::uint32_t kind, bool keyless, const char* topic, const char* type,
+Payload EncodeEndpoint(std::uint32_t kind, const char* topic, const ddsi_sertype* type,
                        const dds_qos_t* qos);
 
 struct DecodedEndpoint {
   std::uint32_t kind = 0;
   std::string topic;
   std::string type;
+  bool keyless = false;
+  TypeCode type_code;
 };
 
 // Empty names if the payload is malformed.

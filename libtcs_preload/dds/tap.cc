@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libtcs_preload/dds/announce.h"
+#include "libtcs_preload/dds/other_type.h"
 #include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/program.h"
 
@@ -26,7 +27,8 @@ struct Carried {
 // To the tap's reader alone unless it is carried for all.
 void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
           const Carried* carried) {
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kSample, tap.domain, Guid::Of(writer));
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kSample, NetworkDomain(*tap.gv), Guid::Of(writer));
   message.to = tap.process;
   if (carried == nullptr) {
     tap.reader.To(message.other);
@@ -41,9 +43,14 @@ void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
   SendSample(message, sample, tap.topic);
 }
 
+bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
+  return std::ranges::any_of(
+      tap.had, [sample](const ddsi_serdata* had) { return IsSameSample(had, sample); });
+}
+
 // To the tap's reader alone, unless it has had it.
 void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
-  if (std::ranges::count(tap.had, sample) != 0) return;
+  if (HasHad(tap, sample)) return;
   tap.had.push_back(ddsi_serdata_ref(sample));
   if (tap.had.size() > kMostHad) {
     ddsi_serdata_unref(tap.had.front());
@@ -67,17 +74,17 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
   std::unique_lock lock(tap.mutex, std::defer_lock);
   if (tap.catches_up) lock.lock();
   if (t_making == &tap) {
-    if (tap.catches_up && !IsShadow(info->guid)) ShipAlone(tap, info->guid, sample);
+    if (tap.catches_up && !IsShadow(tap.gv, info->guid)) ShipAlone(tap, info->guid, sample);
     return true;
   }
-  if (!tap.catching_up && std::ranges::count(tap.had, sample) != 0) return true;
+  if (!tap.catching_up && HasHad(tap, sample)) return true;
   Carried carried{{}, instance->m_iid};
   Carries carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
     carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
   }
   if (carries == Carries::kYes) Ship(tap, info->guid, *sample, &carried);
-  if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(info->guid)) {
+  if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(tap.gv, info->guid)) {
     ShipAlone(tap, info->guid, sample);
   }
   return true;
@@ -136,14 +143,14 @@ MakingTap::~MakingTap() { t_making = nullptr; }
 void EndCatchUp(Tap& tap) {
   const std::lock_guard lock(tap.mutex);
   for (const Guid& writer : CompleteTap(tap)) {
-    SendHistoryEnd(tap.domain, writer, tap.reader, tap.process);
+    SendHistoryEnd(*tap.gv, writer, tap.reader, tap.process);
   }
   tap.catching_up = false;
 }
 
-void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
+void SendHistoryEnd(const ddsi_domaingv& gv, const Guid& writer, const Guid& reader,
                     std::uint32_t process) {
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, domain, writer);
+  shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, NetworkDomain(gv), writer);
   message.to = process;
   reader.To(message.other);
   Send(message, {});

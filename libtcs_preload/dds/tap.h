@@ -50,7 +50,7 @@ class MakingTap {
 void EndCatchUp(Tap& tap);
 
 // Tells a reader elsewhere that it has what a writer had.
-void SendHistoryEnd(std::uint32_t domain, const Guid& writer, const Guid& reader,
+void SendHistoryEnd(const ddsi_domaingv& gv, const Guid& writer, const Guid& reader,
                     std::uint32_t process);
 
 }  // namespace tcs::dds

@@ -137,6 +137,16 @@ TEST(DdsHub, AddressedMessagesAreForOneOnly) {
   EXPECT_EQ(c.Take(1).size(), 1u);
 }
 
+TEST(DdsHub, WhoMeetsItselfIsToldOfWhatItSays) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  DdsMessage message = Message(DdsKind::kLiveliness, 1);
+  message.flags = shm::kDdsToSender;
+  EXPECT_EQ(a.Send(5, {message, Message(DdsKind::kLiveliness, 2)}), "");
+  EXPECT_EQ(a.Take(5).size(), 1u);
+  EXPECT_EQ(b.Take(5).size(), 2u);
+}
+
 TEST(DdsHub, WhoJoinsLaterIsToldOfWhatIsThere) {
   Hub hub;
   Peer a(hub, 0);

@@ -10,7 +10,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, VersionSevenHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 9u);
+  EXPECT_EQ(kVersion, 10u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);

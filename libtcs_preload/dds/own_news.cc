@@ -1,0 +1,58 @@
+#include "libtcs_preload/dds/own_news.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "libtcs_preload/dds/guid.h"
+#include "libtcs_preload/dds/outgoing.h"
+#include "libtcs_preload/dds/program.h"
+
+namespace tcs::dds {
+namespace {
+
+struct State {
+  std::mutex mutex;
+  std::vector<OwnNews> news;
+};
+
+State& Get() {
+  static auto* state = new State;
+  return *state;
+}
+
+}  // namespace
+
+void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
+  const bool is_participant = message.kind == shm::DdsKind::kParticipant;
+  if (!is_participant && message.kind != shm::DdsKind::kEndpoint) return;
+  const Guid subject = Guid::FromBytes(message.subject);
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  if ((message.flags & shm::kDdsGone) != 0) {
+    // A participant takes its endpoints along.
+    std::erase_if(state.news, [&](const OwnNews& news) {
+      return Guid::FromBytes(news.message.subject) == subject ||
+             (is_participant && Guid::FromBytes(news.message.other) == subject);
+    });
+    return;
+  }
+  const auto before = std::ranges::find_if(state.news, [&subject](const OwnNews& news) {
+    return Guid::FromBytes(news.message.subject) == subject;
+  });
+  OwnNews& news = before != state.news.end() ? *before : state.news.emplace_back();
+  news = {message, payload};
+  news.message.from = OwnProcess();
+  news.message.payload_size = static_cast<std::uint32_t>(payload.size());
+  news.message.size = shm::DdsMessageSize(news.message.payload_size);
+}
+
+std::vector<OwnNews> NewsForItself() {
+  State& state = Get();
+  const std::lock_guard lock(state.mutex);
+  std::vector<OwnNews> all;
+  std::ranges::copy_if(state.news, std::back_inserter(all),
+                       [](const OwnNews& news) { return MeetsItself(news.message.domain); });
+  return all;
+}
+
+}  // namespace tcs::dds

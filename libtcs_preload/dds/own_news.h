@@ -1,0 +1,28 @@
+// What the program has told others of its participants and endpoints, kept for the case that it
+// meets itself: that it has several domains of one name on the network (program.h).
+//
+// Such news goes through the coordinator, to this process as to others, in order with samples. But
+// what was told before the second domain was there is only here.
+//
+// Thread-safe.
+#pragma once
+
+#include <vector>
+
+#include "libtcs_preload/dds/qos_code.h"
+#include "shm/dds_exchange.h"
+
+namespace tcs::dds {
+
+struct OwnNews {
+  shm::DdsMessage message;
+  Payload payload;
+};
+
+// Before it is sent.
+void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
+
+// What is there, in the order in which it came, of domains in which the program meets itself.
+std::vector<OwnNews> NewsForItself();
+
+}  // namespace tcs::dds
