@@ -4,8 +4,9 @@
 
 namespace tcs::preload {
 
-// Overwrites the entries of this process's vDSO with jumps. Once per program, before it has threads;
-// a child by fork inherits them. Nothing happens where the kernel does not let the vDSO be written.
+// Overwrites the entries of this process's vDSO with jumps. Once per program, before it has
+// threads; a child by fork inherits them. Nothing happens where the kernel does not let the vDSO be
+// written.
 void PatchVdso();
 
 }  // namespace tcs::preload

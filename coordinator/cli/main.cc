@@ -112,9 +112,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   bool patch_vdso = true;
-  exec->add_flag("--patch-vdso,!--no-patch-vdso", patch_vdso,
-                 "no: programs that read the kernel's clocks past the C library's symbols, and what "
-                 "the C library reads inside itself, see the host's time");
+  exec->add_flag(
+      "--patch-vdso,!--no-patch-vdso", patch_vdso,
+      "no: programs that read the kernel's clocks past the C library's symbols, and what "
+      "the C library reads inside itself, see the host's time");
   std::string uptime;
   exec->add_option("--uptime", uptime,
                    "CLOCK_MONOTONIC when the program starts; 1000s unless told");
