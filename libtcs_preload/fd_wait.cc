@@ -144,9 +144,10 @@ bool IsNonBlocking(int fd) {
   return flags < 0 || (flags & O_NONBLOCK) != 0;
 }
 
-bool CanWait(int fd) {
+bool CanWait(int fd, bool* is_socket) {
   struct stat status;
   if (RawSyscall(SYS_fstat, fd, Arg(&status)) != 0) return false;
+  if (is_socket != nullptr) *is_socket = S_ISSOCK(status.st_mode);
   return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
 }
 

@@ -35,7 +35,8 @@ bool HoldForReadFrom(GuestThread& thread, int fd, bool socket);
 bool IsNonBlocking(int fd);
 
 // True if calls on `fd` can wait for somebody else: sockets, pipes, terminals, event descriptors.
-bool CanWait(int fd);
+// `is_socket` is told which of them, if given.
+bool CanWait(int fd, bool* is_socket = nullptr);
 
 // The descriptor's SO_RCVTIMEO or SO_SNDTIMEO as a deadline from now.
 std::int64_t SocketDeadline(GuestThread& thread, int fd, int option);

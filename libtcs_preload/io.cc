@@ -17,6 +17,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/tcp.h"
 #include "libtcs_preload/transfer.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -35,16 +36,26 @@ bool IsTerminal(int fd) {
   return RawSyscall(SYS_ioctl, fd, TCGETS, Arg(settings)) == 0;
 }
 
+// TCP would keep what MSG_MORE announces more for until a timer of the host's runs out.
+int WithoutMore(int fd, int flags) {
+  return (flags & MSG_MORE) != 0 && IsTcp(fd) ? flags & ~MSG_MORE : flags;
+}
+
 bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 
 template <class Call>
 ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   GuestThread* t = Enter();
   pthread_testcancel();
-  if (t == nullptr || !CanWait(fd)) return ToErrno(call());
+  bool any_socket = false;
+  if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
+  auto take = [&] {
+    if (any_socket) AcknowledgeAtOnce(fd);
+    return ToErrno(call());
+  };
   if (dont_wait || IsNonBlocking(fd)) {
     HoldForReadFrom(*t, fd, socket);
-    return ToErrno(call());
+    return take();
   }
   const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
   for (;;) {
@@ -52,7 +63,7 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
-      return ToErrno(call());
+      return take();
     }
   }
 }
@@ -124,6 +135,7 @@ ssize_t ReceiveAll(int fd, msghdr* message, int flags, Whole whole) {
       [&](const iovec* part, std::size_t n) {
         part_of.msg_iov = const_cast<iovec*>(part);
         part_of.msg_iovlen = n;
+        AcknowledgeAtOnce(fd);
         const long got =
             RawSyscall(SYS_recvmsg, fd, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
         if (got >= 0 && first) {
@@ -214,7 +226,10 @@ TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
   const auto connection = static_cast<int>(ReadLike(fd, false, true, [&] {
     return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags);
   }));
-  if (GuestThread* t = Current(); t != nullptr && connection >= 0) TellChanged(*t, kBacklogs, 0);
+  if (GuestThread* t = Current(); t != nullptr && connection >= 0) {
+    SendAtOnce(connection);  // the listener may be from elsewhere
+    TellChanged(*t, kBacklogs, 0);
+  }
   return connection;
 }
 
@@ -240,7 +255,9 @@ TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flag
   message.msg_namelen = to_size;
   message.msg_iov = &iov;
   message.msg_iovlen = 1;
-  return SendAll(Enter(), fd, message, flags, [&] {
+  GuestThread* t = Enter();
+  if (t != nullptr) flags = WithoutMore(fd, flags);
+  return SendAll(t, fd, message, flags, [&] {
     return RawSyscall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
   });
 }
@@ -250,13 +267,16 @@ TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags)
 }
 
 TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  return SendAll(Enter(), fd, *message, flags,
+  GuestThread* t = Enter();
+  if (t != nullptr) flags = WithoutMore(fd, flags);
+  return SendAll(t, fd, *message, flags,
                  [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
 }
 
 // What the socket has no room for is waited for, until all have been sent.
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   GuestThread* t = Enter();
+  if (t != nullptr) flags = WithoutMore(fd, flags);
   for (unsigned sent = 0; sent < count; ++sent) {
     msghdr* message = &messages[sent].msg_hdr;
     const ssize_t n = SendAll(t, fd, *message, flags,

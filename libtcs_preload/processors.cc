@@ -4,6 +4,7 @@
 #include <sys/sysinfo.h>
 #include <unistd.h>
 
+#include "libtcs_preload/clock_calls.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -19,13 +20,16 @@ TCS_EXPORT int sched_getcpu(void) noexcept {
   return static_cast<int>(cpu);
 }
 
-TCS_EXPORT int getcpu(unsigned* cpu, unsigned* node) noexcept {
+long tcs::preload::GetCpu(unsigned* cpu, unsigned* node) {
   GuestThread* t = Enter();
-  if (t == nullptr)
-    return static_cast<int>(ToErrno(RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0)));
+  if (t == nullptr) return RawSyscall(SYS_getcpu, Arg(cpu), Arg(node), 0);
   if (cpu != nullptr) *cpu = t->slot->core;
   if (node != nullptr) *node = 0;
   return 0;
+}
+
+TCS_EXPORT int getcpu(unsigned* cpu, unsigned* node) noexcept {
+  return static_cast<int>(ToErrno(GetCpu(cpu, node)));
 }
 
 TCS_EXPORT int get_nprocs(void) noexcept {

@@ -8,6 +8,7 @@
 
 #include <atomic>
 
+#include "libtcs_preload/clock_calls.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -51,14 +52,20 @@ void SeedProcess(const shm::ThreadSlot& slot) {
   }
 }
 
+bool DrawsRepeat() { return g_seeded; }
+
+long GetRandom(void* buffer, std::size_t size, unsigned flags) {
+  if (Enter() == nullptr || !g_seeded) {
+    return RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
+  }
+  Fill(buffer, size);
+  return static_cast<long>(size);
+}
+
 }  // namespace tcs::preload
 
 TCS_EXPORT ssize_t getrandom(void* buffer, std::size_t size, unsigned flags) {
-  if (Enter() == nullptr || !g_seeded) {
-    return ToErrno(RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags));
-  }
-  Fill(buffer, size);
-  return static_cast<ssize_t>(size);
+  return ToErrno(GetRandom(buffer, size, flags));
 }
 
 TCS_EXPORT int getentropy(void* buffer, std::size_t size) {

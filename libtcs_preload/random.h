@@ -10,4 +10,7 @@ namespace tcs::preload {
 // accounting.
 void SeedProcess(const shm::ThreadSlot& slot);
 
+// True if the process has been given a seed.
+bool DrawsRepeat();
+
 }  // namespace tcs::preload

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "libtcs_preload/clock_calls.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -71,7 +72,9 @@ int SetClockRefused(GuestThread* t) { return t == nullptr ? 0 : Fail(EPERM); }
 
 }  // namespace
 
-TCS_EXPORT int clock_gettime(clockid_t id, timespec* ts) {
+namespace tcs::preload {
+
+long ClockGettime(clockid_t id, timespec* ts) {
   GuestThread* t = Enter();
   if (t != nullptr) {
     const std::int64_t ns = ReadClockId(*t, id);
@@ -80,30 +83,49 @@ TCS_EXPORT int clock_gettime(clockid_t id, timespec* ts) {
       return 0;
     }
   }
-  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_gettime, id, Arg(ts))));
+  return RawSyscall(SYS_clock_gettime, id, Arg(ts));
+}
+
+long Gettimeofday(timeval* tv, void* zone) {
+  GuestThread* t = Enter();
+  if (t == nullptr) return RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone));
+  if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
+  if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
+  return 0;
+}
+
+time_t Time(time_t* out) {
+  timespec now;
+  ClockGettime(CLOCK_REALTIME, &now);
+  if (out != nullptr) *out = now.tv_sec;
+  return now.tv_sec;
+}
+
+long ClockGetres(clockid_t id, timespec* resolution) {
+  if (Enter() != nullptr && (IsCpuClockId(id) || (id >= 0 && id <= CLOCK_TAI && id != 10))) {
+    if (resolution != nullptr) *resolution = timespec{0, 1};
+    return 0;
+  }
+  return RawSyscall(SYS_clock_getres, id, Arg(resolution));
+}
+
+}  // namespace tcs::preload
+
+TCS_EXPORT int clock_gettime(clockid_t id, timespec* ts) {
+  return static_cast<int>(ToErrno(ClockGettime(id, ts)));
 }
 
 TCS_EXPORT int __clock_gettime(clockid_t id, timespec* ts) { return clock_gettime(id, ts); }
 
 TCS_EXPORT int gettimeofday(timeval* __restrict tv, void* __restrict zone) {
-  GuestThread* t = Enter();
-  if (t == nullptr)
-    return static_cast<int>(ToErrno(RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone))));
-  if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
-  if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
-  return 0;
+  return static_cast<int>(ToErrno(Gettimeofday(tv, zone)));
 }
 
 TCS_EXPORT int __gettimeofday(timeval* __restrict tv, void* __restrict zone) {
   return gettimeofday(tv, zone);
 }
 
-TCS_EXPORT time_t time(time_t* out) {
-  timespec now;
-  clock_gettime(CLOCK_REALTIME, &now);
-  if (out != nullptr) *out = now.tv_sec;
-  return now.tv_sec;
-}
+TCS_EXPORT time_t time(time_t* out) { return Time(out); }
 
 TCS_EXPORT int ftime(timeb* out) {
   timespec now;
@@ -148,11 +170,7 @@ TCS_EXPORT int getrusage(__rusage_who_t who, rusage* usage) noexcept {
 }
 
 TCS_EXPORT int clock_getres(clockid_t id, timespec* resolution) {
-  if (Enter() != nullptr && (IsCpuClockId(id) || (id >= 0 && id <= CLOCK_TAI && id != 10))) {
-    if (resolution != nullptr) *resolution = timespec{0, 1};
-    return 0;
-  }
-  return static_cast<int>(ToErrno(RawSyscall(SYS_clock_getres, id, Arg(resolution))));
+  return static_cast<int>(ToErrno(ClockGetres(id, resolution)));
 }
 
 TCS_EXPORT int __clock_getres(clockid_t id, timespec* resolution) {

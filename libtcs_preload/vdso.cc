@@ -2,27 +2,40 @@
 
 #include <elf.h>
 #include <errno.h>
-#include <sched.h>
 #include <string.h>
 #include <sys/auxv.h>
 #include <sys/mman.h>
-#include <sys/time.h>
-#include <time.h>
 
 #include <cstddef>
 #include <cstdint>
 
+#include "libtcs_preload/clock_calls.h"
+#include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 
 namespace tcs::preload {
 
 namespace {
 
-// As the vDSO's functions report: 0 or a negative errno.
-int VdsoClockGettime(clockid_t id, timespec* ts) { return clock_gettime(id, ts) == 0 ? 0 : -errno; }
-int VdsoGettimeofday(timeval* tv, void* zone) { return gettimeofday(tv, zone) == 0 ? 0 : -errno; }
-time_t VdsoTime(time_t* out) { return time(out); }
-int VdsoClockGetres(clockid_t id, timespec* ts) { return clock_getres(id, ts) == 0 ? 0 : -errno; }
+// What the kernel says of a generator's state to who asks with this size. Ours needs none.
+constexpr std::size_t kAskForState = ~std::size_t{0};
+struct RandomState {
+  std::uint32_t size, mmap_prot, mmap_flags, reserved[13];
+};
+
+// As the vDSO's functions report: a result or a negative errno.
+int VdsoClockGettime(clockid_t id, timespec* ts) { return static_cast<int>(ClockGettime(id, ts)); }
+int VdsoGettimeofday(timeval* tv, void* zone) { return static_cast<int>(Gettimeofday(tv, zone)); }
+int VdsoClockGetres(clockid_t id, timespec* ts) { return static_cast<int>(ClockGetres(id, ts)); }
+int VdsoGetcpu(unsigned* cpu, unsigned* node, void*) { return static_cast<int>(GetCpu(cpu, node)); }
+
+long VdsoGetrandom(void* buffer, std::size_t size, unsigned flags, void* state,
+                   std::size_t state_size) {
+  if (state_size != kAskForState) return GetRandom(buffer, size, flags);
+  const RandomState needed{64, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, {}};
+  memcpy(state, &needed, sizeof needed);
+  return 0;
+}
 
 struct Replacement {
   const char* name;
@@ -86,14 +99,27 @@ Image Parse(const char* base) {
   return image;
 }
 
-void Replace(const Image& image, const Replacement& replacement) {
+const Elf64_Sym* Find(const Image& image, const char* name) {
   for (std::uint32_t i = 0; i < image.symbol_count; ++i) {
     const Elf64_Sym& symbol = image.symbols[i];
     if (symbol.st_shndx == SHN_UNDEF || symbol.st_size < sizeof(Jump)) continue;
-    if (strcmp(image.names + symbol.st_name, replacement.name) != 0) continue;
-    const Jump jump{.to = replacement.function};
-    memcpy(reinterpret_cast<void*>(image.offset + symbol.st_value), &jump, sizeof jump);
+    if (strcmp(image.names + symbol.st_name, name) == 0) return &symbol;
   }
+  return nullptr;
+}
+
+// As a whole: the kernel does not split this mapping.
+bool Protect(const Image& image, int protection) {
+  constexpr std::uint64_t kPage = 4096;
+  const auto size = static_cast<long>((image.size + kPage - 1) / kPage * kPage);
+  return RawSyscall(SYS_mprotect, Arg(image.base), size, protection) == 0;
+}
+
+void Replace(const Image& image, const Replacement& replacement) {
+  const Elf64_Sym* symbol = Find(image, replacement.name);
+  if (symbol == nullptr) return;
+  const Jump jump{.to = replacement.function};
+  memcpy(reinterpret_cast<void*>(image.offset + symbol->st_value), &jump, sizeof jump);
 }
 
 }  // namespace
@@ -105,18 +131,20 @@ void PatchVdso() {
   patched = true;
   const Image image = Parse(base);
   if (image.base == nullptr || image.symbols == nullptr || image.names == nullptr) return;
-  constexpr std::uint64_t kPage = 4096;
-  const auto size = static_cast<long>((image.size + kPage - 1) / kPage * kPage);
-  if (RawSyscall(SYS_mprotect, Arg(base), size, PROT_READ | PROT_WRITE | PROT_EXEC) != 0) return;
+  if (!Protect(image, PROT_READ | PROT_WRITE | PROT_EXEC)) return;
   const Replacement replacements[] = {
       {"__vdso_clock_gettime", reinterpret_cast<const void*>(VdsoClockGettime)},
       {"__vdso_gettimeofday", reinterpret_cast<const void*>(VdsoGettimeofday)},
-      {"__vdso_time", reinterpret_cast<const void*>(VdsoTime)},
+      {"__vdso_time", reinterpret_cast<const void*>(Time)},
       {"__vdso_clock_getres", reinterpret_cast<const void*>(VdsoClockGetres)},
-      {"__vdso_getcpu", reinterpret_cast<const void*>(getcpu)},
+      {"__vdso_getcpu", reinterpret_cast<const void*>(VdsoGetcpu)},
   };
   for (const Replacement& replacement : replacements) Replace(image, replacement);
-  RawSyscall(SYS_mprotect, Arg(base), size, PROT_READ | PROT_EXEC);
+  // Where draws need not repeat the kernel's own is left alone: it is faster.
+  if (DrawsRepeat()) {
+    Replace(image, {"__vdso_getrandom", reinterpret_cast<const void*>(VdsoGetrandom)});
+  }
+  Protect(image, PROT_READ | PROT_EXEC);
 }
 
 }  // namespace tcs::preload

@@ -1,5 +1,7 @@
 #include "coordinator/cli/exec_command.h"
 
+#include <time.h>
+
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -11,7 +13,43 @@
 
 namespace tcs {
 
-int ExecCommand(const ExecArguments& arguments, const RunOptions& options) {
+namespace {
+
+// A day, as nanoseconds since 1970.
+std::optional<std::int64_t> ParseDate(const std::string& text) {
+  tm day{};
+  const char* end = strptime(text.c_str(), "%Y-%m-%d", &day);
+  if (end == nullptr || *end != '\0' || day.tm_year <= 70 || day.tm_year >= 200) {
+    return std::nullopt;
+  }
+  return std::int64_t{timegm(&day)} * 1'000'000'000;
+}
+
+// Where the clocks begin.
+std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
+  std::optional<VirtualDuration> uptime;
+  if (std::string error = TakeDuration("uptime", arguments.uptime, &uptime); !error.empty()) {
+    return error;
+  }
+  constexpr std::int64_t kMostNs = 100LL * 365 * 86'400 * 1'000'000'000;
+  if (uptime.has_value()) {
+    if (uptime->ns() > kMostNs) return "--uptime: at most 100 years";
+    options->uptime_ns = uptime->ns();
+  }
+  if (arguments.date.empty()) return {};
+  options->date_ns = ParseDate(arguments.date);
+  return options->date_ns.has_value()
+             ? std::string()
+             : "--date: '" + arguments.date + "' is not a day from 1971 to 2099 as 2005-03-18";
+}
+
+}  // namespace
+
+int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options) {
+  RunOptions options = plain_options;
+  if (const std::string error = TakeOrigins(arguments, &options); !error.empty()) {
+    return Fail(error);
+  }
   const std::vector<std::string>& command = arguments.command;
   std::optional<VirtualDuration> call_cost, allocation_cost;
   if (const std::string error = TakeDuration("call-cost", arguments.call_cost, &call_cost);

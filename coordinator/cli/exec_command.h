@@ -12,10 +12,12 @@ struct ExecArguments {
   std::vector<std::string> command;
   double speed = 1.0;  // of each core
   int cores = 1;
-  bool patch_vdso = false;
+  bool patch_vdso = true;
   std::string call_cost;  // of one call under fixed accounting, such as 100ns; empty: as by default
   std::string allocation_cost;  // of one allocation, the same
   DdsTransport dds = DdsTransport::kEndpoints;
+  std::string uptime;  // of the computer when the run begins, such as 20s; empty: as by default
+  std::string date;    // when the run begins, such as 2005-03-18; the same
 };
 
 // Runs the command alone on a computer, without dynamics; the exit status is the command's own.

@@ -111,9 +111,18 @@ int main(int argc, char** argv) {
   exec->add_option("--cores", cores, "how many processors it has")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  bool patch_vdso = false;
-  exec->add_flag("--patch-vdso", patch_vdso,
-                 "also for programs that read the kernel's clocks past the C library");
+  bool patch_vdso = true;
+  exec->add_flag(
+      "--patch-vdso,!--no-patch-vdso", patch_vdso,
+      "no: programs that read the kernel's clocks past the C library's symbols, and what "
+      "the C library reads inside itself, see the host's time");
+  std::string uptime;
+  exec->add_option("--uptime", uptime,
+                   "CLOCK_MONOTONIC when the program starts; 1000s unless told");
+  std::string date;
+  exec->add_option("--date", date,
+                   "CLOCK_REALTIME when the program starts, as 2005-03-18, 0:00 UTC; now unless "
+                   "told, under --accounting fixed 2024-01-01");
   std::string call_cost;
   exec->add_option("--call-cost", call_cost,
                    "of one call under --accounting fixed; 1us unless told");
@@ -199,7 +208,8 @@ int main(int argc, char** argv) {
     return exec->parsed()
                ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,
                                    dds == "sockets" ? tcs::DdsTransport::kSockets
-                                                    : tcs::DdsTransport::kEndpoints},
+                                                    : tcs::DdsTransport::kEndpoints,
+                                   uptime, date},
                                   options)
                : tcs::FlushStdout(tcs::RunCommand(arguments, options));
   });

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ struct RunOptions {
   bool record = false;           // all DDS topics, into a bag in output_directory
   std::string preload_library;
   std::string allocation_library;  // preloaded besides under fixed accounting
+  // What CLOCK_MONOTONIC shows at the start. 0 would look like a clock that was never set.
+  std::int64_t uptime_ns = 1'000'000'000'000;
+  // The same of CLOCK_REALTIME; if not set the host's date, or a fixed one under fixed accounting.
+  std::optional<std::int64_t> date_ns;
   // Called about five times a real second, if set; what it takes is the coordinator's.
   std::function<void(const RunProgress&)> on_progress;
   // Called with each warning when it arises, if set.

@@ -28,8 +28,6 @@ namespace {
 
 // Deterministic runs begin on 2024-01-01T00:00:00Z.
 constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
-// A CLOCK_MONOTONIC of 0 would look like one that was never set.
-constexpr std::int64_t kMonotonicStartNs = 1'000'000'000'000;
 
 // Runs exactly when armed and neither the coordinator nor the active thread wants the CPU. A
 // process of its own and not a thread: a killed coordinator must not have to wait for somebody who
@@ -94,8 +92,9 @@ std::string Engine::PrepareSegment() {
   header_->slot_count = shm::kSlotCount;
   header_->accounting = options_.accounting;
   header_->sync = options_.sync;
-  header_->monotonic_offset_ns = kMonotonicStartNs;
-  header_->realtime_offset_ns = IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME);
+  header_->monotonic_offset_ns = options_.uptime_ns;
+  header_->realtime_offset_ns =
+      options_.date_ns.value_or(IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   header_->coordinator_pid = getpid();
   for (int slot = 0; slot < static_cast<int>(shm::kSlotCount); ++slot) free_slots_.push_back(slot);
   return {};

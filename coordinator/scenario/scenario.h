@@ -39,7 +39,7 @@ struct ClientSpec {
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
   // The same of one memory allocation; 0: none.
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
-  bool patch_vdso = false;  // for programs that read the kernel's clocks past the C library
+  bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
   DdsTransport dds = DdsTransport::kEndpoints;
 };
 

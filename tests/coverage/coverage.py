@@ -13,6 +13,7 @@ PAGE = ROOT / "docs/COVERAGE.md"
 HOW = {
     "shim": "virtual",
     "inside": "virtual",
+    "vdso": "virtual",
     "trapped": "virtual",
     "kernel": "**the kernel's**",
 }

@@ -89,8 +89,8 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_EQ(planner.body, std::nullopt);
   EXPECT_EQ(planner.fixed_call_cost, VirtualDuration::Microseconds(1));
   EXPECT_EQ(planner.fixed_allocation_cost, VirtualDuration::Nanoseconds(50));
-  EXPECT_TRUE(planner.patch_vdso);
-  EXPECT_FALSE(controller.patch_vdso);
+  EXPECT_FALSE(planner.patch_vdso);
+  EXPECT_TRUE(controller.patch_vdso);
 }
 
 TEST_F(LoadTest, TheChannelsAreAsWritten) {
