@@ -1,8 +1,8 @@
 // The shared-memory segment: the contract between the coordinator and the shim inside each client.
 //
-//   +---------------+----------------------------------------------+
-//   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          |
-//   +---------------+----------------------------------------------+
+//   +---------------+----------------------------------------------+----------+
+//   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          | IpcTimes |
+//   +---------------+----------------------------------------------+----------+
 //
 // One segment per run: a sealed memfd that never has a name. The coordinator creates it, the shim
 // maps it when its process attaches (attach_protocol.h). A thread slot belongs to one kernel thread
@@ -22,10 +22,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/ipc_times.h"
+
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 9;
+inline constexpr std::uint32_t kVersion = 10;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -247,12 +249,17 @@ struct alignas(64) SegmentHeader {
 static_assert(sizeof(SegmentHeader) == 128);
 static_assert(offsetof(SegmentHeader, monotonic_offset_ns) == 32);
 
-inline constexpr std::size_t kSegmentSize =
+inline constexpr std::size_t kIpcTimesAt =
     sizeof(SegmentHeader) + std::size_t{kSlotCount} * sizeof(ThreadSlot);
+inline constexpr std::size_t kSegmentSize = kIpcTimesAt + sizeof(IpcTimes);
 
 inline ThreadSlot* SlotAt(SegmentHeader* header, std::uint32_t index) {
   return reinterpret_cast<ThreadSlot*>(reinterpret_cast<char*>(header) + sizeof(SegmentHeader)) +
          index;
+}
+
+inline IpcTimes* IpcTimesOf(SegmentHeader* header) {
+  return reinterpret_cast<IpcTimes*>(reinterpret_cast<char*>(header) + kIpcTimesAt);
 }
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
