@@ -17,6 +17,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
 #include "libtcs_preload/transfer.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -197,7 +198,11 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
-  auto whole = [&] { return RawSyscall(SYS_recvmsg, fd, Arg(message), flags); };
+  auto whole = [&] {
+    const long got = RawSyscall(SYS_recvmsg, fd, Arg(message), flags);
+    if (got >= 0) ReplaceStamps(message);
+    return got;
+  };
   if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
   return ReadLike(fd, DontWait(flags), true, whole);
 }
@@ -218,8 +223,9 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
-  return static_cast<int>(
-      ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0)));
+  const long got = RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0);
+  for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
+  return static_cast<int>(ToErrno(got));
 }
 
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {

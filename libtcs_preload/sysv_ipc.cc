@@ -11,11 +11,14 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/ipc_times.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
+using tcs::shm::IpcEvent;
+using tcs::shm::IpcKind;
 using tcs::shm::NotificationKind;
 using tcs::shm::WaitKey;
 using tcs::shm::WakeReason;
@@ -82,6 +85,7 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count,
       timeout != nullptr ? DeadlineAfter(t, ToNs(*timeout)) : tcs::shm::kNeverNs;
   const long result = WaitAndCall(t, WaitKey::kSemaphores, id, kWouldWait, deadline, [&]() -> long {
     const long done = RawSyscall(SYS_semop, id, Arg(at_once), static_cast<long>(count));
+    if (done >= 0) NoteIpc(t, IpcKind::kSemaphores, id, IpcEvent::kPut);
     return done == -EAGAIN && !(some && MustNotWait(id, operations, count)) ? -kWouldWait : done;
   });
   return result == -kWouldWait ? -EAGAIN : result;
@@ -115,9 +119,30 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
   GuestThread* t = Enter();
   if (t != nullptr) HoldForRead(*t);
   const long result = RawSyscall(SYS_semctl, id, number, command, argument);
-  if (t != nullptr && result >= 0 &&
-      (command == IPC_RMID || command == SETVAL || command == SETALL)) {
-    TellChanged(*t, WaitKey::kSemaphores, id);
+  if (t == nullptr || result < 0) return static_cast<int>(ToErrno(result));
+  auto* status = reinterpret_cast<semid_ds*>(argument);
+  switch (command) {
+    case IPC_STAT:
+      ShowIpcTimes(*t, id, status);
+      break;
+    case SEM_STAT:
+    case SEM_STAT_ANY:
+      ShowIpcTimes(*t, static_cast<int>(result), status);
+      break;
+    case IPC_SET:
+      NoteIpc(*t, IpcKind::kSemaphores, id, IpcEvent::kChanged);
+      break;
+    case SETVAL:
+    case SETALL:
+      NoteIpc(*t, IpcKind::kSemaphores, id, IpcEvent::kChanged);
+      TellChanged(*t, WaitKey::kSemaphores, id);
+      break;
+    case IPC_RMID:
+      ForgetIpc(IpcKind::kSemaphores, id);
+      TellChanged(*t, WaitKey::kSemaphores, id);
+      break;
+    default:
+      break;
   }
   return static_cast<int>(ToErrno(result));
 }
@@ -130,8 +155,11 @@ TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) 
   if (t == nullptr) return static_cast<int>(ToErrno(call(flags)));
   const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : EAGAIN;
   return static_cast<int>(
-      ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs,
-                          [&] { return call(flags | IPC_NOWAIT); })));
+      ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs, [&] {
+        const long sent = call(flags | IPC_NOWAIT);
+        if (sent >= 0) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kPut);
+        return sent;
+      })));
 }
 
 TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, int flags) {
@@ -141,16 +169,27 @@ TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, in
   };
   if (t == nullptr) return ToErrno(call(flags));
   const int blocks = (flags & IPC_NOWAIT) != 0 ? kWouldWait : ENOMSG;
-  return ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs,
-                             [&] { return call(flags | IPC_NOWAIT); }));
+  return ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs, [&] {
+    const long got = call(flags | IPC_NOWAIT);
+    // A copy leaves the queue as it is.
+    if (got >= 0 && (flags & MSG_COPY) == 0) {
+      NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kTaken);
+    }
+    return got;
+  }));
 }
 
 TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
   GuestThread* t = Enter();
   if (t != nullptr) HoldForRead(*t);
   const long result = RawSyscall(SYS_msgctl, id, command, Arg(buffer));
-  if (t != nullptr && result >= 0 && (command == IPC_RMID || command == IPC_SET)) {
-    TellChanged(*t, WaitKey::kMessages, id);
+  if (t == nullptr || result < 0) return static_cast<int>(ToErrno(result));
+  if (command == IPC_STAT) ShowIpcTimes(*t, id, buffer);
+  if (command == MSG_STAT || command == MSG_STAT_ANY) {
+    ShowIpcTimes(*t, static_cast<int>(result), buffer);
   }
+  if (command == IPC_SET) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kChanged);
+  if (command == IPC_RMID) ForgetIpc(IpcKind::kMessages, id);
+  if (command == IPC_RMID || command == IPC_SET) TellChanged(*t, WaitKey::kMessages, id);
   return static_cast<int>(ToErrno(result));
 }

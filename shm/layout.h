@@ -1,8 +1,8 @@
 // The shared-memory segment: the contract between the coordinator and the shim inside each client.
 //
-//   +---------------+----------------------------------------------+
-//   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          |
-//   +---------------+----------------------------------------------+
+//   +---------------+----------------------------------------------+----------+
+//   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          | IpcTimes |
+//   +---------------+----------------------------------------------+----------+
 //
 // One segment per run: a sealed memfd that never has a name. The coordinator creates it, the shim
 // maps it when its process attaches (attach_protocol.h). A thread slot belongs to one kernel thread
@@ -21,6 +21,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+
+#include "shm/ipc_times.h"
 
 namespace tcs::shm {
 
@@ -247,12 +249,17 @@ struct alignas(64) SegmentHeader {
 static_assert(sizeof(SegmentHeader) == 128);
 static_assert(offsetof(SegmentHeader, monotonic_offset_ns) == 32);
 
-inline constexpr std::size_t kSegmentSize =
+inline constexpr std::size_t kIpcTimesAt =
     sizeof(SegmentHeader) + std::size_t{kSlotCount} * sizeof(ThreadSlot);
+inline constexpr std::size_t kSegmentSize = kIpcTimesAt + sizeof(IpcTimes);
 
 inline ThreadSlot* SlotAt(SegmentHeader* header, std::uint32_t index) {
   return reinterpret_cast<ThreadSlot*>(reinterpret_cast<char*>(header) + sizeof(SegmentHeader)) +
          index;
+}
+
+inline IpcTimes* IpcTimesOf(SegmentHeader* header) {
+  return reinterpret_cast<IpcTimes*>(reinterpret_cast<char*>(header) + kIpcTimesAt);
 }
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);

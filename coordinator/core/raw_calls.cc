@@ -4,10 +4,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -69,6 +72,12 @@ class Borrowed {
     return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
   }
   bool IsNonBlocking() const { return (fcntl(fd_, F_GETFL) & O_NONBLOCK) != 0; }
+  // As the shim does it for what it reads itself: what TCP's sender waits for must not wait for a
+  // timer of the host's. Nothing happens to other descriptors.
+  void AcknowledgeAtOnce() const {
+    const int on = 1;
+    setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+  }
   bool IsReady(short events) const {
     pollfd probe{fd_, events, 0};
     return poll(&probe, 1, 0) != 0;
@@ -123,6 +132,7 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   const Borrowed fd(task, number);
   if (!fd.CanWait()) return;
+  if (reads) fd.AcknowledgeAtOnce();
   if (fd.IsNonBlocking() || fd.IsReady(events)) {
     HoldRaw(task, reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
     return;

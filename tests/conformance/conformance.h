@@ -62,6 +62,17 @@ inline void ExpectWaited(std::int64_t start, std::int64_t wanted_ns, int calls, 
   }
 }
 
+// The same where nobody counts the calls on the way, a child's start among them: under tcs late by
+// less than `slack_ns`.
+inline void ExpectAbout(std::int64_t start, std::int64_t wanted_ns, const char* what,
+                        std::int64_t slack_ns = 10 * kMs) {
+  const std::int64_t passed = Now() - start;
+  EXPECT(passed >= wanted_ns, "%s took %lld ns, which is early", what, (long long)passed);
+  if (g_mode != Mode::kNative) {
+    EXPECT(passed < wanted_ns + slack_ns, "%s took %lld ns", what, (long long)passed);
+  }
+}
+
 // Sets the mode, and proves that the shim engaged: an hour passes at once, or the test runs into
 // its time limit.
 inline void Begin(int argc, char** argv) {

@@ -87,14 +87,21 @@ void ExpectJustSent(std::int64_t sent, const char* what) {
 
 // A reader that answers, so that it keeps its acknowledgements for the answers; then a writer that
 // only writes, twice in a row each time.
-void SmallMessagesAreSeenAtOnce() {
+void SmallMessagesAreSeenAtOnce(bool by_stdio) {
   const Pair pair = Connected();
   const pid_t reader = Start([&] {
+    FILE* file = fdopen(pair.there, "r");
+    auto take = [&] {
+      if (!by_stdio) return Take(pair.there);
+      std::int64_t value = 0;
+      EXPECT(fread(&value, sizeof value, 1, file) == 1, "fread");
+      return value;
+    };
     for (int i = 0; i < 3; ++i) {
-      ExpectJustSent(Take(pair.there), "a question");
+      ExpectJustSent(take(), "a question");
       Put(pair.there, Now());
     }
-    for (int i = 0; i < 40; ++i) ExpectJustSent(Take(pair.there), "a message");
+    for (int i = 0; i < 40; ++i) ExpectJustSent(take(), "a message");
   });
   for (int i = 0; i < 3; ++i) {
     Put(pair.here, Now());
@@ -256,7 +263,7 @@ void RoomIsFoundWhenItIsMade() {
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
-  SmallMessagesAreSeenAtOnce();
+  for (const bool by_stdio : {false, true}) SmallMessagesAreSeenAtOnce(by_stdio);
   AllIsThereForALateReader();
   WishesAreRemembered();
   CorksHoldNothingBackForLong();

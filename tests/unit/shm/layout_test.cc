@@ -32,7 +32,8 @@ TEST(Layout, SlotsFollowTheHeaderWithoutAGap) {
   auto* header = reinterpret_cast<SegmentHeader*>(segment);
   EXPECT_EQ(reinterpret_cast<char*>(SlotAt(header, 0)), segment + 128);
   EXPECT_EQ(reinterpret_cast<char*>(SlotAt(header, 1)), segment + 128 + 1024);
-  EXPECT_EQ(kSegmentSize, 128u + 4096u * 1024u);
+  EXPECT_EQ(kIpcTimesAt, 128u + 4096u * 1024u);
+  EXPECT_EQ(kSegmentSize, 128u + 4096u * 1024u + 4096u * 32u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {

@@ -1,0 +1,12 @@
+// The time at which the kernel says that something has arrived at a socket (SO_TIMESTAMP and its
+// kin): the host's, replaced by the virtual time at which it is read.
+#pragma once
+
+#include <sys/socket.h>
+
+namespace tcs::preload {
+
+// In what has just been received.
+void ReplaceStamps(msghdr* message);
+
+}  // namespace tcs::preload

@@ -1,0 +1,69 @@
+// When System V objects were changed and used, in virtual time: what the kernel keeps of that is
+// the host's. A table at the end of the segment, zero at first.
+//
+// Written and read by clients alone, without a lock; the coordinator never looks at it. A place
+// belongs to an object from its first use on. Those of removed objects are used again, in no
+// particular order, once all places that an object may have are taken.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace tcs::shm {
+
+enum class IpcKind : std::uint32_t { kMessages = 1, kSemaphores = 2, kMemory = 3 };
+
+// What a time is of; the kernel has up to three of each object.
+enum class IpcEvent : std::uint32_t {
+  kChanged = 0,  // made, or its properties set
+  kPut = 1,      // a message sent, semaphores operated on, memory attached
+  kTaken = 2,    // a message received, memory detached
+};
+
+struct IpcPlace {
+  std::atomic<std::uint64_t> object;   // kind and number; 0: free
+  std::atomic<std::int64_t> at_ns[3];  // by IpcEvent: CLOCK_REALTIME; 0: never
+};
+static_assert(sizeof(IpcPlace) == 32);
+
+struct IpcTimes {
+  static constexpr std::uint32_t kPlaces = 4096, kTried = 32;
+  static constexpr std::uint64_t kRemoved = 1;
+  IpcPlace places[kPlaces];
+};
+static_assert(sizeof(IpcTimes) == 131072);
+
+constexpr std::uint64_t IpcObject(IpcKind kind, std::int32_t id) {
+  return static_cast<std::uint64_t>(kind) << 32 | static_cast<std::uint32_t>(id);
+}
+
+// The object's place; null if it has none.
+inline IpcPlace* FindIpcPlace(IpcTimes& times, std::uint64_t object) {
+  const std::uint64_t first = object * 0x9e3779b97f4a7c15 >> 40;
+  for (std::uint32_t i = 0; i < IpcTimes::kTried; ++i) {
+    IpcPlace& place = times.places[(first + i) % IpcTimes::kPlaces];
+    const std::uint64_t holder = place.object.load(std::memory_order_acquire);
+    if (holder == object) return &place;
+    if (holder == 0) return nullptr;
+  }
+  return nullptr;
+}
+
+// The same, made if need be; null if there is no room.
+inline IpcPlace* TakeIpcPlace(IpcTimes& times, std::uint64_t object) {
+  if (IpcPlace* place = FindIpcPlace(times, object); place != nullptr) return place;
+  const std::uint64_t first = object * 0x9e3779b97f4a7c15 >> 40;
+  for (std::uint32_t i = 0; i < IpcTimes::kTried; ++i) {
+    IpcPlace& place = times.places[(first + i) % IpcTimes::kPlaces];
+    std::uint64_t holder = place.object.load(std::memory_order_acquire);
+    if (holder > IpcTimes::kRemoved || !place.object.compare_exchange_strong(holder, object)) {
+      continue;
+    }
+    for (auto& at : place.at_ns) at.store(0, std::memory_order_relaxed);
+    return &place;
+  }
+  return nullptr;
+}
+
+}  // namespace tcs::shm
