@@ -64,6 +64,24 @@ bool IsTransientLocal(const dds_qos_t* qos) {
   return durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
 }
 
+void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_topicdata(from, &data, &size)) return;
+  dds_qset_topicdata(to, data, size);
+  dds_free(data);
+}
+
+// Takes the type over.
+dds_entity_t CreateTopicOf(dds_entity_t participant, const std::string& name, ddsi_sertype* type,
+                           const dds_qos_t* qos) {
+  ddsi_sertype* consumed = type;
+  const dds_entity_t topic =
+      Real().dds_create_topic_sertype(participant, name.c_str(), &consumed, qos, nullptr, nullptr);
+  if (topic <= 0) ddsi_sertype_unref(type);
+  return topic;
+}
+
 void SayUnreadable(const DecodedEndpoint& what, bool has_been_said) {
   if (has_been_said) return;
   const bool is_nodes = what.topic == "ros_discovery_info";
@@ -340,19 +358,21 @@ dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
   if (found != participant.topics.end()) return found->entity;
   ddsi_sertype* type = TypeOf(gv, what);
   if (type == nullptr) return 0;
+  // Topics of one name have the same QoS, which that of other types suits, whatever it is.
   const Qos topic_qos(dds_create_qos());
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (dds_qget_topicdata(qos, &data, &size)) {
-    dds_qset_topicdata(topic_qos.get(), data, size);
-    dds_free(data);
+  const auto first = std::ranges::find(participant.topics, what.topic, &ShadowTopic::name);
+  if (first != participant.topics.end()) {
+    dds_get_qos(first->entity, topic_qos.get());
+  } else {
+    CopyTopicData(qos, topic_qos.get());
   }
   SetNextEntityOutOfTheWay(gv, endpoint.participant);
-  ddsi_sertype* consumed = type;
-  const dds_entity_t topic = Real().dds_create_topic_sertype(
-      participant.entity, what.topic.c_str(), &consumed, topic_qos.get(), nullptr, nullptr);
+  dds_entity_t topic = CreateTopicOf(participant.entity, what.topic, type, topic_qos.get());
+  if (topic <= 0 && first != participant.topics.end()) {
+    type = NewOtherType(what.type, what.keyless, what.type_code);
+    topic = CreateTopicOf(participant.entity, what.topic, type, topic_qos.get());
+  }
   if (topic <= 0) {
-    ddsi_sertype_unref(type);
     Say("cannot mirror DDS topic %s: %s", what.topic.c_str(), dds_strretcode(topic));
     return topic;
   }
