@@ -2,7 +2,7 @@
 // as plain numbers and texts, so that the coordinator can read them and make some of its own.
 //
 //   kParticipant: DdsQos, then its texts.
-//   kEndpoint:    DdsEndpoint, then its texts.
+//   kEndpoint, kTopic: DdsEndpoint, then its texts.
 //
 // Texts and lists lie behind the structure; a DdsBytes says where, counted from the payload's
 // start. Numbers of policies are those of the DDS C API's enumerations (dds_public_qosdefs.h) and,
@@ -113,9 +113,10 @@ static_assert(offsetof(DdsQos, coherent_access) == 220);
 
 inline constexpr std::uint32_t kDdsReader = 1;
 inline constexpr std::uint32_t kDdsWriter = 2;
+inline constexpr std::uint32_t kDdsTopic = 3;  // in a kTopic
 
 struct DdsEndpoint {
-  std::uint32_t kind;     // kDdsReader, kDdsWriter
+  std::uint32_t kind;     // kDdsReader, kDdsWriter, kDdsTopic
   std::uint32_t keyless;  // 1: its type has no key
   DdsBytes topic;
   DdsBytes type;  // no zero at the end, as with topic

@@ -78,6 +78,8 @@ enum class DdsKind : std::uint16_t {
                     // payload: CDR with its encapsulation header
   kHistoryEnd = 4,  // subject: a writer's GUID, other: a reader's: this one has been sent all that
                     // the writer had when they met
+  kTopic = 6,       // as kEndpoint: of topics that are made known by themselves, which Cyclone's
+                    // configuration asks for (EnableTopicDiscoveryEndpoints)
   kLiveliness = 5,  // subject: a writer's or a participant's GUID: asserted, or with kDdsGone lost
 };
 

@@ -138,15 +138,27 @@ std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint) {
   return texts.After(shared);
 }
 
-std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
+namespace {
+
+// The structure if all that it refers to is there.
+std::optional<shm::DdsEndpoint> SharedOf(std::span<const std::byte> payload) {
   shm::DdsEndpoint shared;
   if (payload.size() < sizeof shared) return std::nullopt;
   memcpy(&shared, payload.data(), sizeof shared);
+  const bool is_whole = TextsAreInside(payload, shared.qos) && IsInside(payload, shared.topic) &&
+                        IsInside(payload, shared.type) &&
+                        IsInside(payload, shared.type_information) &&
+                        IsInside(payload, shared.type_mapping);
+  return is_whole ? std::optional(shared) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
+  const std::optional<shm::DdsEndpoint> found = SharedOf(payload);
+  if (!found.has_value()) return std::nullopt;
+  const shm::DdsEndpoint& shared = *found;
   if (shared.kind != shm::kDdsWriter && shared.kind != shm::kDdsReader) return std::nullopt;
-  if (!TextsAreInside(payload, shared.qos) || !IsInside(payload, shared.type_information) ||
-      !IsInside(payload, shared.type_mapping)) {
-    return std::nullopt;
-  }
   auto topic = TextAt(payload, shared.topic), type = TextAt(payload, shared.type);
   if (!topic.has_value() || !type.has_value()) return std::nullopt;
   Endpoint endpoint;
@@ -156,6 +168,11 @@ std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
   endpoint.keyless = shared.keyless != 0;
   endpoint.qos = FromShared(shared.qos, endpoint.kind);
   return endpoint;
+}
+
+bool IsTopic(std::span<const std::byte> payload) {
+  const std::optional<shm::DdsEndpoint> found = SharedOf(payload);
+  return found.has_value() && found->kind == shm::kDdsTopic;
 }
 
 bool IsParticipant(std::span<const std::byte> payload) {

@@ -30,5 +30,6 @@ struct Endpoint {
 [[nodiscard]] std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload);
 // The same of a participant.
 [[nodiscard]] bool IsParticipant(std::span<const std::byte> payload);
+bool IsTopic(std::span<const std::byte> payload);
 
 }  // namespace tcs::dds

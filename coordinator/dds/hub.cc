@@ -49,7 +49,8 @@ bool IsReplaceable(const DdsMessage& header) {
 }
 
 bool IsNewsOfEntity(const DdsMessage& header) {
-  return header.kind == DdsKind::kParticipant || header.kind == DdsKind::kEndpoint;
+  return header.kind == DdsKind::kParticipant || header.kind == DdsKind::kEndpoint ||
+         header.kind == DdsKind::kTopic;
 }
 
 // The file cannot be made shorter by a program that has it, so that nobody's access fails.
@@ -263,7 +264,8 @@ std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
         header.to);
   }
   if (IsAnothers(GuidAt(header.subject), header.from) ||
-      (header.kind == DdsKind::kEndpoint && IsAnothers(GuidAt(header.other), header.from))) {
+      (IsNewsOfEntity(header) && header.kind != DdsKind::kParticipant &&
+       IsAnothers(GuidAt(header.other), header.from))) {
     return "speaks for a DDS participant of another program: that is lost; GUIDs must not be "
            "copied from one program into another";
   }

@@ -37,6 +37,7 @@ std::optional<std::string> WhatIsWrong(const DdsMessage& header,
   switch (header.kind) {
     case DdsKind::kParticipant:
     case DdsKind::kEndpoint:
+    case DdsKind::kTopic:
       if (payload.size() > kMostAnnounced) {
         return fmt::format(
             "has a DDS entity whose names and QoS take {} bytes, more than 1 MiB: "
@@ -48,6 +49,9 @@ std::optional<std::string> WhatIsWrong(const DdsMessage& header,
       }
       if (is_announced && header.kind == DdsKind::kEndpoint && !DecodeEndpoint(payload)) {
         return Complaint("about an endpoint that cannot be read");
+      }
+      if (is_announced && header.kind == DdsKind::kTopic && !IsTopic(payload)) {
+        return Complaint("about a topic that cannot be read");
       }
       return std::nullopt;
     case DdsKind::kSample:

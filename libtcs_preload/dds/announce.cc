@@ -52,6 +52,19 @@ void AnnounceWriter(const ddsi_writer& writer) {
   EndHistories(writer);
 }
 
+bool MakesTopicsKnown(const ddsi_domaingv& gv) {
+  return gv.config.enable_topic_discovery_endpoints != 0;
+}
+
+void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type) {
+  if (!MakesTopicsKnown(*topic.e.gv)) return;
+  const dds_qos_t& qos = *topic.definition->xqos;
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kTopic, NetworkDomain(*topic.e.gv), Guid::Of(topic.e.guid));
+  Guid::Of(topic.pp->e.guid).To(message.other);
+  Send(message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
+}
+
 void AnnounceReader(const ddsi_reader& reader) {
   AddReader(reader);
   SendEndpoint(reader, shm::kDdsReader);
@@ -60,6 +73,16 @@ void AnnounceReader(const ddsi_reader& reader) {
 void AnnounceChange(const ddsi_writer& writer) { SendEndpoint(writer, shm::kDdsWriter); }
 
 void AnnounceChange(const ddsi_reader& reader) { SendEndpoint(reader, shm::kDdsReader); }
+
+// Its type is as it was, which the topic itself does not have.
+void AnnounceChange(const ddsi_topic& topic) {
+  if (!MakesTopicsKnown(*topic.e.gv)) return;
+  const dds_qos_t& qos = *topic.definition->xqos;
+  if (ddsi_sertype* type = ReferType(topic.e.gv->config.domainId, qos.topic_name, qos.type_name)) {
+    AnnounceTopic(topic, type);
+    ddsi_sertype_unref(type);
+  }
+}
 
 void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid) {
   shm::DdsMessage message = MessageOf(kind, domain, guid);

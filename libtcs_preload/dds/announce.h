@@ -12,6 +12,10 @@ void AnnounceParticipant(const ddsi_participant& participant);
 
 // A writer that is new is made known (program.h) and told of; one that is known is left alone.
 void AnnounceWriter(const ddsi_writer& writer);
+// Topics, in a domain whose configuration asks for it (EnableTopicDiscoveryEndpoints).
+bool MakesTopicsKnown(const ddsi_domaingv& gv);
+void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type);
+void AnnounceChange(const ddsi_topic& topic);
 void AnnounceReader(const ddsi_reader& reader);
 
 // The same again with other QoS. Who matches whom is not changed by that: Cyclone refuses changes

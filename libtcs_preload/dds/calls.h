@@ -22,6 +22,8 @@
   X(dds_get_children)              \
   X(dds_find_topic)                \
   X(dds_find_topic_scoped)         \
+  X(dds_create_topic_descriptor)   \
+  X(dds_get_typeobj)               \
   X(dds_entity_pin)                \
   X(dds_reader_data_available_cb)  \
   X(ddsi_new_participant)          \
@@ -34,6 +36,8 @@
   X(ddsi_delete_reader)            \
   X(ddsi_update_reader_qos)        \
   X(ddsi_new_topic)                \
+  X(ddsi_update_topic_qos)         \
+  X(ddsi_delete_topic)             \
   X(ddsi_iid_gen)                  \
   X(ddsrt_prng_makeseed)           \
   X(rtps_config_prep)

@@ -153,12 +153,28 @@ dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* p
                       const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
                       bool is_builtin, bool* is_new) {
   if (!IsShadow(participant->e.gv, participant->e.guid)) {
-    return Real().ddsi_new_topic(topic, guid, participant, name, type, qos, is_builtin, is_new);
+    const dds_return_t result =
+        Real().ddsi_new_topic(topic, guid, participant, name, type, qos, is_builtin, is_new);
+    if (result >= 0 && !is_builtin) AnnounceTopic(**topic, type);
+    return result;
   }
   *topic = nullptr;
   *guid = {};
   *is_new = false;
   return DDS_RETCODE_OK;
+}
+
+void UpdateTopic(ddsi_topic* topic, const dds_qos_t* qos) {
+  Real().ddsi_update_topic_qos(topic, qos);
+  if (!IsShadow(topic->e.gv, topic->e.guid)) AnnounceChange(*topic);
+}
+
+dds_return_t DeleteTopic(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
+  const dds_return_t result = Real().ddsi_delete_topic(gv, guid);
+  if (result >= 0 && MakesTopicsKnown(*gv) && !IsShadow(gv, *guid)) {
+    AnnounceGone(shm::DdsKind::kTopic, NetworkDomain(*gv), Guid::Of(*guid));
+  }
+  return result;
 }
 
 }  // namespace tcs::dds

@@ -26,5 +26,7 @@ void UpdateReader(ddsi_reader* reader, const dds_qos_t* qos);
 dds_return_t NewTopic(ddsi_topic** topic, ddsi_guid_t* guid, ddsi_participant* participant,
                       const char* name, const ddsi_sertype* type, const dds_qos_t* qos,
                       bool is_builtin, bool* is_new);
+void UpdateTopic(ddsi_topic* topic, const dds_qos_t* qos);
+dds_return_t DeleteTopic(ddsi_domaingv* gv, const ddsi_guid_t* guid);
 
 }  // namespace tcs::dds

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/catch_up.h"
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
@@ -63,6 +64,32 @@ bool IsTransientLocal(const dds_qos_t* qos) {
   return durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
 }
 
+void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_topicdata(from, &data, &size)) return;
+  dds_qset_topicdata(to, data, size);
+  dds_free(data);
+}
+
+// Takes the type over.
+dds_entity_t CreateTopicOf(dds_entity_t participant, const std::string& name, ddsi_sertype* type,
+                           const dds_qos_t* qos) {
+  ddsi_sertype* consumed = type;
+  const dds_entity_t topic =
+      Real().dds_create_topic_sertype(participant, name.c_str(), &consumed, qos, nullptr, nullptr);
+  if (topic <= 0) ddsi_sertype_unref(type);
+  return topic;
+}
+
+void SayUnreadable(const DecodedEndpoint& what, bool has_been_said) {
+  if (has_been_said) return;
+  const bool is_nodes = what.topic == "ros_discovery_info";
+  Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ%s",
+      what.topic.c_str(), what.type.c_str(),
+      is_nodes ? "; say in the scenario which release of ROS 2 they have, like ros: humble" : "");
+}
+
 }  // namespace
 
 void Mirrors::Handle(const shm::DdsMessage& message, const std::byte* payload) {
@@ -73,6 +100,9 @@ void Mirrors::Handle(const shm::DdsMessage& message, const std::byte* payload) {
       return;
     case shm::DdsKind::kEndpoint:
       HandleEndpoint(message, Payload(payload, payload + message.payload_size));
+      return;
+    case shm::DdsKind::kTopic:
+      HandleTopic(message, Payload(payload, payload + message.payload_size));
       return;
     case shm::DdsKind::kSample:
       HandleSample(message, payload);
@@ -125,6 +155,34 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
   MakeEndpoint(guid, endpoint);
 }
 
+void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
+  const Guid guid = Guid::FromBytes(message.subject);
+  Topic& topic = topics_[guid];
+  if ((message.flags & shm::kDdsGone) != 0) {
+    EndTopic(topic);
+    topics_.erase(guid);
+    return;
+  }
+  if (topic.payload != payload) {
+    EndTopic(topic);
+    topic.payload = std::move(payload);
+    topic.what = DecodeEndpoint(topic.payload);
+  }
+  topic.participant = Guid::FromBytes(message.other);
+  topic.domain = message.domain;
+  MakeTopic(guid, topic);
+}
+
+void Mirrors::EndTopic(Topic& topic) {
+  for (const auto& [domain, inner] : topic.shadows) {
+    if (ddsi_domaingv* gv = DomainOf(domain)) {
+      const Awake awake(gv);
+      Real().ddsi_delete_topic(gv, &inner);
+    }
+  }
+  topic.shadows.clear();
+}
+
 // Some policies are the publisher's, the subscriber's or the topic's.
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
@@ -143,6 +201,7 @@ void Mirrors::RemoveParticipant(const Guid& guid) {
     EndShadow(guid, found->second, found->second.shadows.begin()->first);
   }
   participants_.erase(found);
+  std::erase_if(topics_, [&guid](const auto& topic) { return topic.second.participant == guid; });
   std::erase_if(endpoints_,
                 [&guid](const auto& endpoint) { return endpoint.second.participant == guid; });
 }
@@ -163,6 +222,9 @@ void Mirrors::EndShadow(const Guid& guid, Participant& participant, std::uint32_
   for (auto& [key, endpoint] : endpoints_) {
     if (endpoint.participant == guid) endpoint.shadows.erase(domain);
   }
+  for (auto& [key, topic] : topics_) {
+    if (topic.participant == guid) EndTopic(topic);
+  }
   Real().dds_delete(shadow);
   RemoveShadow(domain, guid);
 }
@@ -172,6 +234,7 @@ void Mirrors::Complete() {
     Handle(news.message, news.payload.data());
   }
   for (auto& [guid, participant] : participants_) MakeParticipant(guid, participant);
+  for (auto& [guid, topic] : topics_) MakeTopic(guid, topic);
   for (auto& [guid, endpoint] : endpoints_) MakeEndpoint(guid, endpoint);
 }
 
@@ -238,6 +301,42 @@ void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endp
   }
 }
 
+void Mirrors::MakeTopic(const Guid& guid, Topic& topic) {
+  if (topic.what.topic.empty()) return;
+  for (ddsi_domaingv* gv : DomainsCalled(topic.domain)) MakeTopicIn(gv, guid, topic);
+}
+
+// Where the program's configuration asks for others' topics as well.
+void Mirrors::MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic) {
+  const std::uint32_t domain = gv->config.domainId;
+  const auto owner = participants_.find(topic.participant);
+  if (topic.shadows.contains(domain) || !MakesTopicsKnown(*gv)) return;
+  if (owner == participants_.end() || !owner->second.shadows.contains(domain)) return;
+  SetNextEntity(gv, topic.participant, guid);
+  const Qos qos(DecodeQos(topic.payload, false));
+  const Awake awake(gv);
+  const ddsi_guid_t participant_guid = topic.participant.Inner();
+  ddsi_participant* participant =
+      entidx_lookup_participant_guid(gv->entity_index, &participant_guid);
+  if (participant == nullptr) return;
+  const DecodedEndpoint& what = topic.what;
+  ddsi_sertype* type = NewOtherType(what.type, what.keyless, what.type_code);
+  ddsi_topic* made = nullptr;
+  ddsi_guid_t inner;
+  bool is_new = false;
+  if (Real().ddsi_new_topic(&made, &inner, participant, what.topic.c_str(), type, qos.get(), false,
+                            &is_new) >= 0) {
+    topic.shadows[domain] = inner;
+  }
+  ddsi_sertype_unref(type);
+  if (!is_new) return;
+  // Who looks for a topic waits for this.
+  ddsrt_mutex_lock(&gv->new_topic_lock);
+  ++gv->new_topic_version;
+  ddsrt_cond_broadcast(&gv->new_topic_cond);
+  ddsrt_mutex_unlock(&gv->new_topic_lock);
+}
+
 // The program's own if it is the same; null: the program does not look at the topic.
 ddsi_sertype* Mirrors::TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what) {
   const std::uint32_t domain = gv->config.domainId;
@@ -259,19 +358,21 @@ dds_entity_t Mirrors::TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint,
   if (found != participant.topics.end()) return found->entity;
   ddsi_sertype* type = TypeOf(gv, what);
   if (type == nullptr) return 0;
+  // Topics of one name have the same QoS, which that of other types suits, whatever it is.
   const Qos topic_qos(dds_create_qos());
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (dds_qget_topicdata(qos, &data, &size)) {
-    dds_qset_topicdata(topic_qos.get(), data, size);
-    dds_free(data);
+  const auto first = std::ranges::find(participant.topics, what.topic, &ShadowTopic::name);
+  if (first != participant.topics.end()) {
+    dds_get_qos(first->entity, topic_qos.get());
+  } else {
+    CopyTopicData(qos, topic_qos.get());
   }
   SetNextEntityOutOfTheWay(gv, endpoint.participant);
-  ddsi_sertype* consumed = type;
-  const dds_entity_t topic = Real().dds_create_topic_sertype(
-      participant.entity, what.topic.c_str(), &consumed, topic_qos.get(), nullptr, nullptr);
+  dds_entity_t topic = CreateTopicOf(participant.entity, what.topic, type, topic_qos.get());
+  if (topic <= 0 && first != participant.topics.end()) {
+    type = NewOtherType(what.type, what.keyless, what.type_code);
+    topic = CreateTopicOf(participant.entity, what.topic, type, topic_qos.get());
+  }
   if (topic <= 0) {
-    ddsi_sertype_unref(type);
     Say("cannot mirror DDS topic %s: %s", what.topic.c_str(), dds_strretcode(topic));
     return topic;
   }
@@ -333,19 +434,15 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
       ddsi_serdata_from_ser_iov(shadow.type, static_cast<ddsi_serdata_kind>(message.sample_kind), 1,
                                 &bytes, message.payload_size);
   if (sample == nullptr) {
-    if (!endpoint.warned) {
-      const bool is_nodes = endpoint.what.topic == "ros_discovery_info";
-      Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ%s",
-          endpoint.what.topic.c_str(), endpoint.what.type.c_str(),
-          is_nodes ? "; say in the scenario which release of ROS 2 they have, like ros: humble"
-                   : "");
-    }
-    endpoint.warned = true;
+    SayUnreadable(endpoint.what, std::exchange(endpoint.warned, true));
     return;
   }
   sample->timestamp.v = message.source_timestamp_ns;
   sample->statusinfo = message.status_info;
-  if (IsOfOtherType(sample)) HoldInstance(gv, sample);
+  if (IsOfOtherType(sample)) {
+    HoldInstance(gv, sample);
+    LookAt(gv, endpoint, sample);
+  }
 
   const Guid reader = Guid::FromBytes(message.other);
   std::vector<Guid> waiting;
@@ -360,6 +457,21 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
     while (!StoreIn(gv, guid, shadow.inner, sample)) dds_sleepfor(kTryAgain);
   }
   ddsi_serdata_unref(sample);
+}
+
+// Types without XTypes are compared by their names only.
+void Mirrors::LookAt(const ddsi_domaingv* gv, Endpoint& endpoint, const ddsi_serdata* sample) {
+  const DecodedEndpoint& what = endpoint.what;
+  if (endpoint.looked_at || !what.type_code.information.empty()) return;
+  ddsi_sertype* own = ReferType(gv->config.domainId, what.topic, what.type);
+  if (own == nullptr) return;
+  endpoint.looked_at = true;
+  if (ddsi_serdata* read = ddsi_serdata_ref_as_type(own, const_cast<ddsi_serdata*>(sample))) {
+    ddsi_serdata_unref(read);
+  } else {
+    SayUnreadable(what, std::exchange(endpoint.warned, true));
+  }
+  ddsi_sertype_unref(own);
 }
 
 // Samples of others' types are all one instance, which Cyclone would otherwise make and collect for

@@ -70,12 +70,22 @@ class Mirrors {
     std::map<std::uint32_t, EndpointShadow> shadows;
     bool not_alive = false;  // its lease is over, and it has not written since
     bool warned = false;
+    bool looked_at = false;  // one of its samples, whether the program's type of that name reads it
+  };
+  // Of those that are made known by themselves; without a handle in the program.
+  struct Topic {
+    Guid participant;
+    std::uint32_t domain;
+    Payload payload;
+    DecodedEndpoint what;
+    std::map<std::uint32_t, ddsi_guid_t> shadows;
   };
   using Participants = std::unordered_map<Guid, Participant, GuidHash>;
   using Endpoints = std::unordered_map<Guid, Endpoint, GuidHash>;
 
   void HandleParticipant(const shm::DdsMessage& message, Payload payload);
   void HandleEndpoint(const shm::DdsMessage& message, Payload payload);
+  void HandleTopic(const shm::DdsMessage& message, Payload payload);
   void HandleSample(const shm::DdsMessage& message, const std::byte* payload);
   void HandleHistoryEnd(const shm::DdsMessage& message);
   void HandleLiveliness(const shm::DdsMessage& message);
@@ -89,6 +99,9 @@ class Mirrors {
   void MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant& participant);
   void MakeEndpoint(const Guid& guid, Endpoint& endpoint);
   void MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint);
+  void MakeTopic(const Guid& guid, Topic& topic);
+  void MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic);
+  static void EndTopic(Topic& topic);
   dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, ParticipantShadow& participant,
                        const dds_qos_t* qos);
   static ddsi_sertype* TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what);
@@ -99,11 +112,13 @@ class Mirrors {
   void Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
               const shm::DdsMessage& message, const std::byte* payload);
 
+  static void LookAt(const ddsi_domaingv* gv, Endpoint& endpoint, const ddsi_serdata* sample);
   void HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample);
 
   std::set<std::uint32_t> held_in_;  // domains, by the program's numbers
   Participants participants_;
   Endpoints endpoints_;
+  std::unordered_map<Guid, Topic, GuidHash> topics_;
 };
 
 }  // namespace tcs::dds

@@ -14,7 +14,8 @@ namespace tcs::dds {
 // The caller owns it.
 ddsi_sertype* NewOtherType(const std::string& name, bool keyless, const TypeCode& code);
 
-// Whether the sample is of such a type. Its key is not known then: all samples are one instance.
+// Whether the sample is of such a type. Its key is not known then: all samples are one instance,
+// and only the writer's own type tells them apart.
 bool IsOfOtherType(const ddsi_serdata* sample);
 
 // Whether the two are one sample, of which Cyclone has made one of another type. Of samples that

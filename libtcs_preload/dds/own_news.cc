@@ -24,7 +24,10 @@ State& Get() {
 
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
   const bool is_participant = message.kind == shm::DdsKind::kParticipant;
-  if (!is_participant && message.kind != shm::DdsKind::kEndpoint) return;
+  if (!is_participant && message.kind != shm::DdsKind::kEndpoint &&
+      message.kind != shm::DdsKind::kTopic) {
+    return;
+  }
   const Guid subject = Guid::FromBytes(message.subject);
   State& state = Get();
   const std::lock_guard lock(state.mutex);

@@ -322,9 +322,7 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
     return is_shadow ? Carries::kNo : Carries::kUnknownWriter;
   }
   Writer& writer = found->second;
-  // Which of several instances it is of is not known of such a type.
-  const std::uint32_t keeps_last = IsOfOtherType(sample) ? 0 : writer.keeps_last;
-  *keeps = {keeps_last, LockedHasPromised(state, writer, tap.process)};
+  *keeps = {writer.keeps_last, LockedHasPromised(state, writer, tap.process)};
   Shipped& shipped = writer.shipped[tap.process];
   if (shipped.by != &tap && shipped.sample != nullptr && IsSameSample(shipped.sample, sample)) {
     return Carries::kNo;

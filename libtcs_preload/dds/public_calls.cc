@@ -96,14 +96,18 @@ dds_return_t LookUpParticipants(dds_domainid_t domain, dds_entity_t* participant
 
 namespace {
 
+void SeeWhatThereIs() {
+  if (LookAround()) LookAgain();
+  if (!IsDeliverer() && !IsListening()) TheLink().sync();
+}
+
 // While the calling thread looks for topics in all participants of a domain.
 thread_local bool t_finding;
 
 class Finding {
  public:
   Finding() {
-    if (LookAround()) LookAgain();
-    if (!IsDeliverer() && !IsListening()) TheLink().sync();
+    SeeWhatThereIs();
     t_finding = true;
   }
   ~Finding() { t_finding = false; }
@@ -123,6 +127,19 @@ dds_entity_t FindTopicScoped(dds_find_scope_t scope, dds_entity_t participant, c
                              dds_duration_t timeout) {
   const Finding finding;
   return Real().dds_find_topic_scoped(scope, participant, name, timeout);
+}
+
+dds_return_t CreateTopicDescriptor(dds_find_scope_t scope, dds_entity_t participant,
+                                   const dds_typeinfo_t* type, dds_duration_t timeout,
+                                   dds_topic_descriptor_t** descriptor) {
+  SeeWhatThereIs();
+  return Real().dds_create_topic_descriptor(scope, participant, type, timeout, descriptor);
+}
+
+dds_return_t GetTypeObject(dds_entity_t entity, const dds_typeid_t* type, dds_duration_t timeout,
+                           dds_typeobj_t** object) {
+  SeeWhatThereIs();
+  return Real().dds_get_typeobj(entity, type, timeout, object);
 }
 
 // The topics of shadows are not the domain's.

@@ -19,6 +19,11 @@ dds_entity_t FindTopic(dds_find_scope_t scope, dds_entity_t participant, const c
                        const dds_typeinfo_t* type, dds_duration_t timeout);
 dds_entity_t FindTopicScoped(dds_find_scope_t scope, dds_entity_t participant, const char* name,
                              dds_duration_t timeout);
+dds_return_t CreateTopicDescriptor(dds_find_scope_t scope, dds_entity_t participant,
+                                   const dds_typeinfo_t* type, dds_duration_t timeout,
+                                   dds_topic_descriptor_t** descriptor);
+dds_return_t GetTypeObject(dds_entity_t entity, const dds_typeid_t* type, dds_duration_t timeout,
+                           dds_typeobj_t** object);
 dds_return_t PinEntity(dds_entity_t handle, dds_entity** entity);
 dds_return_t GetChildren(dds_entity_t entity, dds_entity_t* children, std::size_t size);
 

@@ -68,6 +68,35 @@ bool Announced(const Tap& tap, const ddsi_guid_t& guid) {
   return true;
 }
 
+// While it lives, the instance that a sample is of for its writer: a tap of another type does not
+// know keys.
+class InstanceOfWriter {
+ public:
+  InstanceOfWriter(const Tap& tap, const ddsi_guid_t& guid, ddsi_serdata* sample,
+                   ddsi_tkmap_instance* instance)
+      : map_(tap.gv->m_tkmap), instance_(instance) {
+    if (!IsOfOtherType(sample)) return;
+    const ddsi_writer* writer = entidx_lookup_writer_guid(tap.gv->entity_index, &guid);
+    if (writer == nullptr || IsShadow(tap.gv, guid)) return;
+    ddsi_serdata* as_written = ddsi_serdata_ref_as_type(writer->type, sample);
+    if (as_written == nullptr) return;
+    held_ = ddsi_tkmap_lookup_instance_ref(map_, as_written);
+    ddsi_serdata_unref(as_written);
+    if (held_ != nullptr) instance_ = held_;
+  }
+  ~InstanceOfWriter() {
+    if (held_ != nullptr) ddsi_tkmap_instance_unref(map_, held_);
+  }
+  InstanceOfWriter(const InstanceOfWriter&) = delete;
+  InstanceOfWriter& operator=(const InstanceOfWriter&) = delete;
+  ddsi_tkmap_instance* get() const { return instance_; }
+
+ private:
+  ddsi_tkmap* map_;
+  ddsi_tkmap_instance* instance_;
+  ddsi_tkmap_instance* held_ = nullptr;
+};
+
 bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
            ddsi_tkmap_instance* instance) {
   Tap& tap = TapOf(rhc);
@@ -78,10 +107,11 @@ bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
     return true;
   }
   if (!tap.catching_up && HasHad(tap, sample)) return true;
-  Carried carried{{}, instance->m_iid};
-  Carries carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
+  const InstanceOfWriter of(tap, info->guid, sample, instance);
+  Carried carried{{}, of.get()->m_iid};
+  Carries carries = CarriesSample(info->guid, tap, sample, of.get(), &carried.keeps);
   if (carries == Carries::kUnknownWriter && Announced(tap, info->guid)) {
-    carries = CarriesSample(info->guid, tap, sample, instance, &carried.keeps);
+    carries = CarriesSample(info->guid, tap, sample, of.get(), &carried.keeps);
   }
   if (carries == Carries::kYes) Ship(tap, info->guid, *sample, &carried);
   if (tap.catching_up && carries != Carries::kUnknownWriter && !IsShadow(tap.gv, info->guid)) {

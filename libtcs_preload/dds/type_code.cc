@@ -2,8 +2,12 @@
 
 #include <dds/ddsi/ddsi_cdrstream.h>
 #include <dds/ddsi/ddsi_typelib.h>
+#include <dds/ddsi/ddsi_xt_impl.h>
 #include <dds/ddsi/ddsi_xt_typeinfo.h>
 #include <dds/ddsi/ddsi_xt_typemap.h>
+
+#include <algorithm>
+#include <utility>
 
 namespace tcs::dds {
 namespace {
@@ -34,6 +38,20 @@ ddsi_sertype_cdr_data_t CdrOf(const Payload& bytes) {
           reinterpret_cast<std::uint8_t*>(const_cast<std::byte*>(bytes.data()))};
 }
 
+// As those of a topic are. Cyclone aborts the program at identifiers of a kind that it does not
+// know.
+bool NamesTypesByHash(const ddsi_typeinfo_t& information) {
+  const auto all_are = [](const DDS_XTypes_TypeIdentifierWithDependencies& ids,
+                          DDS_XTypes_TypeKind kind) {
+    const auto& others = ids.dependent_typeids;
+    return ids.typeid_with_size.type_id._d == kind &&
+           std::all_of(others._buffer, others._buffer + others._length,
+                       [kind](const auto& other) { return other.type_id._d == kind; });
+  };
+  return all_are(information.x.minimal, DDS_XTypes_EK_MINIMAL) &&
+         all_are(information.x.complete, DDS_XTypes_EK_COMPLETE);
+}
+
 void Delete(ddsi_typeinfo_t* information) {
   if (information == nullptr) return;
   ddsi_typeinfo_fini(information);
@@ -61,7 +79,8 @@ TypeCode Checked(TypeCode code) {
                            IsReadable(code.mapping, DDS_XTypes_TypeMapping_desc);
   if (!is_readable) return {};
   ddsi_typeinfo_t* information = InformationOf(code);
-  const bool is_valid = information != nullptr && ddsi_typeinfo_valid(information);
+  const bool is_valid =
+      information != nullptr && NamesTypesByHash(*information) && ddsi_typeinfo_valid(information);
   Delete(information);
   return is_valid ? std::move(code) : TypeCode{};
 }

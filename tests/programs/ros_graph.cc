@@ -14,11 +14,8 @@
 #include <string>
 
 #include "dds/dds.h"
-#include "geometry_msgs.h"
-#include "nav_msgs.h"
 #include "rmw_dds_common.h"
 #include "rmw_dds_common_iron.h"
-#include "rosgraph_msgs.h"
 
 namespace {
 
@@ -99,14 +96,13 @@ void Show(const dds_topic_descriptor_t& described) {
   dds_topic_descriptor_t type = described;
   type.m_typename = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_";
   const dds_entity_t participant = OrDie(dds_create_participant(0, nullptr, nullptr), "join");
-  for (const auto& [topic, descriptor] :
-       {std::pair("rt/odom", &nav_msgs_msg_dds__Odometry__desc),
-        std::pair("rt/wrench", &geometry_msgs_msg_dds__Wrench__desc),
-        std::pair("rt/adrift", &nav_msgs_msg_dds__Odometry__desc),
-        std::pair("rt/clock", &rosgraph_msgs_msg_dds__Clock__desc)}) {
-    OrDie(dds_create_topic(participant, descriptor, topic, nullptr, nullptr), topic);
-  }
-  // As rmw_cyclonedds asks for it.
+  const auto built_in = [participant](dds_entity_t which) {
+    return OrDie(dds_create_reader(participant, which, nullptr, nullptr), "read built-in topics");
+  };
+  const dds_entity_t participants = built_in(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
+  const dds_entity_t writers = built_in(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
+  const dds_entity_t readers = built_in(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
+  // As rmw_cyclonedds asks for it, which knows no other topic yet.
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_INFINITY);
   dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
@@ -114,12 +110,6 @@ void Show(const dds_topic_descriptor_t& described) {
   const dds_entity_t topic =
       OrDie(dds_create_topic(participant, &type, "ros_discovery_info", nullptr, nullptr), "topic");
   const dds_entity_t info = OrDie(dds_create_reader(participant, topic, qos, nullptr), "read");
-  const auto built_in = [participant](dds_entity_t which) {
-    return OrDie(dds_create_reader(participant, which, nullptr, nullptr), "read built-in topics");
-  };
-  const dds_entity_t participants = built_in(DDS_BUILTIN_TOPIC_DCPSPARTICIPANT);
-  const dds_entity_t writers = built_in(DDS_BUILTIN_TOPIC_DCPSPUBLICATION);
-  const dds_entity_t readers = built_in(DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION);
   dds_sleepfor(DDS_MSECS(100));
 
   Graph graph;

@@ -36,7 +36,8 @@ void Writer(Process& self) {
   };
   write_all(1);
   self.peer.Meet("written");
-  for (const dds_entity_t writer : {a, b, c, d}) WaitForReaders(writer, 2);
+  WaitForReaders(a, 3);
+  for (const dds_entity_t writer : {b, c, d}) WaitForReaders(writer, 2);
   self.peer.Meet("matched");
   write_all(2);
   const dds_evolved_New gone{1, 0, 0};
@@ -107,6 +108,8 @@ struct Readers {
 
 void Reader(Process& self) {
   Readers early(self);
+  // Two types in one process, each of whose readers gets a sample once.
+  const dds_entity_t beside = Readers::Of(self, "a", dds_evolved_Old_desc);
   const dds_entity_t other = Readers::Of(self, "e", dds_evolved_Old_desc);
   dds_qos_t* qos = dds_create_qos();
   dds_copy_qos(qos, Lasting().get());
@@ -117,10 +120,12 @@ void Reader(Process& self) {
   dds_delete_qos(qos);
   self.peer.Meet("written");
   early.TakeAll(1);
+  Take<dds_evolved_Old>(beside, "old beside it", 1, TellOld);
   Readers late(self);
   late.TakeAll(1);
   self.peer.Meet("matched");
   early.TakeAll(2);
+  Take<dds_evolved_Old>(beside, "old beside it", 1, TellOld);
   WaitUntil("all is told", [&] {
     dds_requested_incompatible_qos_status_t status;
     OK(dds_get_requested_incompatible_qos_status(strict, &status));

@@ -144,6 +144,11 @@ void Reader(Process& self) {
     Event("the topic itself: %s",
           Code(dds_find_topic(scope, self.participant, "a", information, DDS_MSECS(100))));
   }
+  const dds_entity_t topics =
+      OK(dds_create_reader(self.participant, DDS_BUILTIN_TOPIC_DCPSTOPIC, nullptr, nullptr));
+  void* seen[1] = {};
+  dds_sample_info_t info;
+  Event("topics: %d", OK(dds_take(topics, seen, &info, 1, 1)));
   dds_topic_descriptor_t* descriptor = nullptr;
   OK(dds_create_topic_descriptor(DDS_FIND_SCOPE_GLOBAL, self.participant, information, DDS_SECS(5),
                                  &descriptor));

@@ -96,6 +96,9 @@ TEST(EndpointCode, WhatIsNoEndpointIsRefused) {
   EXPECT_TRUE(is_refused([](shm::DdsEndpoint& shared) { shared.kind = 3; }));
   EXPECT_TRUE(is_refused([](shm::DdsEndpoint& shared) { shared.topic.offset = UINT32_MAX; }));
   EXPECT_TRUE(is_refused([](shm::DdsEndpoint& shared) { shared.type.size = UINT32_MAX; }));
+  EXPECT_TRUE(is_refused([](shm::DdsEndpoint& shared) { shared.type_mapping.size = 1u << 20; }));
+  EXPECT_TRUE(
+      is_refused([](shm::DdsEndpoint& shared) { shared.type_information.offset = 1u << 20; }));
   // Their sum begins again at 0.
   EXPECT_TRUE(is_refused([](shm::DdsEndpoint& shared) { shared.topic = {UINT32_MAX - 3, 8}; }));
 }

@@ -7,6 +7,9 @@
 #include <cstring>
 #include <memory>
 
+#include "libtcs_preload/dds/other_type.h"
+#include "unknown.h"
+
 namespace tcs::dds {
 namespace {
 
@@ -64,8 +67,21 @@ Qos All() {
   return all;
 }
 
+// As idlc has generated it.
+TypeCode ShapeCode() {
+  const auto bytes = [](const dds_type_meta_ser& meta) {
+    const auto* start = reinterpret_cast<const std::byte*>(meta.data);
+    return Payload(start, start + meta.sz);
+  };
+  return {bytes(dds_unknown_Shape_desc.type_information),
+          bytes(dds_unknown_Shape_desc.type_mapping)};
+}
+
 Payload Encoded(const dds_qos_t* qos) {
-  return EncodeEndpoint(shm::kDdsWriter, true, "rt/topic", "a::Type", qos);
+  ddsi_sertype* type = NewOtherType("a::Type", true, ShapeCode());
+  Payload payload = EncodeEndpoint(shm::kDdsWriter, "rt/topic", type, qos);
+  ddsi_sertype_unref(type);
+  return payload;
 }
 
 TEST(QosCode, KeepsAllPolicies) {
@@ -99,6 +115,36 @@ TEST(QosCode, KeepsWhatTheEndpointIs) {
   EXPECT_EQ(endpoint.kind, shm::kDdsWriter);
   EXPECT_EQ(endpoint.topic, "rt/topic");
   EXPECT_EQ(endpoint.type, "a::Type");
+  EXPECT_TRUE(endpoint.keyless);
+  EXPECT_EQ(endpoint.type_code, ShapeCode());
+}
+
+TEST(QosCode, TypesThatCannotBeReadAreNone) {
+  const TypeCode whole = ShapeCode();
+  EXPECT_EQ(Checked(whole), whole);
+  EXPECT_EQ(Checked({whole.information, {}}), TypeCode{});
+  for (std::size_t size = 0; size < whole.mapping.size(); ++size) {
+    TypeCode cut = whole;
+    cut.mapping.resize(size);
+    EXPECT_EQ(Checked(cut), TypeCode{}) << size;
+  }
+  for (std::size_t at = 0; at < whole.information.size(); ++at) {
+    TypeCode wrong = whole;
+    wrong.information[at] = std::byte{0xff};
+    static_cast<void>(Checked(wrong));
+  }
+}
+
+TEST(QosCode, ATypeIsOneIfItsIdentifiersAre) {
+  ddsi_sertype* type = NewOtherType("another::Name", true, ShapeCode());
+  ddsi_sertype* without = NewOtherType("a::Type", true, {});
+  EXPECT_TRUE(IsOfType(type, ShapeCode()));
+  EXPECT_TRUE(IsOfType(type, {}));
+  EXPECT_FALSE(IsOfType(without, ShapeCode()));
+  EXPECT_EQ(CodeOf(type), ShapeCode());
+  EXPECT_EQ(CodeOf(without), TypeCode{});
+  ddsi_sertype_unref(type);
+  ddsi_sertype_unref(without);
 }
 
 // Whatever a payload lacks or says: what is read stays inside it.
