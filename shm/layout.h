@@ -25,7 +25,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 9;
+inline constexpr std::uint32_t kVersion = 10;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -191,7 +191,8 @@ struct Notification {
 static_assert(sizeof(Notification) == 312);
 
 // What the shim leaves in the last argument, unused, of the system calls that it makes itself: they
-// are the kernel's. All others that wait or read time are handed to the coordinator.
+// are the kernel's; in recvfrom and sendto it is in the upper half of the flags. All others that
+// wait or read time are handed to the coordinator.
 inline constexpr std::uint32_t kOwnCallMark = 0x7c57a7e1;
 
 // Gate values.

@@ -122,7 +122,7 @@ class Engine {
   void HandleRawCall(Task& task, const TrappedCall& call);
   std::int64_t ReadRawClock(const Task& task, const TrappedCall& call);
   std::int64_t SleepRaw(Task& task, const TrappedCall& call);
-  void TransferRaw(Task& task, const TrappedCall& call);
+  void SignalRaw(Task& task);
   void HoldRaw(Task& task, shm::NotificationKind kind);
   std::int64_t PollRaw(Task& task, const TrappedCall& call);
   bool RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns);
@@ -130,6 +130,12 @@ class Engine {
   void ClearRawResult(const Task& task, const TrappedCall& call);
   void AwaitChildRaw(Task& task, const TrappedCall& call);
   std::int64_t ScheduleRaw(Task& task, const TrappedCall& call);
+
+  // Those that transfer data (raw_transfers.cc).
+  void TransferRaw(Task& task, const TrappedCall& call);
+
+  // Others that they concern (follow_ups.cc).
+  void DoFollowUp(Task& task, std::int64_t call_ns);
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);

@@ -2,22 +2,20 @@
 // symbol sees them. What they wait for is waited for here; then the kernel carries them out, and
 // does not have to wait.
 #include <errno.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
-#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 
+#include "coordinator/core/borrowed.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
@@ -51,32 +49,6 @@ bool Write(const Task& task, std::uint64_t address, const T& value) {
 bool IsRealtime(std::uint64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
 }
-
-// A descriptor of a client, for as long as it is looked at.
-class Borrowed {
- public:
-  Borrowed(const Task& task, int fd) : fd_(DuplicateFd(task.process->pidfd, fd)) {}
-  ~Borrowed() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Borrowed(const Borrowed&) = delete;
-  Borrowed& operator=(const Borrowed&) = delete;
-
-  // False for files and folders, and for what is no descriptor.
-  bool CanWait() const {
-    struct stat status;
-    if (fd_ < 0 || fstat(fd_, &status) != 0) return false;
-    return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
-  }
-  bool IsNonBlocking() const { return (fcntl(fd_, F_GETFL) & O_NONBLOCK) != 0; }
-  bool IsReady(short events) const {
-    pollfd probe{fd_, events, 0};
-    return poll(&probe, 1, 0) != 0;
-  }
-
- private:
-  int fd_;
-};
 
 }  // namespace
 
@@ -115,21 +87,13 @@ std::int64_t Engine::SleepRaw(Task& task, const TrappedCall& call) {
   return 0;
 }
 
-// Goes on once it is ready, or can find all that was sent until now.
-void Engine::TransferRaw(Task& task, const TrappedCall& call) {
-  const bool reads = call.number == SYS_read || call.number == SYS_readv;
-  const short events = reads ? POLLIN : POLLOUT;
-  const auto number = static_cast<int>(call.args[0]);
+// As the shim does it for those that it sees; and those that the C library makes for it inside come
+// here, too.
+void Engine::SignalRaw(Task& task) {
   task.trap_continues = true;
-  const Borrowed fd(task, number);
-  if (!fd.CanWait()) return;
-  if (fd.IsNonBlocking() || fd.IsReady(events)) {
-    HoldRaw(task, reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
-    return;
-  }
-  const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  task.trap_wait = TrapWait::kFds;
-  WatchFds(task, &waited, 1);
+  if (Slot(task).signals.load() != 0) return;
+  task.follow_up = FollowUp::kSignals;
+  HoldRaw(task, shm::NotificationKind::kWrite);
 }
 
 void Engine::HoldRaw(Task& task, shm::NotificationKind kind) {
@@ -326,6 +290,15 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_readv:
     case SYS_write:
     case SYS_writev:
+    case SYS_recvfrom:
+    case SYS_recvmsg:
+    case SYS_recvmmsg:
+    case SYS_sendto:
+    case SYS_sendmsg:
+    case SYS_sendmmsg:
+    case SYS_accept:
+    case SYS_accept4:
+    case SYS_connect:
       TransferRaw(task, call);
       break;
     case SYS_poll:
@@ -340,6 +313,14 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_wait4:
     case SYS_waitid:
       AwaitChildRaw(task, call);
+      break;
+    case SYS_kill:
+    case SYS_tkill:
+    case SYS_tgkill:
+    case SYS_rt_sigqueueinfo:
+    case SYS_rt_tgsigqueueinfo:
+    case SYS_pidfd_send_signal:
+      SignalRaw(task);
       break;
     case SYS_sched_yield:
       task.process->robot->ready.Rotate(task.order);
@@ -383,6 +364,10 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
   }
   const bool timed_out = reason == shm::WakeReason::kDeadline;
   task.trap_result = timed_out && wait == TrapWait::kFutex ? -ETIMEDOUT : 0;
+  if (timed_out && wait == TrapWait::kTransfer) {
+    task.trap_continues = false;
+    task.trap_result = -EAGAIN;
+  }
   if (timed_out && wait == TrapWait::kFds) {
     task.trap_continues = false;
     ClearRawResult(task, task.trapped_call);

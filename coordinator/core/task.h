@@ -32,7 +32,10 @@ enum class TaskState {
 };
 
 // What a thread waits for in a trapped call.
-enum class TrapWait { kNone, kFutex, kSleep, kFds, kChild };
+enum class TrapWait { kNone, kFutex, kSleep, kFds, kTransfer, kChild };
+
+// Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
+enum class FollowUp { kNone, kBacklogs, kSignals };
 
 struct Process;
 struct Robot;
@@ -75,6 +78,8 @@ struct Task {
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
   bool trap_continues = false;            // or the kernel carries it out
   TrapWait trap_wait = TrapWait::kNone;
+  FollowUp follow_up = FollowUp::kNone;  // of the call that the kernel carries out
+  bool is_brief = false;                 // it runs for that call only
   TrappedCall trapped_call;             // the last but futex calls
   std::uint64_t remaining_address = 0;  // where a sleep leaves what a signal cuts off; 0: nowhere
   FutexKey futex;

@@ -21,13 +21,18 @@ namespace tcs {
 
 namespace {
 
-// Besides futex and clock_gettime, which depend on their arguments.
+// Besides futex and clock_gettime, which depend on their arguments, and those whose mark is
+// elsewhere.
 constexpr std::uint32_t kTrapped[] = {
     // Clocks and sleeps.
     SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
     // What waits for descriptors and for children.
     SYS_read, SYS_readv, SYS_write, SYS_writev, SYS_poll, SYS_ppoll, SYS_select, SYS_pselect6,
     SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid,
+    SYS_recvmsg, SYS_recvmmsg, SYS_sendmsg, SYS_sendmmsg, SYS_accept, SYS_accept4, SYS_connect,
+    // Signals to others.
+    SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo,
+    SYS_pidfd_send_signal,
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity,
@@ -52,6 +57,12 @@ constexpr std::uint32_t kNuma = SYS_get_mempolicy;
 
 sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
 
+// The upper half of an argument.
+sock_filter LoadUpper(std::size_t argument) {
+  return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument +
+              sizeof(std::uint32_t));
+}
+
 // The lower half of an argument.
 sock_filter LoadArgument(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
@@ -72,6 +83,13 @@ std::vector<sock_filter> Program() {
       // The shim waits at its gate with this operation, which has no use for its last argument.
       JumpIfEqual(FUTEX_WAIT, 0, 3),
       LoadArgument(5),
+      JumpIfEqual(shm::kOwnCallMark, 0, 1),
+      allow,
+      trap,
+      // These have their mark beside the flags.
+      JumpIfEqual(SYS_recvfrom, 1, 0),
+      JumpIfEqual(SYS_sendto, 0, 4),
+      LoadUpper(3),
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
