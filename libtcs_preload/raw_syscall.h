@@ -30,8 +30,8 @@ inline long RawSyscall(long number, long a = 0, long b = 0, long c = 0, long d =
   return RawSyscall(number, a, b, c, d, e, static_cast<long>(shm::kOwnCallMark));
 }
 
-// recvfrom and sendto, which use all of their arguments: the mark is in that half of the flags which
-// the kernel does not look at.
+// recvfrom and sendto, which use all of their arguments: the mark is in that half of the flags
+// which the kernel does not look at.
 inline long RawSocketCall(long number, int fd, long buffer, std::size_t size, int flags,
                           long address, long address_size) {
   const std::uint64_t marked =

@@ -36,8 +36,8 @@ bool Borrowed::IsEventFd() const {
   char link[64], name[64];
   snprintf(link, sizeof link, "/proc/self/fd/%d", fd_);
   const ssize_t size = readlink(link, name, sizeof name);
-  return size > 0 && std::string_view(name, static_cast<std::size_t>(size)) ==
-                         "anon_inode:[eventfd]";
+  return size > 0 &&
+         std::string_view(name, static_cast<std::size_t>(size)) == "anon_inode:[eventfd]";
 }
 
 bool Borrowed::CanBeRead() const { return (fcntl(fd_, F_GETFL) & O_ACCMODE) != O_WRONLY; }

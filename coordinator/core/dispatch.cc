@@ -277,7 +277,12 @@ void Engine::AwaitStop(Task& task) {
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
-    if (task.is_brief) return;
+    if (task.is_brief) {
+      // A turn of its own for the call, from when the thread was there to make it.
+      if (task.brief_id == 0) return;
+      if (!HasAnswerToTake(task.trap_listener, task.brief_id)) task.brief_id = 0;
+      continue;
+    }
     if (task.slot < 0) {
       if (++starting_turns < kStartTurns) continue;
       report_.error = fmt::format(
@@ -362,7 +367,9 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
-  task.is_brief = task.trap_id != 0 && task.follow_up != FollowUp::kNone;
+  task.is_brief = task.follow_up == FollowUp::kContinued ||
+                  (task.trap_id != 0 && task.follow_up != FollowUp::kNone);
+  task.brief_id = task.trap_id;
   const std::int64_t call_ns = task.cpu->progress_ns;
   Resume(task);
   ++report_.switches;

@@ -23,6 +23,14 @@ void Engine::DoFollowUp(Task& task, std::int64_t call_ns) {
     case FollowUp::kSignals:
       WakeSignalled(0);
       break;
+    case FollowUp::kKernelWaits:
+      LookAtKernelWaits();
+      break;
+    case FollowUp::kContinued:
+      if (Process* parent = LivingProcess(task.process->parent); parent != nullptr) {
+        WakeForSignals(*parent);
+      }
+      break;
   }
   event_ns_ = now_ns;
 }

@@ -56,8 +56,8 @@ std::int64_t BytesOf(const Task& task, const TrappedCall& call) {
   const auto count = static_cast<int>(call.args[2]);
   if (count < 0 || count > IOV_MAX) return -1;
   std::vector<iovec> iov(static_cast<std::size_t>(count));
-  if (count > 0 && !ReadMemory(task.process->pid, call.args[1], iov.data(),
-                               iov.size() * sizeof iov[0])) {
+  if (count > 0 &&
+      !ReadMemory(task.process->pid, call.args[1], iov.data(), iov.size() * sizeof iov[0])) {
     return -1;
   }
   std::int64_t bytes = 0;

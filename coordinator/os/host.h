@@ -56,10 +56,10 @@ bool IsDying(pid_t tid);
 // How a child of this process has ended, as of waitpid, which still finds it; none if it lives.
 std::optional<int> WaitStatusOf(pid_t child);
 
-// The signals that a thread's process catches, that the thread blocks, and that wait for delivery
-// to the thread or to any of its process; bit 0 is signal 1.
+// The signals that a thread's process catches and ignores, that the thread blocks, and that wait
+// for delivery to the thread or to any of its process; bit 0 is signal 1.
 struct SignalSets {
-  std::uint64_t caught = 0, blocked = 0, own_pending = 0, shared_pending = 0;
+  std::uint64_t caught = 0, ignored = 0, blocked = 0, own_pending = 0, shared_pending = 0;
 };
 SignalSets ReadSignalSets(pid_t tid);
 
@@ -83,6 +83,11 @@ pid_t ProcessOfThread(pid_t tid);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
+
+// True if two descriptors of this process are of one open file.
+bool IsSameFile(int one, int other);
+
+std::vector<pid_t> ChildrenOf(pid_t pid);
 
 struct SpawnRequest {
   std::vector<std::string> command;

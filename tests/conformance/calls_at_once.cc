@@ -75,7 +75,8 @@ void Reads() {
   AtOnce("writev of nothing", 0, 0, [&] { return writev(full[1], g_empty, 3); });
   AtOnce("raw writev of nothing", 0, 0, [&] { return syscall(SYS_writev, full[1], g_empty, 3); });
   AtOnce("writev of -1", -1, EINVAL, [&] { return writev(full[1], &g_whole, g_wrong); });
-  AtOnce("raw writev of -1", -1, EINVAL, [&] { return syscall(SYS_writev, full[1], &g_whole, -1); });
+  AtOnce("raw writev of -1", -1, EINVAL,
+         [&] { return syscall(SYS_writev, full[1], &g_whole, -1); });
   AtOnce("write to a read end", -1, EBADF, [&] { return write(full[0], g_buffer, 8); });
   AtOnce("raw write to a read end", -1, EBADF,
          [&] { return syscall(SYS_write, full[0], g_buffer, 8); });
@@ -134,19 +135,18 @@ void Sockets() {
          [&] { return syscall(SYS_read, listener, g_buffer, 8); });
   AtOnce("recv from a local listener", -1, EINVAL, [&] { return recv(local, g_buffer, 8, 0); });
   AtOnce("read from a local listener", -1, EINVAL, [&] { return read(local, g_buffer, 8); });
-  AtOnce("send to a listener", -1, EPIPE, [&] { return send(listener, g_buffer, 8, MSG_NOSIGNAL); });
-  AtOnce("raw send to a listener", -1, EPIPE, [&] {
-    return syscall(SYS_sendto, listener, g_buffer, 8, MSG_NOSIGNAL, nullptr, 0);
-  });
+  AtOnce("send to a listener", -1, EPIPE,
+         [&] { return send(listener, g_buffer, 8, MSG_NOSIGNAL); });
+  AtOnce("raw send to a listener", -1, EPIPE,
+         [&] { return syscall(SYS_sendto, listener, g_buffer, 8, MSG_NOSIGNAL, nullptr, 0); });
   AtOnce("errors of a socket", -1, EAGAIN,
          [&] { return recv(datagrams, g_buffer, 8, MSG_ERRQUEUE); });
   AtOnce("raw errors of a socket", -1, EAGAIN, [&] {
     return syscall(SYS_recvfrom, datagrams, g_buffer, 8, MSG_ERRQUEUE, nullptr, nullptr);
   });
   AtOnce("urgent datagrams", -1, EOPNOTSUPP, [&] { return recv(pair[0], g_buffer, 8, MSG_OOB); });
-  AtOnce("raw urgent datagrams", -1, EOPNOTSUPP, [&] {
-    return syscall(SYS_recvfrom, pair[0], g_buffer, 8, MSG_OOB, nullptr, nullptr);
-  });
+  AtOnce("raw urgent datagrams", -1, EOPNOTSUPP,
+         [&] { return syscall(SYS_recvfrom, pair[0], g_buffer, 8, MSG_OOB, nullptr, nullptr); });
   msghdr message{};
   message.msg_iov = g_empty;
   message.msg_iovlen = 1025;
@@ -162,9 +162,8 @@ void Sockets() {
          [&] { return recvmmsg(datagrams, &messages, 1, 0, &wrong); });
   AtOnce("connect to nothing", -1, EINVAL,
          [&] { return connect(stream, reinterpret_cast<sockaddr*>(&any), 1); });
-  AtOnce("raw connect to nothing", -1, EINVAL, [&] {
-    return syscall(SYS_connect, stream, reinterpret_cast<sockaddr*>(&any), 1);
-  });
+  AtOnce("raw connect to nothing", -1, EINVAL,
+         [&] { return syscall(SYS_connect, stream, reinterpret_cast<sockaddr*>(&any), 1); });
   for (const int fd : {datagrams, stream, listener, local, pair[0], pair[1], ends[0], ends[1]}) {
     close(fd);
   }
@@ -181,7 +180,8 @@ void Queues() {
   mq_unlink(name.c_str());
   AtOnce("receiving where it is sent", -1, EBADF,
          [&] { return mq_receive(out, g_buffer, 8, nullptr); });
-  AtOnce("receiving too little", -1, EMSGSIZE, [&] { return mq_receive(in, g_buffer, 4, nullptr); });
+  AtOnce("receiving too little", -1, EMSGSIZE,
+         [&] { return mq_receive(in, g_buffer, 4, nullptr); });
   EXPECT(mq_send(out, "x", 1, 0) == 0, "mq_send");
   AtOnce("sending where it is received", -1, EBADF, [&] { return mq_send(in, "x", 1, 0); });
   AtOnce("sending too much", -1, EMSGSIZE, [&] { return mq_send(out, g_buffer, 9, 0); });
