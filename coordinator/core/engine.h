@@ -105,6 +105,7 @@ class Engine {
 
   // Children that are stopped and go on (stops.cc).
   void LetStop(const Process& process);
+  static void RunInKernel(Task& task);
   static void LetGoOn(const Process& process);
   void NoteStops(Process& process);
   void TellParent(const Process& child);

@@ -2,7 +2,6 @@
 // threads may be at nobody's turn; and their parents hear of it.
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -13,52 +12,42 @@ namespace tcs {
 
 namespace {
 
-// So long the kernel gets to stop threads that have nothing else to do.
-constexpr int kStopTurns = 50;
-constexpr useconds_t kStopTurnUs = 20;
-
 constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
 
 constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
 
-bool IsGone(char state) { return state == 'Z' || state == 'X'; }
-
 }  // namespace
 
-// A thread acts on a signal that stops it when it runs next; so all of the process's get to run,
-// which they do only for that. What does not stop them (the kernel spares orphans some of these
-// signals) brings those that wait back to their gates.
+// A thread acts on a signal that stops it when it runs next. So each gets to run for that, and the
+// coordinator goes on when it has stopped. Only SIGSTOP is sure to stop, so what other signals do
+// to a thread that computes is seen at its dispatch.
 void Engine::LetStop(const Process& process) {
   std::vector<Task*> threads;
-  bool stops = false;
+  bool certain = false, stops = false;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     const SignalSets sets = ReadSignalSets(task->tid);
-    const std::uint64_t pending = sets.own_pending | sets.shared_pending;
-    stops |= (pending & kStops & ~(sets.blocked | sets.caught | sets.ignored)) != 0 ||
-             ThreadState(task->tid) == 'T';
+    const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStops &
+                                  ~(sets.blocked | sets.caught | sets.ignored);
+    certain |= (pending & Bit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';
+    stops |= pending != 0;
     threads.push_back(task);
   }
-  if (!stops) return;
-  const auto has_to_stop = [](const Task* task) {
-    const char state = ThreadState(task->tid);
-    return state != 'T' && !IsGone(state);
-  };
-  for (int turn = 0; turn < kStopTurns; ++turn) {
-    bool some = false;
-    for (Task* task : threads) {
-      if (!has_to_stop(task)) continue;
-      some = true;
-      SetLevel(task->tid, Level::kActive);
-    }
-    if (!some) break;
-    usleep(kStopTurnUs);
-  }
+  if (!certain && !stops) return;
   for (Task* task : threads) {
-    if (task == running_) continue;
-    SetLevel(task->tid, Level::kWaiting);
-    task->level = Level::kWaiting;
+    const bool waits = task->state == TaskState::kWaiting;
+    if (task != running_ && ThreadState(task->tid) != 'T' && (certain || waits)) {
+      RunInKernel(*task);
+    }
+    certain |= ThreadState(task->tid) == 'T';
   }
+}
+
+// The thread stops, or is back in its wait, when this returns.
+void Engine::RunInKernel(Task& task) {
+  SetLevel(task.tid, Level::kKernelOnly);
+  SetLevel(task.tid, Level::kWaiting);
+  task.level = Level::kWaiting;
 }
 
 // Has it stopped or gone on since the last look? Then its parent hears of it.
@@ -82,12 +71,7 @@ void Engine::LetGoOn(const Process& process) {
       task->follow_up = FollowUp::kContinued;
       continue;
     }
-    SetLevel(task->tid, Level::kActive);
-    for (int turn = 0; turn < kStopTurns && ThreadState(task->tid) == 'R'; ++turn) {
-      usleep(kStopTurnUs);
-    }
-    SetLevel(task->tid, Level::kWaiting);
-    task->level = Level::kWaiting;
+    RunInKernel(*task);
   }
 }
 

@@ -16,7 +16,14 @@
 
 namespace tcs {
 
-enum class Level : int { kWaiting = 10, kDetector = 11, kActive = 12, kCoordinator = 13 };
+// Who is to do only what the kernel has to do for it does that at once, above the coordinator.
+enum class Level : int {
+  kWaiting = 10,
+  kDetector = 11,
+  kActive = 12,
+  kCoordinator = 13,
+  kKernelOnly = 14
+};
 
 // Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
 std::uint64_t CalibrateTsc();
