@@ -44,7 +44,7 @@ Received Exchange(int socket) {
   hello.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
   hello.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   hello.parent_pid = static_cast<std::int32_t>(RawSyscall(SYS_getppid));
-  RawSyscall(SYS_sendto, socket, Arg(&hello), sizeof hello, MSG_NOSIGNAL, 0, 0);
+  RawSocketCall(SYS_sendto, socket, Arg(&hello), sizeof hello, MSG_NOSIGNAL, 0, 0);
 
   Received received;
   iovec iov{&received.reply, sizeof received.reply};

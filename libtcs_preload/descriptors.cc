@@ -9,6 +9,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
 
@@ -22,6 +23,14 @@ void ForgetTimer(int fd) {
   if (GuestThread* t = Current(); t != nullptr) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kTimerDelete, .args = {id}});
   }
+}
+
+// With its last descriptor a file's locks end.
+long MayUnlock(long result) {
+  if (g_header != nullptr && g_header->kernel_waiters.load(std::memory_order_relaxed) != 0) {
+    if (GuestThread* t = Current(); t != nullptr) TellKernelWaiters(*t);
+  }
+  return result;
 }
 
 long CloseRange(unsigned first, unsigned last, unsigned flags) {
@@ -47,15 +56,16 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
 TCS_EXPORT int close(int fd) {
   if (IsOwnDescriptor(fd)) return Fail(EBADF);
   ForgetTimer(fd);
-  return static_cast<int>(ToErrno(RawSyscall(SYS_close, fd)));
+  return static_cast<int>(ToErrno(MayUnlock(RawSyscall(SYS_close, fd))));
 }
 
 TCS_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
-  return static_cast<int>(ToErrno(CloseRange(first, last, static_cast<unsigned>(flags))));
+  return static_cast<int>(
+      ToErrno(MayUnlock(CloseRange(first, last, static_cast<unsigned>(flags)))));
 }
 
 TCS_EXPORT void closefrom(int first) noexcept {
-  CloseRange(first < 0 ? 0u : static_cast<unsigned>(first), ~0u, 0);
+  MayUnlock(CloseRange(first < 0 ? 0u : static_cast<unsigned>(first), ~0u, 0));
 }
 
 TCS_EXPORT int dup(int fd) noexcept {
@@ -71,7 +81,7 @@ TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
     ForgetTimer(to);
     CopyTimerFd(from, to);
   }
-  return static_cast<int>(ToErrno(copy));
+  return static_cast<int>(ToErrno(MayUnlock(copy)));
 }
 
 TCS_EXPORT int dup2(int from, int to) noexcept {

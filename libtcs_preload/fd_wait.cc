@@ -54,7 +54,7 @@ WaitResult ToResult(WakeReason reason) {
 }  // namespace
 
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
-                      std::int64_t deadline_ns) {
+                      std::int64_t deadline_ns, unsigned long signals) {
   if (IsShutDown()) {
     const timespec turn{0, 10'000'000};
     const long n = RawSyscall(SYS_ppoll, Arg(const_cast<pollfd*>(fds)), static_cast<long>(count),
@@ -63,7 +63,6 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
   }
   shm::WaitFd waited[shm::kMaxWaitFds];
   std::uint32_t n = 0;
-  unsigned long signals = 0;
   bool rearm = false;
   for (unsigned long i = 0; i < count; ++i) {
     bool is_epoll = false;

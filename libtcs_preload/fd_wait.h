@@ -11,11 +11,12 @@ namespace tcs::preload {
 
 enum class WaitResult { kRetry, kTimedOut, kInterrupted };
 
-// Stops the thread until one of `fds` (negative ones are passed over) may be ready or `deadline_ns`
-// is reached. kRetry: probe again: everything sent until then is there. What was sent up to the
-// call but was not there yet ends the wait at the time of the call, so nobody needs to hold before.
+// Stops the thread until one of `fds` (negative ones are passed over) may be ready, one of
+// `signals`, which the thread blocks, is pending, or `deadline_ns` is reached. kRetry: probe again:
+// everything sent until then is there. What was sent up to the call but was not there yet ends the
+// wait at the time of the call, so nobody needs to hold before.
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
-                      std::int64_t deadline_ns);
+                      std::int64_t deadline_ns, unsigned long signals = 0);
 
 // Waits until `fd` shows one of `events`, unless it is non-blocking. kReady: it did at once, or
 // waiting is not wanted: hold, then make the call. kWaited: make the call now. kFailed: errno is

@@ -11,6 +11,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include "libtcs_preload/at_once.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
@@ -44,8 +45,9 @@ int WithoutMore(int fd, int flags) {
 
 bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 
-template <class Call>
-ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
+// `at_once` returns what the kernel answers without waiting, or -EAGAIN.
+template <class AtOnce, class Call>
+ssize_t ReadLike(int fd, bool dont_wait, bool socket, AtOnce at_once, Call call) {
   GuestThread* t = Enter();
   pthread_testcancel();
   bool any_socket = false;
@@ -57,6 +59,9 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   if (dont_wait || IsNonBlocking(fd)) {
     HoldForReadFrom(*t, fd, socket);
     return take();
+  }
+  if (!PollNow(fd, POLLIN)) {
+    if (const long answer = at_once(); answer != -EAGAIN) return ToErrno(answer);
   }
   const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
   for (;;) {
@@ -155,7 +160,10 @@ ssize_t ReceiveAll(int fd, msghdr* message, int flags, Whole whole) {
 }  // namespace
 
 TCS_EXPORT ssize_t read(int fd, void* buffer, std::size_t size) {
-  return ReadLike(fd, false, false, [&] { return RawSyscall(SYS_read, fd, Arg(buffer), size); });
+  auto whole = [&] { return RawSyscall(SYS_read, fd, Arg(buffer), size); };
+  const iovec iov{buffer, size};
+  return ReadLike(
+      fd, false, false, [&] { return size == 0 ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
 }
 
 TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_t room) {
@@ -164,14 +172,17 @@ TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
-  return ReadLike(fd, false, false, [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); });
+  return ReadLike(
+      fd, false, false, [&] { return ReadAtOnce(fd, iov, count); },
+      [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); });
 }
 
 TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, sockaddr* from,
                             socklen_t* from_size) {
-  auto whole = [&] {
-    return RawSyscall(SYS_recvfrom, fd, Arg(buffer), size, flags, Arg(from), Arg(from_size));
+  auto call = [&](int with) {
+    return RawSocketCall(SYS_recvfrom, fd, Arg(buffer), size, with, Arg(from), Arg(from_size));
   };
+  auto whole = [&] { return call(flags); };
   if (from == nullptr && WaitsForAll(fd, flags)) {
     iovec iov{buffer, size};
     msghdr message{};
@@ -179,7 +190,8 @@ TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, s
     message.msg_iovlen = 1;
     return ReceiveAll(fd, &message, flags, whole);
   }
-  return ReadLike(fd, DontWait(flags), true, whole);
+  return ReadLike(
+      fd, ReceivesAtOnce(fd, flags), true, [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 
 TCS_EXPORT ssize_t __recvfrom_chk(int fd, void* buffer, std::size_t size, std::size_t room,
@@ -198,13 +210,15 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
-  auto whole = [&] {
-    const long got = RawSyscall(SYS_recvmsg, fd, Arg(message), flags);
+  auto call = [&](int with) {
+    const long got = RawSyscall(SYS_recvmsg, fd, Arg(message), with);
     if (got >= 0) ReplaceStamps(message);
     return got;
   };
+  auto whole = [&] { return call(flags); };
   if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
-  return ReadLike(fd, DontWait(flags), true, whole);
+  return ReadLike(
+      fd, ReceivesAtOnce(fd, flags), true, [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 
 // One message is waited for; those that are there with it come along. A timeout is a virtual one.
@@ -214,8 +228,19 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags, Arg(timeout))));
   }
+  auto at_once = [&] {
+    const long got = RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0);
+    for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
+    return got;
+  };
+  if (timeout != nullptr && !IsValid(*timeout)) return Fail(EINVAL);
   FdState state = FdState::kReady;
-  if (!DontWait(flags)) {
+  if (!ReceivesAtOnce(fd, flags)) {
+    if (!PollNow(fd, POLLIN)) {
+      if (const long answer = at_once(); answer != -EAGAIN) {
+        return static_cast<int>(ToErrno(answer));
+      }
+    }
     std::int64_t deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
     if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(*timeout));
     state = AwaitFd(*t, fd, POLLIN, deadline);
@@ -223,15 +248,13 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
-  const long got = RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0);
-  for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
-  return static_cast<int>(ToErrno(got));
+  return static_cast<int>(ToErrno(at_once()));
 }
 
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
-  const auto connection = static_cast<int>(ReadLike(fd, false, true, [&] {
-    return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags);
-  }));
+  auto whole = [&] { return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags); };
+  const auto connection = static_cast<int>(ReadLike(
+      fd, false, true, [&] { return AcceptWaits(fd, flags) ? -EAGAIN : whole(); }, whole));
   if (GuestThread* t = Current(); t != nullptr && connection >= 0) {
     SendAtOnce(connection);  // the listener may be from elsewhere
     TellChanged(*t, kBacklogs, 0);
@@ -264,7 +287,7 @@ TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flag
   GuestThread* t = Enter();
   if (t != nullptr) flags = WithoutMore(fd, flags);
   return SendAll(t, fd, message, flags, [&] {
-    return RawSyscall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
+    return RawSocketCall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
   });
 }
 

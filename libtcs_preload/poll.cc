@@ -23,30 +23,37 @@ constexpr timespec kNow{};
 
 // The shape of all of them: nothing there: wait, and probe again. Something there, or no wait
 // wanted: hold, so that the probe finds all that was sent until now. `is_ready` takes nothing away,
-// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `wait(deadline)`
-// returns a WaitResult. A signal always ends these calls.
+// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `wait(deadline,
+// signals)` returns a WaitResult. A signal ends these calls if a handler runs and nothing was
+// found, those without a timeout too but for epoll's (`looks_first`).
 template <class IsReady, class Probe, class Wait>
-int ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, IsReady is_ready,
-                 Probe probe, Wait wait) {
-  pthread_testcancel();
+long ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const MaskedWait& masked,
+                  bool looks_first, IsReady is_ready, Probe probe, Wait wait) {
   const std::int64_t deadline = DeadlineAfter(t, timeout_ns);
-  const MaskDuringWait masked(mask);
-  if (timeout_ns == 0 || is_ready() != 0) {
+  if (timeout_ns == 0 || is_ready() != 0 || masked.IsPending()) {
     HoldForRead(t);
-    const long found = probe();
-    if (found != 0 || timeout_ns == 0) return static_cast<int>(ToErrno(found));
+    if (const long found = probe(); found != 0) return found;
+    if ((timeout_ns != 0 || looks_first) && masked.Deliver()) return -EINTR;
+    if (timeout_ns == 0) return 0;
   }
   for (;;) {
-    switch (wait(deadline)) {
-      case WaitResult::kRetry:
-        if (const long found = probe(); found != 0) return static_cast<int>(ToErrno(found));
-        break;
-      case WaitResult::kTimedOut:
-        return static_cast<int>(ToErrno(probe()));
-      case WaitResult::kInterrupted:
-        return Fail(EINTR);
-    }
+    const WaitResult result = wait(deadline, masked.Awaited());
+    if (result == WaitResult::kInterrupted && !masked.active()) return -EINTR;
+    if (const long found = probe(); found != 0) return found;
+    if (masked.Deliver()) return -EINTR;
+    if (result == WaitResult::kTimedOut) return 0;
   }
+}
+
+template <class IsReady, class Probe, class Wait>
+int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, bool looks_first,
+                 IsReady is_ready, Probe probe, Wait wait) {
+  pthread_testcancel();
+  MaskedWait masked(mask);
+  const long found = ProbeAndWait(t, timeout_ns, masked, looks_first, is_ready, probe, wait);
+  masked.Restore();
+  if (found == -EINTR) pthread_testcancel();
+  return static_cast<int>(ToErrno(found));
 }
 
 int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
@@ -54,8 +61,10 @@ int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
   auto probe = [&] {
     return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
   };
-  return ProbeAndWait(t, timeout_ns, mask, probe, probe,
-                      [&](std::int64_t deadline) { return WaitForFds(t, fds, count, deadline); });
+  return CallWithMask(t, timeout_ns, mask, true, probe, probe,
+                      [&](std::int64_t deadline, unsigned long signals) {
+                        return WaitForFds(t, fds, count, deadline, signals);
+                      });
 }
 
 struct SelectSets {
@@ -90,7 +99,7 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
     timeval now{};
     return RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(&now));
   };
-  auto wait = [&](std::int64_t deadline) {
+  auto wait = [&](std::int64_t deadline, unsigned long signals) {
     pollfd fds[FD_SETSIZE];
     nfds_t count = 0;
     for (int fd = 0; fd < n; ++fd) {
@@ -100,19 +109,19 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
       if (sets.Wants(2, fd)) events |= POLLPRI;
       if (events != 0) fds[count++] = pollfd{fd, events, 0};
     }
-    return WaitForFds(t, fds, count, deadline);
+    return WaitForFds(t, fds, count, deadline, signals);
   };
-  return ProbeAndWait(t, timeout_ns, mask, probe, probe, wait);
+  return CallWithMask(t, timeout_ns, mask, true, probe, probe, wait);
 }
 
 int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t timeout_ns,
             const sigset_t* mask) {
-  return ProbeAndWait(
-      t, timeout_ns, mask, [&] { return PollNow(epfd, POLLIN) ? 1L : 0L; },
+  return CallWithMask(
+      t, timeout_ns, mask, false, [&] { return PollNow(epfd, POLLIN) ? 1L : 0L; },
       [&] { return RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0); },
-      [&](std::int64_t deadline) {
+      [&](std::int64_t deadline, unsigned long signals) {
         const pollfd set{epfd, POLLIN, 0};
-        return WaitForFds(t, &set, 1, deadline);
+        return WaitForFds(t, &set, 1, deadline, signals);
       });
 }
 

@@ -37,14 +37,16 @@ namespace {
 // Makes `probe` (a wait call with WNOHANG) until it has something. It returns 0 for "no child has
 // changed yet".
 template <class Probe>
-long WaitForChild(GuestThread& t, pid_t which, Probe probe) {
+long WaitForChild(GuestThread& t, pid_t which, int options, Probe probe) {
+  static_assert(WSTOPPED == WUNTRACED);
+  const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
   HoldForRead(t);
   for (;;) {
     const long found = probe();
     if (found != 0) return found;
     if (IsShutDown()) return -ECHILD;
     const Reply reply = Exchange(t, Request{.kind = NotificationKind::kWaitChild,
-                                            .args = {which > 0 ? which : 0},
+                                            .args = {which > 0 ? which : 0, stops ? 1 : 0},
                                             .interruptible = true});
     if (reply.reason == tcs::shm::WakeReason::kSignal) {
       const long now = probe();
@@ -77,7 +79,7 @@ TCS_EXPORT pid_t wait4(pid_t pid, int* status, int options, rusage* usage) {
     return static_cast<pid_t>(
         ToErrno(RawSyscall(SYS_wait4, pid, Arg(status), options, Arg(usage))));
   }
-  return static_cast<pid_t>(ToErrno(WaitForChild(*t, pid, [&] {
+  return static_cast<pid_t>(ToErrno(WaitForChild(*t, pid, options, [&] {
     return RawSyscall(SYS_wait4, pid, Arg(status), options | WNOHANG, Arg(usage));
   })));
 }
@@ -98,11 +100,12 @@ TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_waitid, type, id, Arg(info), options, 0)));
   }
   siginfo_t found{};
-  const long result = WaitForChild(*t, type == P_PID ? static_cast<pid_t>(id) : 0, [&]() -> long {
-    found.si_pid = 0;
-    const long error = RawSyscall(SYS_waitid, type, id, Arg(&found), options | WNOHANG, 0);
-    return error != 0 ? error : found.si_pid;
-  });
+  const long result =
+      WaitForChild(*t, type == P_PID ? static_cast<pid_t>(id) : 0, options, [&]() -> long {
+        found.si_pid = 0;
+        const long error = RawSyscall(SYS_waitid, type, id, Arg(&found), options | WNOHANG, 0);
+        return error != 0 ? error : found.si_pid;
+      });
   if (result < 0) return static_cast<int>(ToErrno(result));
   if (info != nullptr) *info = found;
   return 0;

@@ -30,6 +30,16 @@ inline long RawSyscall(long number, long a = 0, long b = 0, long c = 0, long d =
   return RawSyscall(number, a, b, c, d, e, static_cast<long>(shm::kOwnCallMark));
 }
 
+// recvfrom and sendto, which use all of their arguments: the mark is in that half of the flags
+// which the kernel does not look at.
+inline long RawSocketCall(long number, int fd, long buffer, std::size_t size, int flags,
+                          long address, long address_size) {
+  const std::uint64_t marked =
+      std::uint64_t{shm::kOwnCallMark} << 32 | static_cast<std::uint32_t>(flags);
+  return RawSyscall(number, fd, buffer, static_cast<long>(size), static_cast<long>(marked), address,
+                    address_size);
+}
+
 template <class T>
 long Arg(T* pointer) {
   return reinterpret_cast<long>(pointer);

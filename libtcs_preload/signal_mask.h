@@ -1,29 +1,60 @@
-// The signal mask that ppoll, pselect and epoll_pwait put in place while they wait.
+// The signal mask that ppoll, pselect and epoll_pwait have while they wait.
 #pragma once
 
+#include <errno.h>
+#include <pthread.h>
 #include <signal.h>
+#include <time.h>
 
 #include "libtcs_preload/raw_syscall.h"
 
 namespace tcs::preload {
 
-// Sets `mask` (null: none) for its lifetime. Not atomic with the wait, as the kernel's is: a signal
-// that the mask lets in is handled at once and ends the wait only if it comes after the wait has
-// begun. docs/LIMITATIONS.md says so.
-class MaskDuringWait {
+// For its lifetime all signals are blocked, so that no handler runs where the call would not let
+// it; those that the mask lets in end the wait by being pending (WaitForFds), and have their
+// handlers run under the mask in one step with the end of the wait (Deliver). Without a mask it
+// does nothing.
+class MaskedWait {
  public:
-  explicit MaskDuringWait(const sigset_t* mask) : active_(mask != nullptr) {
-    if (active_) RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(mask), Arg(&saved_), 8);
+  explicit MaskedWait(const sigset_t* mask) : active_(mask != nullptr) {
+    if (!active_) return;
+    mask_ = *reinterpret_cast<const unsigned long*>(mask);
+    const unsigned long all = ~0ul;
+    RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&saved_), kSetSize);
   }
-  ~MaskDuringWait() {
-    if (active_) RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&saved_), 0, 8);
+  ~MaskedWait() { Restore(); }
+  MaskedWait(const MaskedWait&) = delete;
+  MaskedWait& operator=(const MaskedWait&) = delete;
+
+  void Restore() {
+    if (active_) RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&saved_), 0, kSetSize);
+    active_ = false;
   }
-  MaskDuringWait(const MaskDuringWait&) = delete;
-  MaskDuringWait& operator=(const MaskDuringWait&) = delete;
+
+  bool active() const { return active_; }
+
+  // The signals that end the wait.
+  unsigned long Awaited() const { return active_ ? ~mask_ & ~kNeverHeld : 0; }
+
+  bool IsPending() const {
+    unsigned long pending = 0;
+    if (active_) RawSyscall(SYS_rt_sigpending, Arg(&pending), kSetSize);
+    return (pending & Awaited()) != 0;
+  }
+
+  // Runs the handlers of what is pending. True if there was one; what is ignored is thrown away.
+  bool Deliver() const {
+    if (!active_) return false;
+    const timespec now{};
+    return RawSyscall(SYS_ppoll, 0, 0, Arg(&now), Arg(&mask_), kSetSize) == -EINTR;
+  }
 
  private:
+  static constexpr std::size_t kSetSize =
+      8;  // the kernel's sigset_t; the C library's begins with it
+  static constexpr unsigned long kNeverHeld = 1ul << (SIGKILL - 1) | 1ul << (SIGSTOP - 1);
   bool active_;
-  unsigned long saved_ = 0;
+  unsigned long mask_ = 0, saved_ = 0;
 };
 
 }  // namespace tcs::preload

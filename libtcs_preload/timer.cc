@@ -20,6 +20,9 @@ using tcs::shm::NotificationKind;
 
 namespace {
 
+// Instead of the mark: a timer that was made raw, or by another program, the coordinator knows.
+constexpr long kTrapped = 0;
+
 struct TimerValue {
   std::int64_t next_ns;  // 0: not armed
   std::int64_t interval_ns;
@@ -115,7 +118,11 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
   }
   const long fd = RawSyscall(SYS_eventfd2, 0, flags);
   if (fd < 0) return static_cast<int>(ToErrno(fd));
-  const TimerValue made = Ask(*t, NotificationKind::kTimerCreate, fd, 0, 0);
+  tcs::shm::TimerKind kind;
+  kind.clock_tid = base == Clock::kRealtime ? 1 : 0;
+  Request request{.kind = NotificationKind::kTimerCreate, .args = {fd}};
+  __builtin_memcpy(&request.args[1], &kind, sizeof kind);
+  const TimerValue made{Exchange(*t, request).values[0], 0};
   if (made.next_ns < tcs::shm::kFirstTimerId ||
       !RememberTimerFd(static_cast<int>(fd), made.next_ns, base)) {
     RawSyscall(SYS_close, fd);
@@ -129,7 +136,7 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itime
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr) {
     return static_cast<int>(
-        ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old))));
+        ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old), 0, kTrapped)));
   }
   if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
   if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
@@ -151,7 +158,8 @@ TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
   GuestThread* t = Enter();
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr)
-    return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value))));
+    return static_cast<int>(
+        ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value), 0, 0, 0, kTrapped)));
   *value = ToSpec<itimerspec>(Ask(*t, NotificationKind::kTimerGet, timer->id, 0, 0), NowNs(*t),
                               ToTimespec);
   return 0;

@@ -38,15 +38,15 @@ inline constexpr std::int64_t kMaxDispatchNs = std::int64_t{1} << 46;
 // dispatch.
 enum class NotificationKind : std::uint32_t {
   kNone = 0,
-  kHorizon = 1,  // the thread's clock has reached its horizon
-  kRead = 2,     // go on once nothing can be produced before time_ns any more
-  kWrite = 3,    // go on once nobody can still read before time_ns
-  kIdle = 4,     // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
-                 // 2 if also until a signal of the set args[1] is pending
-  kWaitFds = 5,  // sleep until one of fds is ready, a signal of the set args[1] is pending, or
-                 // deadline_ns
-  kWaitChild =
-      6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or deadline_ns
+  kHorizon = 1,    // the thread's clock has reached its horizon
+  kRead = 2,       // go on once nothing can be produced before time_ns any more
+  kWrite = 3,      // go on once nobody can still read before time_ns
+  kIdle = 4,       // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
+                   // 2 if also until a signal of the set args[1] is pending
+  kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
+                   // deadline_ns
+  kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
+                   // args[1] is not 0, until one stops or goes on; or deadline_ns
   kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable, or -1; args[1] to
                      // args[3]: TimerKind; reply[0]: timer id
   kTimerSet = 8,  // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply:
@@ -85,6 +85,7 @@ enum class NotificationKind : std::uint32_t {
   kDdsRoom = 29,  // args[0]: go on once less waits for that process, or at the deadline
   kDdsSockets =
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
+  kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
 };
 
 inline constexpr int kDdsDescriptorBits = 16;
@@ -96,13 +97,15 @@ enum class WhySockets : std::uint32_t {
   kNoRoom = 4            // it could not join
 };
 
-// Kernel objects that cannot be polled. kTerminals is for waking only: what is written to one end
-// of a terminal reaches the other some time later, unless somebody polls.
+// Kernel objects that cannot be polled. Two are for waking only. kTerminals: what is written to one
+// end of a terminal reaches the other some time later, unless somebody polls. kKernelWaits: the
+// kernel may have let threads go on that it held.
 enum class WaitKey : std::uint32_t {
   kSemaphores = 1,
   kMessages = 2,
   kBacklogs = 3,
-  kTerminals = 4
+  kTerminals = 4,
+  kKernelWaits = 5
 };
 
 // What a timer runs on, and what it does besides writing to an eventfd. A sigset's bit 0 is signal
@@ -111,7 +114,7 @@ enum class TimerClock : std::uint16_t { kTime = 0, kProcessCpu = 1, kThreadCpu =
 struct TimerKind {
   TimerClock clock = TimerClock::kTime;
   std::uint16_t is_posix = 0;   // of timer_create: ends when its process executes another program
-  std::int32_t clock_tid = 0;   // of kThreadCpu
+  std::int32_t clock_tid = 0;   // of kThreadCpu; of kTime 1 if it was made for CLOCK_REALTIME
   std::int32_t signal = 0;      // to be sent; 0: none
   std::int32_t signal_tid = 0;  // to this thread; 0: to the process
   std::int64_t value = 0;       // in the signal
@@ -193,7 +196,8 @@ struct Notification {
 static_assert(sizeof(Notification) == 312);
 
 // What the shim leaves in the last argument, unused, of the system calls that it makes itself: they
-// are the kernel's. All others that wait or read time are handed to the coordinator.
+// are the kernel's; in recvfrom and sendto it is in the upper half of the flags. All others that
+// wait or read time are handed to the coordinator.
 inline constexpr std::uint32_t kOwnCallMark = 0x7c57a7e1;
 
 // Gate values.
@@ -244,7 +248,9 @@ struct alignas(64) SegmentHeader {
   std::atomic<std::uint32_t> queues_notify;  // 1: who sends to a message queue may send a signal
   std::atomic<std::uint32_t>
       key_waiters;  // threads that kWakeKey may concern; if none it is spared
-  std::uint64_t reserved[7];
+  std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
+  std::uint32_t padding;
+  std::uint64_t reserved[6];
 };
 static_assert(sizeof(SegmentHeader) == 128);
 static_assert(offsetof(SegmentHeader, monotonic_offset_ns) == 32);

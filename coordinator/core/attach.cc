@@ -242,6 +242,8 @@ void Engine::LeaveWait(Task& task) {
   EndWatches(task);
   EndKeyWait(task);
   waiting_for_child_ -= task.waits_for_child;
+  waiting_for_stops_ -= task.awaits_stops;
+  task.awaits_stops = false;
   waiting_for_signals_ -= task.awaited_signals != 0;
   task.awaited_signals = 0;
   task.waits_for_messages = false;
@@ -309,7 +311,7 @@ void Engine::ProcessEnded(std::size_t index) {
   Process* parent = LivingProcess(process.parent);
   if (parent != nullptr) {
     parent->children_cpu_ns += charged;
-    ++parent->children_ended;
+    ++parent->children_changed;
   }
   for (Task& task : tasks_) {
     if (task.waits_for_child && task.process->pid == process.parent &&

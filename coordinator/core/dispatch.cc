@@ -25,6 +25,8 @@ constexpr std::int64_t kCheckAfterNs = 100'000;
 constexpr std::int64_t kMostCreditNs = kCheckAfterNs + kCreditNs;
 constexpr double kMostSwitchNs = 20'000.0;
 constexpr std::int64_t kLeastSliceNs = 2'000;
+// Enough for the kernel to carry out a call that does not wait.
+constexpr std::int64_t kBriefNs = 20'000;
 // A timer due before the kernel's next tick is programmed into the hardware when it is set and
 // again when it is not needed any more: on a virtual machine that is as much as the context switch.
 // So who has stopped by itself long before its horizon of late gets one that comes after the tick
@@ -220,8 +222,8 @@ void Engine::Settle(Task& task) {
   task.host_origin_ns += moved;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
-  if (trapped_.has_value() && IsFixed()) {
-    // The shim charges the calls that it sees.
+  if (trapped_.has_value() && IsFixed() && slot.signals.load() == 0) {
+    // The shim charges the calls that it sees, whatever the C library calls for it.
     const std::uint64_t word = page.executed_adjust.load();
     page.executed_adjust.store(
         shm::PackAdjust(word, shm::AdjustValue(word) + task.process->call_cost_ns));
@@ -293,11 +295,17 @@ void Engine::AwaitStop(Task& task) {
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     if (!first) ContinueClock(task);
-    const std::int64_t asked_ns = HostNsToHorizon(task);
+    const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
     const std::uint64_t asked_tsc = stop_tsc_;
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
+    if (task.is_brief) {
+      // A turn of its own for the call, from when the thread was there to make it.
+      if (task.brief_id == 0) return;
+      if (!HasAnswerToTake(task.trap_listener, task.brief_id)) task.brief_id = 0;
+      continue;
+    }
     if (task.slot < 0) {
       if (++starting_turns < kStartTurns) continue;
       report_.error = fmt::format(
@@ -382,6 +390,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
+  task.is_brief = task.follow_up == FollowUp::kContinued ||
+                  (task.trap_id != 0 && task.follow_up != FollowUp::kNone);
+  task.brief_id = task.trap_id;
+  const std::int64_t call_ns = task.cpu->progress_ns;
   Resume(task);
   ++report_.switches;
   StartClock(task);
@@ -400,6 +412,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.used_up = 0;
   }
   ExpireCpuTimers(task);
+  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
   if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);

@@ -63,7 +63,11 @@ bool Engine::IsRunnable(const Task& task) {
 void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
   if (ends && task.state != TaskState::kWaiting) NoteIdle(task);
-  unseen_ += (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
+  if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
+      more != 0) {
+    unseen_ += more;
+    header_->kernel_waiters.store(static_cast<std::uint32_t>(unseen_));
+  }
   task.state = state;
   Requeue(task, goes_first);
   // A deliverer that waits for something else must not be waited for: it may need what those hold.
@@ -494,7 +498,7 @@ bool Engine::StrangersRun() {
       if (state == 'R' || state == 'D') return true;
     }
   }
-  return false;
+  return UnknownChildrenRun();
 }
 
 void Engine::ShowProgress() {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -36,6 +37,7 @@ class Engine {
     kConnection,
     kProcess,
     kAwaited,
+    kUnknownChild,
     kTrap,
     kCommand,
     kSignal,
@@ -105,10 +107,24 @@ class Engine {
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
   void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
-  void WaitForChild(Task& task, pid_t which);
+  void WaitForChild(Task& task, pid_t which, bool stops);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
+
+  // Children that are stopped and go on (stops.cc).
+  void LetStop(const Process& process);
+  static void RunInKernel(Task& task);
+  static void LetGoOn(const Process& process);
+  void NoteStops(Process& process);
+  void TellParent(const Process& child);
+  void LookAtStops();
+
+  // Children that nobody announced (unknown_children.cc).
+  void FindUnknownChildren(Process& parent);
+  void UnknownChildEnded(pid_t pid);
+  bool HasUnknownChild(const Process& parent) const;
+  bool UnknownChildrenRun() const;
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
@@ -131,14 +147,42 @@ class Engine {
   void HandleRawCall(Task& task, const TrappedCall& call);
   std::int64_t ReadRawClock(const Task& task, const TrappedCall& call);
   std::int64_t SleepRaw(Task& task, const TrappedCall& call);
-  void TransferRaw(Task& task, const TrappedCall& call);
+  void SignalRaw(Task& task);
   void HoldRaw(Task& task, shm::NotificationKind kind);
   std::int64_t PollRaw(Task& task, const TrappedCall& call);
   bool RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns);
   std::vector<shm::WaitFd> RawWaitFds(const Task& task, const TrappedCall& call);
+  static std::uint64_t RawAwaitedSignals(const Task& task, const TrappedCall& call);
   void ClearRawResult(const Task& task, const TrappedCall& call);
+  void ForgetNews(const Process& parent);
   void AwaitChildRaw(Task& task, const TrappedCall& call);
   std::int64_t ScheduleRaw(Task& task, const TrappedCall& call);
+
+  // Those that transfer data (raw_transfers.cc).
+  void TransferRaw(Task& task, const TrappedCall& call);
+
+  // Locks of files (keys.cc).
+  void LockRaw(Task& task);
+  bool LookAtKernelWaits();
+
+  // Timers (raw_timers.cc).
+  struct FoundTimer {
+    Process* owner = nullptr;
+    std::int64_t id = 0;
+  };
+  void HandleRawTimer(Task& task, const TrappedCall& call);
+  std::int64_t CreateTimerRaw(Task& task, const TrappedCall& call);
+  std::int64_t CreateTimerFdRaw(Task& task, const TrappedCall& call);
+  FoundTimer FindTimerFd(const Task& task, int number);
+  std::int64_t TimerNow(const Task& task, const Process& owner, const Timer& timer) const;
+  itimerspec ExchangeTimer(Task& task, const FoundTimer& found, bool sets, std::int64_t first_ns,
+                           std::int64_t interval_ns);
+  std::int64_t SetTimerRaw(Task& task, const FoundTimer& found, const TrappedCall& call);
+  std::int64_t ItimerRaw(Task& task, const TrappedCall& call);
+  std::int64_t PosixTimerRaw(Task& task, const TrappedCall& call);
+
+  // Others that they concern (follow_ups.cc).
+  void DoFollowUp(Task& task, std::int64_t call_ns);
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
@@ -156,6 +200,15 @@ class Engine {
                        std::uint64_t address) const;
   void StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits);
   Task* MostUrgentWaiter(const FutexKey& key, std::uint32_t bits);
+
+  // Several at once, and from a condition to its lock (futex_queues.cc).
+  static bool WaitsAt(const Task& task, const FutexKey& key);
+  static void NoteWhichFutex(Task& task, const FutexKey& key);
+  std::int64_t FutexWaitForAny(Task& task, const TrappedCall& call);
+  std::int64_t FutexWaitForLock(Task& task, const TrappedCall& call);
+  std::int64_t FutexRequeueToLock(Task& task, const TrappedCall& call);
+  std::vector<Task*> WaitersForLock(const FutexKey& key);
+  void RequeueToLock(Task& waiter, const FutexKey& lock, Task& owner);
 
   // Those that are locks with an owner (lock_futex.cc).
   std::int64_t FutexLock(Task& task, const TrappedCall& call, int command);
@@ -201,6 +254,8 @@ class Engine {
 
   // Timers (timers.cc).
   void SetTimer(Task& task, const shm::Notification& note);
+  void SetTimerOf(Process& process, Task& task, const shm::Notification& note);
+  static void EnsureItimer(Process& process, std::int64_t id);
   void FireDue(Robot& robot, std::int64_t now_ns);
   bool Expire(Process& process, std::int64_t now_ns);
   void CreateTimer(Task& task, const shm::Notification& note);
@@ -300,6 +355,8 @@ class Engine {
   int waiting_for_child_ = 0;  // and such that wait for a child
   int waiting_for_room_ = 0;   // and such that have sent more than others could take at once
   int waiting_for_signals_ = 0;
+  int waiting_for_stops_ = 0;
+  std::map<pid_t, UnknownChild> unknown_children_;
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;

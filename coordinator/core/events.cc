@@ -131,11 +131,14 @@ bool Engine::BlockedInKernel() {
   // program because of a short system call.
   const bool alone = running_->process->threads == 1;
   const int turns = !alone ? 0 : IsFixed() ? kHeldTurnsFixed : world_.present() ? kHeldTurns : 0;
-  if (!stopped && held_turns_ < turns) return false;
+  const bool expected = running_->expects_kernel;
+  if (!stopped && !expected && held_turns_ < turns) return false;
   SetState(*running_, TaskState::kUnseen);
   running_->parked = false;
+  if (expected && !stopped) return true;
   if (stopped) {
     event_ns_ = std::max(event_ns_, running_->reached_ns);
+    NoteStops(*running_->process);
     NoteWhetherStopped(*running_->process);
     return true;
   }
@@ -210,6 +213,11 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
             stop = true;
           }
         }
+        break;
+      case Tag::kUnknownChild:
+        UnknownChildEnded(static_cast<pid_t>(index));
+        stop = true;
+        external_event_ = true;
         break;
       case Tag::kTrap:
         if ((events[i].events & EPOLLIN) == 0) {

@@ -33,7 +33,12 @@ FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
                              std::uint64_t address) const {
   constexpr std::uint64_t kInPage = 4095;
   const bool is_waited_for = std::any_of(tasks_.begin(), tasks_.end(), [address](const Task& task) {
-    return task.trap_wait == TrapWait::kFutex && ((task.futex.address ^ address) & kInPage) == 0;
+    const auto is_there = [address](const FutexKey& key) {
+      return ((key.address ^ address) & kInPage) == 0;
+    };
+    return task.trap_wait == TrapWait::kFutex &&
+           (is_there(task.futex) ||
+            std::any_of(task.futexes.begin(), task.futexes.end(), is_there));
   });
   const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
   return KeyOf(process.pid, address, is_private || !is_waited_for);
@@ -95,6 +100,10 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
 
 void Engine::StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits) {
   task.futex = key;
+  task.futexes.clear();
+  task.woken_futex = 0;
+  task.requeue_to.reset();
+  task.was_requeued = false;
   task.trap_wait = TrapWait::kFutex;
   task.futex_bits = bits;
   task.futex_order = ++futex_counter_;
@@ -106,6 +115,7 @@ std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint
   while (woken < most) {
     Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
+    NoteWhichFutex(*best, key);
     MakeReady(*best, shm::WakeReason::kGo);
     ++woken;
   }
@@ -124,8 +134,9 @@ std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int
   auto most = static_cast<int>(call.args[3]);
   for (Task& waiter : tasks_) {
     if (most <= 0) break;
-    if (waiter.trap_wait != TrapWait::kFutex || waiter.futex != from) continue;
-    waiter.futex = to;
+    if (waiter.trap_wait != TrapWait::kFutex || !WaitsAt(waiter, from)) continue;
+    std::replace(waiter.futexes.begin(), waiter.futexes.end(), from, to);
+    if (waiter.futexes.empty()) waiter.futex = to;
     ++moved;
     --most;
   }
@@ -177,7 +188,8 @@ bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
 bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
   const bool wakes = command == FUTEX_WAKE || command == FUTEX_WAKE_BITSET ||
                      command == FUTEX_WAKE_OP || command == FUTEX_REQUEUE ||
-                     command == FUTEX_CMP_REQUEUE || command == FUTEX_UNLOCK_PI;
+                     command == FUTEX_CMP_REQUEUE || command == FUTEX_CMP_REQUEUE_PI ||
+                     command == FUTEX_UNLOCK_PI;
   if (!wakes || IsCallback() || task.reached_ns <= root_.WriteSafe(task.cpu->leaf)) return false;
   // Nobody waits: then nobody can be woken too early.
   if (command != FUTEX_WAKE_OP &&
@@ -220,6 +232,12 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       break;
     case FUTEX_UNLOCK_PI:
       task.trap_result = FutexUnlock(task, call);
+      break;
+    case FUTEX_WAIT_REQUEUE_PI:
+      task.trap_result = FutexWaitForLock(task, call);
+      break;
+    case FUTEX_CMP_REQUEUE_PI:
+      task.trap_result = FutexRequeueToLock(task, call);
       break;
     default:
       task.trap_result = -ENOSYS;

@@ -32,6 +32,7 @@ bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
     FlushTerminals();
     return false;
   }
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) return LookAtKernelWaits();
   std::vector<Task*> waiting;
   for (Task& task : tasks_) {
     if (task.waits_for_key && task.key_kind == kind && task.key_id == id) waiting.push_back(&task);
@@ -46,6 +47,26 @@ bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
   }
   event_ns_ = now;
   return !waiting.empty();
+}
+
+// Threads that the kernel holds in a call of theirs, and has just let go on. True if there are any.
+bool Engine::LookAtKernelWaits() {
+  bool found = false;
+  for (Task& task : tasks_) {
+    if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
+    MakeReady(task, shm::WakeReason::kGo);
+    task.parked = false;
+    found = true;
+  }
+  return found;
+}
+
+// The kernel keeps the order of those who wait for a lock.
+void Engine::LockRaw(Task& task) {
+  task.trap_continues = true;
+  task.expects_kernel = true;
+  task.follow_up = FollowUp::kKernelWaits;
+  HoldRaw(task, shm::NotificationKind::kWrite);
 }
 
 void Engine::NoteTerminal(Task& task, int fd) {

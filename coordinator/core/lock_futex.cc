@@ -19,8 +19,10 @@ constexpr std::uint32_t kOwner = FUTEX_TID_MASK, kDied = FUTEX_OWNER_DIED, kWait
 Task* Engine::MostUrgentWaiter(const FutexKey& key, std::uint32_t bits) {
   Task* best = nullptr;
   for (Task& task : tasks_) {
-    if (task.trap_wait != TrapWait::kFutex || task.futex != key || (task.futex_bits & bits) == 0)
+    if (task.trap_wait != TrapWait::kFutex || (task.futex_bits & bits) == 0 ||
+        task.requeue_to.has_value() || !WaitsAt(task, key)) {
       continue;
+    }
     if (best == nullptr || task.priority > best->priority ||
         (task.priority == best->priority && task.futex_order < best->futex_order)) {
       best = &task;

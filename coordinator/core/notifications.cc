@@ -50,11 +50,13 @@ void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   }
 }
 
-void Engine::WaitForChild(Task& task, pid_t which) {
+void Engine::WaitForChild(Task& task, pid_t which, bool stops) {
   SetState(task, TaskState::kWaiting);
   task.waits_for_child = true;
   task.awaited_child = which;
   ++waiting_for_child_;
+  task.awaits_stops = stops;
+  waiting_for_stops_ += stops;
   task.deadline_ns = shm::kNeverNs;
 }
 
@@ -82,6 +84,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
   Robot& robot = *task.process->robot;
   event_ns_ = task.reached_ns;
   task.reason = shm::WakeReason::kGo;
+  task.expects_kernel = note.kind == Kind::kKernelWait;
   // From the program's clock to the robot's.
   task.deadline_ns = shm::kNeverNs;
   if (note.deadline_ns != shm::kNeverNs) {
@@ -107,11 +110,12 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       PollEvents(0);
       break;
     case Kind::kWaitChild:
-      WaitForChild(task, static_cast<pid_t>(note.args[0]));
+      WaitForChild(task, static_cast<pid_t>(note.args[0]), note.args[1] != 0);
+      FindUnknownChildren(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
-      if (std::exchange(task.children_looked, task.process->children_ended) !=
-          task.process->children_ended) {
+      if (std::exchange(task.children_looked, task.process->children_changed) !=
+          task.process->children_changed) {
         MakeReady(task, shm::WakeReason::kGo);
       }
       break;
@@ -173,6 +177,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kHorizon:
     case Kind::kInterrupted:
     case Kind::kResumed:
+    case Kind::kKernelWait:
       break;
   }
   Refresh(robot);

@@ -2,25 +2,20 @@
 // symbol sees them. What they wait for is waited for here; then the kernel carries them out, and
 // does not have to wait.
 #include <errno.h>
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <sched.h>
+#include <signal.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 
+#include "coordinator/core/borrowed.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
@@ -54,38 +49,6 @@ bool Write(const Task& task, std::uint64_t address, const T& value) {
 bool IsRealtime(std::uint64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
 }
-
-// A descriptor of a client, for as long as it is looked at.
-class Borrowed {
- public:
-  Borrowed(const Task& task, int fd) : fd_(DuplicateFd(task.process->pidfd, fd)) {}
-  ~Borrowed() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Borrowed(const Borrowed&) = delete;
-  Borrowed& operator=(const Borrowed&) = delete;
-
-  // False for files and folders, and for what is no descriptor.
-  bool CanWait() const {
-    struct stat status;
-    if (fd_ < 0 || fstat(fd_, &status) != 0) return false;
-    return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
-  }
-  bool IsNonBlocking() const { return (fcntl(fd_, F_GETFL) & O_NONBLOCK) != 0; }
-  // As the shim does it for what it reads itself: what TCP's sender waits for must not wait for a
-  // timer of the host's. Nothing happens to other descriptors.
-  void AcknowledgeAtOnce() const {
-    const int on = 1;
-    setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
-  }
-  bool IsReady(short events) const {
-    pollfd probe{fd_, events, 0};
-    return poll(&probe, 1, 0) != 0;
-  }
-
- private:
-  int fd_;
-};
 
 }  // namespace
 
@@ -124,22 +87,13 @@ std::int64_t Engine::SleepRaw(Task& task, const TrappedCall& call) {
   return 0;
 }
 
-// Goes on once it is ready, or can find all that was sent until now.
-void Engine::TransferRaw(Task& task, const TrappedCall& call) {
-  const bool reads = call.number == SYS_read || call.number == SYS_readv;
-  const short events = reads ? POLLIN : POLLOUT;
-  const auto number = static_cast<int>(call.args[0]);
+// As the shim does it for those that it sees; and those that the C library makes for it inside come
+// here, too.
+void Engine::SignalRaw(Task& task) {
   task.trap_continues = true;
-  const Borrowed fd(task, number);
-  if (!fd.CanWait()) return;
-  if (reads) fd.AcknowledgeAtOnce();
-  if (fd.IsNonBlocking() || fd.IsReady(events)) {
-    HoldRaw(task, reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
-    return;
-  }
-  const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  task.trap_wait = TrapWait::kFds;
-  WatchFds(task, &waited, 1);
+  if (Slot(task).signals.load() != 0) return;
+  task.follow_up = FollowUp::kSignals;
+  HoldRaw(task, shm::NotificationKind::kWrite);
 }
 
 void Engine::HoldRaw(Task& task, shm::NotificationKind kind) {
@@ -221,6 +175,33 @@ std::vector<shm::WaitFd> Engine::RawWaitFds(const Task& task, const TrappedCall&
   return waited;
 }
 
+// The signals that end the call though the thread blocks them: its mask lets them in. Those that do
+// nothing, or only stop the thread, do not.
+std::uint64_t Engine::RawAwaitedSignals(const Task& task, const TrappedCall& call) {
+  constexpr auto bit = [](int signal) { return std::uint64_t{1} << (signal - 1); };
+  constexpr std::uint64_t kNoEnd = bit(SIGCHLD) | bit(SIGCONT) | bit(SIGURG) | bit(SIGWINCH) |
+                                   bit(SIGTSTP) | bit(SIGTTIN) | bit(SIGTTOU);
+  constexpr std::uint64_t kNeverHeld = bit(SIGKILL) | bit(SIGSTOP);
+  std::uint64_t address = 0, mask = 0;
+  switch (call.number) {
+    case SYS_ppoll:
+      address = call.args[3];
+      break;
+    case SYS_pselect6:
+      if (call.args[5] != 0 && !Read(task, call.args[5], &address)) return 0;
+      break;
+    case SYS_epoll_pwait:
+    case SYS_epoll_pwait2:
+      address = call.args[4];
+      break;
+    default:
+      break;
+  }
+  if (address == 0 || !Read(task, address, &mask)) return 0;
+  const SignalSets sets = ReadSignalSets(task.tid);
+  return ~mask & ~kNeverHeld & ~sets.ignored & ~(kNoEnd & ~sets.caught);
+}
+
 std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
   std::int64_t timeout_ns = 0;
   task.trap_continues = true;
@@ -238,6 +219,7 @@ std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
   task.deadline_ns =
       timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
   WatchFds(task, waited.data(), waited.size());
+  AwaitSignals(task, RawAwaitedSignals(task, call));
   return 0;
 }
 
@@ -260,12 +242,22 @@ void Engine::ClearRawResult(const Task& task, const TrappedCall& call) {
   }
 }
 
+// The kernel is about to tell it of its children's stops.
+void Engine::ForgetNews(const Process& parent) {
+  for (Process& child : processes_) {
+    if (child.parent == parent.pid) child.stop_is_news = child.continue_is_news = false;
+  }
+}
+
 void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   const std::uint64_t options = call.args[call.number == SYS_wait4 ? 2 : 3];
   task.trap_continues = true;
-  const bool has_living = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
-    return p.parent == task.process->pid && !p.dead;
-  });
+  const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
+  FindUnknownChildren(*task.process);
+  const bool has_living = HasUnknownChild(*task.process) ||
+                          std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
+                            return p.parent == task.process->pid && !p.dead;
+                          });
   if ((options & WNOHANG) != 0 || !has_living) {
     HoldRaw(task, shm::NotificationKind::kRead);
     return;
@@ -273,13 +265,17 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   pid_t which = 0;  // any
   if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
   if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
-  const bool has_ended = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
-    return p.parent == task.process->pid && p.dead && !p.is_client &&
-           (which == 0 || p.pid == which) && ThreadState(p.pid) == 'Z';
+  const bool has_news = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
+    if (p.parent != task.process->pid || p.is_client || (which != 0 && p.pid != which))
+      return false;
+    if (p.dead) return ThreadState(p.pid) == 'Z';
+    return ((options & WUNTRACED) != 0 && p.stop_is_news) ||
+           ((options & WCONTINUED) != 0 && p.continue_is_news);
   });
-  if (has_ended) return HoldRaw(task, shm::NotificationKind::kRead);
+  if (stops) ForgetNews(*task.process);
+  if (has_news) return HoldRaw(task, shm::NotificationKind::kRead);
   task.trap_wait = TrapWait::kChild;
-  WaitForChild(task, which);
+  WaitForChild(task, which, stops);
 }
 
 std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
@@ -336,6 +332,15 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_readv:
     case SYS_write:
     case SYS_writev:
+    case SYS_recvfrom:
+    case SYS_recvmsg:
+    case SYS_recvmmsg:
+    case SYS_sendto:
+    case SYS_sendmsg:
+    case SYS_sendmmsg:
+    case SYS_accept:
+    case SYS_accept4:
+    case SYS_connect:
       TransferRaw(task, call);
       break;
     case SYS_poll:
@@ -351,6 +356,14 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_waitid:
       AwaitChildRaw(task, call);
       break;
+    case SYS_kill:
+    case SYS_tkill:
+    case SYS_tgkill:
+    case SYS_rt_sigqueueinfo:
+    case SYS_rt_tgsigqueueinfo:
+    case SYS_pidfd_send_signal:
+      SignalRaw(task);
+      break;
     case SYS_sched_yield:
       task.process->robot->ready.Rotate(task.order);
       break;
@@ -362,14 +375,26 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
       task.trap_result = ScheduleRaw(task, call);
       break;
     case SYS_timer_create:
+    case SYS_timer_settime:
+    case SYS_timer_gettime:
+    case SYS_timer_getoverrun:
+    case SYS_timer_delete:
     case SYS_timerfd_create:
+    case SYS_timerfd_settime:
+    case SYS_timerfd_gettime:
     case SYS_setitimer:
+    case SYS_getitimer:
     case SYS_alarm:
-      Warn(fmt::format("{} makes system call {} without the C library: its timer runs in real time",
-                       task.process->name, call.number));
-      task.trap_continues = true;
+      HandleRawTimer(task, call);
       break;
-    default:  // SYS_io_uring_setup, SYS_futex_waitv
+    case SYS_flock:
+    case SYS_fcntl:
+      LockRaw(task);
+      break;
+    case SYS_futex_waitv:
+      task.trap_result = FutexWaitForAny(task, call);
+      break;
+    default:  // SYS_io_uring_setup
       task.trap_result = -ENOSYS;
   }
 }
@@ -384,7 +409,11 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
     // As the kernel has it: after a handler it makes the call again if that wants it.
     task.trap_result = task.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
     // A lock is never given up for a signal: the C library would take it for acquired.
-    if (task.lock_owner != nullptr) task.trap_result = -kRestartAlways;
+    if (task.lock_owner != nullptr || task.requeue_to.has_value()) {
+      task.trap_result = -kRestartAlways;
+    }
+    if (wait == TrapWait::kFutex && task.was_requeued) task.trap_result = -EAGAIN;
+    if (wait == TrapWait::kFutex && !task.futexes.empty()) task.trap_result = -kRestart;
     if (wait == TrapWait::kSleep && task.remaining_address != 0) {
       const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
       Write(task, task.remaining_address, timespec{left / kNsPerSecond, left % kNsPerSecond});
@@ -392,7 +421,15 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
     return;
   }
   const bool timed_out = reason == shm::WakeReason::kDeadline;
-  task.trap_result = timed_out && wait == TrapWait::kFutex ? -ETIMEDOUT : 0;
+  task.trap_result = 0;
+  if (wait == TrapWait::kFutex) {
+    task.trap_result = timed_out ? -ETIMEDOUT : static_cast<std::int64_t>(task.woken_futex);
+  }
+  if (wait == TrapWait::kChild && task.awaits_stops) ForgetNews(*task.process);
+  if (timed_out && wait == TrapWait::kTransfer) {
+    task.trap_continues = false;
+    task.trap_result = -EAGAIN;
+  }
   if (timed_out && wait == TrapWait::kFds) {
     task.trap_continues = false;
     ClearRawResult(task, task.trapped_call);

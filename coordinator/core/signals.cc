@@ -45,7 +45,8 @@ void Engine::AwaitSignals(Task& task, std::uint64_t set) {
 // Nobody says that a signal has come from outside, so those who wait for one are looked at now and
 // then. True if one goes on.
 bool Engine::PollSignals() {
-  if (waiting_for_signals_ == 0 || __rdtsc() < next_signal_look_tsc_) return false;
+  const bool awaited = waiting_for_signals_ > 0 || waiting_for_stops_ > 0;
+  if (!awaited || __rdtsc() < next_signal_look_tsc_) return false;
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
@@ -57,12 +58,13 @@ bool Engine::PollSignals() {
     if (!its) event_ns_ = before_ns;
     ended |= its;
   }
+  LookAtStops();
   return ended;
 }
 
 // PollEvents for the running thread, in turns while somebody waits for signals.
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
-  while (waiting_for_signals_ > 0 && timeout_ns > kLookEveryNs) {
+  while (waiting_for_signals_ + waiting_for_stops_ > 0 && timeout_ns > kLookEveryNs) {
     if (PollEvents(kLookEveryNs)) return true;
     if (!preempted_) return false;
     preempted_ = false;
@@ -118,6 +120,7 @@ void Engine::WakeSignalled(pid_t receiver) {
   for (Process& process : processes_) {
     if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
     WakeForSignals(process);
+    NoteStops(process);
     NoteWhetherStopped(process);
   }
 }

@@ -32,7 +32,10 @@ enum class TaskState {
 };
 
 // What a thread waits for in a trapped call.
-enum class TrapWait { kNone, kFutex, kSleep, kFds, kChild };
+enum class TrapWait { kNone, kFutex, kSleep, kFds, kTransfer, kChild };
+
+// Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
+enum class FollowUp { kNone, kBacklogs, kSignals, kKernelWaits, kContinued };
 
 struct Process;
 struct Robot;
@@ -56,7 +59,8 @@ struct Task {
   std::int64_t frozen_ns = 0;  // its process's when it last stopped
   bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
   pid_t awaited_child = 0;           // this one; 0: any
-  std::int64_t children_looked = 0;  // of its process's children_ended when it last came to wait
+  bool awaits_stops = false;         // also that one stops or goes on
+  std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
   std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
   std::uint64_t key_order = 0;            // of waiting
   // Of programs that speak DDS (dds.cc).
@@ -75,10 +79,19 @@ struct Task {
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
   bool trap_continues = false;            // or the kernel carries it out
   TrapWait trap_wait = TrapWait::kNone;
-  TrappedCall trapped_call;             // the last but futex calls
-  std::uint64_t remaining_address = 0;  // where a sleep leaves what a signal cuts off; 0: nowhere
+  FollowUp follow_up = FollowUp::kNone;  // of the call that the kernel carries out
+  bool is_brief = false;                 // it runs for that call only,
+  std::uint64_t brief_id = 0;            // by which it was trapped
+  bool expects_kernel = false;           // in its next call the kernel may hold it
+  TrappedCall trapped_call;              // the last but futex calls
+  std::uint64_t remaining_address = 0;   // where a sleep leaves what a signal cuts off; 0: nowhere
   FutexKey futex;
-  std::uint64_t futex_order = 0;  // of waiting
+  // Of futex_waitv: instead of that, with the number of the one that it was woken at.
+  std::vector<FutexKey> futexes;
+  std::size_t woken_futex = 0;
+  std::optional<FutexKey> requeue_to;  // the lock that FUTEX_CMP_REQUEUE_PI is to give it
+  bool was_requeued = false;           // it waits for that lock now
+  std::uint64_t futex_order = 0;       // of waiting
   std::uint32_t futex_bits = 0;
   Task* lock_owner = nullptr;      // of the priority-inheriting lock that it waits for,
   std::uint64_t lock_address = 0;  // which is here in its memory
@@ -156,7 +169,10 @@ struct Process {
   std::vector<TimerSignal> timer_signals;
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
   std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
-  std::int64_t children_ended = 0;  // how many
+  std::int64_t children_changed = 0;  // how often one ended, stopped or went on
+  bool stopped = false;               // by a signal, when last looked at
+  // As long as its parent may not have been told.
+  bool stop_is_news = false, continue_is_news = false;
   // Of threads that have ended, for the report.
   std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
@@ -169,6 +185,12 @@ struct Process {
   bool is_client = false;      // named in the scenario, rather than a child of one
   int wait_status = 0;         // once dead, of the coordinator's own children
   std::int64_t ended_at_ns = -1;
+};
+
+// A child that was not announced and has not registered, perhaps never will.
+struct UnknownChild {
+  pid_t parent = 0;
+  int pidfd = -1;
 };
 
 struct VirtualCpu {

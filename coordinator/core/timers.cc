@@ -32,7 +32,6 @@ std::int64_t TakeExpirations(Timer& timer, std::int64_t now) {
   return count;
 }
 
-// The three of setitimer are there without being created.
 shm::TimerKind KindOfItimer(std::int64_t which) {
   shm::TimerKind kind;
   kind.signal = which == ITIMER_REAL ? SIGALRM : which == ITIMER_VIRTUAL ? SIGVTALRM : SIGPROF;
@@ -112,13 +111,22 @@ void Engine::DeletePosixTimers(Process& process) {
 }
 
 void Engine::SetTimer(Task& task, const shm::Notification& note) {
-  Process& process = *task.process;
-  const std::int64_t id = note.args[0];
-  if (note.kind == shm::NotificationKind::kTimerCreate) return CreateTimer(task, note);
-  if (note.kind == shm::NotificationKind::kTimerDelete) return DeleteTimer(process, id);
+  SetTimerOf(*task.process, task, note);
+}
+
+// The three of setitimer are there without being created.
+void Engine::EnsureItimer(Process& process, std::int64_t id) {
   if (id >= ITIMER_REAL && id <= ITIMER_PROF && !process.timers.contains(id)) {
     process.timers[id].kind = KindOfItimer(id);
   }
+}
+
+// A timer of `process`, by one of its threads, or of its children, which have its descriptors.
+void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& note) {
+  const std::int64_t id = note.args[0];
+  if (note.kind == shm::NotificationKind::kTimerCreate) return CreateTimer(task, note);
+  if (note.kind == shm::NotificationKind::kTimerDelete) return DeleteTimer(process, id);
+  EnsureItimer(process, id);
   const auto found = process.timers.find(id);
   if (found == process.timers.end()) return;
   Timer& timer = found->second;

@@ -12,6 +12,8 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.trap_listener = call.listener;
   task.trap_result = 0;
   task.trap_continues = false;
+  task.follow_up = FollowUp::kNone;
+  task.expects_kernel = false;
   task.deadline_ns = shm::kNeverNs;
   if (call.number == SYS_futex) {
     HandleFutex(task, call);
@@ -20,7 +22,7 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   }
   Refresh(*task.process->robot);
   // What is there already ends the wait here and now.
-  if (task.trap_wait == TrapWait::kFds) PollEvents(0);
+  if (task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer) PollEvents(0);
 }
 
 // A trapped call has arrived. That of the running thread stops it like a notification.

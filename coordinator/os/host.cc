@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/kcmp.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -161,6 +162,7 @@ SignalSets ReadSignalSets(pid_t tid) {
     return found == nullptr ? 0 : strtoull(found + strlen(name), nullptr, 16);
   };
   return {.caught = set("\nSigCgt:"),
+          .ignored = set("\nSigIgn:"),
           .blocked = set("\nSigBlk:"),
           .own_pending = set("\nSigPnd:"),
           .shared_pending = set("\nShdPnd:")};
@@ -218,6 +220,21 @@ int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 
 
 int DuplicateFd(int pidfd, int fd) {
   return static_cast<int>(syscall(SYS_pidfd_getfd, pidfd, fd, 0));
+}
+
+bool IsSameFile(int one, int other) {
+  const pid_t own = getpid();
+  return syscall(SYS_kcmp, own, own, KCMP_FILE, one, other) == 0;
+}
+
+std::vector<pid_t> ChildrenOf(pid_t pid) {
+  std::vector<pid_t> children;
+  for (const pid_t tid : ThreadsOf(pid)) {
+    std::ifstream file("/proc/" + std::to_string(pid) + "/task/" + std::to_string(tid) +
+                       "/children");
+    for (pid_t child = 0; file >> child;) children.push_back(child);
+  }
+  return children;
 }
 
 namespace {

@@ -16,7 +16,14 @@
 
 namespace tcs {
 
-enum class Level : int { kWaiting = 10, kDetector = 11, kActive = 12, kCoordinator = 13 };
+// Who is to do only what the kernel has to do for it does that at once, above the coordinator.
+enum class Level : int {
+  kWaiting = 10,
+  kDetector = 11,
+  kActive = 12,
+  kCoordinator = 13,
+  kKernelOnly = 14
+};
 
 // Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
 std::uint64_t CalibrateTsc();
@@ -56,10 +63,10 @@ bool IsDying(pid_t tid);
 // How a child of this process has ended, as of waitpid, which still finds it; none if it lives.
 std::optional<int> WaitStatusOf(pid_t child);
 
-// The signals that a thread's process catches, that the thread blocks, and that wait for delivery
-// to the thread or to any of its process; bit 0 is signal 1.
+// The signals that a thread's process catches and ignores, that the thread blocks, and that wait
+// for delivery to the thread or to any of its process; bit 0 is signal 1.
 struct SignalSets {
-  std::uint64_t caught = 0, blocked = 0, own_pending = 0, shared_pending = 0;
+  std::uint64_t caught = 0, ignored = 0, blocked = 0, own_pending = 0, shared_pending = 0;
 };
 SignalSets ReadSignalSets(pid_t tid);
 
@@ -83,6 +90,11 @@ pid_t ProcessOfThread(pid_t tid);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
+
+// True if two descriptors of this process are of one open file.
+bool IsSameFile(int one, int other);
+
+std::vector<pid_t> ChildrenOf(pid_t pid);
 
 struct SpawnRequest {
   std::vector<std::string> command;

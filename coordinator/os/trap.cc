@@ -1,6 +1,7 @@
 #include "coordinator/os/trap.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/futex.h>
@@ -21,20 +22,31 @@ namespace tcs {
 
 namespace {
 
-// Besides futex and clock_gettime, which depend on their arguments.
+// Besides futex and clock_gettime, which depend on their arguments, and those whose mark is
+// elsewhere.
 constexpr std::uint32_t kTrapped[] = {
     // Clocks and sleeps.
     SYS_gettimeofday, SYS_time, SYS_nanosleep, SYS_clock_nanosleep,
     // What waits for descriptors and for children.
     SYS_read, SYS_readv, SYS_write, SYS_writev, SYS_poll, SYS_ppoll, SYS_select, SYS_pselect6,
-    SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid,
+    SYS_epoll_wait, SYS_epoll_pwait, SYS_epoll_pwait2, SYS_wait4, SYS_waitid, SYS_recvmsg,
+    SYS_recvmmsg, SYS_sendmsg, SYS_sendmmsg, SYS_accept, SYS_accept4, SYS_connect,
+    // Signals to others.
+    SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo,
+    SYS_pidfd_send_signal,
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity,
     // Refused, so that programs take the calls that are known here.
-    SYS_io_uring_setup, SYS_futex_waitv,
-    // Let through, and named in a warning.
-    SYS_timer_create, SYS_timerfd_create, SYS_setitimer, SYS_alarm};
+    SYS_io_uring_setup,
+    // Timers.
+    SYS_timer_create, SYS_timer_settime, SYS_timer_gettime, SYS_timer_getoverrun, SYS_timer_delete,
+    SYS_timerfd_create, SYS_timerfd_settime, SYS_timerfd_gettime, SYS_setitimer, SYS_getitimer,
+    SYS_alarm,
+    // Locks of files.
+    SYS_flock,
+    // Several futexes at once.
+    SYS_futex_waitv};
 
 // As a jump over the given number of instructions where the value just loaded is, or is not, `k`.
 sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
@@ -51,6 +63,12 @@ sock_filter Load(std::size_t offset) {
 constexpr std::uint32_t kNuma = SYS_get_mempolicy;
 
 sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
+
+// The upper half of an argument.
+sock_filter LoadUpper(std::size_t argument) {
+  return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument +
+              sizeof(std::uint32_t));
+}
 
 // The lower half of an argument.
 sock_filter LoadArgument(std::size_t argument) {
@@ -72,6 +90,25 @@ std::vector<sock_filter> Program() {
       // The shim waits at its gate with this operation, which has no use for its last argument.
       JumpIfEqual(FUTEX_WAIT, 0, 3),
       LoadArgument(5),
+      JumpIfEqual(shm::kOwnCallMark, 0, 1),
+      allow,
+      trap,
+      // Locks only.
+      JumpIfEqual(SYS_fcntl, 0, 10),
+      LoadArgument(1),
+      JumpIfEqual(F_SETLK, 4, 0),
+      JumpIfEqual(F_SETLKW, 3, 0),
+      JumpIfEqual(F_OFD_SETLK, 2, 0),
+      JumpIfEqual(F_OFD_SETLKW, 1, 0),
+      allow,
+      LoadArgument(5),
+      JumpIfEqual(shm::kOwnCallMark, 0, 1),
+      allow,
+      trap,
+      // These have their mark beside the flags.
+      JumpIfEqual(SYS_recvfrom, 1, 0),
+      JumpIfEqual(SYS_sendto, 0, 4),
+      LoadUpper(3),
       JumpIfEqual(shm::kOwnCallMark, 0, 1),
       allow,
       trap,
@@ -139,6 +176,18 @@ bool ContinueTrapped(int listener, std::uint64_t id) {
   response.id = id;
   response.flags = SECCOMP_USER_NOTIF_FLAG_CONTINUE;
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_SEND, &response) == 0;
+}
+
+bool HasAnswerToTake(int listener, std::uint64_t id) {
+  return ioctl(listener, SECCOMP_IOCTL_NOTIF_ID_VALID, &id) == 0;
+}
+
+int GiveDescriptor(int listener, std::uint64_t id, int fd, bool close_on_exec) {
+  seccomp_notif_addfd given{};
+  given.id = id;
+  given.srcfd = static_cast<std::uint32_t>(fd);
+  given.newfd_flags = close_on_exec ? O_CLOEXEC : 0;
+  return ioctl(listener, SECCOMP_IOCTL_NOTIF_ADDFD, &given);
 }
 
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {

@@ -113,15 +113,6 @@ void Wakes() {
   }
 }
 
-// What only a C library's condition variables once used.
-void Refused() {
-  if (g_mode == Mode::kNative) return;
-  Word word{0}, other{0};
-  for (const int operation : {FUTEX_WAIT_REQUEUE_PI_PRIVATE, FUTEX_CMP_REQUEUE_PI_PRIVATE}) {
-    EXPECT(Futex(word, operation, 0, nullptr, &other) == -1 && errno == ENOSYS, "%d", operation);
-  }
-}
-
 // What is no time, no bit and no address; and a number that happens to be that of a thread that has
 // ended, which is no reason not to wait.
 void Arguments() {
@@ -175,7 +166,6 @@ int main(int argc, char** argv) {
   Begin(argc, argv);
   Timeouts();
   Wakes();
-  Refused();
   Arguments();
   Shared();
 }

@@ -182,10 +182,6 @@ int main(int argc, char** argv) {
     for (const bool process : {false, true}) OwnerDies(protocol, process);
   }
   if (g_mode == Mode::kNative) return 0;  // needs one processor for all three
-  std::uint32_t word = 0;
-  EXPECT(syscall(SYS_futex, &word, FUTEX_WAIT_REQUEUE_PI, 0, nullptr, &word, 0) == -1 &&
-             errno == ENOSYS,
-         "not refused");
   Invert(PTHREAD_PRIO_NONE);
   EXPECT(g_locked_ns > g_middle_done_ns, "without inheritance the middle one comes first");
   Invert(PTHREAD_PRIO_INHERIT);

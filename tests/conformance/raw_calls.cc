@@ -205,13 +205,11 @@ void Scheduler() {
   if (g_mode != Mode::kNative) EXPECT(cores[0] == 1, "cores %lx", cores[0]);
 }
 
-// Programs fall back to calls that are known here; what is not is named.
+// Programs fall back to calls that are known here.
 void Refused() {
   if (g_mode == Mode::kNative) return;
   char parameters[256] = "";
   EXPECT(syscall(SYS_io_uring_setup, 8, parameters) == -1 && errno == ENOSYS, "io_uring");
-  const long timer = syscall(SYS_timerfd_create, CLOCK_MONOTONIC, 0);
-  EXPECT(timer >= 0, "%s", strerror(errno));
 }
 
 }  // namespace

@@ -1,0 +1,68 @@
+#include "coordinator/core/borrowed.h"
+
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <stdio.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <string_view>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+Borrowed::Borrowed(const Task& task, int fd) : fd_(DuplicateFd(task.process->pidfd, fd)) {}
+
+Borrowed::~Borrowed() {
+  if (fd_ >= 0) close(fd_);
+}
+
+bool Borrowed::CanWait() const {
+  struct stat status;
+  if (fd_ < 0 || fstat(fd_, &status) != 0) return false;
+  return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
+}
+
+bool Borrowed::IsNonBlocking() const { return (fcntl(fd_, F_GETFL) & O_NONBLOCK) != 0; }
+
+void Borrowed::AcknowledgeAtOnce() const {
+  const int on = 1;
+  setsockopt(fd_, IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+}
+
+bool Borrowed::IsReady(short events) const {
+  pollfd probe{fd_, events, 0};
+  return poll(&probe, 1, 0) != 0;
+}
+
+bool Borrowed::IsEventFd() const {
+  char link[64], name[64];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", fd_);
+  const ssize_t size = readlink(link, name, sizeof name);
+  return size > 0 &&
+         std::string_view(name, static_cast<std::size_t>(size)) == "anon_inode:[eventfd]";
+}
+
+bool Borrowed::CanBeRead() const { return (fcntl(fd_, F_GETFL) & O_ACCMODE) != O_WRONLY; }
+
+bool Borrowed::CanBeWritten() const { return (fcntl(fd_, F_GETFL) & O_ACCMODE) != O_RDONLY; }
+
+int Borrowed::SocketOption(int option, int otherwise) const {
+  int value = 0;
+  socklen_t size = sizeof value;
+  return getsockopt(fd_, SOL_SOCKET, option, &value, &size) == 0 ? value : otherwise;
+}
+
+std::int64_t Borrowed::SocketTimeout(int option) const {
+  timeval timeout{};
+  socklen_t size = sizeof timeout;
+  if (getsockopt(fd_, SOL_SOCKET, option, &timeout, &size) != 0) return shm::kNeverNs;
+  const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_usec * 1'000;
+  return ns == 0 ? shm::kNeverNs : ns;
+}
+
+}  // namespace tcs

@@ -1,0 +1,38 @@
+// What is due after a call that was let through to the kernel: others may go on by what it did, at
+// the time of the call. So its thread runs just long enough for the kernel to carry it out, and is
+// stopped for that.
+#include <utility>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+// The thread has run since the kernel got the call, which it made at `call_ns`.
+void Engine::DoFollowUp(Task& task, std::int64_t call_ns) {
+  // Should the host have kept it from even the call, it is looked for once more.
+  const bool is_over = notified_ || trapped_.has_value() || !std::exchange(task.is_brief, false);
+  const FollowUp what = task.follow_up;
+  if (is_over) task.follow_up = FollowUp::kNone;
+  const std::int64_t now_ns = std::exchange(event_ns_, call_ns);
+  switch (what) {
+    case FollowUp::kNone:
+      break;
+    case FollowUp::kBacklogs:
+      WakeKey(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0);
+      break;
+    case FollowUp::kSignals:
+      WakeSignalled(0);
+      break;
+    case FollowUp::kKernelWaits:
+      LookAtKernelWaits();
+      break;
+    case FollowUp::kContinued:
+      if (Process* parent = LivingProcess(task.process->parent); parent != nullptr) {
+        WakeForSignals(*parent);
+      }
+      break;
+  }
+  event_ns_ = now_ns;
+}
+
+}  // namespace tcs

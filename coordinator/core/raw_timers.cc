@@ -1,0 +1,257 @@
+// Timers whose calls are made raw: they are the same as those that the shim makes for its program,
+// so a timer made one way can be set the other way.
+#include <errno.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/syscall.h>
+#include <sys/time.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "coordinator/core/borrowed.h"
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMostSeconds = 4'000'000'000;
+constexpr std::uint64_t kAbsolute = 1;  // TIMER_ABSTIME, TFD_TIMER_ABSTIME
+
+template <class T>
+bool Read(const Task& task, std::uint64_t address, T* to) {
+  return ReadMemory(task.process->pid, address, to, sizeof *to);
+}
+
+template <class T>
+bool Write(const Task& task, std::uint64_t address, const T& value) {
+  return WriteMemory(task.process->pid, address, &value, sizeof value);
+}
+
+std::int64_t ToNs(const timespec& t) {
+  return std::min<std::int64_t>(t.tv_sec, kMostSeconds) * kNsPerSecond + t.tv_nsec;
+}
+
+bool IsValid(const timespec& t) {
+  return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
+}
+
+timespec ToTimespec(std::int64_t ns) { return {ns / kNsPerSecond, ns % kNsPerSecond}; }
+
+timeval RoundUp(std::int64_t ns) {
+  const std::int64_t us = (ns + 999) / 1000;
+  return {us / 1'000'000, us % 1'000'000};
+}
+
+bool IsRealtime(std::int64_t clock) {
+  return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM || clock == CLOCK_TAI;
+}
+
+bool IsMonotonic(std::int64_t clock) {
+  return clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME || clock == CLOCK_BOOTTIME_ALARM;
+}
+
+// What timer_create is asked for; none if the kernel has no such timer.
+std::optional<shm::TimerKind> PosixKind(const Task& task, int clock, const sigevent& event) {
+  shm::TimerKind kind;
+  kind.is_posix = 1;
+  if (clock == CLOCK_PROCESS_CPUTIME_ID) {
+    kind.clock = shm::TimerClock::kProcessCpu;
+  } else if (clock == CLOCK_THREAD_CPUTIME_ID) {
+    kind.clock = shm::TimerClock::kThreadCpu;
+    kind.clock_tid = task.tid;
+  } else if (IsRealtime(clock)) {
+    kind.clock_tid = 1;
+  } else if (!IsMonotonic(clock)) {
+    return std::nullopt;
+  }
+  kind.value = reinterpret_cast<std::int64_t>(event.sigev_value.sival_ptr);
+  if (event.sigev_notify == SIGEV_NONE) return kind;
+  if (event.sigev_signo <= 0 || event.sigev_signo > SIGRTMAX) return std::nullopt;
+  kind.signal = event.sigev_signo;
+  if (event.sigev_notify == SIGEV_THREAD_ID) {
+    kind.signal_tid = event._sigev_un._tid;
+    return ProcessOfThread(kind.signal_tid) == task.process->pid ? std::optional(kind)
+                                                                 : std::nullopt;
+  }
+  const bool known = event.sigev_notify == SIGEV_SIGNAL || event.sigev_notify == SIGEV_THREAD;
+  return known ? std::optional(kind) : std::nullopt;
+}
+
+}  // namespace
+
+std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
+  Process& process = *task.process;
+  sigevent event{};
+  event.sigev_signo = SIGALRM;
+  event.sigev_value.sival_int = static_cast<int>(process.next_timer_id);
+  if (call.args[1] != 0 && !Read(task, call.args[1], &event)) return -EFAULT;
+  const auto kind = PosixKind(task, static_cast<int>(call.args[0]), event);
+  if (!kind.has_value()) return -EINVAL;
+  const int id = static_cast<int>(process.next_timer_id);
+  if (!Write(task, call.args[2], id)) return -EFAULT;
+  process.timers[process.next_timer_id++].kind = *kind;
+  return 0;
+}
+
+// As for timerfd_create of the shim, an eventfd.
+std::int64_t Engine::CreateTimerFdRaw(Task& task, const TrappedCall& call) {
+  const auto clock = static_cast<int>(call.args[0]), flags = static_cast<int>(call.args[1]);
+  if ((flags & ~(TFD_CLOEXEC | TFD_NONBLOCK)) != 0) return -EINVAL;
+  if (clock == CLOCK_TAI || (!IsRealtime(clock) && !IsMonotonic(clock))) return -EINVAL;
+  Timer timer;
+  timer.kind.clock_tid = IsRealtime(clock) ? 1 : 0;
+  timer.event_fd = eventfd(0, EFD_CLOEXEC | (flags & TFD_NONBLOCK));
+  if (timer.event_fd < 0) return -errno;
+  const int fd = GiveDescriptor(call.listener, call.id, timer.event_fd, (flags & TFD_CLOEXEC) != 0);
+  if (fd < 0) {
+    const int error = errno;
+    close(timer.event_fd);
+    return -error;
+  }
+  task.process->timers[task.process->next_timer_id++] = timer;
+  return fd;
+}
+
+// Whose descriptor it is, too: timers made before a fork are the parent's.
+Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
+  const Borrowed fd(task, number);
+  if (fd.fd() < 0) return {};
+  for (Process& process : processes_) {
+    for (auto& [id, timer] : process.timers) {
+      if (timer.event_fd >= 0 && IsSameFile(timer.event_fd, fd.fd())) return {&process, id};
+    }
+  }
+  return {};
+}
+
+std::int64_t Engine::TimerNow(const Task& task, const Process& owner, const Timer& timer) const {
+  if (timer.kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
+  if (timer.kind.clock == shm::TimerClock::kTime) return task.reached_ns + owner.frozen_ns;
+  const auto known = by_tid_.find(timer.kind.clock_tid);
+  return known == by_tid_.end() ? 0 : known->second->charged_ns;
+}
+
+// Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the
+// interval.
+itimerspec Engine::ExchangeTimer(Task& task, const FoundTimer& found, bool sets,
+                                 std::int64_t first_ns, std::int64_t interval_ns) {
+  const std::int64_t now = TimerNow(task, *found.owner, found.owner->timers[found.id]);
+  shm::Notification note{};
+  note.kind = sets ? shm::NotificationKind::kTimerSet : shm::NotificationKind::kTimerGet;
+  note.args[0] = found.id;
+  note.args[1] = first_ns;
+  note.args[2] = interval_ns;
+  SetTimerOf(*found.owner, task, note);
+  const std::int64_t next = std::exchange(task.reply[0], 0);
+  const std::int64_t left = next == 0 ? 0 : std::max<std::int64_t>(1, next - now);
+  return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(left)};
+}
+
+std::int64_t Engine::SetTimerRaw(Task& task, const FoundTimer& found, const TrappedCall& call) {
+  itimerspec given{};
+  if (!Read(task, call.args[2], &given)) return -EFAULT;
+  if (!IsValid(given.it_value) || !IsValid(given.it_interval)) return -EINVAL;
+  const Timer& timer = found.owner->timers[found.id];
+  std::int64_t first = ToNs(given.it_value);
+  if (first != 0) {
+    std::int64_t offset = -TimerNow(task, *found.owner, timer);
+    if ((call.args[1] & kAbsolute) != 0) {
+      offset = timer.kind.clock != shm::TimerClock::kTime ? 0
+               : timer.kind.clock_tid != 0                ? header_->realtime_offset_ns
+                                                          : header_->monotonic_offset_ns;
+    }
+    first = std::max<std::int64_t>(1, first - offset);  // long past, but armed
+  }
+  const itimerspec before = ExchangeTimer(task, found, true, first, ToNs(given.it_interval));
+  return call.args[3] == 0 || Write(task, call.args[3], before) ? 0 : -EFAULT;
+}
+
+std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
+  const std::int64_t which =
+      call.number == SYS_alarm ? ITIMER_REAL : static_cast<int>(call.args[0]);
+  if (which < ITIMER_REAL || which > ITIMER_PROF) return -EINVAL;
+  FoundTimer found{task.process, which};
+  itimerval given{};
+  if (call.number == SYS_alarm) given.it_value.tv_sec = static_cast<unsigned>(call.args[0]);
+  if (call.number == SYS_setitimer && call.args[1] != 0 && !Read(task, call.args[1], &given)) {
+    return -EFAULT;
+  }
+  const timespec value{given.it_value.tv_sec, given.it_value.tv_usec * 1000},
+      interval{given.it_interval.tv_sec, given.it_interval.tv_usec * 1000};
+  if (!IsValid(value) || !IsValid(interval)) return -EINVAL;
+  const bool sets = call.number != SYS_getitimer;
+  EnsureItimer(*task.process, which);
+  const std::int64_t delay = ToNs(value);
+  const std::int64_t first =
+      delay == 0 ? 0 : TimerNow(task, *task.process, task.process->timers[which]) + delay;
+  const itimerspec before = ExchangeTimer(task, found, sets, first, ToNs(interval));
+  const itimerval old{RoundUp(ToNs(before.it_interval)), RoundUp(ToNs(before.it_value))};
+  if (call.number == SYS_alarm) {
+    // As the kernel rounds it: never 0 while it was armed.
+    const bool up =
+        old.it_value.tv_usec >= 500'000 || (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
+    return old.it_value.tv_sec + (up ? 1 : 0);
+  }
+  const std::uint64_t address = call.args[sets ? 2 : 1];
+  if (address == 0) return sets ? 0 : -EFAULT;
+  return Write(task, address, old) ? 0 : -EFAULT;
+}
+
+// Calls that name a timer of timer_create.
+std::int64_t Engine::PosixTimerRaw(Task& task, const TrappedCall& call) {
+  const FoundTimer found{task.process, static_cast<int>(call.args[0])};
+  const auto timer = task.process->timers.find(found.id);
+  if (timer == task.process->timers.end() || timer->second.kind.is_posix == 0) return -EINVAL;
+  switch (call.number) {
+    case SYS_timer_settime:
+      return SetTimerRaw(task, found, call);
+    case SYS_timer_gettime:
+      return Write(task, call.args[1], ExchangeTimer(task, found, false, 0, 0)) ? 0 : -EFAULT;
+    case SYS_timer_getoverrun:
+      NoteAccepted(*task.process);
+      return timer->second.last_overruns;
+    default:  // SYS_timer_delete
+      DeleteTimer(*task.process, found.id);
+      return 0;
+  }
+}
+
+void Engine::HandleRawTimer(Task& task, const TrappedCall& call) {
+  switch (call.number) {
+    case SYS_timer_create:
+      task.trap_result = CreateTimerRaw(task, call);
+      return;
+    case SYS_timerfd_create:
+      task.trap_result = CreateTimerFdRaw(task, call);
+      return;
+    case SYS_setitimer:
+    case SYS_getitimer:
+    case SYS_alarm:
+      task.trap_result = ItimerRaw(task, call);
+      return;
+    case SYS_timerfd_settime:
+    case SYS_timerfd_gettime: {
+      const FoundTimer found = FindTimerFd(task, static_cast<int>(call.args[0]));
+      if (found.owner == nullptr) {
+        task.trap_continues = true;  // what is wrong with it the kernel says best
+      } else if (call.number == SYS_timerfd_settime) {
+        constexpr std::uint64_t kFlags = TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET;
+        task.trap_result = (call.args[1] & ~kFlags) != 0 ? -EINVAL : SetTimerRaw(task, found, call);
+      } else {
+        task.trap_result =
+            Write(task, call.args[1], ExchangeTimer(task, found, false, 0, 0)) ? 0 : -EFAULT;
+      }
+      return;
+    }
+    default:
+      task.trap_result = PosixTimerRaw(task, call);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,105 @@
+// Processes that a signal stops, and that go on: at once, as far as others can see, though their
+// threads may be at nobody's turn; and their parents hear of it.
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
+
+constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
+
+}  // namespace
+
+// A thread acts on a signal that stops it when it runs next. So each gets to run for that, and the
+// coordinator goes on when it has stopped. Only SIGSTOP is sure to stop, so what other signals do
+// to a thread that computes is seen at its dispatch.
+void Engine::LetStop(const Process& process) {
+  std::vector<Task*> threads;
+  bool certain = false, stops = false;
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->slot < 0) continue;
+    const SignalSets sets = ReadSignalSets(task->tid);
+    const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStops &
+                                  ~(sets.blocked | sets.caught | sets.ignored);
+    certain |= (pending & Bit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';
+    stops |= pending != 0;
+    threads.push_back(task);
+  }
+  if (!certain && !stops) return;
+  for (Task* task : threads) {
+    const bool waits = task->state == TaskState::kWaiting;
+    if (task != running_ && ThreadState(task->tid) != 'T' && (certain || waits)) {
+      RunInKernel(*task);
+    }
+    certain |= ThreadState(task->tid) == 'T';
+  }
+}
+
+// The thread stops, or is back in its wait, when this returns.
+void Engine::RunInKernel(Task& task) {
+  SetLevel(task.tid, Level::kKernelOnly);
+  SetLevel(task.tid, Level::kWaiting);
+  task.level = Level::kWaiting;
+}
+
+// Has it stopped or gone on since the last look? Then its parent hears of it.
+void Engine::NoteStops(Process& process) {
+  if (process.dead) return;
+  LetStop(process);
+  const bool stopped = ThreadState(process.pid) == 'T';
+  if (stopped == process.stopped) return;
+  process.stopped = process.stop_is_news = stopped;
+  process.continue_is_news = !stopped;
+  if (!stopped) LetGoOn(process);
+  TellParent(process);
+}
+
+// The kernel sends the parent its signal when one of the threads runs next: those that wait may do
+// that now, and are back in their waits; others when they are dispatched.
+void Engine::LetGoOn(const Process& process) {
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process) continue;
+    if (task->state != TaskState::kWaiting) {
+      task->follow_up = FollowUp::kContinued;
+      continue;
+    }
+    RunInKernel(*task);
+  }
+}
+
+// Those who wait for such a change of a child look at it, and its signal is there.
+void Engine::TellParent(const Process& child) {
+  Process* parent = LivingProcess(child.parent);
+  if (parent == nullptr) return;
+  ++parent->children_changed;
+  for (Task& task : tasks_) {
+    if (task.waits_for_child && task.awaits_stops && task.process == parent &&
+        (task.awaited_child <= 0 || task.awaited_child == child.pid)) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+  WakeForSignals(*parent);
+}
+
+// Nobody says that a process has been stopped from outside.
+void Engine::LookAtStops() {
+  if (waiting_for_stops_ == 0) return;
+  for (Process& process : processes_) {
+    const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
+    if (parent == nullptr) continue;
+    const bool awaited = std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
+      return task.awaits_stops && task.process == parent;
+    });
+    if (awaited) NoteStops(process);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,60 @@
+// Children of a bare clone, or of the system call itself, that make no call that tcs knows: nobody
+// has announced them, and they do not register. Their parent learns of their end, and time waits
+// while they run.
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+// When a thread comes to wait for its children.
+void Engine::FindUnknownChildren(Process& parent) {
+  for (const pid_t pid : ChildrenOf(parent.pid)) {
+    if (unknown_children_.contains(pid)) continue;
+    const bool known = std::any_of(processes_.begin(), processes_.end(),
+                                   [pid](const Process& p) { return p.pid == pid; });
+    if (known) continue;
+    const int pidfd = OpenPidfd(pid);
+    if (pidfd < 0) continue;
+    unknown_children_[pid] = {parent.pid, pidfd};
+    Watch(pidfd, EPOLLIN, Tag::kUnknownChild, static_cast<std::uint32_t>(pid));
+  }
+}
+
+void Engine::UnknownChildEnded(pid_t pid) {
+  const auto found = unknown_children_.find(pid);
+  if (found == unknown_children_.end()) return;
+  const UnknownChild child = found->second;
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, child.pidfd, nullptr);
+  close(child.pidfd);
+  unknown_children_.erase(found);
+  Process* parent = LivingProcess(child.parent);
+  if (parent == nullptr) return;
+  ++parent->children_changed;
+  for (Task& task : tasks_) {
+    if (task.waits_for_child && task.process == parent &&
+        (task.awaited_child <= 0 || task.awaited_child == pid)) {
+      MakeReady(task, shm::WakeReason::kGo);
+    }
+  }
+  WakeForSignals(*parent);
+}
+
+bool Engine::HasUnknownChild(const Process& parent) const {
+  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
+                     [&](const auto& child) { return child.second.parent == parent.pid; });
+}
+
+bool Engine::UnknownChildrenRun() const {
+  return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
+    if (by_tid_.contains(child.first)) return false;
+    const char state = ThreadState(child.first);
+    return state == 'R' || state == 'D';
+  });
+}
+
+}  // namespace tcs

@@ -1,0 +1,38 @@
+#include "libtcs_preload/at_once.h"
+
+#include <errno.h>
+#include <fcntl.h>
+
+#include "libtcs_preload/raw_syscall.h"
+
+namespace tcs::preload {
+
+namespace {
+
+int SocketOption(int fd, int option, int otherwise) {
+  int value = 0;
+  socklen_t size = sizeof value;
+  return RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, option, Arg(&value), Arg(&size)) == 0
+             ? value
+             : otherwise;
+}
+
+}  // namespace
+
+long ReadAtOnce(int fd, const iovec* iov, int count) {
+  const long answer = RawSyscall(SYS_preadv2, fd, Arg(iov), count, -1, -1, RWF_NOWAIT);
+  // Terminals and some others do not have this form; but it has checked whether they can be read.
+  return answer == -EOPNOTSUPP ? -EAGAIN : answer;
+}
+
+bool AcceptWaits(int fd, int flags) {
+  return (flags & ~(SOCK_CLOEXEC | SOCK_NONBLOCK)) == 0 && SocketOption(fd, SO_ACCEPTCONN, 0) != 0;
+}
+
+bool ReceivesAtOnce(int fd, int flags) {
+  if ((flags & MSG_DONTWAIT) != 0) return true;
+  // The errors of a socket are there or not; but sockets of this family have none, and overlook it.
+  return (flags & MSG_ERRQUEUE) != 0 && SocketOption(fd, SO_DOMAIN, AF_UNIX) != AF_UNIX;
+}
+
+}  // namespace tcs::preload

@@ -1,0 +1,20 @@
+// What the kernel answers without waiting, though a descriptor is not ready: nothing was asked for,
+// or something is wrong. Nobody but the kernel knows all of that, so it is asked, in a form of the
+// call that does not wait. -EAGAIN: the call would wait.
+#pragma once
+
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+namespace tcs::preload {
+
+// read and readv. A `count` below 0 or too large is asked for like any other.
+long ReadAtOnce(int fd, const iovec* iov, int count);
+
+// True if accept4 would wait for a connection.
+bool AcceptWaits(int fd, int flags);
+
+// True if a call with such flags never waits for data.
+bool ReceivesAtOnce(int fd, int flags);
+
+}  // namespace tcs::preload

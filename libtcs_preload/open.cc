@@ -1,0 +1,127 @@
+// Opening files: one end of a FIFO waits for the other, and its opening ends others' waits. All
+// other files are opened by the kernel, at no cost but a look at what they are.
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/guest.h"
+#include "libtcs_preload/kernel_wait.h"
+#include "libtcs_preload/keys.h"
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/real.h"
+#include "libtcs_preload/virtual_clock.h"
+
+using namespace tcs::preload;
+
+namespace {
+
+bool IsFifo(int folder, const char* path, int flags) {
+  struct stat status;
+  const int follow = (flags & O_NOFOLLOW) != 0 ? AT_SYMLINK_NOFOLLOW : 0;
+  return RawSyscall(SYS_newfstatat, folder, Arg(path), Arg(&status), follow) == 0 &&
+         S_ISFIFO(status.st_mode);
+}
+
+bool WaitsForOtherEnd(int flags) {
+  return (flags & (O_NONBLOCK | O_PATH | O_DIRECTORY)) == 0 && (flags & O_ACCMODE) != O_RDWR;
+}
+
+// Makes `call`, which opens `path` so.
+template <class Call>
+auto Opening(int folder, const char* path, int flags, Call call) {
+  GuestThread* t = Current();
+  if (t == nullptr || IsShutDown() || path == nullptr) return call();
+  const bool waits = WaitsForOtherEnd(flags);
+  const bool ends_waits = g_header->kernel_waiters.load(std::memory_order_relaxed) != 0;
+  if (!(waits || ends_waits) || !IsFifo(folder, path, flags)) return call();
+  Enter();
+  HoldForRead(*t);
+  HoldForWrite(*t);
+  if (waits) Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kKernelWait});
+  const auto result = call();
+  const int saved = errno;
+  TellKernelWaiters(*t);
+  errno = saved;
+  return result;
+}
+
+int OpenAt(int folder, const char* path, int flags, mode_t mode) {
+  return static_cast<int>(ToErrno(Opening(folder, path, flags, [&] {
+    return RawSyscall(SYS_openat, folder, Arg(path), flags, static_cast<long>(mode));
+  })));
+}
+
+// Only a mode with + opens for both.
+int FlagsOf(const char* mode) {
+  if (mode == nullptr || strchr(mode, '+') != nullptr) return O_RDWR;
+  return mode[0] == 'r' ? O_RDONLY : O_WRONLY;
+}
+
+}  // namespace
+
+// The mode is there where a file may be made.
+#define TCS_MODE(flags)                           \
+  mode_t mode = 0;                                \
+  if (((flags) & (O_CREAT | __O_TMPFILE)) != 0) { \
+    va_list arguments;                            \
+    va_start(arguments, flags);                   \
+    mode = va_arg(arguments, mode_t);             \
+    va_end(arguments);                            \
+  }
+
+TCS_EXPORT int open(const char* path, int flags, ...) {
+  TCS_MODE(flags)
+  return OpenAt(AT_FDCWD, path, flags, mode);
+}
+
+TCS_EXPORT int open64(const char* path, int flags, ...) {
+  TCS_MODE(flags)
+  return OpenAt(AT_FDCWD, path, flags, mode);
+}
+
+TCS_EXPORT int openat(int folder, const char* path, int flags, ...) {
+  TCS_MODE(flags)
+  return OpenAt(folder, path, flags, mode);
+}
+
+TCS_EXPORT int openat64(int folder, const char* path, int flags, ...) {
+  TCS_MODE(flags)
+  return OpenAt(folder, path, flags, mode);
+}
+
+// The twins that the fortified headers call, where the flags make no file.
+TCS_EXPORT int __open_2(const char* path, int flags) { return OpenAt(AT_FDCWD, path, flags, 0); }
+TCS_EXPORT int __open64_2(const char* path, int flags) { return OpenAt(AT_FDCWD, path, flags, 0); }
+TCS_EXPORT int __openat_2(int folder, const char* path, int flags) {
+  return OpenAt(folder, path, flags, 0);
+}
+TCS_EXPORT int __openat64_2(int folder, const char* path, int flags) {
+  return OpenAt(folder, path, flags, 0);
+}
+
+TCS_EXPORT int creat(const char* path, mode_t mode) {
+  return OpenAt(AT_FDCWD, path, O_CREAT | O_WRONLY | O_TRUNC, mode);
+}
+TCS_EXPORT int creat64(const char* path, mode_t mode) { return creat(path, mode); }
+
+TCS_EXPORT FILE* fopen(const char* path, const char* mode) {
+  return Opening(AT_FDCWD, path, FlagsOf(mode), [&] { return TCS_REAL(fopen)(path, mode); });
+}
+
+TCS_EXPORT FILE* fopen64(const char* path, const char* mode) {
+  return Opening(AT_FDCWD, path, FlagsOf(mode), [&] { return TCS_REAL(fopen64)(path, mode); });
+}
+
+TCS_EXPORT FILE* freopen(const char* path, const char* mode, FILE* stream) {
+  return Opening(AT_FDCWD, path, FlagsOf(mode),
+                 [&] { return TCS_REAL(freopen)(path, mode, stream); });
+}
+
+TCS_EXPORT FILE* freopen64(const char* path, const char* mode, FILE* stream) {
+  return Opening(AT_FDCWD, path, FlagsOf(mode),
+                 [&] { return TCS_REAL(freopen64)(path, mode, stream); });
+}

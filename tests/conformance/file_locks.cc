@@ -1,0 +1,213 @@
+// Locks of files (flock, fcntl's of both kinds, lockf): who waits has the lock when it is given up,
+// by a call, by closing the file or by ending, and those who wait are served in their order.
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include "tests/conformance/conformance.h"
+
+namespace {
+
+using namespace conformance;
+
+char g_path[] = "/tmp/tcs_locks_XXXXXX";
+
+void ExpectAt(std::int64_t start, std::int64_t wanted, const char* what) {
+  const std::int64_t took = Now() - start;
+  EXPECT(took >= wanted, "%s: at %lld ns, which is early", what, (long long)took);
+  if (g_mode == Mode::kNative) return;
+  const std::int64_t most = g_mode == Mode::kMeasured ? 6 * kMs : 30 * kCallNs;
+  EXPECT(took < wanted + most, "%s: at %lld ns", what, (long long)took);
+}
+
+void SleepUntil(std::int64_t until) {
+  const timespec t = ToTimespec(until);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+struct flock Record(short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  lock.l_len = 10;
+  return lock;
+}
+
+int Fcntl(int fd, int command, short type) {
+  struct flock lock = Record(type);
+  return fcntl(fd, command, &lock);
+}
+
+// One kind of lock: takes it, waiting or not, and gives it up.
+struct Kind {
+  const char* name;
+  int (*lock)(int fd);
+  int (*try_it)(int fd);
+  int (*unlock)(int fd);
+  bool ends_at_close = true;
+};
+
+const Kind kKinds[] = {
+    {"flock", [](int fd) { return flock(fd, LOCK_EX); },
+     [](int fd) { return flock(fd, LOCK_EX | LOCK_NB); },
+     [](int fd) { return flock(fd, LOCK_UN); }},
+    {"fcntl", [](int fd) { return Fcntl(fd, F_SETLKW, F_WRLCK); },
+     [](int fd) { return Fcntl(fd, F_SETLK, F_WRLCK); },
+     [](int fd) { return Fcntl(fd, F_SETLK, F_UNLCK); }},
+    {"fcntl of open files", [](int fd) { return Fcntl(fd, F_OFD_SETLKW, F_WRLCK); },
+     [](int fd) { return Fcntl(fd, F_OFD_SETLK, F_WRLCK); },
+     [](int fd) { return Fcntl(fd, F_OFD_SETLK, F_UNLCK); }},
+    {"lockf", [](int fd) { return lockf(fd, F_LOCK, 10); },
+     [](int fd) { return lockf(fd, F_TLOCK, 10); }, [](int fd) { return lockf(fd, F_ULOCK, 10); }},
+    {"raw flock", [](int fd) { return static_cast<int>(syscall(SYS_flock, fd, LOCK_EX)); },
+     [](int fd) { return static_cast<int>(syscall(SYS_flock, fd, LOCK_EX | LOCK_NB)); },
+     [](int fd) { return static_cast<int>(syscall(SYS_flock, fd, LOCK_UN)); }},
+};
+
+int Open() {
+  const int fd = open(g_path, O_RDWR | O_CLOEXEC);
+  EXPECT(fd >= 0, "open: %s", strerror(errno));
+  return fd;
+}
+
+enum class Ends { kByCall, kByClose, kByExit };
+
+// A child has the lock for 100 ms; the parent waits for it from 50 ms on, and computes on.
+void BetweenProcesses(const Kind& kind, Ends ends) {
+  const std::int64_t start = Now();
+  const pid_t child = fork();
+  if (child == 0) {
+    const int fd = Open();
+    EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
+    SleepUntil(start + 100 * kMs);
+    if (ends == Ends::kByCall) EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
+    if (ends == Ends::kByClose) EXPECT(close(fd) == 0, "%s", kind.name);
+    if (ends != Ends::kByExit) SleepUntil(start + 200 * kMs);
+    _exit(0);
+  }
+  const int fd = Open();
+  SleepUntil(start + 50 * kMs);
+  EXPECT(kind.try_it(fd) == -1 && (errno == EAGAIN || errno == EACCES), "%s: not held", kind.name);
+  EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
+  ExpectAt(start, 100 * kMs, kind.name);
+  EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
+  int status = 0;
+  EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
+  close(fd);
+}
+
+// Three wait one after another, each has it for 20 ms.
+void InOrder(const Kind& kind) {
+  const int fd = Open();
+  EXPECT(kind.lock(fd) == 0, "%s", kind.name);
+  const std::int64_t start = Now();
+  pid_t children[3];
+  for (int i = 0; i < 3; ++i) {
+    children[i] = fork();
+    if (children[i] != 0) continue;
+    close(fd);
+    const int own = Open();
+    SleepUntil(start + (i + 1) * 10 * kMs);
+    EXPECT(kind.lock(own) == 0, "%s", kind.name);
+    ExpectAt(start, (100 + i * 20) * kMs, kind.name);
+    SleepUntil(start + (120 + i * 20) * kMs);
+    EXPECT(kind.unlock(own) == 0, "%s", kind.name);
+    _exit(0);
+  }
+  SleepUntil(start + 100 * kMs);
+  EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
+  for (const pid_t child : children) {
+    int status = 0;
+    EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
+  }
+  close(fd);
+}
+
+// A handler ends the wait.
+void Interrupted(const Kind& kind) {
+  struct sigaction action {};
+  action.sa_handler = [](int) {};
+  sigaction(SIGUSR1, &action, nullptr);
+  const pid_t parent = getpid();
+  const std::int64_t start = Now();
+  int ready[2];
+  EXPECT(pipe(ready) == 0, "pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    const int fd = Open();
+    EXPECT(kind.lock(fd) == 0 && write(ready[1], "x", 1) == 1, "%s", kind.name);
+    SleepUntil(start + 60 * kMs);
+    kill(parent, SIGUSR1);
+    SleepUntil(start + 100 * kMs);
+    _exit(0);
+  }
+  const int fd = Open();
+  char byte;
+  EXPECT(read(ready[0], &byte, 1) == 1, "read");
+  EXPECT(kind.lock(fd) == -1 && errno == EINTR, "%s: %s", kind.name, strerror(errno));
+  ExpectAt(start, 60 * kMs, "a handler");
+  EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
+  close(ready[0]);
+  close(ready[1]);
+  close(fd);
+}
+
+// Readers share it.
+void Shared() {
+  const int one = Open(), two = Open();
+  const std::int64_t start = Now();
+  EXPECT(flock(one, LOCK_SH) == 0 && flock(two, LOCK_SH) == 0, "flock");
+  EXPECT(flock(one, LOCK_EX | LOCK_NB) == -1 && errno == EWOULDBLOCK, "%s", strerror(errno));
+  ExpectAt(start, 0, "shared locks");
+  close(one);
+  close(two);
+}
+
+// Both want what the other one has: the kernel finds out.
+void Deadlock() {
+  const int fd = Open();
+  const auto lock = [fd](int command, int at) {
+    struct flock part = Record(F_WRLCK);
+    part.l_start = at;
+    return fcntl(fd, command, &part);
+  };
+  EXPECT(lock(F_SETLK, 0) == 0, "fcntl");
+  const std::int64_t start = Now();
+  const pid_t child = fork();
+  if (child == 0) {
+    EXPECT(lock(F_SETLKW, 100) == 0, "fcntl");
+    SleepUntil(start + 50 * kMs);
+    _exit(lock(F_SETLKW, 0) == 0 ? 0 : 1);
+  }
+  SleepUntil(start + 100 * kMs);
+  EXPECT(lock(F_SETLKW, 100) == -1 && errno == EDEADLK, "%s", strerror(errno));
+  ExpectAt(start, 100 * kMs, "EDEADLK");
+  EXPECT(lock(F_SETLKW, 200) == 0, "fcntl");
+  close(fd);
+  int status = 0;
+  EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
+  ExpectAt(start, 100 * kMs, "the other one");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Begin(argc, argv);
+  const int made = mkstemp(g_path);
+  EXPECT(made >= 0, "mkstemp");
+  close(made);
+  for (const Kind& kind : kKinds) {
+    for (const Ends ends : {Ends::kByCall, Ends::kByClose, Ends::kByExit}) {
+      BetweenProcesses(kind, ends);
+    }
+    InOrder(kind);
+    Interrupted(kind);
+  }
+  Shared();
+  Deadlock();
+  unlink(g_path);
+}
