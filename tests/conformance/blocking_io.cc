@@ -114,7 +114,7 @@ void EndOfFile() {
   close(fds[1]);
   char c;
   EXPECT(read(fds[0], &c, 1) == 0, "no end of file");
-  ExpectAbout(start, kChildDelay, "the end of file");
+  ExpectSoonAfter(start, kChildDelay, "the end of file");
   waitpid(pid, nullptr, 0);
 }
 

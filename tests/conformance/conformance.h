@@ -64,8 +64,8 @@ inline void ExpectWaited(std::int64_t start, std::int64_t wanted_ns, int calls, 
 
 // The same where nobody counts the calls on the way, a child's start among them: under tcs late by
 // less than `slack_ns`.
-inline void ExpectAbout(std::int64_t start, std::int64_t wanted_ns, const char* what,
-                        std::int64_t slack_ns = 10 * kMs) {
+inline void ExpectSoonAfter(std::int64_t start, std::int64_t wanted_ns, const char* what,
+                            std::int64_t slack_ns = 10 * kMs) {
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= wanted_ns, "%s took %lld ns, which is early", what, (long long)passed);
   if (g_mode != Mode::kNative) {

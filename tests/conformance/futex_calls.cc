@@ -140,7 +140,7 @@ void Arguments() {
   const std::int64_t start = Now();
   EXPECT(Futex(word, FUTEX_WAIT_PRIVATE, word, &timeout) == -1 && errno == ETIMEDOUT,
          "a number like a thread's: %s", strerror(errno));
-  ExpectAbout(start, 20 * kMs, "giving up");
+  ExpectSoonAfter(start, 20 * kMs, "giving up");
 }
 
 // Between processes, by the memory they share.
@@ -155,7 +155,7 @@ void Shared() {
     _exit(Futex(*word, FUTEX_WAKE, 9) == 1 ? 0 : 1);
   }
   EXPECT(Futex(*word, FUTEX_WAIT, 0) == 0 && *word == 1, "a shared futex: %s", strerror(errno));
-  ExpectAbout(start, 40 * kMs, "a shared futex");
+  ExpectSoonAfter(start, 40 * kMs, "a shared futex");
   int status = 0;
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "the child woke nobody: %x", status);
 }

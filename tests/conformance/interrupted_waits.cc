@@ -138,7 +138,7 @@ void Restarted(bool restart, const sockaddr_in& address, int fd) {
   if (restart) {
     EXPECT(result == child, "waitpid: %s", strerror(errno));
     EXPECT(g_handled == 1, "%d handlers ran", int(g_handled));
-    ExpectAbout(g_start, g_data_after, "waitpid");
+    ExpectSoonAfter(g_start, g_data_after, "waitpid");
   } else {
     ExpectInterrupted(result, "waitpid");
     waitpid(child, &status, 0);

@@ -58,7 +58,7 @@ void Files() {
   EXPECT(flock(locked, LOCK_UN) == 0, "flock");
   int status = 0;
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "flock: child status %x", status);
-  ExpectAbout(start, 50 * kMs, "a lock", 100 * kMs);
+  ExpectSoonAfter(start, 50 * kMs, "a lock", 100 * kMs);
 }
 
 void SystemV() {
@@ -101,7 +101,7 @@ void Clones() {
       clone([](void*) { return usleep(50'000); }, stack + sizeof stack, SIGCHLD, nullptr);
   int status = 0;
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "clone: %x", status);
-  ExpectAbout(start, 50 * kMs, "a cloned child", 50 * kMs);
+  ExpectSoonAfter(start, 50 * kMs, "a cloned child", 50 * kMs);
 }
 
 // A mutex with priority inheritance, and one more thread that wants it.

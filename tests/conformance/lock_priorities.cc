@@ -83,7 +83,7 @@ void TimeoutIsKept() {
         const std::int64_t start = Now();
         timespec deadline = ToTimespec(Now(CLOCK_REALTIME) + 70 * kMs);
         EXPECT(pthread_mutex_timedlock(&g_mutex, &deadline) == ETIMEDOUT, "timedlock");
-        ExpectAbout(start, 70 * kMs, "giving up");
+        ExpectSoonAfter(start, 70 * kMs, "giving up");
         return nullptr;
       },
       nullptr);
@@ -166,7 +166,7 @@ void OwnerDies(int protocol, bool process) {
   usleep(10'000);
   const int error = pthread_mutex_lock(mutex);
   EXPECT(error == EOWNERDEAD, "protocol %d: %s", protocol, strerror(error));
-  ExpectAbout(start, 19 * kMs, "the owner's death", 15 * kMs);
+  ExpectSoonAfter(start, 19 * kMs, "the owner's death", 15 * kMs);
   EXPECT(pthread_mutex_consistent(mutex) == 0 && pthread_mutex_unlock(mutex) == 0, "consistent");
   if (process) waitpid(child, nullptr, 0);
   if (!process) pthread_join(thread, nullptr);

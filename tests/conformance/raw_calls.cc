@@ -160,7 +160,7 @@ void Children() {
   EXPECT(syscall(SYS_wait4, child, &status, WNOHANG, nullptr) == 0, "not yet");
   EXPECT(syscall(SYS_wait4, child, &status, 0, nullptr) == child, "%s", strerror(errno));
   EXPECT(WEXITSTATUS(status) == 3, "status %x", status);
-  ExpectAbout(start, 50 * kMs, "wait4");
+  ExpectSoonAfter(start, 50 * kMs, "wait4");
   EXPECT(syscall(SYS_wait4, -1, &status, 0, nullptr) == -1 && errno == ECHILD, "no child is left");
 }
 
@@ -183,7 +183,7 @@ void FullPipe() {
   long total = 0, n = 0;
   while ((n = syscall(SYS_read, ends[0], buffer, sizeof buffer)) > 0) total += n;
   EXPECT(total == 2 * size, "%ld bytes", total);
-  ExpectAbout(start, 200 * kMs, "a full pipe", 50 * kMs);
+  ExpectSoonAfter(start, 200 * kMs, "a full pipe", 50 * kMs);
   waitpid(child, nullptr, 0);
 }
 

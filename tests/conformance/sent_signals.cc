@@ -142,7 +142,7 @@ void Values() {
   const std::int64_t start = Now();
   for (int i = 1; i <= 3; ++i) {
     EXPECT(sigsuspend(&before) == -1 && g_value == i, "value %d, not %d", g_value, i);
-    ExpectAbout(start, i * 10 * kMs - kMs, "a value", 15 * kMs);
+    ExpectSoonAfter(start, i * 10 * kMs - kMs, "a value", 15 * kMs);
   }
   EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
   sigprocmask(SIG_SETMASK, &before, nullptr);
@@ -187,7 +187,7 @@ void Stops() {
   usleep(50'000);
   kill(child, SIGCONT);
   for (int i = 0; i < 3; ++i) EXPECT(read(fds[0], &c, 1) == 1, "read");
-  ExpectAbout(start, 60 * kMs, "a stopped child", 40 * kMs);
+  ExpectSoonAfter(start, 60 * kMs, "a stopped child", 40 * kMs);
   kill(child, SIGKILL);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && WTERMSIG(status) == SIGKILL, "%x", status);

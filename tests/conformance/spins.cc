@@ -47,7 +47,7 @@ void OtherProcess() {
   }
   while (!*flag) {
   }
-  ExpectAbout(start, 30 * kMs, "another process", 30 * kMs);
+  ExpectSoonAfter(start, 30 * kMs, "another process", 30 * kMs);
   waitpid(child, nullptr, 0);
 }
 

@@ -117,7 +117,7 @@ void MainEndsFirst() {
   }
   const int status = StatusOf(child);
   EXPECT(WIFEXITED(status) && WEXITSTATUS(status) == 7, "status %x", status);
-  ExpectAbout(start, 50 * kMs, "the end", 20 * kMs);
+  ExpectSoonAfter(start, 50 * kMs, "the end", 20 * kMs);
 }
 
 // From the main thread, and from another one.
@@ -147,7 +147,7 @@ void ExecEndsThem() {
     const std::int64_t start = Now();
     const int status = StatusOf(child);
     EXPECT(WIFEXITED(status) && WEXITSTATUS(status) == 5, "status %x", status);
-    ExpectAbout(start, kSecond, "a shell", 200 * kMs);
+    ExpectSoonAfter(start, kSecond, "a shell", 200 * kMs);
   }
 }
 

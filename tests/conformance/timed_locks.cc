@@ -107,7 +107,7 @@ void Joins() {
   }
   EXPECT(pthread_tryjoin_np(thread, nullptr) == EBUSY, "pthread_tryjoin_np");
   EXPECT(pthread_join(thread, nullptr) == 0, "pthread_join");
-  ExpectAbout(start, 500 * kMs, "the thread");
+  ExpectSoonAfter(start, 500 * kMs, "the thread");
 }
 
 }  // namespace

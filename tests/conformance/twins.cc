@@ -110,7 +110,7 @@ void Fortified() {
   EXPECT(checked_read(fds[1], c, 1, sizeof c) == 1, "__read_chk");
   EXPECT(checked_recv(fds[1], c, 1, sizeof c, 0) == 1, "__recv_chk");
   EXPECT(checked_recvfrom(fds[1], c, 1, sizeof c, 0, nullptr, nullptr) == 1, "__recvfrom_chk");
-  ExpectAbout(start, 60 * kMs, "three bytes");
+  ExpectSoonAfter(start, 60 * kMs, "three bytes");
   int status = 0;
   EXPECT(waitpid(pid, &status, 0) == pid && status == 0, "child status %x", status);
 }
@@ -126,7 +126,7 @@ void Processes() {
   }
   int status = 0;
   EXPECT(twin_waitpid(pid, &status, 0) == pid && status == 3 << 8, "__waitpid: %x", status);
-  ExpectAbout(start, 40 * kMs, "a child");
+  ExpectSoonAfter(start, 40 * kMs, "a child");
   if (g_mode != Mode::kNative) {  // a true vfork cannot be called by a pointer
     pid = Named<decltype(vfork)>("__vfork")();
     if (pid == 0) _exit(4);
@@ -137,7 +137,7 @@ void Processes() {
   char line[8] = "";
   EXPECT(out != nullptr && fgets(line, sizeof line, out) != nullptr, "_IO_popen");
   EXPECT(pclose(out) == 0, "pclose");
-  ExpectAbout(start, 100 * kMs, "pclose", 300 * kMs);
+  ExpectSoonAfter(start, 100 * kMs, "pclose", 300 * kMs);
 }
 
 void Scheduling() {
