@@ -173,14 +173,19 @@ void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
   MakeTopic(guid, topic);
 }
 
-void Mirrors::EndTopic(Topic& topic) {
-  for (const auto& [domain, inner] : topic.shadows) {
-    if (ddsi_domaingv* gv = DomainOf(domain)) {
-      const Awake awake(gv);
-      Real().ddsi_delete_topic(gv, &inner);
-    }
+// With the program's last participant Cyclone ends them itself.
+void Mirrors::EndTopicIn(std::uint32_t domain, Topic& topic) {
+  const auto found = topic.shadows.find(domain);
+  if (found == topic.shadows.end()) return;
+  if (ddsi_domaingv* gv = DomainOf(domain)) {
+    const Awake awake(gv);
+    Real().ddsi_delete_topic(gv, &found->second);
   }
-  topic.shadows.clear();
+  topic.shadows.erase(found);
+}
+
+void Mirrors::EndTopic(Topic& topic) {
+  while (!topic.shadows.empty()) EndTopicIn(topic.shadows.begin()->first, topic);
 }
 
 // Some policies are the publisher's, the subscriber's or the topic's.
@@ -223,7 +228,7 @@ void Mirrors::EndShadow(const Guid& guid, Participant& participant, std::uint32_
     if (endpoint.participant == guid) endpoint.shadows.erase(domain);
   }
   for (auto& [key, topic] : topics_) {
-    if (topic.participant == guid) EndTopic(topic);
+    if (topic.participant == guid) EndTopicIn(domain, topic);
   }
   Real().dds_delete(shadow);
   RemoveShadow(domain, guid);

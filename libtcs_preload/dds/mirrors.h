@@ -102,6 +102,7 @@ class Mirrors {
   void MakeTopic(const Guid& guid, Topic& topic);
   void MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic);
   static void EndTopic(Topic& topic);
+  static void EndTopicIn(std::uint32_t domain, Topic& topic);
   dds_entity_t TopicOf(ddsi_domaingv* gv, const Endpoint& endpoint, ParticipantShadow& participant,
                        const dds_qos_t* qos);
   static ddsi_sertype* TypeOf(const ddsi_domaingv* gv, const DecodedEndpoint& what);
