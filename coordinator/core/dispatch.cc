@@ -302,8 +302,15 @@ void Engine::AwaitStop(Task& task) {
     preempted_ = false;
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
-      if (task.brief_id == 0) return;
-      if (!HasAnswerToTake(task.trap_listener, task.brief_id)) task.brief_id = 0;
+      // It must have run: real time that has passed may be the host's.
+      if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns) {
+        task.brief_done = true;
+        return;
+      }
+      if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
+        task.brief_id = 0;
+        task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
+      }
       continue;
     }
     if (task.slot < 0) {
@@ -390,9 +397,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
-  task.is_brief = task.follow_up == FollowUp::kContinued ||
-                  (task.trap_id != 0 && task.follow_up != FollowUp::kNone);
-  task.brief_id = task.trap_id;
+  const bool looks_again = task.brief_done;
+  task.is_brief = task.follow_up != FollowUp::kNone && !looks_again;
+  if (task.trap_id != 0) task.brief_id = task.trap_id;
+  if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
   const std::int64_t call_ns = task.cpu->progress_ns;
   Resume(task);
   ++report_.switches;
@@ -412,7 +420,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.used_up = 0;
   }
   ExpireCpuTimers(task);
-  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns);
+  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns, looks_again);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
   if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);

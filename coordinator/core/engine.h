@@ -182,7 +182,7 @@ class Engine {
   std::int64_t PosixTimerRaw(Task& task, const TrappedCall& call);
 
   // Others that they concern (follow_ups.cc).
-  void DoFollowUp(Task& task, std::int64_t call_ns);
+  void DoFollowUp(Task& task, std::int64_t call_ns, bool last);
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);

@@ -8,11 +8,14 @@
 namespace tcs {
 
 // The thread has run since the kernel got the call, which it made at `call_ns`.
-void Engine::DoFollowUp(Task& task, std::int64_t call_ns) {
-  // Should the host have kept it from even the call, it is looked for once more.
-  const bool is_over = notified_ || trapped_.has_value() || !std::exchange(task.is_brief, false);
+void Engine::DoFollowUp(Task& task, std::int64_t call_ns, bool last) {
+  // Something else may have stopped it before it has even come to the call: then once more. And
+  // once more in any case, for how far it has come is not known.
   const FollowUp what = task.follow_up;
-  if (is_over) task.follow_up = FollowUp::kNone;
+  if (last || notified_ || trapped_.has_value()) {
+    task.follow_up = FollowUp::kNone;
+    task.brief_done = false;
+  }
   const std::int64_t now_ns = std::exchange(event_ns_, call_ns);
   switch (what) {
     case FollowUp::kNone:

@@ -81,7 +81,9 @@ struct Task {
   TrapWait trap_wait = TrapWait::kNone;
   FollowUp follow_up = FollowUp::kNone;  // of the call that the kernel carries out
   bool is_brief = false;                 // it runs for that call only,
-  std::uint64_t brief_id = 0;            // by which it was trapped
+  bool brief_done = false;               // as has been seen,
+  std::uint64_t brief_id = 0;            // by which it was trapped; 0: it is making it,
+  std::int64_t brief_until_ns = 0;       // until then on its host's clock
   bool expects_kernel = false;           // in its next call the kernel may hold it
   TrappedCall trapped_call;              // the last but futex calls
   std::uint64_t remaining_address = 0;   // where a sleep leaves what a signal cuts off; 0: nowhere

@@ -13,6 +13,7 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.trap_result = 0;
   task.trap_continues = false;
   task.follow_up = FollowUp::kNone;
+  task.brief_done = false;
   task.expects_kernel = false;
   task.deadline_ns = shm::kNeverNs;
   if (call.number == SYS_futex) {
