@@ -17,7 +17,9 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/transfer.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -52,7 +54,9 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
-      return ToErrno(call());
+      const long result = call();
+      PassOn(*t);
+      return ToErrno(result);
     }
   }
 }
@@ -61,13 +65,22 @@ long WritePart(int fd, const iovec* iov, std::size_t count) {
   return RawSyscall(SYS_pwritev2, fd, Arg(iov), static_cast<long>(count), -1, -1, RWF_NOWAIT);
 }
 
+// What the kernel would not find there, or not look at, is left for it to say.
+bool AreSound(const iovec* buffers, std::size_t count) {
+  if (count > kMostBuffers || !CanRead(buffers, count * sizeof *buffers)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (static_cast<ssize_t>(buffers[i].iov_len) < 0) return false;
+  }
+  return true;
+}
+
 template <class Whole>
 ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   GuestThread* t = Enter();
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  if (count > kMostBuffers || IsNonBlocking(fd)) return ToErrno(whole());
+  if (!AreSound(iov, count) || IsNonBlocking(fd)) return ToErrno(whole());
   Rest rest(iov, count);
   if (rest.bytes() == 0) return ToErrno(whole());
   const long result = TransferAll(
@@ -84,7 +97,7 @@ template <class Whole>
 ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
   if (t == nullptr) return ToErrno(whole());
   HoldForWrite(*t);
-  if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
+  if (!AreSound(message.msg_iov, message.msg_iovlen) || DontWait(flags) || IsNonBlocking(fd)) {
     return ToErrno(whole());
   }
   Rest rest(message.msg_iov, message.msg_iovlen);
@@ -112,30 +125,33 @@ bool WaitsForAll(int fd, int flags) {
 }
 
 template <class Whole>
-ssize_t ReceiveAll(int fd, msghdr* message, int flags, Whole whole) {
+ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   GuestThread* t = Enter();
-  if (t == nullptr || message->msg_iovlen > kMostBuffers) return ToErrno(whole());
+  if (t == nullptr) return ToErrno(whole());
+  msghdr message = *given;
   HoldForRead(*t);
-  Rest rest(message->msg_iov, message->msg_iovlen);
-  msghdr part_of = *message;
+  Rest rest(message.msg_iov, message.msg_iovlen);
+  msghdr part_of = message;
   bool first = true;
   const long done = TransferAll(
       *t, fd, POLLIN, SO_RCVTIMEO, rest,
-      [&](const iovec* part, std::size_t n) {
+      [&](const iovec* part, std::size_t n) -> long {
         part_of.msg_iov = const_cast<iovec*>(part);
         part_of.msg_iovlen = n;
         const long got =
             RawSyscall(SYS_recvmsg, fd, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
         if (got >= 0 && first) {
-          message->msg_namelen = part_of.msg_namelen;
-          message->msg_controllen = part_of.msg_controllen;
-          message->msg_flags = part_of.msg_flags;
+          message.msg_namelen = part_of.msg_namelen;
+          message.msg_controllen = part_of.msg_controllen;
+          message.msg_flags = part_of.msg_flags;
+          if (!CopyOut(given, message)) return -EFAULT;
           part_of.msg_controllen = 0;
           first = false;
         }
         return got;
       },
       whole);
+  PassOn(*t);
   return ToErrno(done);
 }
 
@@ -151,7 +167,9 @@ TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
-  return ReadLike(fd, false, false, [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); });
+  auto call = [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); };
+  if (!AreSound(iov, static_cast<std::size_t>(count))) return ToErrno(call());
+  return ReadLike(fd, false, false, call);
 }
 
 TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, sockaddr* from,
@@ -186,6 +204,9 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   auto whole = [&] { return RawSyscall(SYS_recvmsg, fd, Arg(message), flags); };
+  if (!CanRead(message, sizeof *message) || !AreSound(message->msg_iov, message->msg_iovlen)) {
+    return ToErrno(whole());
+  }
   if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
   return ReadLike(fd, DontWait(flags), true, whole);
 }
@@ -197,20 +218,33 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags, Arg(timeout))));
   }
+  timespec limit{};
+  if (timeout != nullptr && !CopyIn(&limit, timeout)) return Fail(EFAULT);
+  if (!IsValid(limit)) return Fail(EINVAL);
   FdState state = FdState::kReady;
-  if (!DontWait(flags)) {
+  const bool sound = count > 0 && CanRead(messages, sizeof *messages) &&
+                     AreSound(messages->msg_hdr.msg_iov, messages->msg_hdr.msg_iovlen);
+  if (sound && !DontWait(flags)) {
     std::int64_t deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
-    if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(*timeout));
+    if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(limit));
     state = AwaitFd(*t, fd, POLLIN, deadline);
   }
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
-  return static_cast<int>(
-      ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0)));
+  const long result = RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0);
+  PassOn(*t);
+  return static_cast<int>(ToErrno(result));
 }
 
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
+  // What never connects would be waited for in vain.
+  int listens = 0;
+  socklen_t listens_size = sizeof listens;
+  RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_ACCEPTCONN, Arg(&listens), Arg(&listens_size));
+  if (listens == 0 || (flags & ~(SOCK_CLOEXEC | SOCK_NONBLOCK)) != 0) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags)));
+  }
   const auto connection = static_cast<int>(ReadLike(fd, false, true, [&] {
     return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags);
   }));
@@ -223,6 +257,7 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 }
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
+  if (FindTimerFd(fd) != nullptr) return Fail(EINVAL);  // it is another kind of descriptor beneath
   const iovec iov{const_cast<void*>(buffer), size};
   return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
@@ -250,19 +285,25 @@ TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags)
 }
 
 TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  return SendAll(Enter(), fd, *message, flags,
+  msghdr copy{};
+  GuestThread* t = CopyIn(&copy, message) ? Enter() : nullptr;
+  return SendAll(t, fd, copy, flags,
                  [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
 }
 
 // What the socket has no room for is waited for, until all have been sent.
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   GuestThread* t = Enter();
+  if (count == 0) return static_cast<int>(ToErrno(RawSyscall(SYS_sendmmsg, fd, 0, 0, flags)));
+  if (count > kMostBuffers) count = kMostBuffers;
   for (unsigned sent = 0; sent < count; ++sent) {
     msghdr* message = &messages[sent].msg_hdr;
-    const ssize_t n = SendAll(t, fd, *message, flags,
+    msghdr copy{};
+    const ssize_t n = SendAll(CopyIn(&copy, message) ? t : nullptr, fd, copy, flags,
                               [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
-    if (n < 0) return sent > 0 ? static_cast<int>(sent) : -1;
-    messages[sent].msg_len = static_cast<unsigned>(n);
+    const bool done = n >= 0 && CopyOut(&messages[sent].msg_len, static_cast<unsigned>(n));
+    if (n >= 0 && !done) errno = EFAULT;
+    if (!done) return sent > 0 ? static_cast<int>(sent) : -1;
   }
   return static_cast<int>(count);
 }
@@ -298,8 +339,11 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
 TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   GuestThread* t = Enter();
   if (t != nullptr) HoldForWrite(*t);
-  if (t != nullptr && address != nullptr && size >= sizeof address->sa_family &&
-      address->sa_family == AF_UNIX && !IsNonBlocking(fd)) {
+  sa_family_t family = AF_UNSPEC;
+  if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {
+    family = address->sa_family;
+  }
+  if (family == AF_UNIX && !IsNonBlocking(fd)) {
     return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
   }
   return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));

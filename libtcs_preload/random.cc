@@ -57,8 +57,10 @@ TCS_EXPORT ssize_t getrandom(void* buffer, std::size_t size, unsigned flags) {
   if (Enter() == nullptr || !g_seeded) {
     return ToErrno(RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags));
   }
-  Fill(buffer, size);
-  return static_cast<ssize_t>(size);
+  // The kernel judges the arguments, and fills what it can.
+  const long filled = RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
+  if (filled > 0) Fill(buffer, static_cast<std::size_t>(filled));
+  return ToErrno(filled);
 }
 
 TCS_EXPORT int getentropy(void* buffer, std::size_t size) {
