@@ -4,8 +4,10 @@
 #include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 
 #include <atomic>
 #include <thread>
@@ -34,7 +36,7 @@ void AwaitSleep(const std::atomic<pid_t>& tid) {
     usleep(kApartUs);
     if (tid == 0) continue;
     char path[64], text[256] = {};
-    snprintf(path, sizeof path, "/proc/self/task/%d/stat", tid.load());
+    snprintf(path, sizeof path, "/proc/%d/stat", tid.load());
     const int fd = open(path, O_RDONLY);
     EXPECT(fd >= 0 && read(fd, text, sizeof text - 1) > 0, "%s: %s", path, strerror(errno));
     close(fd);
@@ -116,6 +118,37 @@ void ExclusiveSets() {
   }
   for (const int set : sets) close(set);
   close(event);
+}
+
+// The same between processes.
+void ExclusiveProcesses() {
+  const int event = eventfd(0, EFD_NONBLOCK);
+  int reports[2];
+  EXPECT(pipe(reports) == 0, "pipe");
+  pid_t children[kWaiters];
+  for (pid_t& child : children) {
+    child = fork();
+    if (child == 0) {
+      Wait(MakeSet(event, EPOLLIN | EPOLLEXCLUSIVE));
+      _exit(write(reports[1], "x", 1) == 1 ? 0 : 1);
+    }
+    AwaitSleep(child);
+  }
+  for (int wanted = 1; wanted <= kWaiters; ++wanted) {
+    Write(event);
+    int woken = 0;
+    for (int turn = 0; turn < 200 && woken < wanted; ++turn) {
+      usleep(kApartUs);
+      EXPECT(ioctl(reports[0], FIONREAD, &woken) == 0, "FIONREAD");
+    }
+    usleep(4 * kApartUs);
+    EXPECT(ioctl(reports[0], FIONREAD, &woken) == 0, "FIONREAD");
+    EXPECT(woken == wanted, "%d processes woken instead of %d", woken, wanted);
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
+  }
 }
 
 // A set that holds something else, too, is woken by that.
@@ -248,6 +281,7 @@ void LongestWaitingBeforeMostUrgent() {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   ExclusiveSets();
+  ExclusiveProcesses();
   OtherReasons();
   OneSet(EPOLLET, "EPOLLET");
   OneSet(EPOLLONESHOT, "EPOLLONESHOT");
