@@ -1,5 +1,6 @@
 // Policies, priorities and affinities act on the robot's virtual scheduler, never on the host's.
 #include <errno.h>
+#include <linux/capability.h>
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
@@ -68,6 +69,23 @@ int GetAffinity(GuestThread& t, pid_t tid, std::size_t size, cpu_set_t* set) {
   memset(set, 0, size);
   memcpy(set, &cores, sizeof cores);
   return 0;
+}
+
+// Whether the kernel would let the caller have this nice value, which has no effect here and so is
+// 0 until then.
+bool MayHaveNice(int value) {
+  if (value >= 0) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {};
+  if (RawSyscall(SYS_capget, Arg(&header), Arg(sets)) == 0 &&
+      (sets[0].effective >> CAP_SYS_NICE & 1) != 0) {
+    return true;
+  }
+  constexpr int kOfNiceZero = 20, kLeast = -20;
+  rlimit limit{};
+  RawSyscall(SYS_prlimit64, 0, RLIMIT_NICE, 0, Arg(&limit));
+  const int wanted = kOfNiceZero - (value < kLeast ? kLeast : value);
+  return limit.rlim_cur >= static_cast<rlim_t>(wanted);
 }
 
 int AsErrno(int error) { return error == 0 ? 0 : Fail(error); }
@@ -187,11 +205,16 @@ TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_se
 }
 
 TCS_EXPORT int setpriority(__priority_which_t which, id_t who, int value) noexcept {
-  if (Enter() != nullptr) return 0;
+  if (Enter() != nullptr) {
+    const long found = RawSyscall(SYS_getpriority, which, who);
+    if (found < 0) return Fail(static_cast<int>(-found));
+    return MayHaveNice(value) ? 0 : Fail(EACCES);
+  }
   return static_cast<int>(ToErrno(RawSyscall(SYS_setpriority, which, who, value)));
 }
 
-TCS_EXPORT int nice(int) noexcept {
+TCS_EXPORT int nice(int increment) noexcept {
+  if (!MayHaveNice(increment)) return Fail(EPERM);
   errno = 0;
   return 0;
 }

@@ -73,6 +73,9 @@ void OrdinaryUsersMayOnlyLower() {
     Expect(Ask(0, SCHED_BATCH, 0), 0, "SCHED_BATCH");
     Expect(Ask(0, SCHED_OTHER, 0), 0, "SCHED_OTHER");
     Expect(Ask(getppid(), SCHED_OTHER, 0), EPERM, "somebody else's process");
+    EXPECT(setpriority(PRIO_PROCESS, 0, -5) == -1 && errno == EACCES, "setpriority");
+    EXPECT(nice(-1) == -1 && errno == EPERM, "nice");
+    EXPECT(setpriority(PRIO_PROCESS, 0x3ffffff, 0) == -1 && errno == ESRCH, "nobody's priority");
     Expect(Ask(0, SCHED_IDLE, 0), 0, "SCHED_IDLE");
     Expect(Ask(0, SCHED_OTHER, 0), EPERM, "SCHED_OTHER from SCHED_IDLE");
     EXPECT(sched_getscheduler(0) == SCHED_IDLE, "policy %d", sched_getscheduler(0));
