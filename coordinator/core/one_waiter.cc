@@ -110,10 +110,10 @@ void Engine::PassOver(Task& task, Task& first) {
   event.events = task.watched_events | EPOLLET;
   event.data.u64 =
       EventData(Tag::kAwaited, static_cast<std::uint32_t>(task.order), task.wait_number);
-  epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event);
-  task.is_edge_armed = true;
   // What is there already comes once more, at once, and is not for it.
   task.skips_event = IsReady(fd, task.watched_events);
+  epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event);
+  task.is_edge_armed = true;
 }
 
 // The thread has tried what it was woken for: what it has left is for the next.
