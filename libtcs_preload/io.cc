@@ -39,8 +39,9 @@ bool IsTerminal(int fd) {
 
 bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 
-template <class Call>
-ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
+// `is_sound()` is asked before it waits: what is wrong with the arguments the kernel says at once.
+template <class Call, class IsSound>
+ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call, IsSound is_sound) {
   GuestThread* t = Enter();
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(call());
@@ -50,7 +51,11 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
   }
   const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
   for (;;) {
-    const FdState state = AwaitFd(*t, fd, POLLIN, deadline);
+    FdState state = FdState::kReady;
+    if (!PollNow(fd, POLLIN)) {
+      if (!is_sound()) return ToErrno(call());
+      state = AwaitFd(*t, fd, POLLIN, deadline);
+    }
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
@@ -59,6 +64,11 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
       return ToErrno(result);
     }
   }
+}
+
+template <class Call>
+ssize_t ReadLike(int fd, bool dont_wait, bool socket, Call call) {
+  return ReadLike(fd, dont_wait, socket, call, [] { return true; });
 }
 
 long WritePart(int fd, const iovec* iov, std::size_t count) {
@@ -97,7 +107,7 @@ template <class Whole>
 ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
   if (t == nullptr) return ToErrno(whole());
   HoldForWrite(*t);
-  if (!AreSound(message.msg_iov, message.msg_iovlen) || DontWait(flags) || IsNonBlocking(fd)) {
+  if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
     return ToErrno(whole());
   }
   Rest rest(message.msg_iov, message.msg_iovlen);
@@ -168,8 +178,8 @@ TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_
 
 TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
   auto call = [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); };
-  if (!AreSound(iov, static_cast<std::size_t>(count))) return ToErrno(call());
-  return ReadLike(fd, false, false, call);
+  return ReadLike(fd, false, false, call,
+                  [&] { return AreSound(iov, static_cast<std::size_t>(count)); });
 }
 
 TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, sockaddr* from,
@@ -204,11 +214,13 @@ TCS_EXPORT ssize_t __recv_chk(int fd, void* buffer, std::size_t size, std::size_
 
 TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   auto whole = [&] { return RawSyscall(SYS_recvmsg, fd, Arg(message), flags); };
-  if (!CanRead(message, sizeof *message) || !AreSound(message->msg_iov, message->msg_iovlen)) {
-    return ToErrno(whole());
+  const auto is_sound = [&] {
+    return CanRead(message, sizeof *message) && AreSound(message->msg_iov, message->msg_iovlen);
+  };
+  if (WaitsForAll(fd, flags)) {
+    return is_sound() ? ReceiveAll(fd, message, flags, whole) : ToErrno(whole());
   }
-  if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
-  return ReadLike(fd, DontWait(flags), true, whole);
+  return ReadLike(fd, DontWait(flags), true, whole, is_sound);
 }
 
 // One message is waited for; those that are there with it come along. A timeout is a virtual one.
