@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionSevenHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 9u);
+TEST(Layout, VersionTenHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 10u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
