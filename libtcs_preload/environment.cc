@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "libtcs_preload/user_memory.h"
 #include "shm/attach_protocol.h"
 
 namespace tcs::preload {
@@ -41,6 +42,7 @@ const char* SocketName() {
 
 char* const* WithShim(char* const* envp, EnvironmentCopy& storage) {
   if (g_socket_entry[0] == '\0' || g_preload_entry[0] == '\0') return envp;
+  if (!CanReadStrings(envp)) return envp;  // the kernel says what is wrong with it
   const char* preload = Find(envp, kPreload);
   const char* socket = Find(envp, shm::kSocketVariable);
   if (preload != nullptr && socket != nullptr && strcmp(preload, g_preload_entry) == 0 &&

@@ -152,12 +152,6 @@ Reply Exchange(GuestThread& thread, const Request& request) {
   return reply;
 }
 
-void Announce(GuestThread& thread, const Request& request) {
-  if (IsShutDown()) return;
-  FillRecord(*thread.slot, request);
-  Notify(thread);
-}
-
 void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false); }
 
 }  // namespace tcs::preload

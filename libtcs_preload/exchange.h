@@ -31,10 +31,6 @@ struct Reply {
 // interrupted.
 Reply Exchange(GuestThread& thread, const Request& request);
 
-// A notification without the gate: the thread's last one. Its slot may be another's when this
-// returns.
-void Announce(GuestThread& thread, const Request& request);
-
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 

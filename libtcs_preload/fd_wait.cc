@@ -54,7 +54,7 @@ WaitResult ToResult(WakeReason reason) {
 }  // namespace
 
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
-                      std::int64_t deadline_ns, unsigned long signals) {
+                      std::int64_t deadline_ns, const Waiting& waiting) {
   if (IsShutDown()) {
     const timespec turn{0, 10'000'000};
     const long n = RawSyscall(SYS_ppoll, Arg(const_cast<pollfd*>(fds)), static_cast<long>(count),
@@ -63,6 +63,7 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
   }
   shm::WaitFd waited[shm::kMaxWaitFds];
   std::uint32_t n = 0;
+  unsigned long signals = waiting.signals;
   bool rearm = false;
   for (unsigned long i = 0; i < count; ++i) {
     bool is_epoll = false;
@@ -83,17 +84,26 @@ WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long coun
     waited[n++] = shm::WaitFd{
         fds[i].fd, static_cast<std::uint32_t>(static_cast<unsigned short>(fds[i].events))};
   }
-  const Reply reply = Exchange(thread, Request{.kind = NotificationKind::kWaitFds,
-                                               .deadline_ns = deadline_ns,
-                                               .args = {0, static_cast<std::int64_t>(signals)},
-                                               .fds = waited,
-                                               .fd_count = n,
-                                               .interruptible = true});
+  const Reply reply =
+      Exchange(thread, Request{.kind = NotificationKind::kWaitFds,
+                               .deadline_ns = deadline_ns,
+                               .args = {static_cast<std::int64_t>(waiting.event),
+                                        static_cast<std::int64_t>(signals), waiting.again ? 1 : 0},
+                               .fds = waited,
+                               .fd_count = n,
+                               .interruptible = true});
+  thread.passes_on = reply.values[1] != 0;
   if (gathered >= 0) RawSyscall(SYS_close, gathered);
   for (unsigned long i = 0; rearm && i < count; ++i) {
     if (fds[i].fd >= 0) RearmSignalFds(fds[i].fd);
   }
   return ToResult(reply.reason);
+}
+
+void PassOn(GuestThread& thread) {
+  if (!thread.passes_on) return;
+  thread.passes_on = false;
+  Exchange(thread, Request{.kind = NotificationKind::kPassOn});
 }
 
 bool PollNow(int fd, short events) {
@@ -104,10 +114,12 @@ bool PollNow(int fd, short events) {
 
 FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
   if (IsNonBlocking(fd)) return FdState::kReady;
+  const OneEvent event = (events & POLLIN) != 0 ? OneEvent::kForTheFirst : OneEvent::kForAll;
   for (FdState state = FdState::kReady;; state = FdState::kWaited) {
     if (PollNow(fd, events)) return state;
     const pollfd waited{fd, events, 0};
-    switch (WaitForFds(thread, &waited, 1, deadline_ns)) {
+    const bool again = state == FdState::kWaited;
+    switch (WaitForFds(thread, &waited, 1, deadline_ns, {event, again})) {
       case WaitResult::kRetry:
         break;
       case WaitResult::kTimedOut:
@@ -126,8 +138,14 @@ FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline
 }
 
 bool HoldForReadFrom(GuestThread& thread, int fd, bool socket) {
+  if (const TimerFd* timer = socket ? nullptr : FindTimerFd(fd); timer != nullptr) {
+    // What of a short interval has run out meanwhile is not in the descriptor yet.
+    if (timer->is_short) {
+      Exchange(thread, Request{.kind = NotificationKind::kTimerGet, .args = {timer->id}});
+    }
+    return false;
+  }
   if (NowNs(thread) <= thread.slot->clock.read_safe_ns) return false;
-  if (!socket && FindTimerFd(fd) != nullptr) return false;
   int type = 0;
   socklen_t size = sizeof type;
   if (socket && RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) == 0 &&

@@ -12,11 +12,23 @@ namespace tcs::preload {
 enum class WaitResult { kRetry, kTimedOut, kInterrupted };
 
 // Stops the thread until one of `fds` (negative ones are passed over) may be ready, one of
-// `signals`, which the thread blocks, is pending, or `deadline_ns` is reached. kRetry: probe again:
-// everything sent until then is there. What was sent up to the call but was not there yet ends the
-// wait at the time of the call, so nobody needs to hold before.
+// `waiting`'s signals, which the thread blocks, is pending, or `deadline_ns` is reached. kRetry:
+// probe again: everything sent until then is there. What was sent up to the call but was not there
+// yet ends the wait at the time of the call, so nobody needs to hold before.
+//
+// Who waits for one descriptor to take what there is, is one of several: one is woken for one
+// event, the one that waits longest, or (an epoll set's) that came last. `again`: it was woken, and
+// found nothing. When it has taken something, it calls PassOn, so that what it has left finds the
+// next.
+enum class OneEvent { kForAll = 0, kForTheFirst = 1, kForTheLast = 2 };
+struct Waiting {
+  OneEvent event = OneEvent::kForAll;
+  bool again = false;
+  unsigned long signals = 0;  // bit 0 is signal 1
+};
 WaitResult WaitForFds(GuestThread& thread, const pollfd* fds, unsigned long count,
-                      std::int64_t deadline_ns, unsigned long signals = 0);
+                      std::int64_t deadline_ns, const Waiting& waiting = {});
+void PassOn(GuestThread& thread);
 
 // Waits until `fd` shows one of `events`, unless it is non-blocking. kReady: it did at once, or
 // waiting is not wanted: hold, then make the call. kWaited: make the call now. kFailed: errno is

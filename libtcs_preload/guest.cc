@@ -7,7 +7,6 @@
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
-#include "libtcs_preload/thread_end.h"
 #include "libtcs_preload/vdso.h"
 #include "shm/clock_page.h"
 
@@ -30,7 +29,6 @@ void ProtectProcessState() {
 __attribute__((constructor)) void Start(int, char**, char** envp) {
   RememberEnvironment(envp);
   ProtectProcessState();
-  PrepareThreadEnds();
   Current();
 }
 
@@ -53,7 +51,6 @@ GuestThread* CurrentSlow() {
   t_thread.attaching = false;
   g_process->mode = ProcessState::kAttached;
   SeedProcess(*t_thread.slot);
-  WatchThreadEnd();
   if (t_thread.slot->patch_vdso != 0) PatchVdso();
   return &t_thread;
 }

@@ -27,6 +27,7 @@ struct GuestThread {
   std::uint32_t index = 0;
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
+  bool passes_on = false;  // others wait for what it leaves (fd_wait.h)
   // Locks taken while its time stood still at `locks_at_ns`; under fixed accounting.
   int locks = 0;
   std::int64_t locks_at_ns = 0;

@@ -20,7 +20,9 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
+#include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/transfer.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -69,7 +71,11 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, AtOnce at_once, Call call)
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
-      return take();
+      const ssize_t result = take();
+      const int error = errno;
+      PassOn(*t);
+      errno = error;
+      return result;
     }
   }
 }
@@ -78,13 +84,22 @@ long WritePart(int fd, const iovec* iov, std::size_t count) {
   return RawSyscall(SYS_pwritev2, fd, Arg(iov), static_cast<long>(count), -1, -1, RWF_NOWAIT);
 }
 
+// What the kernel would not find there, or not look at, is left for it to say.
+bool AreSound(const iovec* buffers, std::size_t count) {
+  if (count > kMostBuffers || !CanRead(buffers, count * sizeof *buffers)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (static_cast<ssize_t>(buffers[i].iov_len) < 0) return false;
+  }
+  return true;
+}
+
 template <class Whole>
 ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   GuestThread* t = Enter();
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  if (count > kMostBuffers || IsNonBlocking(fd)) return ToErrno(whole());
+  if (!AreSound(iov, count) || IsNonBlocking(fd)) return ToErrno(whole());
   Rest rest(iov, count);
   if (rest.bytes() == 0) return ToErrno(whole());
   const long result = TransferAll(
@@ -129,31 +144,34 @@ bool WaitsForAll(int fd, int flags) {
 }
 
 template <class Whole>
-ssize_t ReceiveAll(int fd, msghdr* message, int flags, Whole whole) {
+ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   GuestThread* t = Enter();
-  if (t == nullptr || message->msg_iovlen > kMostBuffers) return ToErrno(whole());
+  if (t == nullptr) return ToErrno(whole());
+  msghdr message = *given;
   HoldForRead(*t);
-  Rest rest(message->msg_iov, message->msg_iovlen);
-  msghdr part_of = *message;
+  Rest rest(message.msg_iov, message.msg_iovlen);
+  msghdr part_of = message;
   bool first = true;
   const long done = TransferAll(
       *t, fd, POLLIN, SO_RCVTIMEO, rest,
-      [&](const iovec* part, std::size_t n) {
+      [&](const iovec* part, std::size_t n) -> long {
         part_of.msg_iov = const_cast<iovec*>(part);
         part_of.msg_iovlen = n;
         AcknowledgeAtOnce(fd);
         const long got =
             RawSyscall(SYS_recvmsg, fd, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
         if (got >= 0 && first) {
-          message->msg_namelen = part_of.msg_namelen;
-          message->msg_controllen = part_of.msg_controllen;
-          message->msg_flags = part_of.msg_flags;
+          message.msg_namelen = part_of.msg_namelen;
+          message.msg_controllen = part_of.msg_controllen;
+          message.msg_flags = part_of.msg_flags;
+          if (!CopyOut(given, message)) return -EFAULT;
           part_of.msg_controllen = 0;
           first = false;
         }
         return got;
       },
       whole);
+  PassOn(*t);
   return ToErrno(done);
 }
 
@@ -233,7 +251,9 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
     for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
     return got;
   };
-  if (timeout != nullptr && !IsValid(*timeout)) return Fail(EINVAL);
+  timespec limit{};
+  if (timeout != nullptr && !CopyIn(&limit, timeout)) return Fail(EFAULT);
+  if (!IsValid(limit)) return Fail(EINVAL);
   FdState state = FdState::kReady;
   if (!ReceivesAtOnce(fd, flags)) {
     if (!PollNow(fd, POLLIN)) {
@@ -242,13 +262,15 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
       }
     }
     std::int64_t deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
-    if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(*timeout));
+    if (timeout != nullptr) deadline = DeadlineAfter(*t, ToNs(limit));
     state = AwaitFd(*t, fd, POLLIN, deadline);
   }
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
-  return static_cast<int>(ToErrno(at_once()));
+  const long result = at_once();
+  PassOn(*t);
+  return static_cast<int>(ToErrno(result));
 }
 
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
@@ -267,6 +289,7 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 }
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
+  if (FindTimerFd(fd) != nullptr) return Fail(EINVAL);  // it is another kind of descriptor beneath
   const iovec iov{const_cast<void*>(buffer), size};
   return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
@@ -296,9 +319,10 @@ TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags)
 }
 
 TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
-  GuestThread* t = Enter();
+  msghdr copy{};
+  GuestThread* t = CopyIn(&copy, message) ? Enter() : nullptr;
   if (t != nullptr) flags = WithoutMore(fd, flags);
-  return SendAll(t, fd, *message, flags,
+  return SendAll(t, fd, copy, flags,
                  [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
 }
 
@@ -306,12 +330,16 @@ TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   GuestThread* t = Enter();
   if (t != nullptr) flags = WithoutMore(fd, flags);
+  if (count == 0) return static_cast<int>(ToErrno(RawSyscall(SYS_sendmmsg, fd, 0, 0, flags)));
+  if (count > kMostBuffers) count = kMostBuffers;
   for (unsigned sent = 0; sent < count; ++sent) {
     msghdr* message = &messages[sent].msg_hdr;
-    const ssize_t n = SendAll(t, fd, *message, flags,
+    msghdr copy{};
+    const ssize_t n = SendAll(CopyIn(&copy, message) ? t : nullptr, fd, copy, flags,
                               [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
-    if (n < 0) return sent > 0 ? static_cast<int>(sent) : -1;
-    messages[sent].msg_len = static_cast<unsigned>(n);
+    const bool done = n >= 0 && CopyOut(&messages[sent].msg_len, static_cast<unsigned>(n));
+    if (n >= 0 && !done) errno = EFAULT;
+    if (!done) return sent > 0 ? static_cast<int>(sent) : -1;
   }
   return static_cast<int>(count);
 }
@@ -347,8 +375,11 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
 TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   GuestThread* t = Enter();
   if (t != nullptr) HoldForWrite(*t);
-  if (t != nullptr && address != nullptr && size >= sizeof address->sa_family &&
-      address->sa_family == AF_UNIX && !IsNonBlocking(fd)) {
+  sa_family_t family = AF_UNSPEC;
+  if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {
+    family = address->sa_family;
+  }
+  if (family == AF_UNIX && !IsNonBlocking(fd)) {
     return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
   }
   return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));

@@ -10,6 +10,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -19,13 +20,16 @@ namespace {
 // A deadline that has passed: the kernel then checks everything, but does not wait.
 constexpr timespec kLongAgo{};
 
-bool ToDeadline(const timespec* timeout, std::int64_t* deadline_ns) {
+// 0, or an error.
+int ToDeadline(const timespec* given, std::int64_t* deadline_ns) {
   *deadline_ns = tcs::shm::kNeverNs;
-  if (timeout == nullptr) return true;
-  if (ToNs(*timeout) != tcs::shm::kNeverNs) {
-    *deadline_ns = ToNs(*timeout) - OffsetNs(Clock::kRealtime);
+  if (given == nullptr) return 0;
+  timespec timeout;
+  if (!CopyIn(&timeout, given)) return EFAULT;
+  if (ToNs(timeout) != tcs::shm::kNeverNs) {
+    *deadline_ns = ToNs(timeout) - OffsetNs(Clock::kRealtime);
   }
-  return IsValid(*timeout);
+  return IsValid(timeout) ? 0 : EINVAL;
 }
 
 // Makes `call` until it does not have to wait any more. It returns -ETIMEDOUT where it would.
@@ -50,7 +54,7 @@ long WaitAndCall(GuestThread& t, mqd_t queue, short events, std::int64_t deadlin
 long Receive(GuestThread& t, mqd_t queue, char* text, std::size_t size, unsigned* priority,
              const timespec* timeout) {
   std::int64_t deadline;
-  if (!ToDeadline(timeout, &deadline)) return -EINVAL;
+  if (const int error = ToDeadline(timeout, &deadline); error != 0) return -error;
   auto call = [&] {
     return RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size), Arg(priority),
                       Arg(&kLongAgo));
@@ -66,7 +70,7 @@ long Receive(GuestThread& t, mqd_t queue, char* text, std::size_t size, unsigned
 long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsigned priority,
           const timespec* timeout) {
   std::int64_t deadline;
-  if (!ToDeadline(timeout, &deadline)) return -EINVAL;
+  if (const int error = ToDeadline(timeout, &deadline); error != 0) return -error;
   HoldForWrite(t);
   // The kernel may send a signal with it: see kill.cc.
   const bool notifies = g_header->queues_notify.load(std::memory_order_relaxed) != 0;

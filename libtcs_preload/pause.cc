@@ -7,6 +7,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
 
 using namespace tcs::preload;
 
@@ -48,5 +49,7 @@ TCS_EXPORT int sigsuspend(const sigset_t* mask) {
   GuestThread* t = Enter();
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_rt_sigsuspend, Arg(mask), kSetSize)));
-  return SuspendWith(*t, reinterpret_cast<const unsigned long*>(mask));
+  unsigned long wanted;
+  if (!CopyIn(&wanted, reinterpret_cast<const unsigned long*>(mask))) return Fail(EFAULT);
+  return SuspendWith(*t, &wanted);
 }

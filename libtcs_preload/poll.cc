@@ -1,18 +1,22 @@
 // poll, select and epoll.
 #include <errno.h>
+#include <limits.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/epoll.h>
 #include <sys/select.h>
 #include <sys/time.h>
+
+#include <utility>
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/select_sets.h"
 #include "libtcs_preload/signal_mask.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -56,73 +60,63 @@ int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, 
   return static_cast<int>(ToErrno(found));
 }
 
+bool IsReadableMask(const sigset_t* mask) { return mask == nullptr || CanRead(mask, 8); }
+
 int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
            const sigset_t* mask) {
+  if (!IsReadableMask(mask)) return Fail(EFAULT);
   auto probe = [&] {
     return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
   };
   return CallWithMask(t, timeout_ns, mask, true, probe, probe,
                       [&](std::int64_t deadline, unsigned long signals) {
-                        return WaitForFds(t, fds, count, deadline, signals);
+                        return WaitForFds(t, fds, count, deadline, {.signals = signals});
                       });
 }
 
-struct SelectSets {
-  fd_set* user[3];
-  fd_set wanted[3];
-  int count;
-
-  SelectSets(int n, fd_set* r, fd_set* w, fd_set* e) : user{r, w, e}, count(n) {
-    for (int i = 0; i < 3; ++i) {
-      if (user[i] != nullptr) memcpy(&wanted[i], user[i], Bytes());
-    }
-  }
-  // Programs may hold sets larger than FD_SETSIZE; only what fits is copied.
-  std::size_t Bytes() const {
-    const std::size_t words = (static_cast<std::size_t>(count) + 63) / 64;
-    return words * 8 < sizeof(fd_set) ? words * 8 : sizeof(fd_set);
-  }
-  void Restore() {
-    for (int i = 0; i < 3; ++i) {
-      if (user[i] != nullptr) memcpy(user[i], &wanted[i], Bytes());
-    }
-  }
-  bool Wants(int set, int fd) const { return user[set] != nullptr && FD_ISSET(fd, &wanted[set]); }
-};
-
 int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_t timeout_ns,
              const sigset_t* mask) {
-  if (n < 0 || n > FD_SETSIZE) return Fail(EINVAL);
   SelectSets sets(n, r, w, e);
-  auto probe = [&] {
-    sets.Restore();
-    timeval now{};
-    return RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(&now));
-  };
+  if (!IsReadableMask(mask)) return Fail(EFAULT);
+  if (sets.error() != 0) return Fail(sets.error());
+  auto probe = [&] { return sets.Probe(); };
   auto wait = [&](std::int64_t deadline, unsigned long signals) {
-    pollfd fds[FD_SETSIZE];
-    nfds_t count = 0;
-    for (int fd = 0; fd < n; ++fd) {
-      short events = 0;
-      if (sets.Wants(0, fd)) events |= POLLIN;
-      if (sets.Wants(1, fd)) events |= POLLOUT;
-      if (sets.Wants(2, fd)) events |= POLLPRI;
-      if (events != 0) fds[count++] = pollfd{fd, events, 0};
-    }
-    return WaitForFds(t, fds, count, deadline, signals);
+    unsigned long count = 0;
+    const pollfd* wanted = sets.Wanted(&count);
+    return WaitForFds(t, wanted, count, deadline, {.signals = signals});
   };
-  return CallWithMask(t, timeout_ns, mask, true, probe, probe, wait);
+  const int found = CallWithMask(t, timeout_ns, mask, true, probe, probe, wait);
+  if (found < 0) return found;
+  const int error = sets.PutBack();
+  return error == 0 ? found : Fail(error);
+}
+
+// Takes nothing: an event that cannot be handed over stays where it is.
+long PeekEvents(int epfd) {
+  constexpr long kNowhere = 1;
+  const long found = RawSyscall(SYS_epoll_wait, epfd, kNowhere, 1, 0);
+  return found == -EFAULT ? 1 : found;
 }
 
 int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t timeout_ns,
             const sigset_t* mask) {
-  return CallWithMask(
-      t, timeout_ns, mask, false, [&] { return PollNow(epfd, POLLIN) ? 1L : 0L; },
+  if (!IsReadableMask(mask)) return Fail(EFAULT);
+  // What no call could hand over the kernel refuses before it looks; a wait would come first here.
+  constexpr int kMostEvents = INT_MAX / static_cast<int>(sizeof(epoll_event));
+  if (max <= 0 || max > kMostEvents || reinterpret_cast<std::intptr_t>(events) < 0) {
+    return static_cast<int>(ToErrno(RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0)));
+  }
+  bool again = false;
+  const int found = CallWithMask(
+      t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); },
       [&] { return RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0); },
       [&](std::int64_t deadline, unsigned long signals) {
         const pollfd set{epfd, POLLIN, 0};
-        return WaitForFds(t, &set, 1, deadline, signals);
+        return WaitForFds(t, &set, 1, deadline,
+                          {OneEvent::kForTheLast, std::exchange(again, true), signals});
       });
+  PassOn(t);
+  return found;
 }
 
 std::int64_t MillisecondsToNs(int ms) { return ms < 0 ? -1 : std::int64_t{ms} * 1'000'000; }
@@ -158,6 +152,7 @@ TCS_EXPORT int ppoll(pollfd* fds, nfds_t count, const timespec* timeout, const s
   }
   std::int64_t timeout_ns;
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
+  if (!IsReadableMask(mask)) return Fail(EFAULT);
   return PollNs(*t, fds, count, timeout_ns, mask);
 }
 
@@ -203,6 +198,7 @@ TCS_EXPORT int pselect(int n, fd_set* r, fd_set* w, fd_set* e, const timespec* t
   }
   std::int64_t timeout_ns;
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
+  if (!IsReadableMask(mask)) return Fail(EFAULT);
   return SelectNs(*t, n, r, w, e, timeout_ns, mask);
 }
 
@@ -228,6 +224,7 @@ TCS_EXPORT int epoll_pwait2(int epfd, epoll_event* events, int max, const timesp
         ToErrno(RawSyscall(SYS_epoll_pwait2, epfd, Arg(events), max, Arg(timeout), Arg(mask), 8)));
   }
   std::int64_t timeout_ns;
+  if (timeout != nullptr && !CanRead(timeout, sizeof *timeout)) return Fail(EFAULT);
   if (!TimeoutToNs(timeout, &timeout_ns)) return Fail(EINVAL);
   return EpollNs(*t, epfd, events, max, timeout_ns, mask);
 }

@@ -13,6 +13,7 @@
 #include "libtcs_preload/posix_timers.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -183,15 +184,18 @@ TCS_EXPORT int timer_delete(timer_t name) noexcept {
   return 0;
 }
 
-TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restrict value,
+TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restrict given,
                              itimerspec* __restrict old) noexcept {
   GuestThread* t = Enter();
-  if (t == nullptr) return TCS_REAL(timer_settime)(name, flags, value, old);
+  if (t == nullptr) return TCS_REAL(timer_settime)(name, flags, given, old);
   const PosixTimer* timer = FindPosixTimer(name);
-  if (timer == nullptr || value == nullptr) return Fail(EINVAL);
-  if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
+  if (given == nullptr) return Fail(EINVAL);
+  itimerspec value;
+  if (!CopyIn(&value, given)) return Fail(EFAULT);
+  if (!IsValid(value.it_value) || !IsValid(value.it_interval)) return Fail(EINVAL);
+  if (timer == nullptr) return Fail(EINVAL);
   const std::int64_t now = NowOn(*t, *timer);
-  const std::int64_t wanted = ToNs(value->it_value);
+  const std::int64_t wanted = ToNs(value.it_value);
   std::int64_t first = 0;
   if (wanted != 0) {
     first =
@@ -199,9 +203,8 @@ TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restri
     if (first <= 0) first = 1;  // long past, but armed
   }
   const Reply before = Exchange(*t, Request{.kind = NotificationKind::kTimerSet,
-                                            .args = {timer->id, first, ToNs(value->it_interval)}});
-  if (old != nullptr) *old = ToSpec(before, now);
-  return 0;
+                                            .args = {timer->id, first, ToNs(value.it_interval)}});
+  return old == nullptr || CopyOut(old, ToSpec(before, now)) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int timer_gettime(timer_t name, itimerspec* value) noexcept {
@@ -211,8 +214,7 @@ TCS_EXPORT int timer_gettime(timer_t name, itimerspec* value) noexcept {
   if (timer == nullptr) return Fail(EINVAL);
   const Reply reply =
       Exchange(*t, Request{.kind = NotificationKind::kTimerGet, .args = {timer->id}});
-  *value = ToSpec(reply, NowOn(*t, *timer));
-  return 0;
+  return CopyOut(value, ToSpec(reply, NowOn(*t, *timer))) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int timer_getoverrun(timer_t name) noexcept {

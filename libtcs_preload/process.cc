@@ -17,6 +17,7 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/spawn.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -107,8 +108,7 @@ TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
         return error != 0 ? error : found.si_pid;
       });
   if (result < 0) return static_cast<int>(ToErrno(result));
-  if (info != nullptr) *info = found;
-  return 0;
+  return info == nullptr || CopyOut(info, found) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int execve(const char* path, char* const argv[], char* const envp[]) noexcept {

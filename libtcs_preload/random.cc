@@ -58,8 +58,10 @@ long GetRandom(void* buffer, std::size_t size, unsigned flags) {
   if (Enter() == nullptr || !g_seeded) {
     return RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
   }
-  Fill(buffer, size);
-  return static_cast<long>(size);
+  // The kernel judges the arguments, and fills what it can.
+  const long filled = RawSyscall(SYS_getrandom, Arg(buffer), static_cast<long>(size), flags);
+  if (filled > 0) Fill(buffer, static_cast<std::size_t>(filled));
+  return filled;
 }
 
 }  // namespace tcs::preload

@@ -1,5 +1,6 @@
 // Policies, priorities and affinities act on the robot's virtual scheduler, never on the host's.
 #include <errno.h>
+#include <linux/capability.h>
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
@@ -12,23 +13,30 @@
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/user_memory.h"
 
 using namespace tcs::preload;
+using tcs::shm::kKeepPolicy;
 using tcs::shm::NotificationKind;
 
 namespace {
 
-constexpr timespec kRoundRobinQuantum{0, 100'000'000};  // the virtual scheduler's, and Linux's
+constexpr std::size_t kMostOfSet = sizeof(unsigned long);  // robots have no more cores
 
 struct Scheduling {
-  int policy;
+  int policy;  // with SCHED_RESET_ON_FORK
   int priority;
 };
 
+timespec IntervalOf(int policy) {
+  constexpr timespec kRoundRobinQuantum{0, 100'000'000};  // the virtual scheduler's, and Linux's
+  return (policy & ~SCHED_RESET_ON_FORK) == SCHED_RR ? kRoundRobinQuantum : timespec{};
+}
+
 // 0, or an error number.
 int Set(GuestThread& t, pid_t tid, int policy, int priority) {
-  const Reply reply = Exchange(t, Request{.kind = NotificationKind::kPriority,
-                                          .args = {tid, policy & ~SCHED_RESET_ON_FORK, priority}});
+  const Reply reply =
+      Exchange(t, Request{.kind = NotificationKind::kPriority, .args = {tid, policy, priority}});
   return static_cast<int>(-reply.values[0]);
 }
 
@@ -48,19 +56,36 @@ int Affinity(GuestThread& t, pid_t tid, unsigned long wanted, unsigned long* cor
 }
 
 int SetAffinity(GuestThread& t, pid_t tid, std::size_t size, const cpu_set_t* set) {
-  if (set == nullptr) return EFAULT;
+  if (!CanRead(set, size < kMostOfSet ? size : kMostOfSet)) return EFAULT;
   unsigned long cores = CoresIn(size, set);
   return cores == 0 ? EINVAL : Affinity(t, tid, cores, &cores);
 }
 
 int GetAffinity(GuestThread& t, pid_t tid, std::size_t size, cpu_set_t* set) {
-  if (set == nullptr) return EFAULT;
   if (size < sizeof(unsigned long) || size % sizeof(unsigned long) != 0) return EINVAL;
   unsigned long cores = 0;
   if (const int error = Affinity(t, tid, 0, &cores); error != 0) return error;
+  if (!CanOverwrite(set, size)) return EFAULT;
   memset(set, 0, size);
   memcpy(set, &cores, sizeof cores);
   return 0;
+}
+
+// Whether the kernel would let the caller have this nice value, which has no effect here and so is
+// 0 until then.
+bool MayHaveNice(int value) {
+  if (value >= 0) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3] = {};
+  if (RawSyscall(SYS_capget, Arg(&header), Arg(sets)) == 0 &&
+      (sets[0].effective >> CAP_SYS_NICE & 1) != 0) {
+    return true;
+  }
+  constexpr int kOfNiceZero = 20, kLeast = -20;
+  rlimit limit{};
+  RawSyscall(SYS_prlimit64, 0, RLIMIT_NICE, 0, Arg(&limit));
+  const int wanted = kOfNiceZero - (value < kLeast ? kLeast : value);
+  return limit.rlim_cur >= static_cast<rlim_t>(wanted);
 }
 
 int AsErrno(int error) { return error == 0 ? 0 : Fail(error); }
@@ -72,7 +97,10 @@ TCS_EXPORT int sched_setscheduler(pid_t pid, int policy, const sched_param* para
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setscheduler, pid, policy, Arg(param))));
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
-  return AsErrno(Set(*t, pid, policy, param->sched_priority));
+  sched_param wanted;
+  if (!CopyIn(&wanted, param)) return Fail(EFAULT);
+  if (policy < 0) return Fail(EINVAL);
+  return AsErrno(Set(*t, pid, policy, wanted.sched_priority));
 }
 
 TCS_EXPORT int sched_getscheduler(pid_t pid) noexcept {
@@ -89,9 +117,9 @@ TCS_EXPORT int sched_setparam(pid_t pid, const sched_param* param) noexcept {
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setparam, pid, Arg(param))));
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
-  Scheduling found{};
-  const int error = Get(*t, pid, &found);
-  return AsErrno(error != 0 ? error : Set(*t, pid, found.policy, param->sched_priority));
+  sched_param wanted;
+  if (!CopyIn(&wanted, param)) return Fail(EFAULT);
+  return AsErrno(Set(*t, pid, kKeepPolicy, wanted.sched_priority));
 }
 
 TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
@@ -101,8 +129,8 @@ TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
   Scheduling found{};
   const int error = Get(*t, pid, &found);
-  if (error == 0) param->sched_priority = found.priority;
-  return AsErrno(error);
+  if (error != 0) return Fail(error);
+  return CopyOut(param, sched_param{found.priority}) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int sched_rr_get_interval(pid_t pid, timespec* interval) noexcept {
@@ -112,8 +140,8 @@ TCS_EXPORT int sched_rr_get_interval(pid_t pid, timespec* interval) noexcept {
   if (pid < 0) return Fail(EINVAL);
   Scheduling found{};
   const int error = Get(*t, pid, &found);
-  if (error == 0) *interval = found.policy == SCHED_RR ? kRoundRobinQuantum : timespec{};
-  return AsErrno(error);
+  if (error != 0) return Fail(error);
+  return CopyOut(interval, IntervalOf(found.policy)) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
@@ -121,7 +149,8 @@ TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_setschedparam)(thread, policy, param);
   const pid_t tid = TidOf(thread);
-  return tid < 0 ? ESRCH : Set(*t, tid, policy, param->sched_priority);
+  if (tid < 0) return ESRCH;
+  return policy < 0 ? EINVAL : Set(*t, tid, policy, param->sched_priority);
 }
 
 TCS_EXPORT int pthread_getschedparam(pthread_t thread, int* policy, sched_param* param) noexcept {
@@ -139,10 +168,8 @@ TCS_EXPORT int pthread_getschedparam(pthread_t thread, int* policy, sched_param*
 TCS_EXPORT int pthread_setschedprio(pthread_t thread, int priority) noexcept {
   GuestThread* t = Enter();
   if (t == nullptr) return TCS_REAL(pthread_setschedprio)(thread, priority);
-  Scheduling found{};
   const pid_t tid = TidOf(thread);
-  const int error = tid < 0 ? ESRCH : Get(*t, tid, &found);
-  return error != 0 ? error : Set(*t, tid, found.policy, priority);
+  return tid < 0 ? ESRCH : Set(*t, tid, kKeepPolicy, priority);
 }
 
 TCS_EXPORT int sched_setaffinity(pid_t pid, std::size_t size, const cpu_set_t* set) noexcept {
@@ -178,11 +205,16 @@ TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_se
 }
 
 TCS_EXPORT int setpriority(__priority_which_t which, id_t who, int value) noexcept {
-  if (Enter() != nullptr) return 0;
+  if (Enter() != nullptr) {
+    const long found = RawSyscall(SYS_getpriority, which, who);
+    if (found < 0) return Fail(static_cast<int>(-found));
+    return MayHaveNice(value) ? 0 : Fail(EACCES);
+  }
   return static_cast<int>(ToErrno(RawSyscall(SYS_setpriority, which, who, value)));
 }
 
-TCS_EXPORT int nice(int) noexcept {
+TCS_EXPORT int nice(int increment) noexcept {
+  if (!MayHaveNice(increment)) return Fail(EPERM);
   errno = 0;
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -69,10 +70,13 @@ int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
   if (t == nullptr) {
     signal = RawSyscall(SYS_rt_sigtimedwait, Arg(set), Arg(&found), Arg(timeout), kSetSize);
   } else {
-    if (timeout != nullptr && !IsValid(*timeout)) return Fail(EINVAL);
+    unsigned long wanted;
+    timespec limit{};
+    if (!CopyIn(&wanted, reinterpret_cast<const unsigned long*>(set))) return Fail(EFAULT);
+    if (timeout != nullptr && !CopyIn(&limit, timeout)) return Fail(EFAULT);
+    if (!IsValid(limit)) return Fail(EINVAL);
     constexpr unsigned long kNeverAccepted = 1ul << (SIGKILL - 1) | 1ul << (SIGSTOP - 1);
-    signal = Accept(*t, *reinterpret_cast<const unsigned long*>(set) & ~kNeverAccepted, &found,
-                    timeout == nullptr ? -1 : ToNs(*timeout));
+    signal = Accept(*t, wanted & ~kNeverAccepted, &found, timeout == nullptr ? -1 : ToNs(limit));
     if (signal > 0 && found.si_code == SI_TIMER) {
       // It was sent before these happened.
       found.si_overrun =
@@ -83,7 +87,7 @@ int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
   }
   if (signal < 0) return static_cast<int>(ToErrno(signal));
   if (found.si_code == SI_TKILL) found.si_code = SI_USER;  // as the C library has it
-  if (info != nullptr) *info = found;
+  if (info != nullptr && !CopyOut(info, found)) return Fail(EFAULT);
   return static_cast<int>(signal);
 }
 

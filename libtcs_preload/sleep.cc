@@ -8,6 +8,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -25,7 +26,16 @@ int SleepFor(GuestThread& t, std::int64_t duration_ns, std::int64_t* remaining_n
   return EINTR;
 }
 
-int ClockFor(clockid_t id, Clock* clock) {
+// Of a process or a thread, by its number: a thread cannot sleep until it has computed.
+int ErrorOfCpuClock(const GuestThread& t, clockid_t id) {
+  constexpr clockid_t kPerThreadBit = 4;
+  if (id >= 0 || RawSyscall(SYS_clock_getres, id, 0) != 0) return EINVAL;
+  const auto owner = static_cast<int>(~(id >> 3));
+  const bool is_own = (id & kPerThreadBit) != 0 && (owner == 0 || owner == t.slot->tid);
+  return is_own ? EINVAL : ENOTSUP;
+}
+
+int ClockFor(const GuestThread& t, clockid_t id, Clock* clock) {
   switch (id) {
     case CLOCK_REALTIME:
     case CLOCK_TAI:
@@ -38,30 +48,37 @@ int ClockFor(clockid_t id, Clock* clock) {
       *clock = Clock::kMonotonic;
       return 0;
     case CLOCK_PROCESS_CPUTIME_ID:
+    case CLOCK_MONOTONIC_RAW:
+    case CLOCK_MONOTONIC_COARSE:
+    case CLOCK_REALTIME_COARSE:
+      return ENOTSUP;
     case CLOCK_THREAD_CPUTIME_ID:
-      return id == CLOCK_THREAD_CPUTIME_ID ? EINVAL : ENOTSUP;
+      return EINVAL;
     default:
-      return id < 0 ? ENOTSUP : EINVAL;
+      break;
   }
+  return ErrorOfCpuClock(t, id);
 }
 
 // As POSIX has it: returns the error number.
-int ClockNanosleep(clockid_t id, int flags, const timespec* request, timespec* remain) {
+int ClockNanosleep(clockid_t id, int flags, const timespec* given, timespec* remain) {
   GuestThread* t = Enter();
   if (t == nullptr) {
-    return static_cast<int>(-RawSyscall(SYS_clock_nanosleep, id, flags, Arg(request), Arg(remain)));
+    return static_cast<int>(-RawSyscall(SYS_clock_nanosleep, id, flags, Arg(given), Arg(remain)));
   }
   Clock clock;
-  if (const int error = ClockFor(id, &clock); error != 0) return error;
-  if (!IsValid(*request)) return EINVAL;
-  const std::int64_t request_ns = ToNs(*request);
+  if (const int error = ClockFor(*t, id, &clock); error != 0) return error;
+  timespec request;
+  if (!CopyIn(&request, given)) return EFAULT;
+  if (!IsValid(request)) return EINVAL;
+  const std::int64_t request_ns = ToNs(request);
   if ((flags & TIMER_ABSTIME) != 0) {
     return SleepUntil(*t, request_ns - OffsetNs(clock)) ? 0 : EINTR;
   }
   std::int64_t remaining = 0;
   const int error = SleepFor(*t, request_ns, &remaining);
-  if (error != 0 && remain != nullptr) *remain = ToTimespec(remaining);
-  return error;
+  if (error == 0 || remain == nullptr) return error;
+  return CopyOut(remain, ToTimespec(remaining)) ? error : EFAULT;
 }
 
 }  // namespace

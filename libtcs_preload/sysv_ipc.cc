@@ -14,6 +14,7 @@
 #include "libtcs_preload/ipc_times.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -70,10 +71,12 @@ bool MustNotWait(int id, const sembuf* operations, std::size_t count) {
   return false;
 }
 
-long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count,
-             const timespec* timeout) {
-  if (timeout != nullptr && !IsValid(*timeout)) return -EINVAL;
+long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count, const timespec* given) {
+  timespec timeout{};
+  if (given != nullptr && !CopyIn(&timeout, given)) return -EFAULT;
   if (count > kMostOperations) return -E2BIG;
+  if (!CanRead(operations, count * sizeof *operations)) return -EFAULT;
+  if (!IsValid(timeout)) return -EINVAL;
   sembuf at_once[kMostOperations];
   bool some = false;  // must not wait
   for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +85,7 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count,
     at_once[i].sem_flg = static_cast<short>(operations[i].sem_flg | IPC_NOWAIT);
   }
   const std::int64_t deadline =
-      timeout != nullptr ? DeadlineAfter(t, ToNs(*timeout)) : tcs::shm::kNeverNs;
+      given != nullptr ? DeadlineAfter(t, ToNs(timeout)) : tcs::shm::kNeverNs;
   const long result = WaitAndCall(t, WaitKey::kSemaphores, id, kWouldWait, deadline, [&]() -> long {
     const long done = RawSyscall(SYS_semop, id, Arg(at_once), static_cast<long>(count));
     if (done >= 0) NoteIpc(t, IpcKind::kSemaphores, id, IpcEvent::kPut);

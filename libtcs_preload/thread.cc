@@ -11,7 +11,6 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/pthread_id.h"
 #include "libtcs_preload/real.h"
-#include "libtcs_preload/thread_end.h"
 
 using namespace tcs::preload;
 
@@ -21,23 +20,6 @@ struct Start {
   void* (*routine)(void*);
   void* argument;
 };
-
-pthread_key_t g_end;
-bool g_has_end = false;
-
-// The last of a thread's destructors, in the last round that they get: what the program's own do,
-// they do in virtual time. `round` is which one this is.
-void EndOfThread(void* round) {
-  const auto now = reinterpret_cast<std::intptr_t>(round);
-  if (now < PTHREAD_DESTRUCTOR_ITERATIONS) {
-    pthread_setspecific(g_end, reinterpret_cast<void*>(now + 1));
-    return;
-  }
-  if (t_thread.slot == nullptr) return;
-  Announce(t_thread, Request{.kind = tcs::shm::NotificationKind::kThreadExit});
-  t_thread.slot = nullptr;
-  t_thread.attaching = true;  // what still runs of this thread is let through
-}
 
 void* RunThread(void* raw) {
   const Start start = *static_cast<Start*>(raw);
@@ -77,6 +59,14 @@ class SchedulingAsked {
   SchedulingAsked(const SchedulingAsked&) = delete;
   SchedulingAsked& operator=(const SchedulingAsked&) = delete;
 
+  bool is_explicit() const { return policy_ >= 0; }
+
+  // Whether the caller may have such a thread.
+  Request Question() const {
+    return Request{.kind = tcs::shm::NotificationKind::kPriority,
+                   .args = {0, policy_, priority_, 1}};
+  }
+
   Request Announcement() const {
     const auto cores = static_cast<std::int64_t>(CoresIn(sizeof cores_, &cores_));
     return Request{.kind = tcs::shm::NotificationKind::kSpawned,
@@ -94,16 +84,6 @@ class SchedulingAsked {
 
 }  // namespace
 
-namespace tcs::preload {
-
-void PrepareThreadEnds() { g_has_end = pthread_key_create(&g_end, EndOfThread) == 0; }
-
-void WatchThreadEnd() {
-  if (g_has_end) pthread_setspecific(g_end, reinterpret_cast<void*>(std::intptr_t{1}));
-}
-
-}  // namespace tcs::preload
-
 TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
                               void* (*routine)(void*), void* argument) noexcept {
   GuestThread* t = Enter();
@@ -113,6 +93,13 @@ TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
   if (start == nullptr) return EAGAIN;
   *start = Start{routine, argument};
   const SchedulingAsked asked(const_cast<pthread_attr_t*>(attributes));
+  if (asked.is_explicit()) {
+    const auto refused = static_cast<int>(-Exchange(*t, asked.Question()).values[0]);
+    if (refused != 0) {
+      free(start);
+      return refused;
+    }
+  }
   const int error = TCS_REAL(pthread_create)(thread, attributes, RunThread, start);
   if (error != 0) {
     free(start);

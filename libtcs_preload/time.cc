@@ -12,6 +12,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -24,6 +25,9 @@ constexpr clockid_t kPerThreadBit = 4;
 constexpr clockid_t kClockFdBits = 3;
 
 bool IsCpuClockId(clockid_t id) { return id < 0 && (id & kClockFdBits) != kClockFdBits; }
+bool IsProcessorClock(clockid_t id) {
+  return id < 0 || id == CLOCK_PROCESS_CPUTIME_ID || id == CLOCK_THREAD_CPUTIME_ID;
+}
 int CpuClockOwner(clockid_t id) { return static_cast<int>(~(id >> 3)); }
 
 // Virtual ns of the clock, or -1 for an id that the kernel has to judge.
@@ -79,6 +83,8 @@ long ClockGettime(clockid_t id, timespec* ts) {
   if (t != nullptr) {
     const std::int64_t ns = ReadClockId(*t, id);
     if (ns >= 0) {
+      // The other clocks are read without the kernel natively, too.
+      if (IsProcessorClock(id)) return CopyOut(ts, ToTimespec(ns)) ? 0 : -EFAULT;
       *ts = ToTimespec(ns);
       return 0;
     }
@@ -102,6 +108,10 @@ time_t Time(time_t* out) {
 }
 
 long ClockGetres(clockid_t id, timespec* resolution) {
+  if (IsCpuClockId(id)) {
+    // Whether there is such a process or thread the kernel knows.
+    if (const long error = RawSyscall(SYS_clock_getres, id, 0); error != 0) return error;
+  }
   if (Enter() != nullptr && (IsCpuClockId(id) || (id >= 0 && id <= CLOCK_TAI && id != 10))) {
     if (resolution != nullptr) *resolution = timespec{0, 1};
     return 0;
@@ -178,12 +188,19 @@ TCS_EXPORT int __clock_getres(clockid_t id, timespec* resolution) {
 }
 
 TCS_EXPORT int clock_settime(clockid_t id, const timespec* ts) {
-  if (SetClockRefused(Enter()) != 0) return -1;
+  GuestThread* t = Enter();
+  if (t != nullptr && (id != CLOCK_REALTIME || !IsValid(*ts))) return Fail(EINVAL);
+  if (SetClockRefused(t) != 0) return -1;
   return static_cast<int>(ToErrno(RawSyscall(SYS_clock_settime, id, Arg(ts))));
 }
 
 TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
-  if (SetClockRefused(Enter()) != 0) return -1;
+  GuestThread* t = Enter();
+  if (t != nullptr && tv != nullptr &&
+      (zone != nullptr || tv->tv_sec < 0 || tv->tv_usec < 0 || tv->tv_usec >= 1'000'000)) {
+    return Fail(EINVAL);
+  }
+  if (SetClockRefused(t) != 0) return -1;
   return static_cast<int>(ToErrno(RawSyscall(SYS_settimeofday, Arg(tv), Arg(zone))));
 }
 
@@ -197,6 +214,7 @@ TCS_EXPORT int SetTime(const time_t* seconds) {
 // Reading the adjustment is allowed, with the virtual time in it; changing it is not.
 TCS_EXPORT int adjtimex(timex* tx) {
   GuestThread* t = Enter();
+  if (!CanRead(tx, sizeof *tx)) return Fail(EFAULT);
   if (t != nullptr && tx->modes != 0) return Fail(EPERM);
   const long state = RawSyscall(SYS_adjtimex, Arg(tx));
   if (t != nullptr && state >= 0) {
@@ -231,7 +249,9 @@ TCS_EXPORT int OldNtpGetTime(ntptimeval* out) {
 
 TCS_EXPORT int clock_adjtime(clockid_t id, timex* tx) {
   if (id == CLOCK_REALTIME) return adjtimex(tx);
-  if (Enter() != nullptr && tx->modes != 0) return Fail(EPERM);
+  if (!CanRead(tx, sizeof *tx)) return Fail(EFAULT);
+  // No other can be adjusted, the kernel says.
+  Enter();
   return static_cast<int>(ToErrno(RawSyscall(SYS_clock_adjtime, id, Arg(tx))));
 }
 

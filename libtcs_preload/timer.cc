@@ -13,6 +13,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
+#include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
@@ -53,16 +54,16 @@ std::int64_t ItimerNow(GuestThread& t, int which) {
 }
 
 int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old) {
-  if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
   itimerval given{};
-  if (value != nullptr) given = *value;
+  if (value != nullptr && !CopyIn(&given, value)) return Fail(EFAULT);
+  if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
   if (!IsValidInterval(given.it_value) || !IsValidInterval(given.it_interval)) return Fail(EINVAL);
   const std::int64_t now = ItimerNow(t, which);
   const std::int64_t delay = ToNs(given.it_value);
   const TimerValue before = Ask(t, NotificationKind::kTimerSet, which,
                                 delay == 0 ? 0 : AddSaturated(now, delay), ToNs(given.it_interval));
-  if (old != nullptr) *old = ToSpec<itimerval>(before, now, RoundUpToTimeval);
-  return 0;
+  if (old == nullptr) return 0;
+  return CopyOut(old, ToSpec<itimerval>(before, now, RoundUpToTimeval)) ? 0 : Fail(EFAULT);
 }
 
 }  // namespace
@@ -80,8 +81,8 @@ TCS_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
   if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_getitimer, which, Arg(value))));
   if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
   const TimerValue now_set = Ask(*t, NotificationKind::kTimerGet, which, 0, 0);
-  *value = ToSpec<itimerval>(now_set, ItimerNow(*t, which), RoundUpToTimeval);
-  return 0;
+  const auto left = ToSpec<itimerval>(now_set, ItimerNow(*t, which), RoundUpToTimeval);
+  return CopyOut(value, left) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT unsigned alarm(unsigned seconds) {
@@ -131,27 +132,30 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
   return static_cast<int>(fd);
 }
 
-TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itimerspec* old) {
+TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itimerspec* old) {
   GuestThread* t = Enter();
-  const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
+  TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr) {
     return static_cast<int>(
-        ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(value), Arg(old), 0, kTrapped)));
+        ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(given), Arg(old), 0, kTrapped)));
   }
+  itimerspec value;
+  if (!CopyIn(&value, given)) return Fail(EFAULT);
   if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
-  if (!IsValid(value->it_value) || !IsValid(value->it_interval)) return Fail(EINVAL);
+  if (!IsValid(value.it_value) || !IsValid(value.it_interval)) return Fail(EINVAL);
   const std::int64_t now = NowNs(*t);
-  const std::int64_t given = ToNs(value->it_value);
+  const std::int64_t wanted = ToNs(value.it_value);
   std::int64_t first = 0;
-  if (given != 0) {
-    first = (flags & TFD_TIMER_ABSTIME) != 0 ? given - OffsetNs(timer->clock)
-                                             : AddSaturated(now, given);
+  if (wanted != 0) {
+    first = (flags & TFD_TIMER_ABSTIME) != 0 ? wanted - OffsetNs(timer->clock)
+                                             : AddSaturated(now, wanted);
     if (first <= 0) first = 1;  // long past, but armed
   }
-  const TimerValue before =
-      Ask(*t, NotificationKind::kTimerSet, timer->id, first, ToNs(value->it_interval));
-  if (old != nullptr) *old = ToSpec<itimerspec>(before, now, ToTimespec);
-  return 0;
+  const std::int64_t interval = ToNs(value.it_interval);
+  timer->is_short = interval > 0 && interval < tcs::shm::kShortIntervalNs;
+  const TimerValue before = Ask(*t, NotificationKind::kTimerSet, timer->id, first, interval);
+  if (old == nullptr) return 0;
+  return CopyOut(old, ToSpec<itimerspec>(before, now, ToTimespec)) ? 0 : Fail(EFAULT);
 }
 
 TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
@@ -160,7 +164,6 @@ TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
   if (timer == nullptr)
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_timerfd_gettime, fd, Arg(value), 0, 0, 0, kTrapped)));
-  *value = ToSpec<itimerspec>(Ask(*t, NotificationKind::kTimerGet, timer->id, 0, 0), NowNs(*t),
-                              ToTimespec);
-  return 0;
+  const TimerValue set = Ask(*t, NotificationKind::kTimerGet, timer->id, 0, 0);
+  return CopyOut(value, ToSpec<itimerspec>(set, NowNs(*t), ToTimespec)) ? 0 : Fail(EFAULT);
 }

@@ -29,15 +29,17 @@ bool RememberTimerFd(int fd, std::int64_t id, Clock clock) {
     if (g_used == kRoom) return false;
     entry = &g_timers[g_used++];
   }
-  *entry = TimerFd{fd, clock, id};
+  *entry = TimerFd{.fd = fd, .clock = clock, .id = id};
   return true;
 }
 
-const TimerFd* FindTimerFd(int fd) { return Find(fd); }
+TimerFd* FindTimerFd(int fd) { return Find(fd); }
 
 void CopyTimerFd(int fd, int copy) {
   if (const TimerFd* timer = Find(fd); timer != nullptr) {
-    RememberTimerFd(copy, timer->id, timer->clock);
+    const TimerFd original = *timer;
+    RememberTimerFd(copy, original.id, original.clock);
+    if (TimerFd* copied = Find(copy); copied != nullptr) copied->is_short = original.is_short;
   }
 }
 

@@ -10,12 +10,13 @@ namespace tcs::preload {
 struct TimerFd {
   int fd = -1;
   Clock clock = Clock::kMonotonic;
-  std::int64_t id = 0;  // the coordinator's
+  std::int64_t id = 0;    // the coordinator's
+  bool is_short = false;  // its interval: see coordinator/core/short_timers.cc
 };
 
 // False if no room is left.
 bool RememberTimerFd(int fd, std::int64_t id, Clock clock);
-const TimerFd* FindTimerFd(int fd);
+TimerFd* FindTimerFd(int fd);
 
 // `copy` is now another descriptor for the same timer.
 void CopyTimerFd(int fd, int copy);

@@ -11,13 +11,17 @@
 
 namespace tcs::preload {
 
-// What is left of some buffers.
+// What is left of some buffers. It looks at them only when asked for bytes(), or when some have
+// been used: then the kernel has, too, and they are there.
 class Rest {
  public:
-  Rest(const iovec* iov, std::size_t count) : iov_(iov), count_(count) {
-    for (std::size_t i = 0; i < count; ++i) bytes_ += iov[i].iov_len;
+  Rest(const iovec* iov, std::size_t count) : iov_(iov), count_(count) {}
+  std::size_t bytes() {
+    if (counted_) return bytes_;
+    for (std::size_t i = 0; i < count_; ++i) bytes_ += iov_[i].iov_len;
+    counted_ = true;
+    return bytes_;
   }
-  std::size_t bytes() const { return bytes_; }
 
   // All of it, or where something has been used already as much as fits into the copy.
   const iovec* Next(std::size_t* count) {
@@ -33,7 +37,7 @@ class Rest {
   }
 
   void Use(std::size_t bytes) {
-    bytes_ -= bytes;
+    bytes_ = this->bytes() - bytes;
     offset_ += bytes;
     while (count_ > 0 && offset_ >= iov_->iov_len) {
       offset_ -= iov_->iov_len;
@@ -46,6 +50,7 @@ class Rest {
   static constexpr std::size_t kCopied = 16;  // the stack may be a small one
   const iovec* iov_;
   std::size_t count_, offset_ = 0, bytes_ = 0;
+  bool counted_ = false;
   iovec copy_[kCopied];
 };
 

@@ -44,7 +44,11 @@ enum class NotificationKind : std::uint32_t {
   kIdle = 4,       // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
                    // 2 if also until a signal of the set args[1] is pending
   kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
-                   // deadline_ns
+                   // deadline_ns; args[0]: 1 if one event of the one descriptor is for one waiter,
+                   // the first of several that came, 2 if for the last;
+                   // args[2]: 1 to keep the place of the last such wait; reply[1]: 1 if others were
+                   // passed over, and want to know (kPassOn)
+  kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
   kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable, or -1; args[1] to
@@ -57,10 +61,11 @@ enum class NotificationKind : std::uint32_t {
                       // with args[1..2] as kPriority's if args[1] >= 0, args[3] as kAffinity's
   kYield = 12,        // let equals run
   kPriority = 13,     // args[0]: tid, 0 for the own; args[1]: POSIX policy, args[2]: priority, for
-                      // the virtual scheduler; reply[0]: 0, or negative for an errno
+                      // the virtual scheduler; reply[0]: 0, or negative for an errno.
+  // Policies may have SCHED_RESET_ON_FORK in them, or be kKeepPolicy. args[3]: 1
+  // only to ask whether the caller may
   kInterrupted = 14,  // a signal handler wants to run while the thread waits: end the wait
   kStrangers = 15,    // the process is about to get threads that never register
-  kThreadExit = 16,   // the thread ends
   kResumed = 17,      // a call unknown to the shim has returned (never sent by the shim itself)
   kPriorityGet = 18,  // args[0]: tid, 0 for the own; reply[0]: policy, or negative for an errno;
                       // reply[1]: priority
@@ -87,6 +92,8 @@ enum class NotificationKind : std::uint32_t {
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
 };
+
+inline constexpr std::int64_t kKeepPolicy = -1;
 
 inline constexpr int kDdsDescriptorBits = 16;
 
@@ -124,6 +131,10 @@ static_assert(sizeof(TimerKind) == 3 * sizeof(std::int64_t));
 // Timer ids 0..2 are the process's setitimer timers, by their POSIX numbers (ITIMER_REAL, _VIRTUAL,
 // _PROF).
 inline constexpr std::int64_t kFirstTimerId = 16;
+
+// Timers of shorter intervals are not worked off one expiration after another: who is about to read
+// a descriptor of such a one asks for it first (kTimerGet).
+inline constexpr std::int64_t kShortIntervalNs = 100'000;
 
 // Why a dispatch ended a wait.
 enum class WakeReason : std::uint32_t {

@@ -274,6 +274,7 @@ void Engine::EndTask(Task& task) {
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
+  PassOn(task);
   LeaveWait(task);
   SetState(task, TaskState::kDead);
   --living_;

@@ -222,7 +222,8 @@ void Engine::Settle(Task& task) {
   task.host_origin_ns += moved;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
-  if (trapped_.has_value() && IsFixed() && slot.signals.load() == 0) {
+  if (trapped_.has_value() && trapped_->number != SYS_exit && IsFixed() &&
+      slot.signals.load() == 0) {
     // The shim charges the calls that it sees, whatever the C library calls for it.
     const std::uint64_t word = page.executed_adjust.load();
     page.executed_adjust.store(
@@ -421,6 +422,8 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   ExpireCpuTimers(task);
   if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns, looks_again);
+  if (task.process->has_resting_timers) EndRests(*task.process);
+  if (notified_ || trapped_.has_value()) PassOn(task);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
   if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);

@@ -26,6 +26,7 @@ constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr int kDeathTurns = 25;  // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
 std::int64_t QuantumOf(const Task& task) {
@@ -288,6 +289,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
     limit = std::min(limit, cpu.progress_ns + left);
   }
+  limit = std::min(limit, std::max(NextLook(*task.process), cpu.progress_ns + kLeastLookNs));
   std::int64_t idle = limit;
   const std::int64_t turn_end =
       task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;

@@ -108,6 +108,12 @@ class Engine {
   void Handle(Task& task, const shm::Notification& note);
   void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
   void WaitForChild(Task& task, pid_t which, bool stops);
+
+  // Those who wait to take from the same descriptor (one_waiter.cc).
+  void WakeAwaiters(std::vector<Task*> awaiters);
+  void PassOver(Task& task, Task& first);
+  void PassOn(Task& first);
+
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
@@ -128,8 +134,12 @@ class Engine {
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
-  std::int64_t SetPriority(Task& task, std::int64_t policy, std::int64_t priority);
-  std::int64_t SetAffinity(Task& task, std::uint64_t cores);
+  static int PolicyOf(const Task& task);
+  static std::int64_t MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
+                                    std::int64_t priority);
+  std::int64_t SetPriority(const Task& asking, Task& task, std::int64_t policy,
+                           std::int64_t priority);
+  std::int64_t SetAffinity(const Task& asking, Task& task, std::uint64_t cores);
   static std::uint64_t AllowedCores(const Task& task);
   void InheritScheduling(Task& task, const Task& creator);
   void FindPriority(Task& task);
@@ -138,6 +148,7 @@ class Engine {
   // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
   // errno.
   void TrapArrived(int listener);
+  void ExitThread(Task& task, const TrappedCall& call);
   void HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call);
@@ -151,12 +162,19 @@ class Engine {
   void HoldRaw(Task& task, shm::NotificationKind kind);
   std::int64_t PollRaw(Task& task, const TrappedCall& call);
   bool RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns);
-  std::vector<shm::WaitFd> RawWaitFds(const Task& task, const TrappedCall& call);
+  static std::optional<std::vector<shm::WaitFd>> RawWaitFds(const Task& task,
+                                                            const TrappedCall& call);
   static std::uint64_t RawAwaitedSignals(const Task& task, const TrappedCall& call);
   void ClearRawResult(const Task& task, const TrappedCall& call);
   void ForgetNews(const Process& parent);
   void AwaitChildRaw(Task& task, const TrappedCall& call);
+
+  // Those to the robot's scheduler (raw_scheduling.cc).
   std::int64_t ScheduleRaw(Task& task, const TrappedCall& call);
+  std::int64_t SetSchedulingRaw(Task& task, Task& of, const TrappedCall& call);
+  std::int64_t GetSchedulingRaw(Task& task, Task& of, const TrappedCall& call);
+  std::int64_t SetAttributesRaw(Task& task, Task& of, const TrappedCall& call);
+  std::int64_t GetAttributesRaw(Task& task, const Task& of, const TrappedCall& call);
 
   // Those that transfer data (raw_transfers.cc).
   void TransferRaw(Task& task, const TrappedCall& call);
@@ -190,6 +208,7 @@ class Engine {
   std::int64_t CarryOutWake(const Process& process, const TrappedCall& call);
   std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command,
                              const timespec& timeout);
+  static std::int64_t WrongFutexCall(const Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);
@@ -266,6 +285,14 @@ class Engine {
   std::int64_t CpuTimeToExpiry(const Task& task) const;
   std::int64_t ChargedTo(const Process& process) const;
   static void FindNextExpiry(Process& process);
+
+  // Those of short intervals (short_timers.cc).
+  static bool IsShort(const Timer& timer);
+  static void Rest(Process& process, Timer& timer, std::int64_t now_ns);
+  static void EndRests(Process& process);
+  void BringUpToDate(Task& asking, std::int64_t id);
+  static std::int64_t NextLook(const Process& process);
+  static std::int64_t CpuTimeLeft(const Timer& timer, std::int64_t used_ns);
 
   // Their signals (timer_signals.cc).
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
@@ -365,6 +392,7 @@ class Engine {
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t futex_counter_ = 0, key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
+  std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;

@@ -167,6 +167,8 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
   }
   bool stop = false, blocked = false;
   if (running_ != nullptr) event_ns_ = WrittenAt();
+  const std::int64_t written_ns = event_ns_;
+  std::vector<Task*> awaiters;
   for (int i = 0; i < n; ++i) {
     const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
@@ -204,14 +206,10 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
       case Tag::kAwaited:
         if (Task& task = tasks_[index];
             task.state == TaskState::kWaiting && task.waits_for_fds &&
-            EventData(tag, index, task.wait_number) == events[i].data.u64) {
-          MakeReady(task, shm::WakeReason::kGo);
+            EventData(tag, index, task.wait_number) == events[i].data.u64 &&
+            !std::exchange(task.skips_event, false)) {
+          awaiters.push_back(&task);
           external_event_ = true;
-          if (running_ != nullptr && running_->process->robot != task.process->robot) {
-            GoOnBesideWoken();
-          } else {
-            stop = true;
-          }
         }
         break;
       case Tag::kUnknownChild:
@@ -246,6 +244,25 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         blocked = true;
         break;
       }
+    }
+  }
+  // Something else may have ended the wait meanwhile.
+  std::erase_if(awaiters, [](const Task* task) {
+    return task->state != TaskState::kWaiting || !task->waits_for_fds;
+  });
+  if (!awaiters.empty()) {
+    const bool beside =
+        running_ != nullptr &&
+        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+          return task->process->robot == running_->process->robot;
+        });
+    const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
+    WakeAwaiters(std::move(awaiters));
+    event_ns_ = now_ns;
+    if (beside) {
+      GoOnBesideWoken();
+    } else {
+      stop = true;
     }
   }
   if (running_ == nullptr) return true;

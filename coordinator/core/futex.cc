@@ -21,6 +21,9 @@ constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
 constexpr int kEndTurns = 200;
 constexpr useconds_t kEndTurnUs = 50;
 
+// The kernel looks at how many it was to wake only when it has woken one.
+int AtLeastOne(std::uint64_t count) { return std::max(1, static_cast<int>(count)); }
+
 }  // namespace
 
 FutexKey Engine::FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address) {
@@ -66,8 +69,6 @@ std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int comm
 
 std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command) {
   const auto bits = static_cast<std::uint32_t>(call.args[5]);
-  if (command == FUTEX_WAIT_BITSET && bits == 0) return -EINVAL;
-  if (call.args[0] % sizeof(std::uint32_t) != 0) return -EINVAL;
   std::uint32_t value = 0;
   timespec timeout{};
   const RemotePiece word{call.args[0], &value, sizeof value};
@@ -112,12 +113,11 @@ void Engine::StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits)
 
 std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits) {
   std::int64_t woken = 0;
-  while (woken < most) {
+  for (; woken < most; ++woken) {
     Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
     NoteWhichFutex(*best, key);
     MakeReady(*best, shm::WakeReason::kGo);
-    ++woken;
   }
   return woken;
 }
@@ -157,13 +157,13 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
                                              static_cast<std::uint32_t>(operand));
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
-  std::int64_t woken = FutexWake(WokenKeyFor(*task.process, call, call.args[0]),
-                                 static_cast<int>(call.args[2]), kAnyBit);
+  std::int64_t woken =
+      FutexWake(WokenKeyFor(*task.process, call, call.args[0]), AtLeastOne(call.args[2]), kAnyBit);
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
-    woken += FutexWake(WokenKeyFor(*task.process, call, call.args[4]),
-                       static_cast<int>(call.args[3]), kAnyBit);
+    woken += FutexWake(WokenKeyFor(*task.process, call, call.args[4]), AtLeastOne(call.args[3]),
+                       kAnyBit);
   }
   return woken;
 }
@@ -172,7 +172,7 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
 std::int64_t Engine::CarryOutWake(const Process& process, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return 0;
-  return FutexWake(WokenKeyFor(process, call, call.args[0]), static_cast<int>(call.args[2]),
+  return FutexWake(WokenKeyFor(process, call, call.args[0]), AtLeastOne(call.args[2]),
                    command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
 }
 
@@ -205,7 +205,8 @@ bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
 
 void Engine::HandleFutex(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
-  if (HoldsToWake(task, call, command)) return;
+  task.trap_result = WrongFutexCall(task, call, command);
+  if (task.trap_result != 0 || HoldsToWake(task, call, command)) return;
   switch (command) {
     case FUTEX_WAIT:
     case FUTEX_WAIT_BITSET:

@@ -20,10 +20,12 @@ namespace tcs {
 void Engine::EndWatches(Task& task) {
   const bool forgets = task.watches_terminal || task.awaited_signals != 0;
   for (const int fd : task.watched) {
-    if (forgets) epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+    if (forgets || task.is_edge_armed) epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
     close(fd);
   }
   task.watched.clear();
+  task.takes = task.last_is_first = task.is_edge_armed = task.skips_event = false;
+  task.passed_over_for = nullptr;
   if (task.watches_terminal) header_->key_waiters.store(--key_waiters_);
   task.watches_terminal = false;
 }
@@ -66,8 +68,8 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
     SetLevel(tid, Level::kWaiting);
     Task& thread = *AddThread(*creator.process, tid);
     InheritScheduling(thread, creator);
-    if (note.args[1] >= 0) SetPriority(thread, note.args[1], note.args[2]);
-    if (note.args[3] != 0) SetAffinity(thread, static_cast<std::uint64_t>(note.args[3]));
+    if (note.args[1] >= 0) SetPriority(creator, thread, note.args[1], note.args[2]);
+    if (note.args[3] != 0) SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
   }
 }
 
@@ -104,6 +106,11 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitFds:
       WatchFds(task, note.fds, std::min(note.fd_count, shm::kMaxWaitFds));
+      task.takes =
+          note.args[0] != 0 && task.watched.size() == 1 && note.fd_count == 1 && note.args[1] == 0;
+      task.last_is_first = note.args[0] == 2;
+      if (task.takes) task.watched_events = note.fds[0].events;
+      if (note.args[2] == 0) task.wait_order = ++wait_order_counter_;
       AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
       Refresh(robot);
       // What is there already ends the wait here and now.
@@ -168,16 +175,12 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kQueueNotifies:
       header_->queues_notify.store(1);
       break;
-    case Kind::kThreadExit:
-      Slot(task).gate.store(shm::kGateOpen);
-      EndTask(task);
-      WakeThoseWaitingFor(task);
-      break;
     case Kind::kNone:
     case Kind::kHorizon:
     case Kind::kInterrupted:
     case Kind::kResumed:
     case Kind::kKernelWait:
+    case Kind::kPassOn:  // any stop does it
       break;
   }
   Refresh(robot);

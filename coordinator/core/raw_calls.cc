@@ -2,10 +2,12 @@
 // symbol sees them. What they wait for is waited for here; then the kernel carries them out, and
 // does not have to wait.
 #include <errno.h>
+#include <limits.h>
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/epoll.h>
+#include <sys/resource.h>
 #include <sys/select.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -14,17 +16,20 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <vector>
 
 #include "coordinator/core/borrowed.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 
 namespace tcs {
 
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::size_t kMostPolled = 1024;
+constexpr std::size_t kMostPolled = 65'536, kSets = 3;
 constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
 
 std::int64_t ToNs(const timespec& t) {
@@ -48,6 +53,66 @@ bool Write(const Task& task, std::uint64_t address, const T& value) {
 
 bool IsRealtime(std::uint64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
+}
+
+// What goes with a mask, if there is one.
+bool IsSoundMask(std::uint64_t mask, std::uint64_t size) { return mask == 0 || size == 8; }
+
+std::optional<std::vector<shm::WaitFd>> PolledFds(const Task& task, const TrappedCall& call) {
+  rlimit most{};
+  prlimit(task.process->pid, RLIMIT_NOFILE, nullptr, &most);
+  if (call.args[1] > most.rlim_cur) return std::nullopt;
+  if (call.number == SYS_ppoll && !IsSoundMask(call.args[3], call.args[4])) return std::nullopt;
+  std::vector<pollfd> fds(std::min<std::size_t>(call.args[1], kMostPolled));
+  if (!fds.empty() &&
+      !ReadMemory(task.process->pid, call.args[0], fds.data(), fds.size() * sizeof fds[0])) {
+    return std::nullopt;
+  }
+  std::vector<shm::WaitFd> waited;
+  for (const pollfd& fd : fds) {
+    if (fd.fd >= 0) waited.push_back({fd.fd, static_cast<unsigned short>(fd.events)});
+  }
+  return waited;
+}
+
+// So many descriptors the kernel looks at: no more than the process's table has room for.
+std::size_t SelectedCount(const Task& task, const TrappedCall& call) {
+  const auto count = static_cast<std::size_t>(std::max(0, static_cast<int>(call.args[0])));
+  return count <= FD_SETSIZE ? count : std::min(count, RoomForDescriptors(task.process->pid));
+}
+
+std::size_t WordsOf(std::size_t fds) { return (fds + 63) / 64; }
+
+std::optional<std::vector<shm::WaitFd>> SelectedFds(const Task& task, const TrappedCall& call) {
+  if (static_cast<int>(call.args[0]) < 0) return std::nullopt;
+  const std::size_t count = SelectedCount(task, call);
+  std::vector<std::uint64_t> sets[kSets];
+  for (std::size_t i = 0; i < kSets; ++i) {
+    sets[i].resize(WordsOf(count));
+    if (call.args[i + 1] == 0 || count == 0) continue;
+    if (!ReadMemory(task.process->pid, call.args[i + 1], sets[i].data(),
+                    sets[i].size() * sizeof sets[i][0])) {
+      return std::nullopt;
+    }
+  }
+  constexpr std::uint32_t kEvents[kSets] = {EPOLLIN, EPOLLOUT, EPOLLPRI};
+  std::vector<shm::WaitFd> waited;
+  for (std::size_t fd = 0; fd < count; ++fd) {
+    std::uint32_t events = 0;
+    for (std::size_t i = 0; i < kSets; ++i) {
+      if ((sets[i][fd / 64] >> (fd % 64) & 1) != 0) events |= kEvents[i];
+    }
+    if (events != 0) waited.push_back({static_cast<int>(fd), events});
+  }
+  return waited;
+}
+
+bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
+  constexpr int kMostEvents = INT_MAX / static_cast<int>(sizeof(epoll_event));
+  const int most = static_cast<int>(call.args[2]);
+  if (most <= 0 || most > kMostEvents || static_cast<std::int64_t>(call.args[1]) < 0) return false;
+  if (call.number != SYS_epoll_wait && !IsSoundMask(call.args[4], call.args[5])) return false;
+  return IsEpollSet(task.process->pid, static_cast<int>(call.args[0]));
 }
 
 }  // namespace
@@ -138,41 +203,20 @@ bool Engine::RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns) {
   return true;
 }
 
-// What the call waits for.
-std::vector<shm::WaitFd> Engine::RawWaitFds(const Task& task, const TrappedCall& call) {
-  std::vector<shm::WaitFd> waited;
+// What the call waits for; none where something is wrong with it, which the kernel says best.
+std::optional<std::vector<shm::WaitFd>> Engine::RawWaitFds(const Task& task,
+                                                           const TrappedCall& call) {
   switch (call.number) {
     case SYS_poll:
-    case SYS_ppoll: {
-      const std::size_t count = std::min<std::size_t>(call.args[1], kMostPolled);
-      std::vector<pollfd> fds(count);
-      if (!ReadMemory(task.process->pid, call.args[0], fds.data(), count * sizeof fds[0])) break;
-      for (const pollfd& fd : fds) {
-        if (fd.fd >= 0) waited.push_back({fd.fd, static_cast<unsigned short>(fd.events)});
-      }
-      break;
-    }
+    case SYS_ppoll:
+      return PolledFds(task, call);
     case SYS_select:
-    case SYS_pselect6: {
-      fd_set sets[3];
-      const int count = std::clamp(static_cast<int>(call.args[0]), 0, int{FD_SETSIZE});
-      for (std::size_t i = 0; i < 3; ++i) {
-        FD_ZERO(&sets[i]);
-        const auto bytes = static_cast<std::size_t>(count + 63) / 64 * 8;
-        if (call.args[i + 1] != 0) ReadMemory(task.process->pid, call.args[i + 1], &sets[i], bytes);
-      }
-      for (int fd = 0; fd < count; ++fd) {
-        const std::uint32_t events = (FD_ISSET(fd, &sets[0]) ? EPOLLIN : 0u) |
-                                     (FD_ISSET(fd, &sets[1]) ? EPOLLOUT : 0u) |
-                                     (FD_ISSET(fd, &sets[2]) ? EPOLLPRI : 0u);
-        if (events != 0) waited.push_back({fd, events});
-      }
-      break;
-    }
+    case SYS_pselect6:
+      return SelectedFds(task, call);
     default:
-      waited.push_back({static_cast<int>(call.args[0]), EPOLLIN});
+      if (!IsSoundEpollWait(task, call)) return std::nullopt;
+      return std::vector{shm::WaitFd{static_cast<int>(call.args[0]), EPOLLIN}};
   }
-  return waited;
 }
 
 // The signals that end the call though the thread blocks them: its mask lets them in. Those that do
@@ -207,8 +251,9 @@ std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   // What is wrong with it the kernel says best.
   if (!RawTimeout(task, call, &timeout_ns)) return 0;
-  const std::vector<shm::WaitFd> waited = RawWaitFds(task, call);
-  const bool ready = std::any_of(waited.begin(), waited.end(), [&](const shm::WaitFd& fd) {
+  const auto waited = RawWaitFds(task, call);
+  if (!waited.has_value()) return 0;
+  const bool ready = std::any_of(waited->begin(), waited->end(), [&](const shm::WaitFd& fd) {
     return Borrowed(task, fd.fd).IsReady(static_cast<short>(fd.events));
   });
   if (timeout_ns == 0 || ready) {
@@ -218,7 +263,7 @@ std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
   task.trap_wait = TrapWait::kFds;
   task.deadline_ns =
       timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
-  WatchFds(task, waited.data(), waited.size());
+  WatchFds(task, waited->data(), waited->size());
   AwaitSignals(task, RawAwaitedSignals(task, call));
   return 0;
 }
@@ -233,11 +278,10 @@ void Engine::ClearRawResult(const Task& task, const TrappedCall& call) {
     }
   }
   if (call.number == SYS_select || call.number == SYS_pselect6) {
-    const fd_set none{};
-    const int count = std::clamp(static_cast<int>(call.args[0]), 0, int{FD_SETSIZE});
-    const auto bytes = static_cast<std::size_t>(count + 63) / 64 * 8;
-    for (std::size_t i = 1; i <= 3; ++i) {
-      if (call.args[i] != 0) WriteMemory(task.process->pid, call.args[i], &none, bytes);
+    const std::vector<std::uint64_t> none(WordsOf(SelectedCount(task, call)));
+    for (std::size_t i = 1; i <= kSets; ++i) {
+      if (call.args[i] == 0) continue;
+      WriteMemory(task.process->pid, call.args[i], none.data(), none.size() * sizeof none[0]);
     }
   }
 }
@@ -276,44 +320,6 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   if (has_news) return HoldRaw(task, shm::NotificationKind::kRead);
   task.trap_wait = TrapWait::kChild;
   WaitForChild(task, which, stops);
-}
-
-std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
-  const auto tid = static_cast<pid_t>(call.args[0]);
-  Task* of = tid == 0 ? &task : KnownTask(tid);
-  if (of == nullptr) return -ESRCH;
-  sched_param param{};
-  switch (call.number) {
-    case SYS_sched_setscheduler:
-      if (!Read(task, call.args[2], &param)) return -EFAULT;
-      return SetPriority(*of, static_cast<int>(call.args[1]) & ~SCHED_RESET_ON_FORK,
-                         param.sched_priority);
-    case SYS_sched_setparam:
-      if (!Read(task, call.args[1], &param)) return -EFAULT;
-      return SetPriority(*of, of->policy, param.sched_priority);
-    case SYS_sched_setattr: {
-      struct {
-        std::uint32_t size, policy;
-        std::uint64_t flags;
-        std::int32_t nice;
-        std::uint32_t priority;
-      } attributes{};
-      if (!Read(task, call.args[1], &attributes)) return -EFAULT;
-      // SCHED_DEADLINE, which robots have not got here, is refused like on a kernel without it.
-      return SetPriority(*of, attributes.policy, attributes.priority);
-    }
-    case SYS_sched_setaffinity: {
-      std::uint64_t cores = 0;
-      const std::size_t size = std::min<std::size_t>(call.args[1], sizeof cores);
-      if (!ReadMemory(task.process->pid, call.args[2], &cores, size)) return -EFAULT;
-      return SetAffinity(*of, cores);
-    }
-    default: {  // SYS_sched_getaffinity
-      if (call.args[1] < sizeof(std::uint64_t)) return -EINVAL;
-      const std::uint64_t cores = AllowedCores(*of);
-      return Write(task, call.args[2], cores) ? std::int64_t{sizeof cores} : -EFAULT;
-    }
-  }
 }
 
 void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
@@ -367,11 +373,18 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_sched_yield:
       task.process->robot->ready.Rotate(task.order);
       break;
+    case SYS_exit:
+      ExitThread(task, call);
+      break;
     case SYS_sched_setscheduler:
     case SYS_sched_setparam:
     case SYS_sched_setattr:
     case SYS_sched_setaffinity:
     case SYS_sched_getaffinity:
+    case SYS_sched_getscheduler:
+    case SYS_sched_getparam:
+    case SYS_sched_getattr:
+    case SYS_sched_rr_get_interval:
       task.trap_result = ScheduleRaw(task, call);
       break;
     case SYS_timer_create:

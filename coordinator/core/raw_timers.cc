@@ -15,6 +15,7 @@
 #include "coordinator/core/borrowed.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 
 namespace tcs {
 

@@ -1,11 +1,13 @@
 // What threads ask of their robot's scheduler: policies, priorities, cores; and the priority that a
 // thread has from those who wait for a lock that it holds.
 #include <errno.h>
+#include <limits.h>
 #include <sched.h>
 
 #include <algorithm>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/core/scheduling_rights.h"
 
 namespace tcs {
 
@@ -15,16 +17,25 @@ namespace {
 constexpr int kRealTimeBand = 1'000'000, kIdleBand = -1'000'000;
 constexpr int kMostOwners = 64;  // in a chain of who waits for whom; a circle ends there
 
+bool IsRealTime(std::int64_t policy) { return policy == SCHED_FIFO || policy == SCHED_RR; }
+
 int OwnPriority(const Task& task) {
-  if (task.policy == SCHED_FIFO || task.policy == SCHED_RR) {
+  if (IsRealTime(task.policy)) {
     return kRealTimeBand + task.posix_priority;
   }
   return task.process->priority + (task.policy == SCHED_IDLE ? kIdleBand : 0);
 }
 
 bool IsValid(std::int64_t policy, std::int64_t priority) {
-  if (policy == SCHED_FIFO || policy == SCHED_RR) return priority >= 1 && priority <= 99;
+  if (IsRealTime(policy)) return priority >= 1 && priority <= 99;
   return (policy == SCHED_OTHER || policy == SCHED_BATCH || policy == SCHED_IDLE) && priority == 0;
+}
+
+SchedulingParameters Wanted(const Task& task, std::int64_t policy, std::int64_t priority) {
+  const bool keeps = policy == shm::kKeepPolicy;
+  return {.policy = keeps ? task.policy : static_cast<int>(policy & ~SCHED_RESET_ON_FORK),
+          .priority = static_cast<int>(priority),
+          .resets_on_fork = keeps ? task.resets_on_fork : (policy & SCHED_RESET_ON_FORK) != 0};
 }
 
 std::uint64_t CoresOf(const Task& task) {
@@ -35,8 +46,9 @@ std::uint64_t CoresOf(const Task& task) {
 }  // namespace
 
 void Engine::InheritScheduling(Task& task, const Task& creator) {
-  task.policy = creator.policy;
-  task.posix_priority = creator.posix_priority;
+  const bool starts_anew = creator.resets_on_fork && IsRealTime(creator.policy);
+  task.policy = starts_anew ? SCHED_OTHER : creator.policy;
+  task.posix_priority = starts_anew ? 0 : creator.posix_priority;
   task.allowed_cores = creator.allowed_cores;
   FindPriority(task);
 }
@@ -68,15 +80,30 @@ void Engine::LeaveLock(Task& task) {
   if (owner != nullptr) FindPriority(*owner);
 }
 
-std::int64_t Engine::SetPriority(Task& task, std::int64_t policy, std::int64_t priority) {
-  if (!IsValid(policy, priority)) return -EINVAL;
-  task.policy = static_cast<int>(policy);
-  task.posix_priority = static_cast<int>(priority);
+std::int64_t Engine::MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
+                                   std::int64_t priority) {
+  const SchedulingParameters wanted = Wanted(task, policy, priority);
+  if (policy != shm::kKeepPolicy && (policy < 0 || policy > INT_MAX)) return -EINVAL;
+  if (!IsValid(wanted.policy, priority)) return -EINVAL;
+  const SchedulingParameters now{task.policy, task.posix_priority, task.resets_on_fork};
+  return MaySetScheduling(asking.tid, task.tid, now, wanted) ? 0 : -EPERM;
+}
+
+std::int64_t Engine::SetPriority(const Task& asking, Task& task, std::int64_t policy,
+                                 std::int64_t priority) {
+  if (const std::int64_t error = MayPrioritize(asking, task, policy, priority); error != 0) {
+    return error;
+  }
+  const SchedulingParameters wanted = Wanted(task, policy, priority);
+  task.policy = wanted.policy;
+  task.posix_priority = wanted.priority;
+  task.resets_on_fork = wanted.resets_on_fork;
   FindPriority(task);
   return 0;
 }
 
-std::int64_t Engine::SetAffinity(Task& task, std::uint64_t cores) {
+std::int64_t Engine::SetAffinity(const Task& asking, Task& task, std::uint64_t cores) {
+  if (!MaySetAffinity(asking.tid, task.tid)) return -EPERM;
   if ((cores & CoresOf(task)) == 0) return -EINVAL;
   task.allowed_cores = cores & CoresOf(task);
   if (IsRunnable(task)) Requeue(task);
@@ -84,6 +111,11 @@ std::int64_t Engine::SetAffinity(Task& task, std::uint64_t cores) {
 }
 
 std::uint64_t Engine::AllowedCores(const Task& task) { return task.allowed_cores & CoresOf(task); }
+
+// As sched_getscheduler says it.
+int Engine::PolicyOf(const Task& task) {
+  return task.policy | (task.resets_on_fork ? SCHED_RESET_ON_FORK : 0);
+}
 
 // `tid` as the program knows it.
 void Engine::HandleScheduling(Task& asking, const shm::Notification& note) {
@@ -96,15 +128,18 @@ void Engine::HandleScheduling(Task& asking, const shm::Notification& note) {
   }
   switch (note.kind) {
     case shm::NotificationKind::kPriority:
-      asking.reply[0] = SetPriority(*task, note.args[1], note.args[2]);
+      asking.reply[0] = note.args[3] != 0 ? MayPrioritize(asking, *task, note.args[1], note.args[2])
+                                          : SetPriority(asking, *task, note.args[1], note.args[2]);
       break;
     case shm::NotificationKind::kPriorityGet:
-      asking.reply[0] = task->policy;
+      asking.reply[0] = PolicyOf(*task);
       asking.reply[1] = task->posix_priority;
       break;
     default:
-      asking.reply[0] =
-          note.args[1] == 0 ? 0 : SetAffinity(*task, static_cast<std::uint64_t>(note.args[1]));
+      asking.reply[0] = 0;
+      if (note.args[1] != 0) {
+        asking.reply[0] = SetAffinity(asking, *task, static_cast<std::uint64_t>(note.args[1]));
+      }
       asking.reply[1] = static_cast<std::int64_t>(AllowedCores(*task));
   }
 }

@@ -50,6 +50,7 @@ struct Task {
   int priority = 0;  // on its robot; higher is more urgent
   int policy = 0;    // POSIX: SCHED_OTHER …
   int posix_priority = 0;
+  bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: whom it makes is an ordinary thread
   std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
   TaskState state = TaskState::kStarting;
   // The virtual time that it has come to: of its last stop, or of what has made it ready since.
@@ -72,7 +73,15 @@ struct Task {
   std::uint64_t awaited_signals = 0;    // its wait ends when one of them is pending
   std::vector<int> watched;             // descriptors in the coordinator's epoll set
   bool watches_terminal = false;        // among the watched
-  std::uint32_t wait_number = 0;        // of its last wait for descriptors
+  bool takes = false;                   // one event of its one descriptor is for one waiter,
+  bool last_is_first = false;           // the one that came last
+  std::uint32_t watched_events = 0;     // of that descriptor
+  std::uint64_t wait_order = 0;         // of waiting for descriptors, over several attempts
+  Task* passed_over_for = nullptr;  // the thread that the last event was for, until it has tried
+  bool passes_on = false;           // it is such a thread for others
+  bool is_edge_armed = false;       // its descriptor tells of every further event,
+  bool skips_event = false;         // and the next one is of what is there
+  std::uint32_t wait_number = 0;    // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
@@ -137,6 +146,9 @@ struct Timer {
   std::int64_t overruns = 0;       // of that signal
   std::int64_t last_overruns = 0;  // of the one accepted before
   pid_t sent_to = 0;               // 0: the process
+  // Of a short interval: it has run out since its process last ran, and is not looked at meanwhile.
+  bool rests = false;
+  std::int64_t seen_ns = 0;  // when it was last looked at, on its clock
   void Accept();
 };
 
@@ -167,6 +179,7 @@ struct Process {
   std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
   std::int64_t expired_ns = shm::kNeverNs;      // the last one, while nobody has come to wait since
   bool has_cpu_timers = false;                  // some run on processor time
+  bool has_resting_timers = false;              // of a short interval
   std::int64_t next_timer_id = shm::kFirstTimerId;
   std::vector<TimerSignal> timer_signals;
   std::int64_t overruns = 0;  // periodic expiries that found nobody waiting

@@ -18,6 +18,8 @@ namespace {
 
 using shm::TimerClock;
 
+constexpr std::int64_t kLeastCpuNs = 1'000;
+
 // How often it has run out by `now`, on its clock; sets it to the next time.
 std::int64_t TakeExpirations(Timer& timer, std::int64_t now) {
   if (timer.next_ns == 0 || timer.next_ns > now) return 0;
@@ -55,6 +57,7 @@ void Engine::FindNextExpiry(Process& process) {
   for (const auto& [id, timer] : process.timers) {
     if (timer.next_ns == 0) continue;
     if (timer.kind.clock == TimerClock::kTime) {
+      if (timer.rests) continue;
       process.next_expiry_ns = std::min(process.next_expiry_ns, timer.next_ns - timer.frozen_ns);
     } else {
       process.has_cpu_timers = true;
@@ -70,12 +73,13 @@ std::int64_t Engine::CpuTimeToExpiry(const Task& task) const {
   for (const auto& [id, timer] : process.timers) {
     if (timer.next_ns == 0) continue;
     if (timer.kind.clock == TimerClock::kProcessCpu) {
-      left = std::min(left, timer.next_ns - ChargedTo(process));
+      left = std::min(left, CpuTimeLeft(timer, ChargedTo(process)));
     } else if (timer.kind.clock == TimerClock::kThreadCpu && timer.kind.clock_tid == task.tid) {
-      left = std::min(left, timer.next_ns - task.charged_ns);
+      left = std::min(left, CpuTimeLeft(timer, task.charged_ns));
     }
   }
-  return std::max<std::int64_t>(0, left);
+  // What has run out already is found when it has run.
+  return std::max(kLeastCpuNs, left);
 }
 
 void Engine::CreateTimer(Task& task, const shm::Notification& note) {
@@ -130,8 +134,18 @@ void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
   const auto found = process.timers.find(id);
   if (found == process.timers.end()) return;
   Timer& timer = found->second;
+  const bool accepts = note.kind == shm::NotificationKind::kTimerOverrun && note.args[1] != 0;
+  if (!accepts) BringUpToDate(task, id);
   if (note.kind == shm::NotificationKind::kTimerOverrun) {
-    if (note.args[1] != 0 && timer.queued) timer.Accept();
+    if (accepts && timer.queued) {
+      // What has run out by now is the accepted signal's.
+      if (timer.kind.clock == TimerClock::kTime) {
+        timer.overruns += TakeExpirations(timer, task.reached_ns + timer.frozen_ns);
+        timer.overruns = std::min<std::int64_t>(INT_MAX, timer.overruns);
+      }
+      timer.Accept();
+      FindNextExpiry(process);
+    }
     NoteAccepted(process);
     task.reply[0] = timer.last_overruns;
     return;
@@ -142,7 +156,7 @@ void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
   timer.next_ns = std::max<std::int64_t>(0, note.args[1]);
   timer.interval_ns = std::max<std::int64_t>(0, note.args[2]);
   timer.frozen_ns = process.frozen_ns;
-  timer.queued = false;
+  timer.queued = timer.rests = false;
   timer.overruns = timer.last_overruns = 0;
   FindNextExpiry(process);
   if (timer.event_fd >= 0) {
@@ -157,6 +171,11 @@ void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
 // POSIX: one signal of a timer is on its way at a time; what runs out meanwhile is its overruns.
 void Engine::SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::int64_t count) {
   if (timer.kind.is_posix == 0) {
+    // Such signals are not counted.
+    const bool is_underway = std::any_of(
+        process.timer_signals.begin(), process.timer_signals.end(),
+        [&](const TimerSignal& s) { return s.timer_id == 0 && s.number == timer.kind.signal; });
+    if (is_underway) return;
     process.timer_signals.push_back({.number = timer.kind.signal});
     return;
   }
@@ -183,6 +202,7 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
     const std::int64_t count = TakeExpirations(timer, now);
     if (count == 0) continue;
     process.shown_ns = std::max(process.shown_ns, now);
+    if (IsShort(timer)) Rest(process, timer, now);
     if (timer.interval_ns > 0) {
       const bool awaited = std::any_of(
           process.robot->tasks.begin(), process.robot->tasks.end(), [&](const Task* task) {
@@ -210,6 +230,7 @@ void Engine::ExpireCpuTimers(const Task& ran) {
         timer.kind.clock == TimerClock::kThreadCpu ? ran.charged_ns : ChargedTo(process);
     const std::int64_t count = TakeExpirations(timer, now);
     if (count == 0) continue;
+    timer.seen_ns = now;
     if (timer.event_fd >= 0) eventfd_write(timer.event_fd, static_cast<eventfd_t>(count));
     if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);
   }

@@ -47,6 +47,15 @@ void Engine::TrapArrived(int listener) {
   task->trap_id = 0;
 }
 
+// The last call of a thread, whichever way it ends: it has no destructors to run any more, and no
+// signals to handle.
+void Engine::ExitThread(Task& task, const TrappedCall& call) {
+  task.trap_id = 0;
+  EndTask(task);
+  WakeThoseWaitingFor(task);
+  ContinueTrapped(call.listener, call.id);
+}
+
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
 // has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
 // here.

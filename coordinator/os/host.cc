@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <linux/kcmp.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -149,14 +148,43 @@ std::optional<int> WaitStatusOf(pid_t child) {
   return W_EXITCODE(0, info.si_status) | (info.si_code == CLD_DUMPED ? WCOREFLAG : 0);
 }
 
-SignalSets ReadSignalSets(pid_t tid) {
-  char path[64], text[4096];
+namespace {
+
+// Of /proc/TID/status: null without it, else `text`.
+const char* ReadStatus(pid_t tid, char (&text)[4096]) {
+  char path[64];
   snprintf(path, sizeof path, "/proc/%d/status", tid);
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return {};
+  if (fd < 0) return nullptr;
   const ssize_t n = read(fd, text, sizeof text - 1);
   close(fd);
   text[std::max<ssize_t>(n, 0)] = '\0';
+  return text;
+}
+
+}  // namespace
+
+Credentials ReadCredentials(pid_t tid) {
+  Credentials credentials;
+  char buffer[4096];
+  const char* text = ReadStatus(tid, buffer);
+  if (text == nullptr) return credentials;
+  constexpr char kUids[] = "\nUid:", kCapabilities[] = "\nCapEff:";
+  if (const char* found = strstr(text, kUids); found != nullptr) {
+    char* next = nullptr;
+    credentials.real_uid = static_cast<uid_t>(strtoul(found + sizeof kUids - 1, &next, 10));
+    credentials.effective_uid = static_cast<uid_t>(strtoul(next, nullptr, 10));
+  }
+  if (const char* found = strstr(text, kCapabilities); found != nullptr) {
+    credentials.capabilities = strtoull(found + sizeof kCapabilities - 1, nullptr, 16);
+  }
+  return credentials;
+}
+
+SignalSets ReadSignalSets(pid_t tid) {
+  char buffer[4096];
+  const char* text = ReadStatus(tid, buffer);
+  if (text == nullptr) return {};
   const auto set = [&](const char* name) {
     const char* found = strstr(text, name);
     return found == nullptr ? 0 : strtoull(found + strlen(name), nullptr, 16);
@@ -220,11 +248,6 @@ int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 
 
 int DuplicateFd(int pidfd, int fd) {
   return static_cast<int>(syscall(SYS_pidfd_getfd, pidfd, fd, 0));
-}
-
-bool IsSameFile(int one, int other) {
-  const pid_t own = getpid();
-  return syscall(SYS_kcmp, own, own, KCMP_FILE, one, other) == 0;
 }
 
 std::vector<pid_t> ChildrenOf(pid_t pid) {

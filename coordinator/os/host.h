@@ -70,6 +70,13 @@ struct SignalSets {
 };
 SignalSets ReadSignalSets(pid_t tid);
 
+// As whom a thread acts, and which capabilities are in effect; bit 0 is capability 0.
+struct Credentials {
+  uid_t real_uid = 0, effective_uid = 0;
+  std::uint64_t capabilities = 0;
+};
+Credentials ReadCredentials(pid_t tid);
+
 // With what the kernel would put into the signal of a timer; to a process, or one of its threads.
 struct TimerSignalRequest {
   pid_t pid = 0, tid = 0;  // tid 0: to the process
@@ -90,9 +97,6 @@ pid_t ProcessOfThread(pid_t tid);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
-
-// True if two descriptors of this process are of one open file.
-bool IsSameFile(int one, int other);
 
 std::vector<pid_t> ChildrenOf(pid_t pid);
 

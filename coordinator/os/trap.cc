@@ -36,7 +36,10 @@ constexpr std::uint32_t kTrapped[] = {
     SYS_pidfd_send_signal,
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
-    SYS_sched_setaffinity, SYS_sched_getaffinity,
+    SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
+    SYS_sched_getattr, SYS_sched_rr_get_interval,
+    // The end of a thread.
+    SYS_exit,
     // Refused, so that programs take the calls that are known here.
     SYS_io_uring_setup,
     // Timers.

@@ -9,7 +9,7 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionSevenHasTheseSizesAndPlaces) {
+TEST(Layout, VersionTenHasTheseSizesAndPlaces) {
   EXPECT_EQ(kVersion, 10u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);

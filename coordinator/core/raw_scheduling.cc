@@ -1,0 +1,135 @@
+// Calls to the scheduler that are made without the C library: the robot's scheduler answers them,
+// with the errors of the kernel's.
+#include <errno.h>
+#include <linux/sched.h>
+#include <sched.h>
+#include <sys/syscall.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "coordinator/core/engine.h"
+
+namespace tcs {
+
+namespace {
+
+// The kernel's struct sched_attr in its first version; later ones have more behind.
+struct Attributes {
+  std::uint32_t size = 0, policy = 0;
+  std::uint64_t flags = 0;
+  std::int32_t nice = 0;
+  std::uint32_t priority = 0;
+  std::uint64_t runtime = 0, deadline = 0, period = 0;
+};
+constexpr std::uint32_t kPageSize = 4096, kFirstAttributes = 48, kWholeAttributes = 56;
+static_assert(sizeof(Attributes) == kFirstAttributes);
+
+template <class T>
+bool Read(const Task& task, std::uint64_t address, T* to) {
+  return ReadMemory(task.process->pid, address, to, sizeof *to);
+}
+
+template <class T>
+bool Write(const Task& task, std::uint64_t address, const T& value) {
+  return WriteMemory(task.process->pid, address, &value, sizeof value);
+}
+
+}  // namespace
+
+std::int64_t Engine::SetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
+  const bool keeps = call.number == SYS_sched_setparam;
+  sched_param param{};
+  if (!Read(task, call.args[keeps ? 1 : 2], &param)) return -EFAULT;
+  const std::int64_t policy = keeps ? shm::kKeepPolicy : static_cast<int>(call.args[1]);
+  return SetPriority(task, of, policy, param.sched_priority);
+}
+
+std::int64_t Engine::SetAttributesRaw(Task& task, Task& of, const TrappedCall& call) {
+  Attributes attributes;
+  if (!Read(task, call.args[1], &attributes.size)) return -EFAULT;
+  if (attributes.size == 0) attributes.size = kFirstAttributes;
+  if (attributes.size < kFirstAttributes || attributes.size > kPageSize) {
+    Write(task, call.args[1], kWholeAttributes);
+    return -E2BIG;
+  }
+  if (!Read(task, call.args[1], &attributes)) return -EFAULT;
+  if (static_cast<std::int32_t>(attributes.policy) < 0) return -EINVAL;
+  if ((attributes.flags & ~std::uint64_t{SCHED_FLAG_ALL}) != 0) return -EINVAL;
+  std::int64_t policy = attributes.policy;
+  if ((attributes.flags & SCHED_FLAG_RESET_ON_FORK) != 0) policy |= SCHED_RESET_ON_FORK;
+  if ((attributes.flags & SCHED_FLAG_KEEP_POLICY) != 0) policy = shm::kKeepPolicy;
+  std::int64_t priority = attributes.priority;
+  if ((attributes.flags & SCHED_FLAG_KEEP_PARAMS) != 0) priority = of.posix_priority;
+  // SCHED_DEADLINE, which robots have not got here, is refused like on a kernel without it.
+  return SetPriority(task, of, policy, priority);
+}
+
+std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedCall& call) {
+  const auto room = static_cast<std::uint32_t>(call.args[2]);
+  if (room > kPageSize || room < kFirstAttributes || call.args[3] != 0) return -EINVAL;
+  struct {
+    Attributes first;
+    std::uint32_t least = 0, most = 1024;  // of utilization, where nothing is clamped
+  } answer;
+  static_assert(sizeof answer == kWholeAttributes);
+  const std::uint32_t size = std::min(room, kWholeAttributes);
+  answer.first.size = size;
+  answer.first.policy = static_cast<std::uint32_t>(of.policy);
+  answer.first.flags = of.resets_on_fork ? SCHED_FLAG_RESET_ON_FORK : 0;
+  answer.first.priority = static_cast<std::uint32_t>(of.posix_priority);
+  return WriteMemory(task.process->pid, call.args[1], &answer, size) ? 0 : -EFAULT;
+}
+
+std::int64_t Engine::GetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
+  switch (call.number) {
+    case SYS_sched_getscheduler:
+      return PolicyOf(of);
+    case SYS_sched_getparam:
+      return Write(task, call.args[1], sched_param{of.posix_priority}) ? 0 : -EFAULT;
+    case SYS_sched_rr_get_interval: {
+      constexpr timespec kRoundRobin{0, 100'000'000};
+      return Write(task, call.args[1], of.policy == SCHED_RR ? kRoundRobin : timespec{}) ? 0
+                                                                                         : -EFAULT;
+    }
+    case SYS_sched_getattr:
+      return GetAttributesRaw(task, of, call);
+    default: {  // SYS_sched_getaffinity
+      const auto size = static_cast<std::uint32_t>(call.args[1]);
+      if (size < sizeof(std::uint64_t) || size % sizeof(std::uint64_t) != 0) return -EINVAL;
+      const std::uint64_t cores = AllowedCores(of);
+      return Write(task, call.args[2], cores) ? std::int64_t{sizeof cores} : -EFAULT;
+    }
+  }
+}
+
+std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
+  const auto tid = static_cast<pid_t>(call.args[0]);
+  const bool has_pointer =
+      call.number != SYS_sched_getscheduler && call.number != SYS_sched_setaffinity &&
+      call.number != SYS_sched_getaffinity && call.number != SYS_sched_rr_get_interval;
+  const std::uint64_t pointer = call.args[call.number == SYS_sched_setscheduler ? 2 : 1];
+  const bool is_of_affinity =
+      call.number == SYS_sched_setaffinity || call.number == SYS_sched_getaffinity;
+  if ((tid < 0 && !is_of_affinity) || (has_pointer && pointer == 0)) return -EINVAL;
+  if (call.number == SYS_sched_setscheduler && static_cast<int>(call.args[1]) < 0) return -EINVAL;
+  Task* of = tid == 0 ? &task : KnownTask(tid);
+  switch (call.number) {
+    case SYS_sched_setscheduler:
+    case SYS_sched_setparam:
+      return of == nullptr ? -ESRCH : SetSchedulingRaw(task, *of, call);
+    case SYS_sched_setattr:
+      if (call.args[2] != 0) return -EINVAL;
+      return of == nullptr ? -ESRCH : SetAttributesRaw(task, *of, call);
+    case SYS_sched_setaffinity: {
+      std::uint64_t cores = 0;
+      const std::size_t size = std::min<std::size_t>(call.args[1], sizeof cores);
+      if (!ReadMemory(task.process->pid, call.args[2], &cores, size)) return -EFAULT;
+      return of == nullptr ? -ESRCH : SetAffinity(task, *of, cores);
+    }
+    default:
+      return of == nullptr ? -ESRCH : GetSchedulingRaw(task, *of, call);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,22 @@
+// Who may ask the robot's scheduler for what: the kernel's rules (sched(7)), by the credentials and
+// resource limits that the program has in the kernel. The kernel's own check falls on nobody here,
+// for it never hears of these calls.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+
+namespace tcs {
+
+struct SchedulingParameters {
+  int policy = 0, priority = 0;  // POSIX
+  bool resets_on_fork = false;
+};
+
+// Threads by their kernel numbers. True for who has CAP_SYS_NICE.
+bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
+                      const SchedulingParameters& wanted);
+bool MaySetAffinity(pid_t asking, pid_t tid);
+
+}  // namespace tcs

@@ -1,0 +1,32 @@
+// Which open files are the same one, and what is in an epoll set: of this process's descriptors,
+// which may be copies of clients'. And what there is to know of the clients' own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tcs {
+
+// Descriptors of one open file, however they were copied. False where the kernel does not say.
+bool IsSameFile(int one, int other);
+
+struct EpollEntry {
+  int fd = -1;               // as it was when it was added, in the process that added it
+  std::uint32_t events = 0;  // EPOLL* bits
+};
+// Empty for what is no epoll set.
+std::vector<EpollEntry> EntriesOf(int epoll_fd);
+
+// Whether `fd` is the open file that the set's entry is about.
+bool IsAbout(int epoll_fd, const EpollEntry& entry, int fd);
+
+// Whether the process's descriptor is an epoll set.
+bool IsEpollSet(pid_t pid, int fd);
+
+// How large the process's table of descriptors is.
+std::size_t RoomForDescriptors(pid_t pid);
+
+}  // namespace tcs

@@ -1,0 +1,123 @@
+#include "libtcs_preload/select_sets.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/time.h>
+
+#include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/user_memory.h"
+
+namespace tcs::preload {
+
+namespace {
+
+// How many descriptors the kernel has room for in this process's table: of larger sets it looks at
+// no more, and touches no more of the program's memory.
+std::size_t RoomForDescriptors() {
+  constexpr char kLine[] = "\nFDSize:";
+  const long file =
+      RawSyscall(SYS_openat, AT_FDCWD, Arg("/proc/thread-self/status"), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return FD_SETSIZE;
+  char text[1024];
+  const long size = RawSyscall(SYS_read, file, Arg(text), sizeof text - 1);
+  RawSyscall(SYS_close, file);
+  text[size > 0 ? size : 0] = '\0';
+  const char* c = strstr(text, kLine);
+  if (c == nullptr) return FD_SETSIZE;
+  c += sizeof kLine - 1;
+  while (*c == '\t' || *c == ' ') ++c;
+  std::size_t room = 0;
+  for (; *c >= '0' && *c <= '9'; ++c) room = room * 10 + static_cast<std::size_t>(*c - '0');
+  return room;
+}
+
+}  // namespace
+
+SelectSets::SelectSets(int count, fd_set* read, fd_set* write, fd_set* except)
+    : user_{read, write, except}, count_(count < 0 ? 0 : static_cast<std::size_t>(count)) {
+  if (count < 0) {
+    error_ = EINVAL;
+    return;
+  }
+  if (count_ > kOrdinary) {
+    const std::size_t room = RoomForDescriptors();
+    if (count_ > room) count_ = room;
+  }
+  words_ = (count_ + kWordBits - 1) / kWordBits;
+  if (!MakeRoom()) {
+    error_ = ENOMEM;
+    return;
+  }
+  const std::size_t size = words_ * sizeof(std::uint64_t);
+  for (int set = 0; set < kSets; ++set) {
+    if (user_[set] == nullptr) continue;
+    if (!CanRead(user_[set], size)) error_ = EFAULT;
+    if (error_ == 0) memcpy(Set(wanted_, set), user_[set], size);
+  }
+}
+
+SelectSets::~SelectSets() {
+  if (mapped_ != nullptr) {
+    RawSyscall(SYS_munmap, Arg(mapped_), static_cast<long>(mapped_size_));
+  }
+}
+
+bool SelectSets::MakeRoom() {
+  wanted_ = ordinary_sets_;
+  fds_ = ordinary_fds_;
+  const std::size_t sets = 2 * kSets * words_ * sizeof(std::uint64_t);
+  if (count_ > kOrdinary) {
+    mapped_size_ = sets + count_ * sizeof(pollfd);
+    const long made = RawSyscall(SYS_mmap, 0, static_cast<long>(mapped_size_),
+                                 PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (made < 0 && made > -4096) return false;
+    mapped_ = reinterpret_cast<void*>(made);
+    wanted_ = static_cast<std::uint64_t*>(mapped_);
+    fds_ = reinterpret_cast<pollfd*>(static_cast<char*>(mapped_) + sets);
+  }
+  found_ = wanted_ + kSets * words_;
+  return true;
+}
+
+bool SelectSets::Wants(int set, std::size_t fd) const {
+  return user_[set] != nullptr && (Set(wanted_, set)[fd / kWordBits] >> (fd % kWordBits) & 1) != 0;
+}
+
+long SelectSets::Probe() {
+  long sets[kSets];
+  for (int set = 0; set < kSets; ++set) {
+    std::uint64_t* copy = Set(found_, set);
+    sets[set] = user_[set] == nullptr ? 0 : Arg(copy);
+    if (user_[set] != nullptr) {
+      memcpy(copy, Set(wanted_, set), words_ * sizeof(std::uint64_t));
+    }
+  }
+  timeval now{};
+  return RawSyscall(SYS_select, static_cast<long>(count_), sets[0], sets[1], sets[2], Arg(&now));
+}
+
+const pollfd* SelectSets::Wanted(unsigned long* count) {
+  *count = 0;
+  for (std::size_t fd = 0; fd < count_; ++fd) {
+    short events = 0;
+    if (Wants(0, fd)) events |= POLLIN;
+    if (Wants(1, fd)) events |= POLLOUT;
+    if (Wants(2, fd)) events |= POLLPRI;
+    if (events != 0) fds_[(*count)++] = pollfd{static_cast<int>(fd), events, 0};
+  }
+  return fds_;
+}
+
+int SelectSets::PutBack() {
+  const std::size_t size = words_ * sizeof(std::uint64_t);
+  for (int set = 0; set < kSets; ++set) {
+    if (user_[set] == nullptr) continue;
+    if (!CanOverwrite(user_[set], size)) return EFAULT;
+    memcpy(user_[set], Set(found_, set), size);
+  }
+  return 0;
+}
+
+}  // namespace tcs::preload

@@ -1,0 +1,53 @@
+// The three sets of select(2), however many descriptors they hold, for a call that looks at them
+// more than once: the kernel works on a copy, and the program's own change when the call is over.
+#pragma once
+
+#include <poll.h>
+#include <sys/select.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tcs::preload {
+
+class SelectSets {
+ public:
+  // Copies the sets' first `count` descriptors, or as many as the process can have. error() is then
+  // 0, or what select says of it.
+  SelectSets(int count, fd_set* read, fd_set* write, fd_set* except);
+  ~SelectSets();
+  SelectSets(const SelectSets&) = delete;
+  SelectSets& operator=(const SelectSets&) = delete;
+  int error() const { return error_; }
+
+  // What select finds at once, as the kernel returns it.
+  long Probe();
+
+  // The descriptors of all three, as poll takes them. Valid while this object lives.
+  const pollfd* Wanted(unsigned long* count);
+
+  // Shows the program what the last probe found; an error, or 0.
+  int PutBack();
+
+ private:
+  static constexpr int kSets = 3;
+  static constexpr std::size_t kWordBits = 64;
+  // Of the size that fd_set has: what they need is on the stack.
+  static constexpr std::size_t kOrdinary = FD_SETSIZE;
+
+  bool MakeRoom();
+  std::uint64_t* Set(std::uint64_t* sets, int set) const { return sets + set * words_; }
+  bool Wants(int set, std::size_t fd) const;
+
+  fd_set* const user_[kSets];
+  std::size_t count_, words_ = 0;
+  int error_ = 0;
+  std::uint64_t *wanted_ = nullptr, *found_ = nullptr;
+  pollfd* fds_ = nullptr;
+  void* mapped_ = nullptr;
+  std::size_t mapped_size_ = 0;
+  std::uint64_t ordinary_sets_[2 * kSets * kOrdinary / kWordBits];
+  pollfd ordinary_fds_[kOrdinary];
+};
+
+}  // namespace tcs::preload
