@@ -85,9 +85,10 @@ void Engine::LetDie(const Process& process) {
   }
 }
 
-// The running thread may wait in the kernel for what another one had there when it was preempted: the
-// map of their process's memory, say. That one has to get on with it, and which one it is nobody can
-// see: so those that could run get the active level in turns, the process's own before others.
+// The running thread may wait in the kernel for what another one had there when it was preempted:
+// the map of their process's memory, say. That one has to get on with it, and which one it is
+// nobody can see: so those that could run get the active level in turns, the process's own before
+// others.
 void Engine::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : tasks_) {
@@ -251,11 +252,10 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     return task->state != TaskState::kWaiting || !task->waits_for_fds;
   });
   if (!awaiters.empty()) {
-    const bool beside =
-        running_ != nullptr &&
-        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-          return task->process->robot == running_->process->robot;
-        });
+    const bool beside = running_ != nullptr &&
+                        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+                          return task->process->robot == running_->process->robot;
+                        });
     const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
     WakeAwaiters(std::move(awaiters));
     event_ns_ = now_ns;

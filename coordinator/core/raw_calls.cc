@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "coordinator/core/borrowed.h"
+#include "coordinator/core/client_values.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -28,28 +29,8 @@ namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::size_t kMostPolled = 65'536, kSets = 3;
 constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
-
-std::int64_t ToNs(const timespec& t) {
-  constexpr std::int64_t kMostSeconds = shm::kNeverNs / kNsPerSecond / 4;
-  return std::min<std::int64_t>(t.tv_sec, kMostSeconds) * kNsPerSecond + t.tv_nsec;
-}
-
-bool IsValid(const timespec& t) {
-  return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
-}
-
-template <class T>
-bool Read(const Task& task, std::uint64_t address, T* to) {
-  return ReadMemory(task.process->pid, address, to, sizeof *to);
-}
-
-template <class T>
-bool Write(const Task& task, std::uint64_t address, const T& value) {
-  return WriteMemory(task.process->pid, address, &value, sizeof value);
-}
 
 bool IsRealtime(std::uint64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "coordinator/core/client_values.h"
 #include "coordinator/core/engine.h"
 
 namespace tcs {
@@ -24,16 +25,6 @@ struct Attributes {
 };
 constexpr std::uint32_t kPageSize = 4096, kFirstAttributes = 48, kWholeAttributes = 56;
 static_assert(sizeof(Attributes) == kFirstAttributes);
-
-template <class T>
-bool Read(const Task& task, std::uint64_t address, T* to) {
-  return ReadMemory(task.process->pid, address, to, sizeof *to);
-}
-
-template <class T>
-bool Write(const Task& task, std::uint64_t address, const T& value) {
-  return WriteMemory(task.process->pid, address, &value, sizeof value);
-}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "coordinator/core/borrowed.h"
+#include "coordinator/core/client_values.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -21,28 +22,7 @@ namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMostSeconds = 4'000'000'000;
 constexpr std::uint64_t kAbsolute = 1;  // TIMER_ABSTIME, TFD_TIMER_ABSTIME
-
-template <class T>
-bool Read(const Task& task, std::uint64_t address, T* to) {
-  return ReadMemory(task.process->pid, address, to, sizeof *to);
-}
-
-template <class T>
-bool Write(const Task& task, std::uint64_t address, const T& value) {
-  return WriteMemory(task.process->pid, address, &value, sizeof value);
-}
-
-std::int64_t ToNs(const timespec& t) {
-  return std::min<std::int64_t>(t.tv_sec, kMostSeconds) * kNsPerSecond + t.tv_nsec;
-}
-
-bool IsValid(const timespec& t) {
-  return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
-}
-
-timespec ToTimespec(std::int64_t ns) { return {ns / kNsPerSecond, ns % kNsPerSecond}; }
 
 timeval RoundUp(std::int64_t ns) {
   const std::int64_t us = (ns + 999) / 1000;
