@@ -2,7 +2,7 @@
 # package asks for more than its users need: look for the header and the library themselves.
 include(FindPackageHandleStandardArgs)
 
-find_path(OMPL_INCLUDE_DIR ompl/control/planners/sst/SST.h PATH_SUFFIXES ompl-1.5)
+find_path(OMPL_INCLUDE_DIR ompl/control/planners/sst/SST.h PATH_SUFFIXES ompl-1.6 ompl-1.5)
 find_library(OMPL_LIBRARY ompl)
 find_package(Boost QUIET)  # headers only, which OMPL's own headers include
 find_package_handle_standard_args(OMPL REQUIRED_VARS OMPL_LIBRARY OMPL_INCLUDE_DIR Boost_FOUND)
