@@ -29,6 +29,8 @@ bool AcceptWaits(int fd, int flags) {
   return (flags & ~(SOCK_CLOEXEC | SOCK_NONBLOCK)) == 0 && SocketOption(fd, SO_ACCEPTCONN, 0) != 0;
 }
 
+bool WantsMore(int fd) { return SocketOption(fd, SO_RCVLOWAT, 1) > 1; }
+
 bool ReceivesAtOnce(int fd, int flags) {
   if ((flags & MSG_DONTWAIT) != 0) return true;
   // The errors of a socket are there or not; but sockets of this family have none, and overlook it.

@@ -14,6 +14,10 @@ long ReadAtOnce(int fd, const iovec* iov, int count);
 // True if accept4 would wait for a connection.
 bool AcceptWaits(int fd, int flags);
 
+// The socket's reads wait for more than the first byte (SO_RCVLOWAT): what is there already is no
+// answer.
+bool WantsMore(int fd);
+
 // True if a call with such flags never waits for data.
 bool ReceivesAtOnce(int fd, int flags);
 

@@ -62,12 +62,16 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, AtOnce at_once, Call call)
     HoldForReadFrom(*t, fd, socket);
     return take();
   }
-  if (!PollNow(fd, POLLIN)) {
-    if (const long answer = at_once(); answer != -EAGAIN) return ToErrno(answer);
+  bool ready = PollNow(fd, POLLIN);
+  std::int64_t deadline = tcs::shm::kNeverNs;
+  if (!ready) {
+    if (!any_socket || !WantsMore(fd)) {
+      if (const long answer = at_once(); answer != -EAGAIN) return ToErrno(answer);
+    }
+    if (socket) deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
   }
-  const std::int64_t deadline = socket ? SocketDeadline(*t, fd, SO_RCVTIMEO) : tcs::shm::kNeverNs;
-  for (;;) {
-    const FdState state = AwaitFd(*t, fd, POLLIN, deadline);
+  for (;; ready = false) {
+    const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline);
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
@@ -147,7 +151,8 @@ template <class Whole>
 ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   GuestThread* t = Enter();
   if (t == nullptr) return ToErrno(whole());
-  msghdr message = *given;
+  msghdr message{};
+  if (!CopyIn(&message, given)) return ToErrno(whole());
   HoldForRead(*t);
   Rest rest(message.msg_iov, message.msg_iovlen);
   msghdr part_of = message;
@@ -161,6 +166,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
         const long got =
             RawSyscall(SYS_recvmsg, fd, Arg(&part_of), (flags & ~MSG_WAITALL) | MSG_DONTWAIT);
         if (got >= 0 && first) {
+          ReplaceStamps(&part_of);
           message.msg_namelen = part_of.msg_namelen;
           message.msg_controllen = part_of.msg_controllen;
           message.msg_flags = part_of.msg_flags;
@@ -247,6 +253,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
         ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags, Arg(timeout))));
   }
   auto at_once = [&] {
+    AcknowledgeAtOnce(fd);
     const long got = RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags | MSG_DONTWAIT, 0);
     for (long i = 0; i < got; ++i) ReplaceStamps(&messages[i].msg_hdr);
     return got;
@@ -256,7 +263,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (!IsValid(limit)) return Fail(EINVAL);
   FdState state = FdState::kReady;
   if (!ReceivesAtOnce(fd, flags)) {
-    if (!PollNow(fd, POLLIN)) {
+    if (!PollNow(fd, POLLIN) && !WantsMore(fd)) {
       if (const long answer = at_once(); answer != -EAGAIN) {
         return static_cast<int>(ToErrno(answer));
       }
@@ -289,12 +296,13 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 }
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
-  if (FindTimerFd(fd) != nullptr) return Fail(EINVAL);  // it is another kind of descriptor beneath
+  if (IsTimerFd(fd)) return Fail(EINVAL);  // it is another kind of descriptor beneath
   const iovec iov{const_cast<void*>(buffer), size};
   return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
 
 TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
+  if (IsTimerFd(fd)) return Fail(EINVAL);
   return WriteAll(fd, iov, static_cast<std::size_t>(count),
                   [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
 }

@@ -2,6 +2,7 @@
 // other files are opened by the kernel, at no cost but a look at what they are.
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,7 +33,7 @@ bool WaitsForOtherEnd(int flags) {
 
 // Makes `call`, which opens `path` so.
 template <class Call>
-auto Opening(int folder, const char* path, int flags, Call call) {
+auto Opening(int folder, const char* path, int flags, bool cancellable, Call call) {
   GuestThread* t = Current();
   if (t == nullptr || IsShutDown() || path == nullptr) return call();
   const bool waits = WaitsForOtherEnd(flags);
@@ -42,15 +43,19 @@ auto Opening(int folder, const char* path, int flags, Call call) {
   HoldForRead(*t);
   HoldForWrite(*t);
   if (waits) Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kKernelWait});
+  int before = 0;
+  if (waits && cancellable) pthread_setcanceltype(PTHREAD_CANCEL_ASYNCHRONOUS, &before);
   const auto result = call();
   const int saved = errno;
+  if (waits && cancellable) pthread_setcanceltype(before, nullptr);
   TellKernelWaiters(*t);
   errno = saved;
   return result;
 }
 
 int OpenAt(int folder, const char* path, int flags, mode_t mode) {
-  return static_cast<int>(ToErrno(Opening(folder, path, flags, [&] {
+  if (Current() != nullptr) pthread_testcancel();
+  return static_cast<int>(ToErrno(Opening(folder, path, flags, true, [&] {
     return RawSyscall(SYS_openat, folder, Arg(path), flags, static_cast<long>(mode));
   })));
 }
@@ -109,19 +114,20 @@ TCS_EXPORT int creat(const char* path, mode_t mode) {
 TCS_EXPORT int creat64(const char* path, mode_t mode) { return creat(path, mode); }
 
 TCS_EXPORT FILE* fopen(const char* path, const char* mode) {
-  return Opening(AT_FDCWD, path, FlagsOf(mode), [&] { return TCS_REAL(fopen)(path, mode); });
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false, [&] { return TCS_REAL(fopen)(path, mode); });
 }
 
 TCS_EXPORT FILE* fopen64(const char* path, const char* mode) {
-  return Opening(AT_FDCWD, path, FlagsOf(mode), [&] { return TCS_REAL(fopen64)(path, mode); });
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
+                 [&] { return TCS_REAL(fopen64)(path, mode); });
 }
 
 TCS_EXPORT FILE* freopen(const char* path, const char* mode, FILE* stream) {
-  return Opening(AT_FDCWD, path, FlagsOf(mode),
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
                  [&] { return TCS_REAL(freopen)(path, mode, stream); });
 }
 
 TCS_EXPORT FILE* freopen64(const char* path, const char* mode, FILE* stream) {
-  return Opening(AT_FDCWD, path, FlagsOf(mode),
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
                  [&] { return TCS_REAL(freopen64)(path, mode, stream); });
 }

@@ -78,7 +78,8 @@ TCS_EXPORT int getentropy(void* buffer, std::size_t size) {
 TCS_EXPORT void arc4random_buf(void* buffer, std::size_t size) noexcept {
   auto* out = static_cast<char*>(buffer);
   while (size > 0) {
-    const ssize_t n = getrandom(out, size < 256 ? size : 256, 0);
+    const long n = GetRandom(out, size < 256 ? size : 256, 0);
+    if (n == -EFAULT) __builtin_trap();  // as the C library's: there is no such memory
     if (n <= 0) continue;
     out += n;
     size -= static_cast<std::size_t>(n);

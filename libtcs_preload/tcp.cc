@@ -57,7 +57,10 @@ void SendAtOnce(int fd) { Set(fd, IPPROTO_TCP, TCP_NODELAY, 1); }
 
 void AcknowledgeAtOnce(int fd) { Set(fd, IPPROTO_TCP, TCP_QUICKACK, 1); }
 
-bool IsTcp(int fd) { return Get(fd, SOL_SOCKET, SO_PROTOCOL) == IPPROTO_TCP; }
+bool IsTcp(int fd) {
+  const int protocol = Get(fd, SOL_SOCKET, SO_PROTOCOL);
+  return protocol == IPPROTO_TCP || protocol == IPPROTO_MPTCP;
+}
 
 }  // namespace tcs::preload
 

@@ -134,7 +134,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
 
 TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itimerspec* old) {
   GuestThread* t = Enter();
-  TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
+  const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_timerfd_settime, fd, flags, Arg(given), Arg(old), 0, kTrapped)));
@@ -152,7 +152,7 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itime
     if (first <= 0) first = 1;  // long past, but armed
   }
   const std::int64_t interval = ToNs(value.it_interval);
-  timer->is_short = interval > 0 && interval < tcs::shm::kShortIntervalNs;
+  NoteShortTimer(timer->id, interval > 0 && interval < tcs::shm::kShortIntervalNs);
   const TimerValue before = Ask(*t, NotificationKind::kTimerSet, timer->id, first, interval);
   if (old == nullptr) return 0;
   return CopyOut(old, ToSpec<itimerspec>(before, now, ToTimespec)) ? 0 : Fail(EFAULT);

@@ -1,5 +1,9 @@
 #include "libtcs_preload/timer_fds.h"
 
+#include <sys/stat.h>
+
+#include "libtcs_preload/raw_syscall.h"
+
 namespace tcs::preload {
 
 namespace {
@@ -34,6 +38,22 @@ bool RememberTimerFd(int fd, std::int64_t id, Clock clock) {
 }
 
 TimerFd* FindTimerFd(int fd) { return Find(fd); }
+
+bool IsTimerFd(int fd) {
+  TimerFd* timer = Find(fd);
+  if (timer == nullptr) return false;
+  // What has no file has no type of file.
+  struct stat status;
+  if (RawSyscall(SYS_fstat, fd, Arg(&status)) == 0 && (status.st_mode & S_IFMT) == 0) return true;
+  timer->fd = -1;
+  return false;
+}
+
+void NoteShortTimer(std::int64_t id, bool is_short) {
+  for (int i = 0; i < g_used; ++i) {
+    if (g_timers[i].fd >= 0 && g_timers[i].id == id) g_timers[i].is_short = is_short;
+  }
+}
 
 void CopyTimerFd(int fd, int copy) {
   if (const TimerFd* timer = Find(fd); timer != nullptr) {

@@ -18,6 +18,12 @@ struct TimerFd {
 bool RememberTimerFd(int fd, std::int64_t id, Clock clock);
 TimerFd* FindTimerFd(int fd);
 
+// The same, sure: not so where it was closed behind our back, and its number is another's now.
+bool IsTimerFd(int fd);
+
+// The timer's interval is one, or is none any more.
+void NoteShortTimer(std::int64_t id, bool is_short);
+
 // `copy` is now another descriptor for the same timer.
 void CopyTimerFd(int fd, int copy);
 

@@ -255,6 +255,7 @@ void Engine::LeaveWait(Task& task) {
   }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
+  task.requeue_to.reset();
   task.deadline_ns = shm::kNeverNs;
   LeaveLock(task);
 }
@@ -274,6 +275,9 @@ void Engine::EndTask(Task& task) {
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
+  for (VirtualCpu* cpu : process.robot->cpus) {
+    if (cpu->computes == task.order) cpu->computes = FixedPriority::kNobody;
+  }
   PassOn(task);
   LeaveWait(task);
   SetState(task, TaskState::kDead);
@@ -304,7 +308,7 @@ void Engine::ProcessEnded(std::size_t index) {
     WakeThoseWaitingFor(*task);
   }
   for (auto& [id, timer] : process.timers) {
-    if (timer.event_fd >= 0) close(timer.event_fd);
+    if (timer.event_fd >= 0) close(std::exchange(timer.event_fd, -1));
   }
   epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
   close(process.pidfd);

@@ -390,6 +390,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   Beat();
   running_ = &task;
   trapped_.reset();
+  const bool looks_again = task.brief_done;
+  task.is_brief = task.follow_up != FollowUp::kNone && !looks_again;
+  // How far it comes in so short a time is the host's: under set costs no further than the call.
+  if (task.is_brief && IsFixed()) horizon_ns = task.cpu->progress_ns;
   running_horizon_ns_ = horizon_ns;
   notified_ = preempted_ = false;
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
@@ -398,8 +402,6 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     HandMessagesOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
-  const bool looks_again = task.brief_done;
-  task.is_brief = task.follow_up != FollowUp::kNone && !looks_again;
   if (task.trap_id != 0) task.brief_id = task.trap_id;
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
   const std::int64_t call_ns = task.cpu->progress_ns;
@@ -422,7 +424,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   ExpireCpuTimers(task);
   if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns, looks_again);
-  if (task.process->has_resting_timers) EndRests(*task.process);
+  if (task.process->has_resting_timers) EndRests(*task.process, event_ns_);
   if (notified_ || trapped_.has_value()) PassOn(task);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.

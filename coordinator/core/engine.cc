@@ -390,7 +390,9 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   const std::size_t sharing = robot.ready.CountOf(priority);
   horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
-  cpu.computes = FixedPriority::kNobody;
+  for (VirtualCpu* core : robot.cpus) {
+    if (core == &cpu || core->computes == task.order) core->computes = FixedPriority::kNobody;
+  }
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
     cpu.computes = task.order;

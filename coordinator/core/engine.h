@@ -289,8 +289,8 @@ class Engine {
   // Those of short intervals (short_timers.cc).
   static bool IsShort(const Timer& timer);
   static void Rest(Process& process, Timer& timer, std::int64_t now_ns);
-  static void EndRests(Process& process);
-  void BringUpToDate(Task& asking, std::int64_t id);
+  static void EndRests(Process& process, std::int64_t now_ns);
+  void BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
   static std::int64_t NextLook(const Process& process);
   static std::int64_t CpuTimeLeft(const Timer& timer, std::int64_t used_ns);
 

@@ -23,6 +23,7 @@ namespace {
 constexpr int kEventsAtOnce = 64;
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
+constexpr std::int64_t kLentTurnNs = 20'000;  // where another one has its level
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
 // So long the threads of a process that ends as a whole have to be gone, too.
@@ -87,13 +88,14 @@ void Engine::LetDie(const Process& process) {
 
 // The running thread may wait in the kernel for what another one had there when it was preempted:
 // the map of their process's memory, say. That one has to get on with it, and which one it is
-// nobody can see: so those that could run get the active level in turns, the process's own before
-// others.
+// nobody can see: so those that were preempted in the kernel get the active level in turns, the
+// process's own before others.
 void Engine::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : tasks_) {
     if (&task == running_ || task.parked || task.state == TaskState::kDead) continue;
     if (task.level != Level::kWaiting || ThreadState(task.tid) != 'R') continue;
+    if (IsInUserMode(task.tid)) continue;
     (task.process == running_->process ? own : others).push_back(&task);
   }
   const std::vector<Task*>& able = own.empty() ? others : own;
@@ -151,7 +153,8 @@ bool Engine::BlockedInKernel() {
 
 bool Engine::PollEvents(std::int64_t timeout_ns) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
-  if (held && timeout_ns > kHeldTurnNs) timeout_ns = kHeldTurnNs;
+  const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
+  if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   epoll_event events[kEventsAtOnce];
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
   const int n =
@@ -252,7 +255,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     return task->state != TaskState::kWaiting || !task->waits_for_fds;
   });
   if (!awaiters.empty()) {
-    const bool beside = running_ != nullptr &&
+    const bool beside = running_ != nullptr && running_->slot >= 0 &&
                         std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
                           return task->process->robot == running_->process->robot;
                         });

@@ -82,7 +82,9 @@ void Engine::WakeAwaiters(std::vector<Task*> awaiters) {
       PassOver(*task, **first);
     }
   }
-  for (Task* task : woken) MakeReady(*task, shm::WakeReason::kGo);
+  for (Task* task : woken) {
+    if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kGo);
+  }
 }
 
 void Engine::PassOver(Task& task, Task& first) {

@@ -89,7 +89,10 @@ std::int64_t Engine::CreateTimerFdRaw(Task& task, const TrappedCall& call) {
   timer.kind.clock_tid = IsRealtime(clock) ? 1 : 0;
   timer.event_fd = eventfd(0, EFD_CLOEXEC | (flags & TFD_NONBLOCK));
   if (timer.event_fd < 0) return -errno;
+  // We wait until the thread has taken it, and nobody may keep it from that.
+  SetLevel(task.tid, Level::kActive);
   const int fd = GiveDescriptor(call.listener, call.id, timer.event_fd, (flags & TFD_CLOEXEC) != 0);
+  SetLevel(task.tid, task.level);
   if (fd < 0) {
     const int error = errno;
     close(timer.event_fd);
@@ -104,6 +107,7 @@ Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
   const Borrowed fd(task, number);
   if (fd.fd() < 0) return {};
   for (Process& process : processes_) {
+    if (process.dead) continue;
     for (auto& [id, timer] : process.timers) {
       if (timer.event_fd >= 0 && IsSameFile(timer.event_fd, fd.fd())) return {&process, id};
     }

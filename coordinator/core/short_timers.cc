@@ -27,23 +27,28 @@ void Engine::Rest(Process& process, Timer& timer, std::int64_t now_ns) {
 }
 
 // A thread of the process has run: it may have read the timer, or handled its signal.
-void Engine::EndRests(Process& process) {
+void Engine::EndRests(Process& process, std::int64_t now_ns) {
   process.has_resting_timers = false;
   for (auto& [id, timer] : process.timers) timer.rests = false;
   FindNextExpiry(process);
+  // What has run out meanwhile is made up now, and not on a core that is still behind.
+  if (process.next_expiry_ns != shm::kNeverNs) {
+    process.next_expiry_ns = std::max(process.next_expiry_ns, now_ns);
+  }
 }
 
 // What has run out by the time of the call is there when it returns.
-void Engine::BringUpToDate(Task& asking, std::int64_t id) {
-  Process& process = *asking.process;
-  const Timer& timer = process.timers[id];
+void Engine::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
+  const auto found = owner.timers.find(id);
+  if (found == owner.timers.end()) return;
+  const Timer& timer = found->second;
   const std::int64_t now = asking.reached_ns;
   if (!IsShort(timer) || timer.kind.clock != shm::TimerClock::kTime || timer.next_ns == 0 ||
       timer.next_ns - timer.frozen_ns > now) {
     return;
   }
-  const bool wrote = Expire(process, now);
-  if (!process.timer_signals.empty()) RouteTimerSignals(process);
+  const bool wrote = Expire(owner, now);
+  if (!owner.timer_signals.empty()) RouteTimerSignals(owner);
   if (wrote) PollEvents(0);
 }
 

@@ -135,7 +135,7 @@ void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
   if (found == process.timers.end()) return;
   Timer& timer = found->second;
   const bool accepts = note.kind == shm::NotificationKind::kTimerOverrun && note.args[1] != 0;
-  if (!accepts) BringUpToDate(task, id);
+  if (!accepts) BringUpToDate(process, task, id);
   if (note.kind == shm::NotificationKind::kTimerOverrun) {
     if (accepts && timer.queued) {
       // What has run out by now is the accepted signal's.

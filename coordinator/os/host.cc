@@ -129,6 +129,12 @@ ThreadStat ReadThreadStat(pid_t tid) {
 
 char ThreadState(pid_t tid) { return ReadThreadStat(tid).state; }
 
+bool IsInUserMode(pid_t tid) {
+  std::ifstream stack("/proc/" + std::to_string(tid) + "/stack");
+  std::string innermost;
+  return std::getline(stack, innermost) && innermost.find("exit_to_user_mode") != std::string::npos;
+}
+
 pid_t ParentOf(pid_t pid) { return ReadThreadStat(pid).parent; }
 
 bool IsDying(pid_t tid) {

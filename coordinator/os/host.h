@@ -54,6 +54,10 @@ std::int64_t ReadThreadCpuClock(int fd);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
+// True if the thread, which does not run, was preempted in its program and not in the kernel. False
+// also where the kernel does not tell.
+bool IsInUserMode(pid_t tid);
+
 // -1 if the process has ended.
 pid_t ParentOf(pid_t pid);
 
