@@ -276,6 +276,9 @@ void Engine::Settle(Task& task) {
   }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
+  // Should it run on undispatched, while the kernel holds the one whose turn it is, it must not
+  // find itself later than where it has been stopped: it comes to its gate instead.
+  page.horizon_ns = progress + frozen;
   if (!notified_ && !trapped_.has_value()) {
     task.cpu->computes = task.order;
     task.cpu->computes_since_ns = std::max(start, shown);

@@ -193,12 +193,14 @@ std::int64_t Engine::EarliestWake() const {
   return earliest;
 }
 
-// How far back the core could have been stopped instead of where it was.
+// How far back the core could have been stopped instead of where it was: not before what others
+// have been promised.
 std::int64_t Engine::CanTakeBackTo(const VirtualCpu& cpu) const {
   const FixedPriority::Thread next = cpu.robot->ready.Next(cpu.core).thread;
   const bool computes = next != FixedPriority::kNobody && next == cpu.computes &&
                         tasks_[static_cast<std::size_t>(next)].reached_ns == cpu.progress_ns;
-  return computes ? std::min(cpu.computes_since_ns, cpu.progress_ns) : cpu.progress_ns;
+  if (!computes) return cpu.progress_ns;
+  return std::min(std::max(cpu.computes_since_ns, root_.Least()), cpu.progress_ns);
 }
 
 // What its thread has computed beyond is a debt, as if it had been stopped late.
@@ -230,7 +232,11 @@ void Engine::ReceiveAt(const Task& woken, std::int64_t sent_ns, bool goes_first)
   }
   if (best == nullptr) return;
   if (start < best->progress_ns) TakeBack(*best, start);
-  report_.lateness_ns = std::max(report_.lateness_ns, start - sent_ns);
+  // One that goes first only since its equals have run on had its turn to wait for.
+  const std::int64_t late_ns = start - sent_ns;
+  if (robot.ready.YieldsTo(best->core, woken.priority, false) || GoesFirst(woken, -late_ns)) {
+    report_.lateness_ns = std::max(report_.lateness_ns, late_ns);
+  }
 }
 
 bool Engine::IsSafe(const Task& task) const {
