@@ -33,7 +33,7 @@ std::string ReadFile(const char* path) {
 int TryRealTime() {
   const pid_t child = fork();
   if (child == 0) {
-    const sched_param param{static_cast<int>(Level::kCoordinator)};
+    const sched_param param{static_cast<int>(Level::kKernelOnly)};
     _exit(sched_setscheduler(0, SCHED_FIFO, &param) == 0 ? 0 : errno);
   }
   int status = 0;

@@ -46,9 +46,14 @@ std::uint64_t CalibrateTsc() {
 namespace {
 
 std::string TakeCoordinatorLevel() {
-  const sched_param param{static_cast<int>(Level::kCoordinator)};
-  if (sched_setscheduler(0, SCHED_FIFO, &param) == 0) return {};
-  return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 13 "
+  // The highest of the levels is one that clients get.
+  const sched_param highest{static_cast<int>(Level::kKernelOnly)};
+  const sched_param own{static_cast<int>(Level::kCoordinator)};
+  if (sched_setscheduler(0, SCHED_FIFO, &highest) == 0 &&
+      sched_setscheduler(0, SCHED_FIFO, &own) == 0) {
+    return {};
+  }
+  return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 14 "
          "(ulimit -r, or rtprio in /etc/security/limits.conf); `tcsim doctor` shows the details";
 }
 
