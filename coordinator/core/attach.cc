@@ -275,9 +275,6 @@ void Engine::EndTask(Task& task) {
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
-  for (VirtualCpu* cpu : process.robot->cpus) {
-    if (cpu->computes == task.order) cpu->computes = FixedPriority::kNobody;
-  }
   PassOn(task);
   LeaveWait(task);
   SetState(task, TaskState::kDead);

@@ -233,7 +233,7 @@ void Engine::ShowDeliverersTheirDeadlines() {
     const std::int64_t due = hub_.DueNs(process->dds_number);
     if (std::exchange(deliverer->deadline_ns, due) == due) continue;
     const bool inside = running_ != nullptr && running_->process->robot == process->robot;
-    if (due != shm::kNeverNs && !inside) ReceiveAt(*deliverer, due, GoesFirst(*deliverer, 0));
+    if (due != shm::kNeverNs && !inside) NoteLateness(*deliverer, due, GoesFirst(*deliverer, 0));
     Refresh(*process->robot);
   }
 }

@@ -279,10 +279,6 @@ void Engine::Settle(Task& task) {
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it must not
   // find itself later than where it has been stopped: it comes to its gate instead.
   page.horizon_ns = progress + frozen;
-  if (!notified_ && !trapped_.has_value()) {
-    task.cpu->computes = task.order;
-    task.cpu->computes_since_ns = std::max(start, shown);
-  }
   if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on

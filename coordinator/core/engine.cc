@@ -162,7 +162,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason) {
   const bool outside =
       from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
   const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
-  if (outside && reads && !task.waits_for_messages) ReceiveAt(task, event_ns_, goes_first);
+  if (outside && reads && !task.waits_for_messages) NoteLateness(task, event_ns_, goes_first);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason);
@@ -193,45 +193,22 @@ std::int64_t Engine::EarliestWake() const {
   return earliest;
 }
 
-// How far back the core could have been stopped instead of where it was: not before what others
-// have been promised.
-std::int64_t Engine::CanTakeBackTo(const VirtualCpu& cpu) const {
-  const FixedPriority::Thread next = cpu.robot->ready.Next(cpu.core).thread;
-  const bool computes = next != FixedPriority::kNobody && next == cpu.computes &&
-                        tasks_[static_cast<std::size_t>(next)].reached_ns == cpu.progress_ns;
-  if (!computes) return cpu.progress_ns;
-  return std::min(std::max(cpu.computes_since_ns, root_.Least()), cpu.progress_ns);
-}
-
-// What its thread has computed beyond is a debt, as if it had been stopped late.
-void Engine::TakeBack(VirtualCpu& cpu, std::int64_t to_ns) {
-  Task& task = tasks_[static_cast<std::size_t>(cpu.computes)];
-  const std::int64_t beyond_ns = cpu.progress_ns - to_ns;
-  task.debt_ns += beyond_ns;
-  task.turn_ns -= beyond_ns;
-  ShareOut(task, -beyond_ns, task.priority, cpu.robot->ready.CountOf(task.priority));
-  cpu.progress_ns = task.reached_ns = to_ns;
-  Requeue(task);
-  Refresh(*cpu.robot);
-}
-
 // What was sent at `sent_ns` wakes a thread. The core that it runs on at once may have come
 // further.
-void Engine::ReceiveAt(const Task& woken, std::int64_t sent_ns, bool goes_first) {
+void Engine::NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first) {
   if (IsCallback()) return;
   sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
   const Robot& robot = *woken.process->robot;
-  VirtualCpu* best = nullptr;
+  const VirtualCpu* best = nullptr;
   std::int64_t start = shm::kNeverNs;
-  for (VirtualCpu* cpu : robot.cpus) {
+  for (const VirtualCpu* cpu : robot.cpus) {
     if ((AllowedCores(woken) >> (cpu->core & 63) & 1) == 0) continue;
     if (!robot.ready.YieldsTo(cpu->core, woken.priority, goes_first)) continue;
-    const std::int64_t its = std::max({CanTakeBackTo(*cpu), sent_ns, EarliestWake()});
+    const std::int64_t its = std::max({cpu->progress_ns, sent_ns, EarliestWake()});
     if (its < start) best = cpu;
     start = std::min(start, its);
   }
   if (best == nullptr) return;
-  if (start < best->progress_ns) TakeBack(*best, start);
   // One that goes first only since its equals have run on had its turn to wait for.
   const std::int64_t late_ns = start - sent_ns;
   if (robot.ready.YieldsTo(best->core, woken.priority, false) || GoesFirst(woken, -late_ns)) {
@@ -396,13 +373,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   const std::size_t sharing = robot.ready.CountOf(priority);
   horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
-  for (VirtualCpu* core : robot.cpus) {
-    if (core == &cpu || core->computes == task.order) core->computes = FixedPriority::kNobody;
-  }
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
-    cpu.computes = task.order;
-    cpu.computes_since_ns = start;
   } else {
     Dispatch(task, horizon, idle_until);
     if (has_spinners_ && !task.spins) WakeSpinners();

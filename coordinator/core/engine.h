@@ -66,9 +66,7 @@ class Engine {
   std::int64_t PastInput(const VirtualCpu& cpu, std::int64_t input_ns) const;
   static bool AwaitsInput(const Task& task);
   std::int64_t EarliestWake() const;
-  void ReceiveAt(const Task& woken, std::int64_t sent_ns, bool goes_first);
-  void TakeBack(VirtualCpu& cpu, std::int64_t to_ns);
-  std::int64_t CanTakeBackTo(const VirtualCpu& cpu) const;
+  void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
   bool IsSafe(const Task& task) const;
   void PollUnseen();
   bool StrangersRun();

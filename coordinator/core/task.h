@@ -214,9 +214,6 @@ struct VirtualCpu {
   std::int64_t progress_ns = 0;
   TemporalConsistency::Leaf leaf = -1;
   FixedPriority::Thread turn_over = FixedPriority::kNobody;  // goes behind its equals
-  // Since then its last thread has only computed: nobody could tell if it had come less far.
-  FixedPriority::Thread computes = FixedPriority::kNobody;
-  std::int64_t computes_since_ns = 0;
 };
 
 struct Robot {
