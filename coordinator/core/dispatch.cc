@@ -276,9 +276,9 @@ void Engine::Settle(Task& task) {
   }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
-  // Should it run on undispatched, while the kernel holds the one whose turn it is, it must not
-  // find itself later than where it has been stopped: it comes to its gate instead.
-  page.horizon_ns = progress + frozen;
+  // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
+  // gate when it next looks at its clock: others may have gone on since.
+  page.horizon_ns = 0;
   if (IsRunnable(task)) Requeue(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
