@@ -27,6 +27,8 @@ constexpr double kMostSwitchNs = 20'000.0;
 constexpr std::int64_t kLeastSliceNs = 2'000;
 // Enough for the kernel to carry out a call that does not wait.
 constexpr std::int64_t kBriefNs = 20'000;
+// Where the kernel does not tell whether a thread is still in its call.
+constexpr int kMostBriefTurns = 100;
 // A timer due before the kernel's next tick is programmed into the hardware when it is set and
 // again when it is not needed any more: on a virtual machine that is as much as the context switch.
 // So who has stopped by itself long before its horizon of late gets one that comes after the tick
@@ -289,7 +291,7 @@ void Engine::Settle(Task& task) {
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
-  int starting_turns = 0, silent_turns = 0;
+  int starting_turns = 0, silent_turns = 0, brief_turns = 0;
   std::int64_t silent_at_ns =
       task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
   held_turns_ = 0;
@@ -302,8 +304,11 @@ void Engine::AwaitStop(Task& task) {
     preempted_ = false;
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
-      // It must have run: real time that has passed may be the host's.
-      if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns) {
+      // It must have run, and come back from the kernel: real time that has passed may be the
+      // host's.
+      if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns &&
+          (ThreadState(task.tid) != 'R' || IsInUserMode(task.tid) ||
+           ++brief_turns > kMostBriefTurns)) {
         task.brief_done = true;
         return;
       }
