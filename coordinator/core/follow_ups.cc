@@ -22,6 +22,10 @@ void Engine::DoFollowUp(Task& task, std::int64_t call_ns, bool last) {
       break;
     case FollowUp::kBacklogs:
       WakeKey(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0);
+      PassOn(task);
+      break;
+    case FollowUp::kTaken:
+      PassOn(task);
       break;
     case FollowUp::kSignals:
       WakeSignalled(0);

@@ -93,6 +93,10 @@ void Engine::PassOver(Task& task, Task& first) {
     task.passed_over_for = &first;
     first.passes_on = true;
     first.reply[1] = 1;
+    // What the kernel carries out for it nobody tells of.
+    if (first.trap_id != 0 && first.follow_up == FollowUp::kNone) {
+      first.follow_up = FollowUp::kTaken;
+    }
   }
   epoll_event event{};
   event.events = task.watched_events | EPOLLET;

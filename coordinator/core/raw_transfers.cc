@@ -143,6 +143,9 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
   task.trap_wait = TrapWait::kTransfer;
   WatchFds(task, &waited, 1);
+  task.takes = task.watched.size() == 1;
+  task.watched_events = waited.events;
+  task.wait_order = ++wait_order_counter_;
 }
 
 }  // namespace tcs

@@ -35,7 +35,7 @@ enum class TaskState {
 enum class TrapWait { kNone, kFutex, kSleep, kFds, kTransfer, kChild };
 
 // Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
-enum class FollowUp { kNone, kBacklogs, kSignals, kKernelWaits, kContinued };
+enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued };
 
 struct Process;
 struct Robot;
@@ -205,7 +205,7 @@ struct Process {
 // A child that was not announced and has not registered, perhaps never will.
 struct UnknownChild {
   pid_t parent = 0;
-  int pidfd = -1;
+  int pidfd = -1;  // -1: it has ended, and its parent has heard of it, but not taken it yet
 };
 
 struct VirtualCpu {

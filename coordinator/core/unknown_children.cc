@@ -13,6 +13,9 @@ namespace tcs {
 
 // When a thread comes to wait for its children.
 void Engine::FindUnknownChildren(Process& parent) {
+  std::erase_if(unknown_children_, [](const auto& child) {
+    return child.second.pidfd < 0 && ThreadState(child.first) != 'Z';
+  });
   for (const pid_t pid : ChildrenOf(parent.pid)) {
     if (unknown_children_.contains(pid)) continue;
     const bool known = std::any_of(processes_.begin(), processes_.end(),
@@ -27,11 +30,12 @@ void Engine::FindUnknownChildren(Process& parent) {
 
 void Engine::UnknownChildEnded(pid_t pid) {
   const auto found = unknown_children_.find(pid);
-  if (found == unknown_children_.end()) return;
+  if (found == unknown_children_.end() || found->second.pidfd < 0) return;
   const UnknownChild child = found->second;
   epoll_ctl(epoll_, EPOLL_CTL_DEL, child.pidfd, nullptr);
   close(child.pidfd);
-  unknown_children_.erase(found);
+  // A parent that waits for children of another kind leaves it there.
+  found->second.pidfd = -1;
   Process* parent = LivingProcess(child.parent);
   if (parent == nullptr) return;
   ++parent->children_changed;
@@ -46,7 +50,9 @@ void Engine::UnknownChildEnded(pid_t pid) {
 
 bool Engine::HasUnknownChild(const Process& parent) const {
   return std::any_of(unknown_children_.begin(), unknown_children_.end(),
-                     [&](const auto& child) { return child.second.parent == parent.pid; });
+                     [&](const auto& child) {
+                       return child.second.parent == parent.pid && child.second.pidfd >= 0;
+                     });
 }
 
 bool Engine::UnknownChildrenRun() const {

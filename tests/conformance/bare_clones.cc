@@ -90,6 +90,26 @@ void Beside() {
   EXPECT(wait(&status) == -1 && errno == ECHILD, "one more");
 }
 
+// Beside one that only a wait for all kinds of children finds.
+void BesideOneWithoutASignal() {
+  const std::int64_t start = Now();
+  const pid_t known = fork();
+  if (known == 0) {
+    usleep(100'000);
+    _exit(4);
+  }
+  clone_args arguments{};
+  const long quiet = syscall(SYS_clone3, &arguments, sizeof arguments);
+  if (quiet == 0) End(3);
+  int status = 0;
+  EXPECT(wait(&status) == known && WEXITSTATUS(status) == 4, "%x", status);
+  const std::int64_t took = Now() - start;
+  EXPECT(took >= 100 * kMs, "%lld ns", (long long)took);
+  if (g_mode != Mode::kNative) EXPECT(took < 200 * kMs, "%lld ns", (long long)took);
+  EXPECT(wait(&status) == -1 && errno == ECHILD, "one more");
+  EXPECT(waitpid(-1, &status, __WALL) == quiet && WEXITSTATUS(status) == 3, "%x", status);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -101,4 +121,5 @@ int main(int argc, char** argv) {
   Check("fork made raw", ByRawFork);
   Check("clone as vfork", ByVfork);
   Beside();
+  BesideOneWithoutASignal();
 }

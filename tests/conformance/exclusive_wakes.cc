@@ -6,6 +6,7 @@
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 
@@ -198,12 +199,14 @@ void OneSet(std::uint32_t flags, const char* what) {
   close(event);
 }
 
-void Readers() {
+using Read = ssize_t (*)(int, void*, size_t);
+
+void Readers(Read read_one) {
   int ends[2];
   EXPECT(pipe(ends) == 0, "pipe");
-  Waiters waiters([&ends](int) {
+  Waiters waiters([&ends, read_one](int) {
     char byte;
-    EXPECT(read(ends[0], &byte, 1) == 1, "read: %s", strerror(errno));
+    EXPECT(read_one(ends[0], &byte, 1) == 1, "read: %s", strerror(errno));
   });
   std::int64_t sent = Now();
   EXPECT(write(ends[1], "x", 1) == 1, "write");
@@ -285,7 +288,8 @@ int main(int argc, char** argv) {
   OtherReasons();
   OneSet(EPOLLET, "EPOLLET");
   OneSet(EPOLLONESHOT, "EPOLLONESHOT");
-  Readers();
+  Readers(read);
+  Readers([](int fd, void* to, size_t size) -> ssize_t { return syscall(SYS_read, fd, to, size); });
   Receivers();
   Accepters();
   LongestWaitingBeforeMostUrgent();
