@@ -49,10 +49,9 @@ void Engine::UnknownChildEnded(pid_t pid) {
 }
 
 bool Engine::HasUnknownChild(const Process& parent) const {
-  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
-                     [&](const auto& child) {
-                       return child.second.parent == parent.pid && child.second.pidfd >= 0;
-                     });
+  return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
+    return child.second.parent == parent.pid && child.second.pidfd >= 0;
+  });
 }
 
 bool Engine::UnknownChildrenRun() const {

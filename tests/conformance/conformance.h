@@ -75,6 +75,12 @@ inline void ExpectSoonAfter(std::int64_t start, std::int64_t wanted_ns, const ch
   }
 }
 
+// The same where several threads make calls on the way, a few dozen at most, or compute, each up to
+// its turn's end.
+inline void ExpectPassed(std::int64_t start, std::int64_t wanted_ns, const char* what) {
+  ExpectSoonAfter(start, wanted_ns, what, g_mode == Mode::kFixed ? 60 * kCallNs : 6 * kMs);
+}
+
 // Sets the mode, and proves that the shim engaged: an hour passes at once, or the test runs into
 // its time limit.
 inline void Begin(int argc, char** argv) {
