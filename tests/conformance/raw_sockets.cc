@@ -12,7 +12,6 @@ namespace {
 
 using namespace conformance;
 
-// From both sides: not early, and under tcs not late.
 // A child does `later` 100 ms after the start, while the parent is in `wait`.
 template <class Later, class Wait>
 void Meanwhile(const char* what, Later later, Wait wait) {
