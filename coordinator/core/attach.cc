@@ -255,7 +255,7 @@ void Engine::LeaveWait(Task& task) {
   }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
-  task.requeue_to.reset();
+  futexes_.Leave(task.order);
   task.deadline_ns = shm::kNeverNs;
   LeaveLock(task);
 }

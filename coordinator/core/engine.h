@@ -10,6 +10,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "coordinator/calls/futex_table.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
@@ -215,16 +216,13 @@ class Engine {
   FutexKey FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
   FutexKey WokenKeyFor(const Process& process, const TrappedCall& call,
                        std::uint64_t address) const;
-  void StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits);
+  void StartFutexWait(Task& task);
   Task* MostUrgentWaiter(const FutexKey& key, std::uint32_t bits);
 
   // Several at once, and from a condition to its lock (futex_queues.cc).
-  static bool WaitsAt(const Task& task, const FutexKey& key);
-  static void NoteWhichFutex(Task& task, const FutexKey& key);
   std::int64_t FutexWaitForAny(Task& task, const TrappedCall& call);
   std::int64_t FutexWaitForLock(Task& task, const TrappedCall& call);
   std::int64_t FutexRequeueToLock(Task& task, const TrappedCall& call);
-  std::vector<Task*> WaitersForLock(const FutexKey& key);
   void RequeueToLock(Task& waiter, const FutexKey& lock, Task& owner);
 
   // Those that are locks with an owner (lock_futex.cc).
@@ -328,6 +326,7 @@ class Engine {
   void TakeLevelBack();
   Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
+  Task& TaskAt(int order) { return tasks_[static_cast<std::size_t>(order)]; }
   void EndTask(Task& task);
 
   // What is written about the run (records.cc).
@@ -364,6 +363,7 @@ class Engine {
   std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
+  FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
   std::vector<std::int64_t> progress_;  // Refresh's own
   std::vector<Task*> by_slot_;
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
@@ -388,7 +388,7 @@ class Engine {
   shm::SegmentHeader* header_ = nullptr;
   int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
-  std::uint64_t futex_counter_ = 0, key_counter_ = 0;
+  std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;

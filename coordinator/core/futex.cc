@@ -34,17 +34,8 @@ FutexKey Engine::FutexKeyFor(const Task& task, const TrappedCall& call, std::uin
 // nobody waits at the same place of any page, nobody can be woken.
 FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
                              std::uint64_t address) const {
-  constexpr std::uint64_t kInPage = 4095;
-  const bool is_waited_for = std::any_of(tasks_.begin(), tasks_.end(), [address](const Task& task) {
-    const auto is_there = [address](const FutexKey& key) {
-      return ((key.address ^ address) & kInPage) == 0;
-    };
-    return task.trap_wait == TrapWait::kFutex &&
-           (is_there(task.futex) ||
-            std::any_of(task.futexes.begin(), task.futexes.end(), is_there));
-  });
   const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
-  return KeyOf(process.pid, address, is_private || !is_waited_for);
+  return KeyOf(process.pid, address, is_private || !futexes_.MayBeWaitedAt(address));
 }
 
 // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
@@ -94,20 +85,16 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
     }
   }
   task.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK);
-  StartFutexWait(task, FutexKeyFor(task, call, call.args[0]),
-                 command == FUTEX_WAIT ? kAnyBit : bits);
+  futexes_.Wait(task.order, FutexKeyFor(task, call, call.args[0]),
+                command == FUTEX_WAIT ? kAnyBit : bits);
+  StartFutexWait(task);
   return 0;
 }
 
-void Engine::StartFutexWait(Task& task, const FutexKey& key, std::uint32_t bits) {
-  task.futex = key;
-  task.futexes.clear();
+void Engine::StartFutexWait(Task& task) {
   task.woken_futex = 0;
-  task.requeue_to.reset();
   task.was_requeued = false;
   task.trap_wait = TrapWait::kFutex;
-  task.futex_bits = bits;
-  task.futex_order = ++futex_counter_;
   SetState(task, TaskState::kWaiting);
 }
 
@@ -116,7 +103,7 @@ std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint
   for (; woken < most; ++woken) {
     Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
-    NoteWhichFutex(*best, key);
+    best->woken_futex = futexes_.IndexOf(best->order, key);
     MakeReady(*best, shm::WakeReason::kGo);
   }
   return woken;
@@ -132,13 +119,10 @@ std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int
                  to = FutexKeyFor(task, call, call.args[4]);
   std::int64_t moved = FutexWake(from, static_cast<int>(call.args[2]), kAnyBit);
   auto most = static_cast<int>(call.args[3]);
-  for (Task& waiter : tasks_) {
-    if (most <= 0) break;
-    if (waiter.trap_wait != TrapWait::kFutex || !WaitsAt(waiter, from)) continue;
-    std::replace(waiter.futexes.begin(), waiter.futexes.end(), from, to);
-    if (waiter.futexes.empty()) waiter.futex = to;
+  for (const FutexTable::Thread waiter : futexes_.WaitersAt(from)) {
+    if (most-- <= 0) break;
+    futexes_.Move(waiter, from, to);
     ++moved;
-    --most;
   }
   return moved;
 }

@@ -24,17 +24,6 @@ struct WaitedWord {
 
 }  // namespace
 
-bool Engine::WaitsAt(const Task& task, const FutexKey& key) {
-  if (task.futexes.empty()) return task.futex == key;
-  return std::find(task.futexes.begin(), task.futexes.end(), key) != task.futexes.end();
-}
-
-void Engine::NoteWhichFutex(Task& task, const FutexKey& key) {
-  const auto found = std::find(task.futexes.begin(), task.futexes.end(), key);
-  if (found == task.futexes.end()) return;
-  task.woken_futex = static_cast<std::size_t>(found - task.futexes.begin());
-}
-
 std::int64_t Engine::FutexWaitForAny(Task& task, const TrappedCall& call) {
   const std::uint64_t count = static_cast<std::uint32_t>(call.args[1]);
   if (static_cast<std::uint32_t>(call.args[2]) != 0 || count == 0 || count > kMostWords ||
@@ -69,8 +58,8 @@ std::int64_t Engine::FutexWaitForAny(Task& task, const TrappedCall& call) {
     keys.push_back(KeyOf(pid, word.address, (word.flags & FUTEX_PRIVATE_FLAG) != 0));
   }
   task.names_tid = 0;
-  StartFutexWait(task, keys.front(), kAnyBit);
-  task.futexes = std::move(keys);
+  futexes_.WaitForAny(task.order, std::move(keys), kAnyBit);
+  StartFutexWait(task);
   return 0;
 }
 
@@ -82,27 +71,14 @@ std::int64_t Engine::FutexWaitForLock(Task& task, const TrappedCall& call) {
   const std::int64_t result = FutexWait(task, wait, FUTEX_WAIT_BITSET);
   if (result != 0 || task.trap_wait != TrapWait::kFutex) return result;
   task.names_tid = 0;
-  task.requeue_to = FutexKeyFor(task, call, call.args[4]);
+  futexes_.ExpectLock(task.order, FutexKeyFor(task, call, call.args[4]));
   task.lock_address = call.args[4];
   return 0;
 }
 
-// The most urgent first, of equals those that wait longer.
-std::vector<Task*> Engine::WaitersForLock(const FutexKey& key) {
-  std::vector<Task*> waiters;
-  for (Task& task : tasks_) {
-    if (task.trap_wait == TrapWait::kFutex && WaitsAt(task, key)) waiters.push_back(&task);
-  }
-  std::sort(waiters.begin(), waiters.end(), [](const Task* a, const Task* b) {
-    return a->priority != b->priority ? a->priority > b->priority : a->futex_order < b->futex_order;
-  });
-  return waiters;
-}
-
 void Engine::RequeueToLock(Task& waiter, const FutexKey& lock, Task& owner) {
-  waiter.requeue_to.reset();
+  futexes_.Move(waiter.order, FutexKey(futexes_.WordOf(waiter.order)), lock);
   waiter.was_requeued = true;
-  waiter.futex = lock;
   waiter.lock_owner = &owner;
   FindPriority(owner);
 }
@@ -120,14 +96,14 @@ std::int64_t Engine::FutexRequeueToLock(Task& task, const TrappedCall& call) {
   if (value != static_cast<std::uint32_t>(call.args[5])) return -EAGAIN;
   const FutexKey from = FutexKeyFor(task, call, call.args[0]),
                  to = FutexKeyFor(task, call, call.args[4]);
-  const std::vector<Task*> waiters = WaitersForLock(from);
+  const std::vector<FutexTable::Thread> waiters = futexes_.ByUrgency(from);
   if (std::any_of(waiters.begin(), waiters.end(),
-                  [&](const Task* waiter) { return waiter->requeue_to != to; })) {
+                  [&](FutexTable::Thread waiter) { return futexes_.ExpectedLock(waiter) != to; })) {
     return -EINVAL;
   }
   if (waiters.empty()) return 0;
   const auto owner_tid = static_cast<pid_t>(lock & FUTEX_TID_MASK);
-  Task* owner = owner_tid == 0 ? waiters.front() : KnownTask(owner_tid);
+  Task* owner = owner_tid == 0 ? &TaskAt(waiters.front()) : KnownTask(owner_tid);
   if (owner == nullptr) return -ESRCH;
   const std::size_t count = std::min(waiters.size(), static_cast<std::size_t>(most) + 1);
   const bool queued =
@@ -136,10 +112,9 @@ std::int64_t Engine::FutexRequeueToLock(Task& task, const TrappedCall& call) {
          (queued ? FUTEX_WAITERS : 0);
   if (!WriteMemory(pid, call.args[4], &lock, sizeof lock)) return -EFAULT;
   for (std::size_t i = owner_tid == 0 ? 1 : 0; i < count; ++i) {
-    RequeueToLock(*waiters[i], to, *owner);
+    RequeueToLock(TaskAt(waiters[i]), to, *owner);
   }
   if (owner_tid == 0) {
-    owner->requeue_to.reset();
     owner->handed_lock = owner->lock_address;
     MakeReady(*owner, shm::WakeReason::kGo);
   }

@@ -17,18 +17,8 @@ constexpr std::uint32_t kOwner = FUTEX_TID_MASK, kDied = FUTEX_OWNER_DIED, kWait
 }  // namespace
 
 Task* Engine::MostUrgentWaiter(const FutexKey& key, std::uint32_t bits) {
-  Task* best = nullptr;
-  for (Task& task : tasks_) {
-    if (task.trap_wait != TrapWait::kFutex || (task.futex_bits & bits) == 0 ||
-        task.requeue_to.has_value() || !WaitsAt(task, key)) {
-      continue;
-    }
-    if (best == nullptr || task.priority > best->priority ||
-        (task.priority == best->priority && task.futex_order < best->futex_order)) {
-      best = &task;
-    }
-  }
-  return best;
+  const FutexTable::Thread thread = futexes_.MostUrgent(key, bits);
+  return thread == FutexTable::kNobody ? nullptr : &TaskAt(thread);
 }
 
 std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command) {
@@ -57,7 +47,8 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   task.lock_owner = owner;
   task.lock_address = call.args[0];
-  StartFutexWait(task, key, FUTEX_BITSET_MATCH_ANY);
+  futexes_.Wait(task.order, key, FUTEX_BITSET_MATCH_ANY);
+  StartFutexWait(task);
   FindPriority(*owner);
   return 0;
 }
@@ -69,15 +60,13 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
   Task* before = next->lock_owner;
   next->lock_owner = nullptr;
   next->handed_lock = next->lock_address;
-  next->trap_wait = TrapWait::kNone;
+  futexes_.Leave(next->order);
   const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
   const std::uint32_t value =
       static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
   WriteMemory(next->process->pid, next->lock_address, &value, sizeof value);
-  next->trap_wait = TrapWait::kFutex;
-  for (Task& waiter : tasks_) {
-    if (waiter.trap_wait == TrapWait::kFutex && waiter.futex == key && &waiter != next)
-      waiter.lock_owner = next;
+  for (const FutexTable::Thread waiter : futexes_.WaitersAt(key)) {
+    TaskAt(waiter).lock_owner = next;
   }
   MakeReady(*next, shm::WakeReason::kGo);
   if (before != nullptr) FindPriority(*before);
@@ -101,7 +90,7 @@ void Engine::WakeThoseWaitingFor(Task& ended) {
   for (Task& task : tasks_) {
     if (task.trap_wait != TrapWait::kFutex) continue;
     if (task.lock_owner == &ended) {
-      HandLockOn(FutexKey(task.futex), kDied);
+      HandLockOn(FutexKey(futexes_.WordOf(task.order)), kDied);
     } else if (task.names_tid == ended.tid) {
       MakeReady(task, shm::WakeReason::kGo);
     }

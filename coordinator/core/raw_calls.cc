@@ -403,11 +403,11 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
     // As the kernel has it: after a handler it makes the call again if that wants it.
     task.trap_result = task.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
     // A lock is never given up for a signal: the C library would take it for acquired.
-    if (task.lock_owner != nullptr || task.requeue_to.has_value()) {
+    if (task.lock_owner != nullptr || futexes_.ExpectedLock(task.order).has_value()) {
       task.trap_result = -kRestartAlways;
     }
     if (wait == TrapWait::kFutex && task.was_requeued) task.trap_result = -EAGAIN;
-    if (wait == TrapWait::kFutex && !task.futexes.empty()) task.trap_result = -kRestart;
+    if (futexes_.WaitsForAny(task.order)) task.trap_result = -kRestart;
     if (wait == TrapWait::kSleep && task.remaining_address != 0) {
       const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
       Write(task, task.remaining_address, timespec{left / kNsPerSecond, left % kNsPerSecond});

@@ -96,17 +96,11 @@ struct Task {
   bool expects_kernel = false;           // in its next call the kernel may hold it
   TrappedCall trapped_call;              // the last but futex calls
   std::uint64_t remaining_address = 0;   // where a sleep leaves what a signal cuts off; 0: nowhere
-  FutexKey futex;
-  // Of futex_waitv: instead of that, with the number of the one that it was woken at.
-  std::vector<FutexKey> futexes;
-  std::size_t woken_futex = 0;
-  std::optional<FutexKey> requeue_to;  // the lock that FUTEX_CMP_REQUEUE_PI is to give it
-  bool was_requeued = false;           // it waits for that lock now
-  std::uint64_t futex_order = 0;       // of waiting
-  std::uint32_t futex_bits = 0;
-  Task* lock_owner = nullptr;      // of the priority-inheriting lock that it waits for,
-  std::uint64_t lock_address = 0;  // which is here in its memory
-  std::uint64_t handed_lock = 0;   // has been handed to it, and it does not know yet; 0: none
+  std::size_t woken_futex = 0;           // which of several it was woken at
+  bool was_requeued = false;             // it waits for the lock that it was moved to
+  Task* lock_owner = nullptr;            // of the priority-inheriting lock that it waits for,
+  std::uint64_t lock_address = 0;        // which is here in its memory
+  std::uint64_t handed_lock = 0;         // has been handed to it, and it does not know yet; 0: none
   // What the futex's word says: the thread that it waits for in a join, or a lock's owner.
   pid_t names_tid = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;

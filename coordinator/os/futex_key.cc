@@ -1,4 +1,5 @@
-// Which futex an address of a process is.
+#include "coordinator/os/futex_key.h"
+
 #include <fcntl.h>
 #include <linux/ioctl.h>
 #include <stdio.h>
@@ -8,8 +9,6 @@
 #include <fstream>
 #include <optional>
 #include <string>
-
-#include "coordinator/os/trap.h"
 
 namespace tcs {
 

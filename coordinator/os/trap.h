@@ -40,15 +40,6 @@ bool HasAnswerToTake(int listener, std::uint64_t id);
 // lowest number that is free; -1: errno is set.
 int GiveDescriptor(int listener, std::uint64_t id, int fd, bool close_on_exec);
 
-// What makes two futex addresses the same: the process and the address, or for memory that
-// processes share, the file and the offset.
-struct FutexKey {
-  pid_t pid = 0;  // 0: shared
-  std::uint64_t file = 0, address = 0;
-  bool operator==(const FutexKey&) const = default;
-};
-FutexKey KeyOf(pid_t pid, std::uint64_t address, bool is_private);
-
 // Copies from another process's memory. False if it is not there.
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
 // The same from two places, which costs hardly more than from one.
