@@ -483,6 +483,12 @@ bool Engine::StrangersRun() {
   return UnknownChildrenRun();
 }
 
+std::int64_t Engine::FurthestNs() const {
+  std::int64_t furthest_ns = world_.present() ? world_.progress_ns() : 0;
+  for (const VirtualCpu& cpu : cpus_) furthest_ns = std::max(furthest_ns, cpu.progress_ns);
+  return furthest_ns;
+}
+
 void Engine::ShowProgress() {
   if (!options_.on_progress || __rdtsc() < next_progress_tsc_) return;
   next_progress_tsc_ =
@@ -509,6 +515,29 @@ bool Engine::AwaitDeaths() {
   return living_ > 0;
 }
 
+// Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
+// is jumped over. But those that the kernel has, or that compute without a call, may still come
+// back: they get as much real time as there is virtual time left. False at the run's end.
+bool Engine::AwaitOutside() {
+  if (end_ns_ != shm::kNeverNs) {
+    external_event_ = false;
+    PollEvents(0);
+    PollUnseen();
+    if (external_event_ || root_.Least() != shm::kNeverNs) return true;
+    if (unseen_ == 0 && !has_spinners_ && unknown_children_.empty() && !StrangersRun())
+      return false;
+    const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
+    if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
+    if (now_ns - idle_since_real_ns_ >= end_ns_ - furthest_ns) return false;
+  }
+  if (has_spinners_) {
+    WakeSpinners();
+  } else {
+    WaitOutside();
+  }
+  return true;
+}
+
 // One step of the run; false at its end.
 bool Engine::Step() {
   if (living_ == 0) return AwaitDeaths();
@@ -517,16 +546,11 @@ bool Engine::Step() {
   TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();
-  if (least == shm::kNeverNs) {
-    if (world_.present()) return false;
-    if (has_spinners_) {
-      WakeSpinners();
-      return true;
-    }
-    WaitOutside();
-    return true;
+  if (least >= end_ns_ || least == shm::kNeverNs) {
+    if (least == shm::kNeverNs && !world_.present() && AwaitOutside()) return true;
+    reached_end_ = true;
+    return false;
   }
-  if (least >= end_ns_) return false;
   VirtualCpu& cpu = cpus_[static_cast<std::size_t>(root_.First())];
   const bool idle = cpu.robot->ready.Next(cpu.core).thread == FixedPriority::kNobody;
   if (idle && !HasJumpedOver()) return true;

@@ -72,6 +72,8 @@ class Engine {
   void PollUnseen();
   bool StrangersRun();
   void WaitOutside();
+  bool AwaitOutside();
+  std::int64_t FurthestNs() const;
   void ShowProgress();
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
@@ -413,6 +415,8 @@ class Engine {
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   Task* lent_ = nullptr;            // has the active level beside the running thread
   bool stop_requested_ = false;
+  bool reached_end_ = false;
+  std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped

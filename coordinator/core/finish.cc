@@ -59,12 +59,9 @@ void Engine::Shutdown() {
 }
 
 void Engine::Report(RunReport* report) {
-  report->virtual_ns = world_.present() ? world_.progress_ns() : 0;
+  report->virtual_ns = reached_end_ ? end_ns_ : FurthestNs();
   WarnOfDrops();
   WarnOfEndsThatDidNotMeet();
-  for (const VirtualCpu& cpu : cpus_) {
-    report->virtual_ns = std::max(report->virtual_ns, cpu.progress_ns);
-  }
   report->drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
   report->dynamics_ns = world_.host_ns();
   report->samples = world_.samples();
