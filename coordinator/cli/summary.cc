@@ -78,10 +78,10 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   Print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
         "its CPU clock", "stolen", "activations", "overruns");
   for (const ClientReport& c : r.clients) {
-    const std::string own =
-        c.host_cpu_ns < 0 ? "-" : fmt::format("{:.3f} s", Seconds(c.host_cpu_ns));
-    Print("{:<{}}  {:>8.3f} s  {:>13}  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
-          Seconds(c.charged_ns), own, Milliseconds(c.stolen_ns), c.activations, c.overruns);
+    const Usage& u = c.usage;
+    Print("{:<{}}  {:>8.3f} s  {:>11.3f} s  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
+          Seconds(u.charged_ns), Seconds(u.host_cpu_ns), Milliseconds(u.stolen_ns), u.activations,
+          u.overruns);
   }
   Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
   for (const ClientReport& c : r.clients) {
@@ -130,11 +130,11 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
   }
   for (const ClientReport& c : r.clients) {
     json["clients"][c.name].update({
-        {"charged_ns", c.charged_ns},
-        {"host_cpu_ns", c.host_cpu_ns},
-        {"stolen_ns", c.stolen_ns},
-        {"activations", c.activations},
-        {"overruns", c.overruns},
+        {"charged_ns", c.usage.charged_ns},
+        {"host_cpu_ns", c.usage.host_cpu_ns},
+        {"stolen_ns", c.usage.stolen_ns},
+        {"activations", c.usage.activations},
+        {"overruns", c.usage.overruns},
         {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
     });

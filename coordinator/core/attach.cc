@@ -80,8 +80,8 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
   return &task;
 }
 
-Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name,
-                      int priority) {
+Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
+                      const Process* maker) {
   Process& process = PlaceForProcess();
   process.pid = pid;
   process.parent = parent;
@@ -89,7 +89,8 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   process.name = name;
   process.priority = priority;
   process.pidfd = OpenPidfd(pid);
-  if (const Process* maker = LivingProcess(parent); maker != nullptr) {
+  if (maker != nullptr) {
+    process.client = maker->client;
     process.call_cost_ns = maker->call_cost_ns;
     process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
@@ -102,7 +103,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   }
   Task* task = AddTask(process, pid);
   // Children have no name of their own; their place in the order is the same in every run.
-  const bool is_child = parent != getpid();
+  const bool is_child = maker != nullptr || parent != getpid();
   task->is_further = is_child;
   task->row = AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
   return task;
@@ -127,15 +128,18 @@ Task* Engine::KnownTask(pid_t tid) {
   return known == by_tid_.end() ? nullptr : known->second;
 }
 
+Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker) {
+  return NewTask(pid, parent, maker.robot, maker.name, maker.priority, &maker);
+}
+
 // The thread that registers: known already (a client, an announced child), a further thread of a
-// known process, or a process that nobody announced.
-Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid) {
+// known process, or a process that nobody announced. If whoever made it has ended, it is at least
+// known which client's descendant it is: by the socket that it has come to.
+Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid, Process& client) {
   if (Task* known = KnownTask(tid); known != nullptr) return known;
   if (Process* known = LivingProcess(pid); known != nullptr) return AddThread(*known, tid);
-  Process* parent = LivingProcess(parent_pid);
-  if (parent != nullptr)
-    return NewTask(pid, parent_pid, parent->robot, parent->name, parent->priority);
-  return NewTask(pid, parent_pid, &robots_.front(), fmt::format("pid {}", pid), 0);
+  const Process* parent = LivingProcess(parent_pid);
+  return NewChild(pid, parent_pid, parent != nullptr ? *parent : client);
 }
 
 // A thread that executes another program becomes its process's first one; all others have ended,
@@ -157,6 +161,7 @@ void Engine::EndThreadsLostInExec(pid_t pid) {
   }
   of->has_strangers = false;
   if (first == nullptr || !by_another) return;
+  of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.
   if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
   first->host_origin_ns =
@@ -164,7 +169,7 @@ void Engine::EndThreadsLostInExec(pid_t pid) {
       static_cast<std::int64_t>(static_cast<double>(first->charged_ns) * of->robot->speed);
 }
 
-void Engine::Attach(int connection) {
+void Engine::Attach(int connection, Process& client) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
   ucred peer{};
@@ -176,7 +181,7 @@ void Engine::Attach(int connection) {
     return;
   }
   if (hello.tid == hello.pid) EndThreadsLostInExec(hello.pid);
-  Task& task = *TaskFor(hello.pid, hello.parent_pid, hello.tid);
+  Task& task = *TaskFor(hello.pid, hello.parent_pid, hello.tid, client);
   if (task.slot < 0 && free_slots_.empty()) {
     Refuse(connection, "there is no room for more threads");
     return;
@@ -264,13 +269,10 @@ void Engine::LeaveWait(Task& task) {
 // last word of its thread may still be in the pipe.
 void Engine::EndTask(Task& task) {
   Process& process = *task.process;
-  process.ended_cpu_ns += task.charged_ns;
-  process.ended_host_ns += HostCpuOf(task);
-  process.ended_activations += task.activations;
+  KeepUsageOf(task);
   if (task.cpu_clock_fd >= 0) close(task.cpu_clock_fd);
   if (task.slot >= 0) {
     const shm::ClockPage& clock = Slot(task).clock;
-    process.ended_stolen_ns += clock.stolen_ns.load();
     report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
     by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
   }
@@ -297,13 +299,13 @@ void Engine::ProcessEnded(std::size_t index) {
   }
   process.dead = true;
   process.ended_at_ns = event_ns_;
-  const std::int64_t charged = ChargedTo(process);
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;
     EndTask(*task);
     WakeThoseWaitingFor(*task);
   }
+  KeepUsageOf(process);
   for (auto& [id, timer] : process.timers) {
     if (timer.event_fd >= 0) close(std::exchange(timer.event_fd, -1));
   }
@@ -312,7 +314,7 @@ void Engine::ProcessEnded(std::size_t index) {
   process.pidfd = -1;
   Process* parent = LivingProcess(process.parent);
   if (parent != nullptr) {
-    parent->children_cpu_ns += charged;
+    parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;
     ++parent->children_changed;
   }
   for (Task& task : tasks_) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/core/usage.h"
 #include "coordinator/scenario/scenario.h"
 #include "shm/layout.h"
 
@@ -44,10 +45,7 @@ struct RunOptions {
 
 struct ClientReport {
   std::string name;
-  std::int64_t charged_ns = 0;
-  std::int64_t host_cpu_ns = 0;  // by the thread's own clock; -1: it ended before
-  std::int64_t stolen_ns = 0;    // of what the TSC counted while it ran, others had this much
-  std::int64_t activations = 0, overruns = 0;
+  Usage usage;                    // of all that it has started, too
   std::int64_t ended_at_ns = -1;  // before the run did; -1: it lived to the end
   int wait_status = 0;            // as of waitpid, if it ended
 };

@@ -77,7 +77,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
   page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
   page.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
-  page.other_cpu_ns = task.process->threads == 1 ? task.process->ended_cpu_ns
+  page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);

@@ -44,9 +44,10 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], listener_, signals_, claim_.fd}) {
+  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], signals_, claim_.fd}) {
     if (fd >= 0) close(fd);
   }
+  for (const int listener : listeners_) close(listener);
 }
 
 void Engine::Warn(const std::string& text) {
@@ -498,7 +499,7 @@ void Engine::ShowProgress() {
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
   progress.drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
   for (const Process& process : processes_) {
-    if (process.is_client) progress.clients.push_back({process.name, ChargedTo(process)});
+    if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
   options_.on_progress(progress);
 }

@@ -49,6 +49,7 @@ class Engine {
   std::string Prepare();
   std::string PrepareSegment();
   std::string PrepareListener();
+  std::string OpenListener();
   std::string PrepareDetector();
   std::string StartClients();
 
@@ -281,7 +282,6 @@ class Engine {
   void SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::int64_t count);
   void ExpireCpuTimers(const Task& ran);
   std::int64_t CpuTimeToExpiry(const Task& task) const;
-  std::int64_t ChargedTo(const Process& process) const;
   static void FindNextExpiry(Process& process);
 
   // Those of short intervals (short_timers.cc).
@@ -305,17 +305,23 @@ class Engine {
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
   void RearmDetector();
-  void Attach(int connection);
-  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid);
+  void Attach(int connection, Process& client);
+  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid, Process& client);
   void SendReply(int connection, const Task& task);
   void ProcessEnded(std::size_t index);
-  void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
-  // What epoll gives back: `number` tells an event of this wait from those of earlier ones.
+  void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index, std::uint32_t number = 0);
+  // What epoll gives back: `number` tells an event of this wait from those of earlier ones, or
+  // whose client's descendant a connection is of.
   static std::uint64_t EventData(Tag tag, std::uint32_t index, std::uint32_t number) {
     return (static_cast<std::uint64_t>(tag) << 56) | (std::uint64_t{number & 0xffffff} << 32) |
            index;
   }
-  Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority);
+  static std::uint32_t NumberOf(std::uint64_t event_data) {
+    return static_cast<std::uint32_t>(event_data >> 32) & 0xffffff;
+  }
+  Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
+                const Process* maker = nullptr);
+  Task* NewChild(pid_t pid, pid_t parent, const Process& maker);
   Task& PlaceForTask();
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
@@ -339,11 +345,19 @@ class Engine {
   void NoteIdle(Task& task);
   void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc);
 
+  // What clients have used (usage.cc).
+  std::int64_t ChargedTo(const Process& process) const;
+  std::int64_t ChargedToAllOf(const Process& client) const;
+  Usage UsageOf(const Process& process);
+  Usage UsageOfAll(const Process& client);
+  std::int64_t HostCpuOf(Task& task);
+  void KeepUsageOf(Task& ended);
+  void KeepUsageOf(Process& ended);
+
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
   void WarnOfEndsThatDidNotMeet();
-  std::int64_t HostCpuOf(Task& task);
 
   void Warn(const std::string& text);
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
@@ -388,7 +402,7 @@ class Engine {
 
   CpuClaim claim_;
   shm::SegmentHeader* header_ = nullptr;
-  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
+  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
@@ -396,8 +410,9 @@ class Engine {
   std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
-  int held_turns_ = 0;  // since the running thread was found blocked in the kernel
-  std::string socket_name_;
+  int held_turns_ = 0;          // since the running thread was found blocked in the kernel
+  std::vector<int> listeners_;  // by client, where it and its descendants register
+  std::string socket_name_;     // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
   double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured

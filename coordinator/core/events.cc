@@ -31,10 +31,11 @@ constexpr int kExitTurns = 20;
 
 }  // namespace
 
-void Engine::Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index) {
+void Engine::Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index,
+                   std::uint32_t number) {
   epoll_event event{};
   event.events = events;
-  event.data.u64 = EventData(tag, index, 0);
+  event.data.u64 = EventData(tag, index, number);
   epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event);
 }
 
@@ -190,14 +191,16 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         break;
       }
       case Tag::kListener: {
-        const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+        const int connection =
+            accept4(listeners_[index], nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (connection >= 0) {
-          Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection));
+          Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection),
+                index);
         }
         break;
       }
       case Tag::kConnection:
-        Attach(static_cast<int>(index));
+        Attach(static_cast<int>(index), processes_[NumberOf(events[i].data.u64)]);
         close(static_cast<int>(index));
         stop = true;
         external_event_ = true;

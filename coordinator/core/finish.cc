@@ -72,20 +72,9 @@ void Engine::Report(RunReport* report) {
     if (!process.is_client) continue;
     ClientReport client;
     client.name = process.name;
-    client.charged_ns = process.ended_cpu_ns;
-    client.host_cpu_ns = process.ended_host_ns;
-    client.stolen_ns = process.ended_stolen_ns;
-    client.activations = process.ended_activations;
-    client.overruns = process.overruns;
+    client.usage = UsageOfAll(process);
     client.ended_at_ns = process.ended_at_ns;
     client.wait_status = process.wait_status;
-    for (Task* task : process.robot->tasks) {
-      if (task->process != &process || task->slot < 0) continue;
-      client.charged_ns += task->charged_ns;
-      client.host_cpu_ns += HostCpuOf(*task);
-      client.stolen_ns += Slot(*task).clock.stolen_ns.load();
-      client.activations += task->activations;
-    }
     report->clients.push_back(client);
   }
   for (const Robot& robot : robots_) {
@@ -117,14 +106,6 @@ void Engine::WarnOfEndsThatDidNotMeet() {
         "bind that port",
         spec.name, spec.to.host, spec.to.port));
   }
-}
-
-// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
-// no longer be asked.
-std::int64_t Engine::HostCpuOf(Task& task) {
-  if (task.host_origin_ns < 0) return 0;
-  const std::int64_t now = HostClockOf(task);
-  return now < 0 ? 0 : now - task.host_origin_ns;
 }
 
 }  // namespace tcs

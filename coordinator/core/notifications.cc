@@ -77,8 +77,7 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   if (LivingProcess(pid) != nullptr) return;
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   SetLevel(pid, Level::kWaiting);
-  Process& of = *parent.process;
-  InheritScheduling(*NewTask(pid, of.pid, of.robot, of.name, of.priority), parent);
+  InheritScheduling(*NewChild(pid, parent.process->pid, *parent.process), parent);
 }
 
 void Engine::Handle(Task& task, const shm::Notification& note) {

@@ -21,6 +21,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
+#include "shm/check.h"
 
 namespace tcs {
 
@@ -115,21 +116,29 @@ std::string Engine::PrepareListener() {
   signal(SIGPIPE, SIG_IGN);
   signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
 
-  listener_ = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  memcpy(address.sun_path + 1, socket_name_.data(), socket_name_.size());
-  const auto size =
-      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + socket_name_.size());
-  if (bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-      listen(listener_, 256) != 0) {
-    return "the socket that clients register at cannot be made";
-  }
   Watch(pipe_[0], EPOLLIN, Tag::kPipe, 0);
-  Watch(listener_, EPOLLIN, Tag::kListener, 0);
   Watch(signals_, EPOLLIN, Tag::kSignal, 0);
   return {};
+}
+
+// Where the next client and its descendants register. Its name, or nothing if it cannot be made.
+std::string Engine::OpenListener() {
+  const auto client = static_cast<std::uint32_t>(listeners_.size());
+  const std::string name = fmt::format("{}.{}", socket_name_, client);
+  const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (listener < 0) return {};
+  listeners_.push_back(listener);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  memcpy(address.sun_path + 1, name.data(), name.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (bind(listener, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
+      listen(listener, 256) != 0) {
+    return {};
+  }
+  Watch(listener, EPOLLIN, Tag::kListener, client);
+  return name;
 }
 
 std::string Engine::PrepareDetector() {
@@ -165,7 +174,9 @@ std::string Engine::StartClients() {
       const bool charges_allocations = IsFixed() && client.fixed_allocation_cost.ns() > 0;
       request.environment["LD_PRELOAD"] =
           options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
-      request.environment["TCS_SOCKET"] = socket_name_;
+      const std::string socket_name = OpenListener();
+      if (socket_name.empty()) return "the socket that clients register at cannot be made";
+      request.environment["TCS_SOCKET"] = socket_name;
       request.fixed_layout = IsFixed();
       if (!options_.output_directory.empty()) {
         std::string base = client.name;
@@ -185,6 +196,8 @@ std::string Engine::StartClients() {
       }
       Task* task = NewTask(pid, getpid(), &computer, client.name, client.priority);
       task->process->is_client = true;
+      task->process->client = task->process;
+      TCS_CHECK(task->process->index + 1 == listeners_.size());
       task->process->call_cost_ns = client.fixed_call_cost.ns();
       task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
       task->process->patch_vdso = client.patch_vdso;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/core/usage.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/policy/fixed_priority.h"
@@ -156,7 +157,8 @@ struct TimerSignal {
 };
 
 struct Process {
-  std::uint32_t index = 0;  // its place in the engine's list
+  std::uint32_t index = 0;    // its place in the engine's list
+  Process* client = nullptr;  // the client that it is or descends from
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
   Robot* robot = nullptr;
@@ -176,14 +178,13 @@ struct Process {
   bool has_resting_timers = false;              // of a short interval
   std::int64_t next_timer_id = shm::kFirstTimerId;
   std::vector<TimerSignal> timer_signals;
-  std::int64_t overruns = 0;  // periodic expiries that found nobody waiting
-  std::int64_t ended_cpu_ns = 0, children_cpu_ns = 0;
+  EndedThreads ended;  // and how many periodic expiries found nobody waiting
+  Usage descendants;   // of processes that have ended and descended from this client
+  std::int64_t children_cpu_ns = 0;
   std::int64_t children_changed = 0;  // how often one ended, stopped or went on
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
-  // Of threads that have ended, for the report.
-  std::int64_t ended_host_ns = 0, ended_stolen_ns = 0, ended_activations = 0;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
   bool dds_warned = false;        // of what it sends
   Task* deliverer = nullptr;      // its thread that takes what is for it

@@ -43,14 +43,6 @@ shm::TimerKind KindOfItimer(std::int64_t which) {
 
 }  // namespace
 
-std::int64_t Engine::ChargedTo(const Process& process) const {
-  std::int64_t charged = process.ended_cpu_ns;
-  for (const Task* task : process.robot->tasks) {
-    if (task->process == &process) charged += task->charged_ns;
-  }
-  return charged;
-}
-
 void Engine::FindNextExpiry(Process& process) {
   process.next_expiry_ns = shm::kNeverNs;
   process.has_cpu_timers = false;
@@ -209,7 +201,7 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
             return task->process == &process &&
                    (task->state == TaskState::kWaiting || task->state == TaskState::kUnseen);
           });
-      process.overruns += count - (awaited ? 1 : 0);
+      process.ended.CountOverruns(count - (awaited ? 1 : 0));
     }
     if (timer.event_fd >= 0) wrote |= write(timer.event_fd, &count, sizeof count) == sizeof count;
     if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);

@@ -1,0 +1,81 @@
+// What clients have used: they, and all that they have started, however far down and whoever waits
+// for it.
+#include "coordinator/core/usage.h"
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+std::int64_t Engine::ChargedTo(const Process& process) const {
+  std::int64_t charged = process.ended.usage().charged_ns;
+  for (const Task* task : process.robot->tasks) {
+    if (task->process == &process) charged += task->charged_ns;
+  }
+  return charged;
+}
+
+std::int64_t Engine::ChargedToAllOf(const Process& client) const {
+  std::int64_t charged = client.descendants.charged_ns;
+  for (const Process& process : processes_) {
+    if (process.client != &client || (process.dead && !process.is_client)) continue;
+    charged += ChargedTo(process);
+  }
+  return charged;
+}
+
+// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
+// no longer be asked.
+std::int64_t Engine::HostCpuOf(Task& task) {
+  if (task.host_origin_ns < 0) return 0;
+  const std::int64_t now = HostClockOf(task);
+  return now < 0 ? 0 : now - task.host_origin_ns;
+}
+
+Usage Engine::UsageOf(const Process& process) {
+  Usage usage = process.ended.usage();
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->slot < 0) continue;
+    usage += {.charged_ns = task->charged_ns,
+              .host_cpu_ns = HostCpuOf(*task),
+              .stolen_ns = Slot(*task).clock.stolen_ns.load(),
+              .activations = task->activations};
+  }
+  return usage;
+}
+
+Usage Engine::UsageOfAll(const Process& client) {
+  Usage usage = client.descendants;
+  for (const Process& process : processes_) {
+    // The others' that have ended is kept already, and their places may be others'.
+    if (process.client != &client || (process.dead && !process.is_client)) continue;
+    usage += UsageOf(process);
+  }
+  return usage;
+}
+
+void Engine::KeepUsageOf(Task& ended) {
+  Process& process = *ended.process;
+  const Usage usage{
+      .charged_ns = ended.charged_ns,
+      .stolen_ns = ended.slot < 0 ? 0 : Slot(ended).clock.stolen_ns.load(),
+      .activations = ended.activations,
+  };
+  if (ended.host_origin_ns < 0) {  // it never ran under its clock
+    process.ended.Add(usage, 0, 0, 0);
+    return;
+  }
+  const auto fallback_ns =
+      static_cast<std::int64_t>(static_cast<double>(ended.charged_ns) * process.robot->speed);
+  process.ended.Add(usage, HostClockOf(ended), ended.host_origin_ns, fallback_ns);
+}
+
+// Its threads' has been kept.
+void Engine::KeepUsageOf(Process& ended) {
+  ended.ended.Complete(ProcessCpuClockNs(ended.pid));
+  if (ended.client != nullptr && !ended.is_client) {
+    ended.client->descendants += ended.ended.usage();
+  }
+}
+
+}  // namespace tcs
