@@ -36,10 +36,6 @@ bool ContinueTrapped(int listener, std::uint64_t id);
 // True if its thread has not taken the answer yet, because it has not run since.
 bool HasAnswerToTake(int listener, std::uint64_t id);
 
-// Puts a descriptor of the coordinator's into the program that waits there, as open would: the
-// lowest number that is free; -1: errno is set.
-int GiveDescriptor(int listener, std::uint64_t id, int fd, bool close_on_exec);
-
 // What makes two futex addresses the same: the process and the address, or for memory that
 // processes share, the file and the offset.
 struct FutexKey {
