@@ -4,6 +4,7 @@
 #include <fcntl.h>
 
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/timer_fds.h"
 
 namespace tcs::preload {
 
@@ -17,12 +18,19 @@ int SocketOption(int fd, int option, int otherwise) {
              : otherwise;
 }
 
+std::size_t BytesOf(const iovec* iov, int count) {
+  std::size_t bytes = 0;
+  for (int i = 0; i < count; ++i) bytes += iov[i].iov_len;
+  return bytes;
+}
+
 }  // namespace
 
 long ReadAtOnce(int fd, const iovec* iov, int count) {
   const long answer = RawSyscall(SYS_preadv2, fd, Arg(iov), count, -1, -1, RWF_NOWAIT);
   // Terminals and some others do not have this form; but it has checked whether they can be read.
-  return answer == -EOPNOTSUPP ? -EAGAIN : answer;
+  if (answer != -EOPNOTSUPP) return answer;
+  return IsTimerFd(fd) && BytesOf(iov, count) < sizeof(std::uint64_t) ? -EINVAL : -EAGAIN;
 }
 
 bool AcceptWaits(int fd, int flags) {

@@ -15,7 +15,7 @@ namespace tcs::preload {
 namespace {
 
 // Stands in until the constructor has run, and where the page cannot be had.
-ProcessState g_unprotected_state{ProcessState::kFresh};
+ProcessState g_unprotected_state{ProcessState::kFresh, false};
 
 void ProtectProcessState() {
   const long page =

@@ -38,6 +38,7 @@ struct GuestThread {
 struct ProcessState {
   enum Mode : std::uint32_t { kFresh = 0, kAttached = 1, kPassThrough = 2 };
   Mode mode;
+  bool has_timer_fds;  // what timer_fds.h remembers is of this process
 };
 
 extern ProcessState* g_process;

@@ -20,7 +20,6 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
-#include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/transfer.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -296,13 +295,11 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 }
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
-  if (IsTimerFd(fd)) return Fail(EINVAL);  // it is another kind of descriptor beneath
   const iovec iov{const_cast<void*>(buffer), size};
   return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
 
 TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
-  if (IsTimerFd(fd)) return Fail(EINVAL);
   return WriteAll(fd, iov, static_cast<std::size_t>(count),
                   [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
 }

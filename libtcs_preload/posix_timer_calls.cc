@@ -1,9 +1,10 @@
 // timer_create and its kin. The coordinator keeps the timers and sends their signals. Programs of
 // before glibc 2.3.3, whose timer_t was an int, do not exist here: all versions are one.
 #include <errno.h>
+#include <linux/timerfd.h>
 #include <pthread.h>
 #include <signal.h>
-#include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <sys/syscall.h>
 #include <time.h>
 
@@ -100,14 +101,15 @@ void KeepThread(const sigevent& event, PosixTimer* timer) {
 // 0 or the error; on an error the caller frees the timer.
 int Make(GuestThread& t, const sigevent& event, const TimerKind& kind, PosixTimer* timer) {
   const bool threaded = event.sigev_notify == SIGEV_THREAD;
-  timer->event_fd = -1;
+  timer->timer_fd = -1;
   timer->overruns = 0;
   if (threaded) {
-    timer->event_fd = static_cast<int>(RawSyscall(SYS_eventfd2, 0, EFD_CLOEXEC));
-    if (timer->event_fd < 0) return EAGAIN;
+    timer->timer_fd =
+        static_cast<int>(RawSyscall(SYS_timerfd_create, CLOCK_MONOTONIC, TFD_CLOEXEC));
+    if (timer->timer_fd < 0) return EAGAIN;
     KeepThread(event, timer);
   }
-  Request request{.kind = NotificationKind::kTimerCreate, .args = {timer->event_fd}};
+  Request request{.kind = NotificationKind::kTimerCreate, .args = {timer->timer_fd}};
   __builtin_memcpy(&request.args[1], &kind, sizeof kind);
   timer->id = Exchange(t, request).values[0];
   int error = timer->id >= tcs::shm::kFirstTimerId ? 0 : EAGAIN;
@@ -116,7 +118,7 @@ int Make(GuestThread& t, const sigevent& event, const TimerKind& kind, PosixTime
     Exchange(t, Request{.kind = NotificationKind::kTimerDelete, .args = {timer->id}});
     error = EAGAIN;
   }
-  if (error != 0 && threaded) RawSyscall(SYS_close, timer->event_fd);
+  if (error != 0 && threaded) RawSyscall(SYS_close, timer->timer_fd);
   return error;
 }
 
@@ -175,12 +177,16 @@ TCS_EXPORT int timer_delete(timer_t name) noexcept {
   if (timer == nullptr) return Fail(EINVAL);
   __atomic_store_n(&timer->state, PosixTimer::kEnding, __ATOMIC_RELEASE);
   Exchange(*t, Request{.kind = NotificationKind::kTimerDelete, .args = {timer->id}});
-  if (timer->event_fd < 0) {
+  if (timer->timer_fd < 0) {
     FreePosixTimer(timer);
     return 0;
   }
-  const std::uint64_t wake = 1;
-  RawSyscall(SYS_write, timer->event_fd, Arg(&wake), sizeof wake);
+  // Its helper wakes.
+  const std::uint64_t once = 1;
+  if (RawSyscall(SYS_ioctl, timer->timer_fd, TFD_IOC_SET_TICKS, Arg(&once)) != 0) {
+    const itimerspec past{{0, 0}, {0, 1}};
+    RawSyscall(SYS_timerfd_settime, timer->timer_fd, TFD_TIMER_ABSTIME, Arg(&past));
+  }
   return 0;
 }
 
@@ -222,7 +228,7 @@ TCS_EXPORT int timer_getoverrun(timer_t name) noexcept {
   if (t == nullptr) return TCS_REAL(timer_getoverrun)(name);
   const PosixTimer* timer = FindPosixTimer(name);
   if (timer == nullptr) return Fail(EINVAL);
-  if (timer->event_fd >= 0) return __atomic_load_n(&timer->overruns, __ATOMIC_RELAXED);
+  if (timer->timer_fd >= 0) return __atomic_load_n(&timer->overruns, __ATOMIC_RELAXED);
   const Reply reply =
       Exchange(*t, Request{.kind = NotificationKind::kTimerOverrun, .args = {timer->id}});
   return static_cast<int>(reply.values[0]);

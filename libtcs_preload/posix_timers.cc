@@ -72,14 +72,14 @@ void* RunHelper(void* raw) {
   while (StateOf(timer) == PosixTimer::kLive) {
     GuestThread* t = Current();
     if (t == nullptr || IsShutDown()) break;
-    AwaitFd(*t, timer.event_fd, POLLIN, shm::kNeverNs);
+    AwaitFd(*t, timer.timer_fd, POLLIN, shm::kNeverNs);
     std::uint64_t count = 0;
-    if (RawSyscall(SYS_read, timer.event_fd, Arg(&count), sizeof count) != sizeof count) break;
+    if (RawSyscall(SYS_read, timer.timer_fd, Arg(&count), sizeof count) != sizeof count) break;
     if (StateOf(timer) != PosixTimer::kLive) break;
     __atomic_store_n(&timer.overruns, static_cast<int>(count - 1), __ATOMIC_RELAXED);
     StartFunction(timer);
   }
-  RawSyscall(SYS_close, timer.event_fd);
+  RawSyscall(SYS_close, timer.timer_fd);
   FreePosixTimer(&timer);
   return nullptr;
 }

@@ -16,8 +16,8 @@ struct PosixTimer {
   State state;
   clockid_t clock;
   std::int64_t id;  // the coordinator's; the program's timer_t is the same number
-  // Of SIGEV_THREAD: the helper thread waits on event_fd and starts a thread at each expiration.
-  int event_fd;
+  // Of SIGEV_THREAD: the helper thread waits on timer_fd and starts a thread at each expiration.
+  int timer_fd;
   int overruns;
   void (*function)(sigval);
   sigval value;

@@ -1,9 +1,8 @@
 // setitimer, alarm and timerfd. The coordinator keeps the timers; it sends real signals, and makes
-// real descriptors readable: a timerfd is an eventfd underneath, which has the same reads, into
-// which it writes the expirations.
+// real descriptors readable: a timerfd is the kernel's own, whose timer never runs there, and the
+// coordinator says how often it has run out.
 #include <errno.h>
 #include <fcntl.h>
-#include <sys/eventfd.h>
 #include <sys/time.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
@@ -108,7 +107,6 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_create, clock, flags)));
   }
   if ((flags & ~(TFD_CLOEXEC | TFD_NONBLOCK)) != 0) return Fail(EINVAL);
-  static_assert(int{TFD_CLOEXEC} == int{EFD_CLOEXEC} && int{TFD_NONBLOCK} == int{EFD_NONBLOCK});
   Clock base;
   if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM) {
     base = Clock::kRealtime;
@@ -117,7 +115,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
   } else {
     return Fail(EINVAL);
   }
-  const long fd = RawSyscall(SYS_eventfd2, 0, flags);
+  const long fd = RawSyscall(SYS_timerfd_create, clock, flags);
   if (fd < 0) return static_cast<int>(ToErrno(fd));
   tcs::shm::TimerKind kind;
   kind.clock_tid = base == Clock::kRealtime ? 1 : 0;

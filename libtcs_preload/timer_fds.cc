@@ -13,8 +13,10 @@ TimerFd g_timers[kRoom];
 int g_used =
     0;  // entries ever used; most programs have none, and then every look-up is one comparison
 
+// Those of its parent a child by fork does not know by their ids: the coordinator finds them.
 TimerFd* Find(int fd) {
-  if (fd < 0) return nullptr;
+  if (fd < 0 || g_used == 0) return nullptr;
+  if (!g_process->has_timer_fds) g_used = 0;
   for (int i = 0; i < g_used; ++i) {
     if (g_timers[i].fd == fd) return &g_timers[i];
   }
@@ -34,6 +36,7 @@ bool RememberTimerFd(int fd, std::int64_t id, Clock clock) {
     entry = &g_timers[g_used++];
   }
   *entry = TimerFd{.fd = fd, .clock = clock, .id = id};
+  g_process->has_timer_fds = true;
   return true;
 }
 

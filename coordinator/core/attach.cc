@@ -307,7 +307,7 @@ void Engine::ProcessEnded(std::size_t index) {
   }
   KeepUsageOf(process);
   for (auto& [id, timer] : process.timers) {
-    if (timer.event_fd >= 0) close(std::exchange(timer.event_fd, -1));
+    if (timer.fd >= 0) close(std::exchange(timer.fd, -1));
   }
   epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
   close(process.pidfd);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/timer_descriptor.h"
 
 namespace tcs {
 
@@ -46,6 +47,8 @@ bool Borrowed::IsEventFd() const {
   return size > 0 &&
          std::string_view(name, static_cast<std::size_t>(size)) == "anon_inode:[eventfd]";
 }
+
+bool Borrowed::IsTimer() const { return IsTimerDescriptor(fd_); }
 
 bool Borrowed::CanBeRead() const { return (fcntl(fd_, F_GETFL) & O_ACCMODE) != O_WRONLY; }
 

@@ -192,8 +192,8 @@ class Engine {
   };
   void HandleRawTimer(Task& task, const TrappedCall& call);
   std::int64_t CreateTimerRaw(Task& task, const TrappedCall& call);
-  std::int64_t CreateTimerFdRaw(Task& task, const TrappedCall& call);
   FoundTimer FindTimerFd(const Task& task, int number);
+  static FoundTimer AdoptTimerFd(const Task& task, int number);
   std::int64_t TimerNow(const Task& task, const Process& owner, const Timer& timer) const;
   itimerspec ExchangeTimer(Task& task, const FoundTimer& found, bool sets, std::int64_t first_ns,
                            std::int64_t interval_ns);
@@ -276,6 +276,8 @@ class Engine {
   static void EnsureItimer(Process& process, std::int64_t id);
   void FireDue(Robot& robot, std::int64_t now_ns);
   bool Expire(Process& process, std::int64_t now_ns);
+  static bool IsFull(const Process& process);  // of timers
+  static int TimerDescriptorOf(const Process& process, int number);
   void CreateTimer(Task& task, const shm::Notification& note);
   static void DeleteTimer(Process& process, std::int64_t id);
   static void DeletePosixTimers(Process& process);

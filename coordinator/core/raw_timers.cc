@@ -2,7 +2,6 @@
 // so a timer made one way can be set the other way.
 #include <errno.h>
 #include <signal.h>
-#include <sys/eventfd.h>
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/timerfd.h>
@@ -17,6 +16,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/os/timer_descriptor.h"
 
 namespace tcs {
 
@@ -74,32 +74,11 @@ std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
   if (call.args[1] != 0 && !Read(task, call.args[1], &event)) return -EFAULT;
   const auto kind = PosixKind(task, static_cast<int>(call.args[0]), event);
   if (!kind.has_value()) return -EINVAL;
+  if (IsFull(process)) return -EAGAIN;
   const int id = static_cast<int>(process.next_timer_id);
   if (!Write(task, call.args[2], id)) return -EFAULT;
   process.timers[process.next_timer_id++].kind = *kind;
   return 0;
-}
-
-// As for timerfd_create of the shim, an eventfd.
-std::int64_t Engine::CreateTimerFdRaw(Task& task, const TrappedCall& call) {
-  const auto clock = static_cast<int>(call.args[0]), flags = static_cast<int>(call.args[1]);
-  if ((flags & ~(TFD_CLOEXEC | TFD_NONBLOCK)) != 0) return -EINVAL;
-  if (clock == CLOCK_TAI || (!IsRealtime(clock) && !IsMonotonic(clock))) return -EINVAL;
-  Timer timer;
-  timer.kind.clock_tid = IsRealtime(clock) ? 1 : 0;
-  timer.event_fd = eventfd(0, EFD_CLOEXEC | (flags & TFD_NONBLOCK));
-  if (timer.event_fd < 0) return -errno;
-  // We wait until the thread has taken it, and nobody may keep it from that.
-  SetLevel(task.tid, Level::kActive);
-  const int fd = GiveDescriptor(call.listener, call.id, timer.event_fd, (flags & TFD_CLOEXEC) != 0);
-  SetLevel(task.tid, task.level);
-  if (fd < 0) {
-    const int error = errno;
-    close(timer.event_fd);
-    return -error;
-  }
-  task.process->timers[task.process->next_timer_id++] = timer;
-  return fd;
 }
 
 // Whose descriptor it is, too: timers made before a fork are the parent's.
@@ -109,10 +88,26 @@ Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
   for (Process& process : processes_) {
     if (process.dead) continue;
     for (auto& [id, timer] : process.timers) {
-      if (timer.event_fd >= 0 && IsSameFile(timer.event_fd, fd.fd())) return {&process, id};
+      if (timer.fd >= 0 && IsSameFile(timer.fd, fd.fd())) return {&process, id};
     }
   }
   return {};
+}
+
+// One that was made by the call itself, which the kernel carries out, or that comes from elsewhere.
+Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
+  Process& process = *task.process;
+  Timer timer;
+  timer.fd = TimerDescriptorOf(process, number);
+  if (timer.fd < 0) return {};
+  if (IsFull(process)) {
+    close(timer.fd);
+    return {};
+  }
+  timer.kind.clock_tid = IsOfRealtime(timer.fd) ? 1 : 0;
+  const std::int64_t id = process.next_timer_id++;
+  process.timers[id] = timer;
+  return {&process, id};
 }
 
 std::int64_t Engine::TimerNow(const Task& task, const Process& owner, const Timer& timer) const {
@@ -213,7 +208,7 @@ void Engine::HandleRawTimer(Task& task, const TrappedCall& call) {
       task.trap_result = CreateTimerRaw(task, call);
       return;
     case SYS_timerfd_create:
-      task.trap_result = CreateTimerFdRaw(task, call);
+      task.trap_continues = true;  // it is known once it is set
       return;
     case SYS_setitimer:
     case SYS_getitimer:
@@ -222,7 +217,11 @@ void Engine::HandleRawTimer(Task& task, const TrappedCall& call) {
       return;
     case SYS_timerfd_settime:
     case SYS_timerfd_gettime: {
-      const FoundTimer found = FindTimerFd(task, static_cast<int>(call.args[0]));
+      const auto number = static_cast<int>(call.args[0]);
+      FoundTimer found = FindTimerFd(task, number);
+      if (found.owner == nullptr && call.number == SYS_timerfd_settime) {
+        found = AdoptTimerFd(task, number);
+      }
       if (found.owner == nullptr) {
         task.trap_continues = true;  // what is wrong with it the kernel says best
       } else if (call.number == SYS_timerfd_settime) {

@@ -17,6 +17,8 @@ namespace tcs {
 
 namespace {
 
+constexpr std::int64_t kCounter = sizeof(std::uint64_t);  // what eventfds and timerfds give
+
 struct Transfer {
   bool reads = false;
   bool of_sockets = false;  // rather than of any descriptor
@@ -72,7 +74,8 @@ std::int64_t BytesOf(const Task& task, const TrappedCall& call) {
 bool FileAnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd, bool reads) {
   const std::int64_t bytes = BytesOf(task, call);
   if (bytes <= 0 || !(reads ? fd.CanBeRead() : fd.CanBeWritten())) return true;
-  return bytes < static_cast<std::int64_t>(sizeof(std::uint64_t)) && fd.IsEventFd();
+  if (fd.IsTimer()) return !reads || bytes < kCounter;
+  return bytes < kCounter && fd.IsEventFd();
 }
 
 // False if the kernel refuses the message that recvmsg or sendmsg is given.

@@ -134,7 +134,7 @@ struct Task {
 struct Timer {
   std::int64_t next_ns = 0, interval_ns = 0;  // next 0: not armed
   std::int64_t frozen_ns = 0;                 // its process's when it was armed
-  int event_fd = -1;
+  int fd = -1;                                // of a timerfd; -1: none
   shm::TimerKind kind;
   // Of timer_create: one signal is on its way at a time, further expirations are counted.
   bool queued = false;             // it was not seen accepted yet

@@ -1,7 +1,6 @@
 // The timers of clients: setitimer, alarm, timerfd and timer_create. What runs out at one instant
 // fires there.
 #include <signal.h>
-#include <sys/eventfd.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/timer_descriptor.h"
 
 namespace tcs {
 
@@ -19,6 +19,8 @@ namespace {
 using shm::TimerClock;
 
 constexpr std::int64_t kLeastCpuNs = 1'000;
+// Of one process. Natively its limits (RLIMIT_SIGPENDING, RLIMIT_NOFILE) are about the same.
+constexpr std::size_t kMostTimers = 16'384;
 
 // How often it has run out by `now`, on its clock; sets it to the next time.
 std::int64_t TakeExpirations(Timer& timer, std::int64_t now) {
@@ -74,15 +76,26 @@ std::int64_t Engine::CpuTimeToExpiry(const Task& task) const {
   return std::max(kLeastCpuNs, left);
 }
 
+bool Engine::IsFull(const Process& process) { return process.timers.size() >= kMostTimers; }
+
+// Our copy of a process's descriptor; -1 if that is no timer.
+int Engine::TimerDescriptorOf(const Process& process, int number) {
+  const int fd = DuplicateFd(process.pidfd, number);
+  if (fd < 0 || IsTimerDescriptor(fd)) return fd;
+  close(fd);
+  return -1;
+}
+
 void Engine::CreateTimer(Task& task, const shm::Notification& note) {
   Process& process = *task.process;
+  if (IsFull(process)) return;
   Timer timer;
   static_assert(sizeof timer.kind == sizeof note.args - sizeof note.args[0]);
   memcpy(static_cast<void*>(&timer.kind), &note.args[1], sizeof timer.kind);
   if (timer.kind.signal < 0 || timer.kind.signal > SIGRTMAX) return;
   if (note.args[0] >= 0) {
-    timer.event_fd = DuplicateFd(process.pidfd, static_cast<int>(note.args[0]));
-    if (timer.event_fd < 0) return;
+    timer.fd = TimerDescriptorOf(process, static_cast<int>(note.args[0]));
+    if (timer.fd < 0) return;
   }
   task.reply[0] = process.next_timer_id++;
   process.timers[task.reply[0]] = timer;
@@ -91,7 +104,7 @@ void Engine::CreateTimer(Task& task, const shm::Notification& note) {
 void Engine::DeleteTimer(Process& process, std::int64_t id) {
   const auto found = process.timers.find(id);
   if (found == process.timers.end()) return;
-  if (found->second.event_fd >= 0) close(found->second.event_fd);
+  if (found->second.fd >= 0) close(found->second.fd);
   process.timers.erase(found);
   std::erase_if(process.timer_signals, [&](const TimerSignal& s) { return s.timer_id == id; });
   FindNextExpiry(process);
@@ -151,13 +164,7 @@ void Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
   timer.queued = timer.rests = false;
   timer.overruns = timer.last_overruns = 0;
   FindNextExpiry(process);
-  if (timer.event_fd >= 0) {
-    // Setting a timer forgets expirations that were not read; emptying must not wait.
-    eventfd_t unread;
-    const std::uint64_t one = 1;
-    if (write(timer.event_fd, &one, sizeof one) == sizeof one)
-      eventfd_read(timer.event_fd, &unread);
-  }
+  if (timer.fd >= 0) ForgetExpirations(timer.fd);
 }
 
 // POSIX: one signal of a timer is on its way at a time; what runs out meanwhile is its overruns.
@@ -203,7 +210,7 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
           });
       process.ended.CountOverruns(count - (awaited ? 1 : 0));
     }
-    if (timer.event_fd >= 0) wrote |= write(timer.event_fd, &count, sizeof count) == sizeof count;
+    if (timer.fd >= 0) wrote |= AddExpirations(timer.fd, count);
     if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);
   }
   FindNextExpiry(process);
@@ -223,7 +230,7 @@ void Engine::ExpireCpuTimers(const Task& ran) {
     const std::int64_t count = TakeExpirations(timer, now);
     if (count == 0) continue;
     timer.seen_ns = now;
-    if (timer.event_fd >= 0) eventfd_write(timer.event_fd, static_cast<eventfd_t>(count));
+    if (timer.fd >= 0) AddExpirations(timer.fd, count);
     if (timer.kind.signal != 0) SignalExpiry(process, id, timer, count);
   }
   FindNextExpiry(process);

@@ -185,14 +185,6 @@ bool HasAnswerToTake(int listener, std::uint64_t id) {
   return ioctl(listener, SECCOMP_IOCTL_NOTIF_ID_VALID, &id) == 0;
 }
 
-int GiveDescriptor(int listener, std::uint64_t id, int fd, bool close_on_exec) {
-  seccomp_notif_addfd given{};
-  given.id = id;
-  given.srcfd = static_cast<std::uint32_t>(fd);
-  given.newfd_flags = close_on_exec ? O_CLOEXEC : 0;
-  return ioctl(listener, SECCOMP_IOCTL_NOTIF_ADDFD, &given);
-}
-
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size) {
   const iovec local{to, size}, remote{reinterpret_cast<void*>(address), size};
   return process_vm_readv(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);

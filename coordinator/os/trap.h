@@ -36,10 +36,6 @@ bool ContinueTrapped(int listener, std::uint64_t id);
 // True if its thread has not taken the answer yet, because it has not run since.
 bool HasAnswerToTake(int listener, std::uint64_t id);
 
-// Puts a descriptor of the coordinator's into the program that waits there, as open would: the
-// lowest number that is free; -1: errno is set.
-int GiveDescriptor(int listener, std::uint64_t id, int fd, bool close_on_exec);
-
 // Copies from another process's memory. False if it is not there.
 bool ReadMemory(pid_t pid, std::uint64_t address, void* to, std::size_t size);
 // The same from two places, which costs hardly more than from one.
