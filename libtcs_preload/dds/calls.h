@@ -1,11 +1,11 @@
 // The functions of Cyclone DDS (libddsc) that the shim stands before.
 //
-// The shim (entry.cc) exports them all. A process that uses mechanism E has hooks for them in
+// The shim (entry.cc) exports them all. A process whose DDS goes by endpoints has hooks for them in
 // libtcs_dds.so; everybody else is led straight to libddsc. A hook that libtcs_dds.so does not have
 // is libddsc's own function as well.
 #pragma once
 
-// Those that may be a program's first: mechanism E starts at them.
+// Those that may be a program's first: DDS by endpoints starts at them.
 #define TCS_DDS_STARTING_CALLS(X) \
   X(dds_create_participant)       \
   X(dds_create_domain)            \

@@ -1,9 +1,9 @@
 // The shim's doors into Cyclone DDS: each name of calls.h jumps to wherever its slot says, so that
 // nothing here knows what its arguments are.
 //
-// A slot first leads to tcs_dds_resolve, which decides: where DDS is to use sockets, or mechanism E
-// refuses, to libddsc; else to the hooks of libtcs_dds.so, which is loaded when the program makes
-// its first participant or domain. Nothing here refers to a symbol of libddsc: the shim is in
+// A slot first leads to tcs_dds_resolve, which decides: where DDS is to use sockets, or endpoints
+// cannot be had, to libddsc; else to the hooks of libtcs_dds.so, which is loaded when the program
+// makes its first participant or domain. Nothing here refers to a symbol of libddsc: the shim is in
 // programs that do not have it, too.
 #include <dlfcn.h>
 #include <link.h>

@@ -1,4 +1,4 @@
-// The one symbol that libtcs_dds.so exports: mechanism E's beginning in a process.
+// The one symbol that libtcs_dds.so exports: the beginning of DDS by endpoints in a process.
 #include <vector>
 
 #include "libtcs_preload/dds/cyclone.h"

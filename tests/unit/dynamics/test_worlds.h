@@ -120,6 +120,13 @@ inline std::string NameOfEngine(const testing::TestParamInfo<IntegratorSpec>& in
   return info.param.engine == EngineKind::kOde ? "Ode" : "Simbody";
 }
 
+// What GoogleTest shows of a parameter, instead of its bytes.
+inline void PrintTo(const IntegratorSpec& spec, std::ostream* out) {
+  *out << (spec.engine == EngineKind::kOde ? "ODE" : "Simbody") << ", "
+       << (spec.fixed_step.ns() == 0 ? "steps of its own"
+                                     : "steps of " + std::to_string(spec.fixed_step.ns()) + " ns");
+}
+
 // How far a constant `acceleration_mps2` over `seconds` may take a body from where the closed form
 // has it.
 inline double PositionTolerance(const IntegratorSpec& spec, double acceleration_mps2,
