@@ -90,6 +90,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   process.priority = priority;
   process.pidfd = OpenPidfd(pid);
   if (const Process* maker = LivingProcess(parent); maker != nullptr) {
+    process.client = maker->client;
     process.call_cost_ns = maker->call_cost_ns;
     process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
@@ -322,6 +323,7 @@ void Engine::ProcessEnded(std::size_t index) {
     }
   }
   if (parent != nullptr) WakeForSignals(*parent);
+  StartThoseAfter(process);
   WakeEveryKey();
   LeaveDds(process);
   if (!process.is_client) ended_processes_.push_back(&process);

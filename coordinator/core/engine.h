@@ -17,6 +17,7 @@
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
@@ -41,6 +42,7 @@ class Engine {
     kTrap,
     kCommand,
     kSignal,
+    kGraceRanOut,
     kDetector
   };
 
@@ -49,7 +51,22 @@ class Engine {
   std::string PrepareSegment();
   std::string PrepareListener();
   std::string PrepareDetector();
+
+  // When the clients start (launches.cc).
+  struct Launch {
+    const ClientSpec* spec;
+    Robot* robot;
+    std::int64_t start_ns;  // never: it waits for another one to end
+    Process* process;       // once started
+  };
+  std::string PrepareFolders();
   std::string StartClients();
+  std::string Start(Launch& launch);
+  void StartDue(Robot& robot, std::int64_t now_ns);
+  void FindNextLaunch(Robot& robot);
+  bool HasLaunchAhead() const;
+  void StartThoseAfter(const Process& ended);
+  void WarnOfNeverStarted();
 
   // The loop (engine.cc).
   bool Step();
@@ -340,13 +357,27 @@ class Engine {
   void NoteIdle(Task& task);
   void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc);
 
+  // The last signal and the time to obey it (grace.cc).
+  void EndClients();
+  void BeginGrace();
+  void LimitRealTime();
+  void KillOverdue();
+  bool IsGraceOver() const { return grace_ran_out_ || stop_.insists(); }
+  int StopSignalOf(const Process& process) const;
+  static std::int64_t GraceOf(const Process& process);
+  std::int64_t KillTimeOf(const Process& process) const;
+  void WarnOfKill(const Process& process, const std::string& within);
+
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
+  ClientReport ReportOf(const Launch& launch);
   void WarnOfEndsThatDidNotMeet();
   std::int64_t HostCpuOf(Task& task);
 
   void Warn(const std::string& text);
+  bool IsInGrace() const { return grace_began_ns_ != shm::kNeverNs; }
+  bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
   shm::ThreadSlot& Slot(const Task& task) const {
@@ -363,7 +394,8 @@ class Engine {
   DispatchLog dispatch_log_;
   int world_row_ = 0;
   std::deque<Robot> robots_;
-  std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
+  std::vector<Launch> launches_;  // of all clients, as in the scenario
+  std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   std::vector<std::int64_t> progress_;  // Refresh's own
@@ -414,8 +446,10 @@ class Engine {
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   Task* lent_ = nullptr;            // has the active level beside the running thread
-  bool stop_requested_ = false;
+  StopRequest stop_;
   bool reached_end_ = false;
+  std::int64_t grace_began_ns_ = shm::kNeverNs;
+  bool grace_ran_out_ = false;                             // of real time
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside

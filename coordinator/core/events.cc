@@ -237,9 +237,20 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         break;
       case Tag::kSignal: {
         signalfd_siginfo info;
-        if (read(signals_, &info, sizeof info) == sizeof info) stop_requested_ = stop = true;
+        if (read(signals_, &info, sizeof info) != sizeof info) break;
+        // ^C is for the program that has the terminal.
+        if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
+            options_.output_directory.empty()) {
+          break;
+        }
+        stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+        stop = true;
         break;
       }
+      case Tag::kGraceRanOut:
+        close(static_cast<int>(index));
+        grace_ran_out_ = stop = true;
+        break;
       case Tag::kDetector: {
         std::uint64_t count;
         if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
