@@ -64,7 +64,7 @@ fs::path ExistingFolder(const YamlValue& value, const Variables& variables) {
 
 bool IsInside(const fs::path& path, const fs::path& folder) {
   const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return end == folder.end();
+  return !folder.empty() && end == folder.end();
 }
 
 // A folder of the client's own in the run's results.
@@ -173,7 +173,7 @@ void LoadOrder(const YamlMap& robots, Scenario* scenario) {
       if (const YamlValue* v = map.Find("after")) {
         after[client.name] = client.after = FindClient(*v, robot.key, *scenario);
         if (const std::string way = WayBack(client.name, after); !way.empty()) {
-          v->Fail("makes a circle, in which nobody starts: " + way +
+          v->Fail("makes a cycle, in which nobody starts: " + way +
                   "; let one of them start without another");
         }
       }
