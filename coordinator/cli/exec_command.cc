@@ -82,7 +82,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) Say("warning: " + w);
   if (!report.error.empty()) return Fail(report.error);
-  return report.interrupted ? kInterrupted : report.exit_status;
+  return report.interrupted ? InterruptedBy(report.stop_signal) : report.exit_status;
 }
 
 }  // namespace tcs

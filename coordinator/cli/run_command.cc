@@ -29,6 +29,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   ScenarioOverrides overrides;
   overrides.set = arguments.set;
   overrides.seed = arguments.seed;
+  overrides.result_directory = AbsolutePathOf(arguments.out);
   for (const std::string& error :
        {TakeDuration("duration", arguments.duration, &overrides.duration),
         TakeDuration("drift", arguments.drift, &overrides.drift)}) {
@@ -43,7 +44,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
     return Fail("another run writes to the folder '" + arguments.out +
                 "'; wait for it, or choose another one with --out");
   }
-  options.output_directory = std::filesystem::absolute(arguments.out);
+  options.output_directory = overrides.result_directory;
 
   LiveLine line(scenario.duration.ns());
   const int progress_fd = arguments.progress_fd;
@@ -66,7 +67,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
       !error.empty()) {
     return Fail(error);
   }
-  if (report.interrupted) return kInterrupted;
+  if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }
 

@@ -135,6 +135,7 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
         {"stolen_ns", c.usage.stolen_ns},
         {"activations", c.usage.activations},
         {"overruns", c.usage.overruns},
+        {"started_at_ns", c.started_at_ns},
         {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
     });

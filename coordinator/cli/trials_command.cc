@@ -15,6 +15,7 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
 #include "coordinator/os/cpu_places.h"
+#include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/own_network.h"
@@ -45,6 +46,7 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
   }
   for (std::size_t group = 0; group < GroupLabels(plan).size(); ++group) {
     overrides.set = SettingsOf(plan, group);
+    overrides.result_directory = AbsolutePathOf(arguments.out);
     auto loaded = LoadScenario(arguments.scenario, overrides);
     if (const auto* error = std::get_if<LoadError>(&loaded)) return error->message;
     scenarios->push_back(std::move(std::get<Scenario>(loaded)));
@@ -81,7 +83,9 @@ std::map<std::string, std::string> HashPrograms(const Scenario& scenario) {
   for (const RobotSpec& robot : scenario.robots) {
     for (const ClientSpec& client : robot.clients) {
       for (const std::string& word : client.command) {
-        const fs::path path = fs::path(client.working_directory) / word;
+        const bool is_copied = !client.copied_folder.empty();
+        const fs::path path =
+            fs::path(is_copied ? client.copied_folder : client.working_directory) / word;
         std::error_code error;
         if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kLargestProgram) {
           continue;
@@ -227,7 +231,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
                             "there",
                             earlier.size() + report.ends.size() - static_cast<std::size_t>(failed),
                             earlier.size() + todo.size()),
-                kInterrupted);
+                InterruptedBy(report.stop_signal));
   }
   return failed > 0 ? kClientFailed : kSucceeded;
 }

@@ -324,6 +324,7 @@ void Engine::ProcessEnded(std::size_t index) {
     }
   }
   if (parent != nullptr) WakeForSignals(*parent);
+  StartThoseAfter(process);
   WakeEveryKey();
   LeaveDds(process);
   if (!process.is_client) ended_processes_.push_back(&process);

@@ -45,15 +45,17 @@ struct RunOptions {
 
 struct ClientReport {
   std::string name;
-  Usage usage;                    // of all that it has started, too
-  std::int64_t ended_at_ns = -1;  // before the run did; -1: it lived to the end
-  int wait_status = 0;            // as of waitpid, if it ended
+  Usage usage;                      // of all that it has started, too
+  std::int64_t started_at_ns = -1;  // -1: never
+  std::int64_t ended_at_ns = -1;    // before the run did; -1: it lived to the end
+  int wait_status = 0;              // as of waitpid, if it ended
 };
 
 struct RunReport {
   std::string error;    // one sentence; empty if the run went to its end
   int exit_status = 0;  // of the first client, as a shell would report it
   bool interrupted = false;
+  int stop_signal = 0;  // which did that
   std::int64_t virtual_ns = 0;
   std::int64_t drift_ns = 0;      // largest difference of progress between two leaves
   std::int64_t staleness_ns = 0;  // largest, over all reads

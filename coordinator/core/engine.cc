@@ -47,7 +47,7 @@ Engine::~Engine() {
   for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], signals_, claim_.fd}) {
     if (fd >= 0) close(fd);
   }
-  for (const int listener : listeners_) close(listener);
+  for (const Listener& listener : listeners_) close(listener.fd);
 }
 
 void Engine::Warn(const std::string& text) {
@@ -115,6 +115,7 @@ void Engine::Refresh(Robot& robot) {
         due = std::min(due, task->process->next_expiry_ns);
       }
     }
+    due = std::min(due, robot.next_launch_ns);
     if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
   }
   for (const VirtualCpu* cpu : robot.cpus) {
@@ -273,6 +274,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
     limit = std::min(limit, cpu.progress_ns + left);
   }
+  limit = std::min(limit, std::max(robot.next_launch_ns, cpu.progress_ns));
   limit = std::min(limit, std::max(NextLook(*task.process), cpu.progress_ns + kLeastLookNs));
   std::int64_t idle = limit;
   const std::int64_t turn_end =
@@ -348,6 +350,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.progress_ns = std::max(cpu.progress_ns, root_.Least());
   FireDue(robot, cpu.progress_ns);
+  StartDue(robot, cpu.progress_ns);
   // Who is due by now did not wait for another turn of the last one.
   robot.ready.Rotate(std::exchange(cpu.turn_over, FixedPriority::kNobody));
   Refresh(robot);
@@ -394,7 +397,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
 // Advances the dynamics where the virtual CPUs have come to what is due there, or have left them
 // behind. False if neither is so.
 bool Engine::StepWorld() {
-  if (!world_.present()) return false;
+  if (!WorldGoesOn()) return false;
   const std::int64_t limit = std::min(root_.Least(), end_ns_);
   const std::int64_t now = world_.progress_ns();
   const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
@@ -423,7 +426,7 @@ bool Engine::StepWorld() {
 // within the drift bound on either side its slices are twice as long. Returns how far the thread
 // may run.
 std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
-  if (!world_.present() || IsCallback()) return horizon_ns;
+  if (!WorldGoesOn() || IsCallback()) return horizon_ns;
   const std::int64_t bound = std::min(scenario_.drift_bound.ns(), shm::kMaxDispatchNs);
   const std::int64_t now = task.cpu->progress_ns, world = world_.progress_ns();
   const bool computes = task.used_up >= kComputes;
@@ -491,7 +494,7 @@ std::int64_t Engine::FurthestNs() const {
 }
 
 void Engine::ShowProgress() {
-  if (!options_.on_progress || __rdtsc() < next_progress_tsc_) return;
+  if (!options_.on_progress || IsInGrace() || __rdtsc() < next_progress_tsc_) return;
   next_progress_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kShowEveryNs) * ticks_per_ns_);
   RunProgress progress;
@@ -507,13 +510,13 @@ void Engine::ShowProgress() {
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && living_ == 0; ++turn) {
+  for (int turn = 0; turn < kDeathTurns && living_ == 0 && !HasLaunchAhead(); ++turn) {
     const bool all_dead = std::all_of(processes_.begin(), processes_.end(),
                                       [](const Process& process) { return process.dead; });
-    if (all_dead || stop_requested_) return false;
+    if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
     PollEvents(kOutsidePollNs);
   }
-  return living_ > 0;
+  return living_ > 0 || HasLaunchAhead();
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
@@ -541,14 +544,14 @@ bool Engine::AwaitOutside() {
 
 // One step of the run; false at its end.
 bool Engine::Step() {
-  if (living_ == 0) return AwaitDeaths();
+  if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
   TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();
   if (least >= end_ns_ || least == shm::kNeverNs) {
-    if (least == shm::kNeverNs && !world_.present() && AwaitOutside()) return true;
+    if (least == shm::kNeverNs && !WorldGoesOn() && AwaitOutside()) return true;
     reached_end_ = true;
     return false;
   }
@@ -568,7 +571,7 @@ RunReport Engine::Run() {
   start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
   start_tsc_ = __rdtsc();
   try {
-    while (report_.error.empty() && !stop_requested_) {
+    while (report_.error.empty() && !stop_.asked()) {
       if (!Step()) break;
     }
   } catch (const DynamicsError& error) {
@@ -578,12 +581,17 @@ RunReport Engine::Run() {
   report_.coordinating_ns = HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ -
                             (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
-  // First: how the clients end is no part of what repeats.
+  // First: what clients do at their end is no part of the run.
   if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {
     report_.error = error;
   }
-  if (header_ != nullptr) Shutdown();
-  return report_;
+  RunReport report = report_;
+  if (header_ != nullptr) {
+    EndClients();
+    Shutdown();
+  }
+  report.warnings = report_.warnings;
+  return report;
 }
 
 RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {

@@ -18,6 +18,7 @@
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
@@ -42,6 +43,7 @@ class Engine {
     kTrap,
     kCommand,
     kSignal,
+    kGraceRanOut,
     kDetector
   };
 
@@ -49,9 +51,29 @@ class Engine {
   std::string Prepare();
   std::string PrepareSegment();
   std::string PrepareListener();
+  // Where a client and its descendants register.
+  struct Listener {
+    int fd;
+    Process* client;
+  };
   std::string OpenListener();
   std::string PrepareDetector();
+
+  // When the clients start (launches.cc).
+  struct Launch {
+    const ClientSpec* spec;
+    Robot* robot;
+    std::int64_t start_ns;  // never: it waits for another one to end
+    Process* process;       // once started
+  };
+  std::string PrepareFolders();
   std::string StartClients();
+  std::string Start(Launch& launch);
+  void StartDue(Robot& robot, std::int64_t now_ns);
+  void FindNextLaunch(Robot& robot);
+  bool HasLaunchAhead() const;
+  void StartThoseAfter(const Process& ended);
+  void WarnOfNeverStarted();
 
   // The loop (engine.cc).
   bool Step();
@@ -356,12 +378,26 @@ class Engine {
   void KeepUsageOf(Task& ended);
   void KeepUsageOf(Process& ended);
 
+  // The last signal and the time to obey it (grace.cc).
+  void EndClients();
+  void BeginGrace();
+  void LimitRealTime();
+  void KillOverdue();
+  bool IsGraceOver() const { return grace_ran_out_ || stop_.insists(); }
+  int StopSignalOf(const Process& process) const;
+  static std::int64_t GraceOf(const Process& process);
+  std::int64_t KillTimeOf(const Process& process) const;
+  void WarnOfKill(const Process& process, const std::string& within);
+
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
+  ClientReport ReportOf(const Launch& launch);
   void WarnOfEndsThatDidNotMeet();
 
   void Warn(const std::string& text);
+  bool IsInGrace() const { return grace_began_ns_ != shm::kNeverNs; }
+  bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
   shm::ThreadSlot& Slot(const Task& task) const {
@@ -378,7 +414,8 @@ class Engine {
   DispatchLog dispatch_log_;
   int world_row_ = 0;
   std::deque<Robot> robots_;
-  std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
+  std::vector<Launch> launches_;  // of all clients, as in the scenario
+  std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
@@ -412,9 +449,9 @@ class Engine {
   std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
-  int held_turns_ = 0;          // since the running thread was found blocked in the kernel
-  std::vector<int> listeners_;  // by client, where it and its descendants register
-  std::string socket_name_;     // of the first; the others' have their numbers in them
+  int held_turns_ = 0;  // since the running thread was found blocked in the kernel
+  std::vector<Listener> listeners_;
+  std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
   double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
@@ -431,8 +468,10 @@ class Engine {
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   Task* lent_ = nullptr;            // has the active level beside the running thread
-  bool stop_requested_ = false;
+  StopRequest stop_;
   bool reached_end_ = false;
+  std::int64_t grace_began_ns_ = shm::kNeverNs;
+  bool grace_ran_out_ = false;                             // of real time
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside

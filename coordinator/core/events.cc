@@ -192,7 +192,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
       }
       case Tag::kListener: {
         const int connection =
-            accept4(listeners_[index], nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+            accept4(listeners_[index].fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (connection >= 0) {
           Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection),
                 index);
@@ -200,7 +200,7 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         break;
       }
       case Tag::kConnection:
-        Attach(static_cast<int>(index), processes_[NumberOf(events[i].data.u64)]);
+        Attach(static_cast<int>(index), *listeners_[NumberOf(events[i].data.u64)].client);
         close(static_cast<int>(index));
         stop = true;
         external_event_ = true;
@@ -240,9 +240,20 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         break;
       case Tag::kSignal: {
         signalfd_siginfo info;
-        if (read(signals_, &info, sizeof info) == sizeof info) stop_requested_ = stop = true;
+        if (read(signals_, &info, sizeof info) != sizeof info) break;
+        // ^C is for the program that has the terminal.
+        if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
+            options_.output_directory.empty()) {
+          break;
+        }
+        stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+        stop = true;
         break;
       }
+      case Tag::kGraceRanOut:
+        close(static_cast<int>(index));
+        grace_ran_out_ = stop = true;
+        break;
       case Tag::kDetector: {
         std::uint64_t count;
         if (read(detector_fired_, &count, sizeof count) != sizeof count) break;

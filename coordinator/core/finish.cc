@@ -1,10 +1,5 @@
 // The orderly end of a run, and what it reports.
 #include <fmt/format.h>
-#include <linux/futex.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -16,67 +11,43 @@
 
 namespace tcs {
 
-namespace {
-
-constexpr int kGraceMs = 300;  // between SIGTERM and SIGKILL
-
-}  // namespace
-
-// From here on the shim lets every call through, in real time and at ordinary priority, so that a
-// client's own SIGTERM handler can put its things in order.
+// Whoever is left now is killed. None may keep the processor meanwhile, nor this process, which
+// waits in the kernel for the last steps of their threads.
 void Engine::Shutdown() {
   header_->shutdown.store(1);
-  std::vector<pollfd> ends;
-  for (Task& task : tasks_) {
-    if (task.state == TaskState::kDead) continue;
-    LeaveRealTime(task.tid);
-    if (task.slot >= 0) {
-      std::atomic<std::uint32_t>& gate = Slot(task).gate;
-      gate.store(shm::kGateOpen);
-      syscall(SYS_futex, &gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
-    }
+  for (const Task& task : tasks_) {
+    if (task.state != TaskState::kDead) LeaveRealTime(task.tid);
   }
-  for (Process& process : processes_) {
-    if (process.dead) continue;
-    kill(process.pid, SIGTERM);
-    if (process.pidfd >= 0) ends.push_back({process.pidfd, POLLIN, 0});
-  }
-  const std::int64_t until = HostClockNs(CLOCK_MONOTONIC) + std::int64_t{kGraceMs} * 1'000'000;
-  // What clients do meanwhile the kernel does for them.
-  running_ = nullptr;
-  ReleaseTrapped();
-  ends.push_back({epoll_, POLLIN, 0});
-  while (ends.size() > 1 && HostClockNs(CLOCK_MONOTONIC) < until) {
-    poll(ends.data(), ends.size(), kGraceMs / 10);
-    PollEvents(0);
-    ReleaseTrapped();
-    std::erase_if(ends, [this](const pollfd& end) { return end.fd != epoll_ && end.revents != 0; });
-  }
-  // Everything that descends from this process and lost its parent is ours to end and to reap, too:
-  // not at a real-time priority, which would keep the last steps of their threads from being made.
   LeaveRealTime(0);
+  // Everything that descends from this process and lost its parent is ours to end and to reap, too.
   KillDescendants();
+}
+
+ClientReport Engine::ReportOf(const Launch& launch) {
+  ClientReport client;
+  client.name = launch.spec->name;
+  if (launch.process == nullptr) return client;
+  const Process& process = *launch.process;
+  client.started_at_ns = process.started_at_ns;
+  client.usage = UsageOfAll(process);
+  client.ended_at_ns = process.ended_at_ns;
+  client.wait_status = process.wait_status;
+  return client;
 }
 
 void Engine::Report(RunReport* report) {
   report->virtual_ns = reached_end_ ? end_ns_ : FurthestNs();
   WarnOfDrops();
+  WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();
   report->drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
   report->dynamics_ns = world_.host_ns();
   report->samples = world_.samples();
   report->commands = world_.commands();
   report->client_ns = client_host_ns_;
-  report->interrupted = stop_requested_;
-  for (const Process& process : processes_) {
-    if (!process.is_client) continue;
-    ClientReport client;
-    client.name = process.name;
-    client.usage = UsageOfAll(process);
-    client.ended_at_ns = process.ended_at_ns;
-    client.wait_status = process.wait_status;
-    report->clients.push_back(client);
-  }
+  report->interrupted = stop_.asked();
+  report->stop_signal = stop_.signal();
+  for (const Launch& launch : launches_) report->clients.push_back(ReportOf(launch));
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;

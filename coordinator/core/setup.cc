@@ -1,5 +1,5 @@
 // What a run needs before its first step: the segment, the pipe and socket that clients find us by,
-// the block detector, the clients themselves.
+// the block detector.
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +15,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstring>
 
 #include "coordinator/core/engine.h"
@@ -58,6 +57,7 @@ std::string Engine::Prepare() {
   claim_ = ClaimCpu();
   if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   if (std::string error = OpenRecords(); !error.empty()) return error;
+  if (std::string error = PrepareFolders(); !error.empty()) return error;
   if (world_.present()) {
     world_row_ = AddRow("dynamics", "dynamics");
   }
@@ -106,13 +106,8 @@ std::string Engine::PrepareListener() {
   fcntl(pipe_[1], F_SETFL, 0);
   sigset_t blocked;
   sigemptyset(&blocked);
-  sigaddset(&blocked, SIGTERM);
-  sigaddset(&blocked, SIGHUP);
-  const bool has_terminal = options_.output_directory.empty();
-  if (!has_terminal) sigaddset(&blocked, SIGINT);
+  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
-  // ^C is for the program that has the terminal.
-  if (has_terminal) signal(SIGINT, SIG_IGN);
   signal(SIGPIPE, SIG_IGN);
   signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
 
@@ -128,7 +123,7 @@ std::string Engine::OpenListener() {
   const std::string name = fmt::format("{}.{}", socket_name_, client);
   const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (listener < 0) return {};
-  listeners_.push_back(listener);
+  listeners_.push_back({listener, nullptr});
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   memcpy(address.sun_path + 1, name.data(), name.size());
@@ -151,58 +146,6 @@ std::string Engine::PrepareDetector() {
   if (detector == 0) {
     if (getppid() != coordinator) _exit(0);
     Detect(detector_arm_, detector_fired_);
-  }
-  return {};
-}
-
-std::string Engine::StartClients() {
-  for (const RobotSpec& robot : scenario_.robots) {
-    const auto cores = static_cast<std::uint32_t>(robot.cores);
-    Robot& computer = robots_.emplace_back(robot.name, cores, robot.speed);
-    for (std::uint32_t core = 0; core < cores; ++core) {
-      VirtualCpu& cpu = cpus_.emplace_back();
-      cpu.robot = &computer;
-      cpu.core = core;
-      cpu.leaf = root_.AddLeaf(static_cast<int>(robots_.size()));
-      computer.cpus.push_back(&cpu);
-    }
-    for (const ClientSpec& client : robot.clients) {
-      SpawnRequest request;
-      request.command = client.command;
-      request.working_directory = client.working_directory;
-      request.environment = client.environment;
-      const bool charges_allocations = IsFixed() && client.fixed_allocation_cost.ns() > 0;
-      request.environment["LD_PRELOAD"] =
-          options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
-      const std::string socket_name = OpenListener();
-      if (socket_name.empty()) return "the socket that clients register at cannot be made";
-      request.environment["TCS_SOCKET"] = socket_name;
-      request.fixed_layout = IsFixed();
-      if (!options_.output_directory.empty()) {
-        std::string base = client.name;
-        std::replace(base.begin(), base.end(), '/', '-');
-        base = options_.output_directory + "/" + base;
-        request.log_stdout = base + ".out.log";
-        request.log_stderr = base + ".err.log";
-      }
-      const Spawned spawned = Spawn(request);
-      const pid_t pid = spawned.pid;
-      if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
-      if (spawned.trap >= 0) {
-        Watch(spawned.trap, EPOLLIN, Tag::kTrap, static_cast<std::uint32_t>(spawned.trap));
-      } else {
-        Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
-             "): threads wait for each other in real time");
-      }
-      Task* task = NewTask(pid, getpid(), &computer, client.name, client.priority);
-      task->process->is_client = true;
-      task->process->client = task->process;
-      TCS_CHECK(task->process->index + 1 == listeners_.size());
-      task->process->call_cost_ns = client.fixed_call_cost.ns();
-      task->process->allocation_cost_ns = client.fixed_allocation_cost.ns();
-      task->process->patch_vdso = client.patch_vdso;
-      task->process->dds_endpoints = client.dds == DdsTransport::kEndpoints;
-    }
   }
   return {};
 }

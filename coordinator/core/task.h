@@ -38,6 +38,7 @@ enum class TrapWait { kNone, kFutex, kSleep, kFds, kTransfer, kChild };
 // Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
 enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued };
 
+struct ClientSpec;
 struct Process;
 struct Robot;
 struct VirtualCpu;
@@ -157,8 +158,9 @@ struct TimerSignal {
 };
 
 struct Process {
-  std::uint32_t index = 0;    // its place in the engine's list
-  Process* client = nullptr;  // the client that it is or descends from
+  std::uint32_t index = 0;           // its place in the engine's list
+  Process* client = nullptr;         // the client that it is or descends from
+  const ClientSpec* spec = nullptr;  // of a client
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
   Robot* robot = nullptr;
@@ -190,11 +192,12 @@ struct Process {
   Task* deliverer = nullptr;      // its thread that takes what is for it
   int waiting_for_deliverer = 0;  // threads
   bool dead = false;
+  bool killed = false;         // at the end of its grace
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will
   bool is_client = false;      // named in the scenario, rather than a child of one
   int wait_status = 0;         // once dead, of the coordinator's own children
-  std::int64_t ended_at_ns = -1;
+  std::int64_t started_at_ns = 0, ended_at_ns = -1;
 };
 
 // A child that was not announced and has not registered, perhaps never will.
@@ -218,8 +221,9 @@ struct Robot {
   std::string name;
   double speed;
   FixedPriority ready;
-  std::vector<VirtualCpu*> cpus;  // by core
-  std::vector<Task*> tasks;       // the living
+  std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
+  std::vector<VirtualCpu*> cpus;                // by core
+  std::vector<Task*> tasks;                     // the living
 };
 
 }  // namespace tcs

@@ -50,6 +50,33 @@ std::string MakeFolder(const std::string& path) {
          "; choose another one with --out";
 }
 
+std::string AbsolutePathOf(const std::string& path) {
+  const std::filesystem::path absolute = std::filesystem::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+std::string CopyFolder(const std::string& from, const std::string& to) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(from, error);
+  for (; !error && entry != fs::recursive_directory_iterator{}; entry.increment(error)) {
+    const fs::path copy = to / entry->path().lexically_relative(from);
+    const fs::file_type type = entry->symlink_status(error).type();
+    if (error) break;
+    if (type == fs::file_type::directory) {
+      fs::create_directory(copy, entry->path(), error);
+    } else if (type == fs::file_type::symlink) {
+      fs::copy_symlink(entry->path(), copy, error);
+    } else if (type == fs::file_type::regular) {
+      fs::copy_file(entry->path(), copy, error);
+    }
+    if (error)
+      return entry->path().string() + " cannot be copied into " + to + ": " + error.message();
+  }
+  if (error) return from + " cannot be copied: " + error.message();
+  return {};
+}
+
 std::string LastLine(const std::string& path) {
   constexpr std::streamoff kLookedAt = 4096;
   constexpr std::size_t kLongest = 200;

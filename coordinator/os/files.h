@@ -17,6 +17,13 @@ enum class Withstands { kCrash, kPowerCut };
 // Makes the folder and those above it. Empty on success, else one sentence that names --out.
 [[nodiscard]] std::string MakeFolder(const std::string& path);
 
+// Its absolute path, without "." and "..", and without a slash at its end.
+[[nodiscard]] std::string AbsolutePathOf(const std::string& path);
+
+// Copies what is in one folder into another, which is there: files with their permissions, folders
+// and symbolic links; no sockets, pipes and devices. Empty on success, else one sentence.
+[[nodiscard]] std::string CopyFolder(const std::string& from, const std::string& to);
+
 // The last line of a text file that is not empty, cut to what fits a sentence; empty if there is
 // none, or no such file. Reads the file's end only.
 [[nodiscard]] std::string LastLine(const std::string& path);

@@ -43,6 +43,11 @@ void PassOn(int signal) {
   alarm(g_limits.stop_within_s);
 }
 
+// ^C at a terminal reaches the child by itself; what somebody has sent, only this process may have.
+void PassOnInterrupt(int signal, siginfo_t* info, void*) {
+  if (info->si_code != SI_KERNEL) PassOn(signal);
+}
+
 void EndIt(const char* sentence) {
   const ssize_t n = write(STDERR_FILENO, sentence, strlen(sentence));
   static_cast<void>(n);
@@ -156,7 +161,11 @@ int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   for (const int signal : {SIGTERM, SIGHUP}) Handle(signal, PassOn);
   Handle(SIGALRM, Look);
   if (g_beats != nullptr) alarm(limits.look_every_s);
-  for (const int signal : {SIGINT, SIGQUIT}) Handle(signal, SIG_IGN);
+  Handle(SIGQUIT, SIG_IGN);
+  struct sigaction interrupt {};
+  interrupt.sa_sigaction = PassOnInterrupt;
+  interrupt.sa_flags = SA_RESTART | SA_SIGINFO;
+  sigaction(SIGINT, &interrupt, nullptr);
   sigprocmask(SIG_SETMASK, &before, nullptr);
 
   for (;;) {

@@ -17,8 +17,9 @@ struct GuardLimits {
 };
 
 // Runs `coordinate` in a child process and returns its exit status once nothing that descends from
-// it lives any more. Dies of the signal that the child died of. SIGTERM and SIGHUP are passed on,
-// ^C and ^\ reach the child by the terminal, a stop stops both. Call it before there are threads.
+// it lives any more. Dies of the signal that the child died of. SIGTERM, SIGHUP and a
+// SIGINT that somebody has sent are passed on, ^C and ^\ reach the child by the terminal, a stop
+// stops both. Call it before there are threads.
 //
 // The child runs at real-time priority, so it must not go astray: it is killed, with a sentence on
 // stderr, if it has computed all the time between two looks without a single Beat, and if it has

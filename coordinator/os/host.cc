@@ -340,9 +340,6 @@ Spawned Spawn(const SpawnRequest& request) {
   for (const auto& [name, value] : request.environment) {
     setenv(name.c_str(), value.c_str(), 1);
   }
-  if (!request.working_directory.empty() && chdir(request.working_directory.c_str()) != 0) {
-    _exit(127);
-  }
   auto redirect = [](const std::string& path, int to) {
     if (path.empty()) return;
     const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -354,6 +351,11 @@ Spawned Spawn(const SpawnRequest& request) {
   if (!request.log_stdout.empty()) {
     const int null = open("/dev/null", O_RDONLY);
     dup2(null, 0);
+  }
+  if (!request.working_directory.empty() && chdir(request.working_directory.c_str()) != 0) {
+    fprintf(stderr, "tcsim: the working directory %s cannot be entered: %s\n",
+            request.working_directory.c_str(), strerror(errno));
+    _exit(127);
   }
   execvp(argv[0], argv.data());
   fprintf(stderr, "tcsim: %s cannot be started: %s\n", argv[0], strerror(errno));

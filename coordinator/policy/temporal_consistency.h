@@ -30,6 +30,10 @@ class TemporalConsistency {
   // `output_ns`.
   void UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns);
 
+  // Another end of the run than the one before; and the dynamics go no further, nor are waited for.
+  void EndAt(std::int64_t end_ns) { end_ns_ = end_ns; }
+  void EndDynamics() { has_dynamics_ = false; }
+
   // The least time at which any virtual CPU can act, and who can act then; -1: none can. Of several
   // it is the one that has acted last: who wakes a thread of another one gets on with what it does,
   // and has most often released the lock that the woken one wants before that one asks for it.

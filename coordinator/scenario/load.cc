@@ -66,7 +66,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
   LoadWorld(top, &scenario);
-  LoadRobots(top, FolderOf(path), &scenario);
+  LoadRobots(top, {scenario.seed, FolderOf(path), overrides.result_directory}, &scenario);
   LoadChannels(top, &scenario);
   CheckDdsTransports(top, &scenario);
   return scenario;

@@ -20,6 +20,8 @@ struct ScenarioOverrides {
   std::optional<VirtualDuration> duration;
   std::optional<VirtualDuration> drift;
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
+  // Absolute: what ${result_dir} stands for, where clients may have folders.
+  std::string result_directory;
 };
 
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scenario/executable.h"
+#include "coordinator/scenario/load_lives.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/substitute.h"
@@ -46,13 +47,12 @@ DdsTransport LoadDdsTransport(const YamlValue& value) {
              Suggest(text, {"endpoints", "sockets"}, "ways of DDS"));
 }
 
-std::vector<std::string> LoadCommand(const YamlValue& value, const std::string& folder,
-                                     std::uint64_t seed) {
+std::vector<std::string> LoadCommand(const YamlValue& value, const Variables& variables) {
   std::vector<std::string> command;
   const std::vector<YamlValue> words = value.AsList("[./controller, --rate, 100]");
-  for (const YamlValue& word : words) command.push_back(Substitute(word, seed));
+  for (const YamlValue& word : words) command.push_back(Substitute(word, variables));
 
-  LoadResult<std::string> program = FindExecutable(command[0], folder);
+  LoadResult<std::string> program = FindExecutable(command[0], variables.scenario_directory);
   if (const auto* error = std::get_if<LoadError>(&program)) {
     words[0].FailPlainly(value.name() + ": " + error->message);
   }
@@ -63,7 +63,8 @@ std::vector<std::string> LoadCommand(const YamlValue& value, const std::string& 
   return command;
 }
 
-std::map<std::string, std::string> LoadEnvironment(const YamlValue& value, std::uint64_t seed) {
+std::map<std::string, std::string> LoadEnvironment(const YamlValue& value,
+                                                   const Variables& variables) {
   std::map<std::string, std::string> environment;
   const YamlMap map = value.AsMap();
   for (const YamlMap::Entry& entry : map.entries()) {
@@ -71,29 +72,29 @@ std::map<std::string, std::string> LoadEnvironment(const YamlValue& value, std::
         entry.key.find_first_of(std::string_view("=\0", 2)) != std::string::npos) {
       entry.value.Fail("is no environment variable's name: it must not be empty or contain '='");
     }
-    environment[entry.key] = Substitute(entry.value, seed);
+    environment[entry.key] = Substitute(entry.value, variables);
   }
   return environment;
 }
 
 ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
-                      const std::string& folder, const Scenario& scenario) {
+                      const Variables& variables, const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
   map.AllowOnly({"command", "class", "priority", "body", "environment", "fixed_call_cost",
-                 "fixed_allocation_cost", "patch_vdso", "dds"});
+                 "fixed_allocation_cost", "patch_vdso", "dds", "working_directory", "start",
+                 "after", "stop_signal", "stop_grace"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
-  client.working_directory = folder;
-  client.command =
-      LoadCommand(map.Require("command", "command: [./controller]"), folder, scenario.seed);
+  client.working_directory = variables.scenario_directory;
+  client.command = LoadCommand(map.Require("command", "command: [./controller]"), variables);
   if (const YamlValue* v = map.Find("class")) client.client_class = LoadClass(*v);
   if (const YamlValue* v = map.Find("priority")) {
     client.priority = static_cast<int>(v->AsInteger(0, 99));
   }
   if (const YamlValue* v = map.Find("body")) client.body = FindBody(*v, scenario);
   if (const YamlValue* v = map.Find("environment")) {
-    client.environment = LoadEnvironment(*v, scenario.seed);
+    client.environment = LoadEnvironment(*v, variables);
   }
   if (const YamlValue* v = map.Find("fixed_call_cost")) {
     client.fixed_call_cost = v->AsPositiveDuration();
@@ -103,10 +104,11 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   }
   if (const YamlValue* v = map.Find("patch_vdso")) client.patch_vdso = v->AsBoolean();
   if (const YamlValue* v = map.Find("dds")) client.dds = LoadDdsTransport(*v);
+  LoadLife(map, variables, &client);
   return client;
 }
 
-RobotSpec LoadRobot(const YamlMap::Entry& entry, const std::string& folder,
+RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
                     const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
@@ -119,21 +121,22 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const std::string& folder,
   const YamlMap client_map = clients.AsMap();
   if (client_map.entries().empty()) clients.Fail("is empty; a robot needs at least one client");
   for (const YamlMap::Entry& client : client_map.entries()) {
-    robot.clients.push_back(LoadClient(client, robot.name, folder, scenario));
+    robot.clients.push_back(LoadClient(client, robot.name, variables, scenario));
   }
   return robot;
 }
 
 }  // namespace
 
-void LoadRobots(const YamlMap& top, const std::string& folder, Scenario* scenario) {
+void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario) {
   const YamlValue& robots =
       top.Require("robots", "robots: {predator: {clients: {controller: {command: [./fly]}}}}");
   const YamlMap map = robots.AsMap();
   if (map.entries().empty()) robots.Fail("is empty; a scenario needs at least one robot");
   for (const YamlMap::Entry& entry : map.entries()) {
-    scenario->robots.push_back(LoadRobot(entry, folder, *scenario));
+    scenario->robots.push_back(LoadRobot(entry, variables, *scenario));
   }
+  LoadOrder(map, scenario);
 }
 
 }  // namespace tcs

@@ -2,6 +2,9 @@
 // in docs/SCENARIO.md; LoadScenario (load.h) is the only way in.
 #pragma once
 
+#include <signal.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -27,10 +30,19 @@ enum class DdsTransport {
   kSockets,    // as DDS sends them, by sockets; any vendor's
 };
 
+// What the folder that a client works in is to the run.
+enum class ClientFolder {
+  kThere,  // it was there before
+  kMade,   // in the run's results, and made if it is not there
+  kFresh,  // its own in the run's results: there is nothing in it but a copy of `copied_folder`
+};
+
 struct ClientSpec {
   std::string name;  // unique in the scenario: "ROBOT/CLIENT" as written in the YAML
   std::vector<std::string> command;  // argv; command[0] is an absolute path after loading
   std::string working_directory;     // absolute; the scenario file's folder
+  ClientFolder folder = ClientFolder::kThere;
+  std::string copied_folder;  // absolute; empty: none
   ClientClass client_class = ClientClass::kBestEffort;
   int priority = 0;                                // higher runs first on its robot
   std::map<std::string, std::string> environment;  // added to tcsim's own
@@ -41,7 +53,20 @@ struct ClientSpec {
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
   bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
   DdsTransport dds = DdsTransport::kEndpoints;
+  // It is started then, and not before the client named `after` has ended, unless that is empty.
+  VirtualDuration start{};
+  std::string after;
+  // How it is ended at the run's end: asked by the signal, and killed so much virtual time later.
+  int stop_signal = SIGTERM;
+  VirtualDuration stop_grace = VirtualDuration::Milliseconds(500);
 };
+
+// What its files in the run's results begin with.
+inline std::string FileNameOf(const ClientSpec& client) {
+  std::string name = client.name;
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name;
+}
 
 struct RobotSpec {
   std::string name;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/scenario/substitute.h"
 #include "coordinator/scenario/yaml_reader.h"
 
 namespace tcs {
@@ -14,9 +15,8 @@ namespace tcs {
 // `dynamics` and `bodies`, into scenario->world.
 void LoadWorld(const YamlMap& top, Scenario* scenario);
 
-// `robots`. Reads the seed and the world's bodies from `scenario`; `folder` is the file's,
-// absolute.
-void LoadRobots(const YamlMap& top, const std::string& folder, Scenario* scenario);
+// `robots`. Reads the duration and the world's bodies from `scenario`.
+void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, Scenario* scenario);

@@ -6,13 +6,15 @@
 namespace tcs {
 namespace {
 
-std::string Lookup(const YamlValue& value, const std::string& name, std::uint64_t seed) {
+std::string Lookup(const YamlValue& value, const std::string& name, const Variables& variables) {
   constexpr std::string_view kAllowed =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
   if (name.empty() || name.find_first_not_of(kAllowed) != std::string::npos) {
     value.Fail("contains '${" + name + "}', which names no variable; write $${ for a literal ${");
   }
-  if (name == "seed") return std::to_string(seed);
+  if (name == "seed") return std::to_string(variables.seed);
+  if (name == "scenario_dir") return variables.scenario_directory;
+  if (name == "result_dir") return variables.result_directory;
   const char* found = std::getenv(name.c_str());
   if (found == nullptr) {
     value.Fail("uses ${" + name + "}, which is not set; set that environment variable, or write " +
@@ -23,7 +25,7 @@ std::string Lookup(const YamlValue& value, const std::string& name, std::uint64_
 
 }  // namespace
 
-std::string Substitute(const YamlValue& value, std::uint64_t seed) {
+std::string Substitute(const YamlValue& value, const Variables& variables) {
   const std::string text = value.AsText();
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
@@ -35,7 +37,7 @@ std::string Substitute(const YamlValue& value, std::uint64_t seed) {
       if (end == std::string::npos) {
         value.Fail("contains '${' without '}'; close it, or write $${ for a literal ${");
       }
-      result += Lookup(value, text.substr(i + 2, end - i - 2), seed);
+      result += Lookup(value, text.substr(i + 2, end - i - 2), variables);
       i = end + 1;
     } else {
       result += text[i++];

@@ -1,4 +1,4 @@
-// ${…} in the commands and environments of a scenario's clients.
+// ${…} in the commands, environments and folders of a scenario's clients.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,15 @@
 
 namespace tcs {
 
-// The text of `value` with ${seed} replaced by the run's seed and ${NAME} by tcsim's environment
-// variable NAME; $${ stands for ${ itself. Other dollar signs stay. Throws ScenarioMistake.
-std::string Substitute(const YamlValue& value, std::uint64_t seed);
+struct Variables {
+  std::uint64_t seed = 1;          // ${seed}
+  std::string scenario_directory;  // ${scenario_dir}: the file's folder, absolute
+  std::string result_directory;    // ${result_dir}: where the run's results go, absolute
+};
+
+// The text of `value` with ${seed}, ${scenario_dir} and ${result_dir} replaced by what they are in
+// this run, and ${NAME} by tcsim's environment variable NAME; $${ stands for ${ itself. Other
+// dollar signs stay. Throws ScenarioMistake.
+std::string Substitute(const YamlValue& value, const Variables& variables);
 
 }  // namespace tcs

@@ -59,6 +59,7 @@ class YamlValue {
   std::array<double, 3> AsVector3() const;
   // At least one element.
   std::vector<YamlValue> AsList(std::string_view example) const;
+  bool IsMap() const { return node_.IsMap(); }
   YamlMap AsMap() const;
 
  private:

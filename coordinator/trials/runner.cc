@@ -18,6 +18,7 @@
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/stop_request.h"
 #include "coordinator/trials/run_process.h"
 
 namespace tcs {
@@ -100,7 +101,7 @@ class Runner {
   RunnerReport report_;
   const std::int64_t start_ns_ = HostClockNs(CLOCK_MONOTONIC);
   int signals_ = -1;
-  bool waits_for_nobody_ = false;
+  StopRequest stop_;
 };
 
 RunnerReport Runner::Run() {
@@ -111,7 +112,7 @@ RunnerReport Runner::Run() {
   signals_ = signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK);
   for (;;) {
     if (!report_.interrupted) StartMore();
-    if (running_.empty() || waits_for_nobody_) break;
+    if (running_.empty() || stop_.insists()) break;
     if (events_.on_progress && !report_.interrupted) events_.on_progress(Look());
     Wait();
   }
@@ -197,9 +198,12 @@ void Runner::Wait() {
 void Runner::TakeSignal() {
   signalfd_siginfo info;
   while (read(signals_, &info, sizeof info) == sizeof info) {
-    waits_for_nobody_ = report_.interrupted;
-    if (!report_.interrupted && events_.on_stopping) events_.on_stopping();
+    const bool is_first = !stop_.asked();
+    stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
     report_.interrupted = true;
+    report_.stop_signal = stop_.signal();
+    if (!is_first) continue;
+    if (events_.on_stopping) events_.on_stopping();
     for (const Running& running : running_) running.process.EndInOrder();
   }
 }

@@ -37,6 +37,7 @@ struct RunnerEvents {
 
 struct RunnerReport {
   bool interrupted = false;
+  int stop_signal = 0;  // which did that
   std::vector<TrialEnd> ends;
 };
 

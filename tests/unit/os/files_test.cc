@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -79,6 +80,29 @@ TEST_F(FilesTest, AFolderIsHeldByOneUntilItLetsGo) {
 TEST_F(FilesTest, AFolderThatWasLetGoIsFree) {
   { const FolderLock first(folder_); }
   EXPECT_TRUE(FolderLock(folder_).IsOurs());
+}
+
+TEST_F(FilesTest, ACopyHasWhatAFolderHas) {
+  fs::create_directories(folder_ + "/from/deep/empty");
+  std::ofstream(folder_ + "/from/deep/file") << "text";
+  fs::permissions(folder_ + "/from/deep/file", fs::perms(0750));
+  fs::create_symlink("deep/file", folder_ + "/from/link");
+  fs::create_symlink("nowhere", folder_ + "/from/broken");
+  ASSERT_EQ(mkfifo((folder_ + "/from/pipe").c_str(), 0600), 0);
+  fs::create_directory(folder_ + "/to");
+  ASSERT_EQ(CopyFolder(folder_ + "/from", folder_ + "/to"), "");
+  EXPECT_EQ(TextOf(folder_ + "/to/link"), "text");
+  EXPECT_TRUE(fs::is_symlink(folder_ + "/to/link"));
+  EXPECT_EQ(fs::read_symlink(folder_ + "/to/broken"), "nowhere");
+  EXPECT_EQ(fs::status(folder_ + "/to/deep/file").permissions(), fs::perms(0750));
+  EXPECT_TRUE(fs::is_directory(folder_ + "/to/deep/empty"));
+  EXPECT_FALSE(fs::exists(folder_ + "/to/pipe"));
+  EXPECT_THAT(CopyFolder(folder_ + "/none", folder_ + "/to"), HasSubstr("/none cannot be copied"));
+}
+
+TEST(AbsolutePath, HasNoDotsAndNoSlashAtItsEnd) {
+  EXPECT_EQ(AbsolutePathOf("/a/./b/../c/"), "/a/c");
+  EXPECT_EQ(AbsolutePathOf("x"), fs::current_path().string() + "/x");
 }
 
 }  // namespace
