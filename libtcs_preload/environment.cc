@@ -10,7 +10,10 @@ namespace tcs::preload {
 namespace {
 
 constexpr char kPreload[] = "LD_PRELOAD";
-char g_preload_entry[4096];
+constexpr const char* kOwnLibraries[] = {"libtcs_preload.so", "libtcs_allocations.so"};
+constexpr char kSeparators[] = ": ";
+
+char g_own_libraries[4096];  // of LD_PRELOAD, what is tcs's: "/there/libtcs_preload.so"
 char g_socket_entry[256];
 bool g_remembered = false;
 
@@ -22,15 +25,88 @@ const char* Find(char* const* envp, const char* name) {
   return nullptr;
 }
 
-void Keep(const char* entry, char* to, std::size_t size) {
-  if (entry != nullptr && strlen(entry) < size) strcpy(to, entry);
+// An item of a list like LD_PRELOAD's.
+struct Item {
+  const char* text;
+  std::size_t length;
+
+  bool IsOurs() const {
+    for (const char* name : kOwnLibraries) {
+      const std::size_t size = strlen(name);
+      if (length < size || memcmp(text + length - size, name, size) != 0) continue;
+      if (length == size || text[length - size - 1] == '/') return true;
+    }
+    return false;
+  }
+};
+
+// The first item of `list`, which moves behind it; of length 0 at the end.
+Item TakeItem(const char*& list) {
+  list += strspn(list, kSeparators);
+  const Item item{list, strcspn(list, kSeparators)};
+  list += item.length;
+  return item;
+}
+
+// A list in a buffer. What does not fit makes all of it of no use.
+class List {
+ public:
+  List(char* to, std::size_t size) : begin_(to), at_(to), end_(to + size) {}
+
+  void Add(const Item& item) {
+    if (has_items_) Put(":", 1);
+    Put(item.text, item.length);
+    has_items_ = true;
+  }
+  // The items of `list` that are tcs's, or those that are not.
+  void Add(const char* list, bool ours) {
+    for (Item item = TakeItem(list); item.length != 0; item = TakeItem(list)) {
+      if (item.IsOurs() == ours) Add(item);
+    }
+  }
+  void Put(const char* text, std::size_t length) {
+    fits_ = fits_ && length < static_cast<std::size_t>(end_ - at_);
+    if (!fits_) return;
+    memcpy(at_, text, length);
+    at_ += length;
+    *at_ = '\0';
+  }
+  bool fits() const { return fits_; }
+  void Clear() { *(at_ = begin_) = '\0', fits_ = true, has_items_ = false; }
+
+ private:
+  char *begin_, *at_, *end_;
+  bool fits_ = true, has_items_ = false;
+};
+
+// Writes the entry with which a program is executed whose own is `value` (null: it has none). Its
+// own libraries come first: a sanitizer's runtime must, and of those that define the same function
+// the first one passes it on to ours.
+void WriteEntry(const char* value, char* to, std::size_t size) {
+  List list(to, size);
+  const auto begin = [&] {
+    list.Clear();
+    list.Put(kPreload, sizeof kPreload - 1);
+    list.Put("=", 1);
+  };
+  begin();
+  if (value != nullptr) list.Add(value, false);
+  list.Add(g_own_libraries, true);
+  if (list.fits()) return;
+  begin();  // without the shim it would be lost
+  list.Add(g_own_libraries, true);
 }
 
 }  // namespace
 
 void RememberEnvironment(char** envp) {
-  Keep(Find(envp, kPreload), g_preload_entry, sizeof g_preload_entry);
-  Keep(Find(envp, shm::kSocketVariable), g_socket_entry, sizeof g_socket_entry);
+  if (const char* preload = Find(envp, kPreload); preload != nullptr) {
+    List own(g_own_libraries, sizeof g_own_libraries);
+    own.Add(preload + sizeof kPreload, true);
+    if (!own.fits()) own.Clear();
+  }
+  const char* socket = Find(envp, shm::kSocketVariable);
+  if (socket != nullptr && strlen(socket) < sizeof g_socket_entry) strcpy(g_socket_entry, socket);
   g_remembered = true;
 }
 
@@ -41,11 +117,13 @@ const char* SocketName() {
 }
 
 char* const* WithShim(char* const* envp, EnvironmentCopy& storage) {
-  if (g_socket_entry[0] == '\0' || g_preload_entry[0] == '\0') return envp;
+  if (g_socket_entry[0] == '\0' || g_own_libraries[0] == '\0') return envp;
   if (!CanReadStrings(envp)) return envp;  // the kernel says what is wrong with it
   const char* preload = Find(envp, kPreload);
   const char* socket = Find(envp, shm::kSocketVariable);
-  if (preload != nullptr && socket != nullptr && strcmp(preload, g_preload_entry) == 0 &&
+  WriteEntry(preload == nullptr ? nullptr : preload + sizeof kPreload, storage.preload,
+             sizeof storage.preload);
+  if (preload != nullptr && socket != nullptr && strcmp(preload, storage.preload) == 0 &&
       strcmp(socket, g_socket_entry) == 0) {
     return envp;
   }
@@ -55,7 +133,7 @@ char* const* WithShim(char* const* envp, EnvironmentCopy& storage) {
     if (n == EnvironmentCopy::kMaxEntries) break;
     storage.entries[n++] = envp[0];
   }
-  storage.entries[n++] = g_preload_entry;
+  storage.entries[n++] = storage.preload;
   storage.entries[n++] = g_socket_entry;
   storage.entries[n] = nullptr;
   return storage.entries;

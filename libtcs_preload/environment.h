@@ -1,12 +1,14 @@
 // What the shim keeps of the environment, and how it passes it on: a program that runs its children
-// with an environment of its own making still runs them in virtual time.
+// with an environment of its own making still runs them in virtual time, and with the libraries
+// that it preloads for them (stdbuf does).
 #pragma once
 
 #include <cstddef>
 
 namespace tcs::preload {
 
-// Copies LD_PRELOAD and TCS_SOCKET out of `envp`. Called once, before the program runs.
+// Copies tcs's part of LD_PRELOAD and TCS_SOCKET out of `envp`. Called once, before the program
+// runs.
 void RememberEnvironment(char** envp);
 bool EnvironmentRemembered();
 
@@ -14,10 +16,12 @@ bool EnvironmentRemembered();
 const char* SocketName();
 
 // An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them,
-// in `storage`. Async-signal-safe. Entries beyond kMaxEntries are dropped.
+// in `storage`: what LD_PRELOAD has there is kept, and the shim comes behind it. Async-signal-safe.
+// Entries beyond kMaxEntries are dropped, and libraries that do not fit.
 struct EnvironmentCopy {
   static constexpr std::size_t kMaxEntries = 2048;
   char* entries[kMaxEntries + 3];
+  char preload[4096];
 };
 char* const* WithShim(char* const* envp, EnvironmentCopy& storage);
 

@@ -15,6 +15,7 @@
 #include "coordinator/cli/run_command.h"
 #include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
+#include "coordinator/cli/user_preload.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   tcs::RunOptions options;
+  options.user_preload = tcs::TakeUserPreload(argv);
 
   tcs::RunArguments arguments;
   std::uint64_t seed = 0;

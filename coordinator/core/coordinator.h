@@ -32,6 +32,7 @@ struct RunOptions {
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   bool record = false;           // all DDS topics, into a bag in output_directory
   std::string preload_library;
+  std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides under fixed accounting
   // What CLOCK_MONOTONIC shows at the start. 0 would look like a clock that was never set.
   std::int64_t uptime_ns = 1'000'000'000'000;

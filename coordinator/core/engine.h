@@ -138,6 +138,7 @@ class Engine {
   void PassOver(Task& task, Task& first);
   void PassOn(Task& first);
 
+  void Yield(Task& task);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);

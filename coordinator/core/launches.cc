@@ -35,6 +35,12 @@ std::string PrepareFolder(const ClientSpec& client) {
   return error;
 }
 
+// What the user has preloaded comes first, as the shim itself has it for what programs execute
+// (libtcs_preload/environment.cc).
+std::string WithOurLibraries(const std::string& users, const std::string& ours) {
+  return users.empty() ? ours : users + ":" + ours;
+}
+
 }  // namespace
 
 // What of the clients is in the run's results before they start. Of an earlier run nothing is left:
@@ -130,8 +136,10 @@ std::string Engine::Start(Launch& launch) {
   request.working_directory = client.working_directory;
   request.environment = client.environment;
   const bool charges_allocations = IsFixed() && client.fixed_allocation_cost.ns() > 0;
-  request.environment["LD_PRELOAD"] =
-      options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
+  std::string& preload = request.environment["LD_PRELOAD"];
+  preload = WithOurLibraries(
+      client.environment.contains("LD_PRELOAD") ? preload : options_.user_preload,
+      options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : ""));
   const std::string socket_name = OpenListener();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;

@@ -140,7 +140,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       }
       break;
     case Kind::kYield:
-      robot.ready.Rotate(task.order);
+      Yield(task);
       break;
     case Kind::kPriority:
     case Kind::kPriorityGet:

@@ -352,7 +352,7 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
       SignalRaw(task);
       break;
     case SYS_sched_yield:
-      task.process->robot->ready.Rotate(task.order);
+      Yield(task);
       break;
     case SYS_exit:
       ExitThread(task, call);

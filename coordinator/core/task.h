@@ -121,6 +121,7 @@ struct Task {
   std::int64_t page_origin_ns = 0;  // what its page says of that
   int cpu_clock_fd = -1;            // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
+  int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
   bool parked = true;           // at its gate, rather than stopped by priority
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch

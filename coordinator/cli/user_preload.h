@@ -1,0 +1,13 @@
+// What the user preloads is meant for programs, not for tcsim itself: a sanitizer's runtime would
+// look for leaks in it, and a memory allocator may make threads.
+#pragma once
+
+#include <string>
+
+namespace tcs {
+
+// The user's LD_PRELOAD. Where there is one tcsim is executed once more without it; the environment
+// has it again when this returns, for what tcsim starts.
+std::string TakeUserPreload(char** argv);
+
+}  // namespace tcs

@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# What the user preloads is there beside the shim, and before it: set around tcsim, in a scenario,
+# or by a program for its children. Nobody who sets LD_PRELOAD, or empties the environment, loses the shim.
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+unset PYTHONUNBUFFERED LD_PRELOAD
+modes=(measured fixed)
+
+# The C library holds back what it prints to a pipe until its program ends; under stdbuf each line
+# is there at once.
+cat >printer.py <<'PY'
+import ctypes, time
+libc = ctypes.CDLL(None)
+for _ in range(3):
+    libc.puts(b"line")
+    time.sleep(100)
+PY
+cat >reader.py <<'PY'
+import sys, time
+start = time.monotonic()
+for line in iter(sys.stdin.readline, ""):
+    print(round((time.monotonic() - start) / 100), end=" ")
+print()
+PY
+held='python3 printer.py | python3 reader.py'
+at_once='stdbuf -oL python3 printer.py | python3 reader.py'
+for mode in "${modes[@]}"; do
+  run=(timeout 30 "$tcsim" exec --accounting "$mode" -- sh -c)
+  says=$("${run[@]}" "$held")
+  [[ $says == "3 3 3 " ]] || fail "$mode, without stdbuf: '$says'"
+  says=$("${run[@]}" "$at_once")
+  [[ $says == "0 1 2 " ]] || fail "$mode, stdbuf inside: '$says'"
+  says=$(stdbuf -oL "${run[@]}" "$held")
+  [[ $says == "0 1 2 " ]] || fail "$mode, stdbuf around tcsim: '$says'"
+done
+
+# A whole list of one's own, none, and an empty environment: virtual time goes on.
+slept='import os, time; a = time.monotonic(); time.sleep(1000); print(round(time.monotonic() - a), os.environ.get("LD_PRELOAD", ""))'
+buf=$(dirname "$(command -v stdbuf)")/../libexec/coreutils/libstdbuf.so
+[[ -r $buf ]] && buf=$(realpath "$buf") || fail "there is no $buf"
+shim="[^: ]*/libtcs_preload.so"
+lists() {  # PATTERN COMMAND...
+  local says pattern=$1
+  shift
+  says=$(timeout 30 "$@" 2>&1)
+  says=$(grep -v '^tcsim: other runs' <<<"$says")
+  [[ $says =~ ^1000\ $pattern$ ]] || fail "'$says' instead of '1000 $pattern': $*"
+}
+lists "$shim" "$tcsim" exec -- python3 -c "$slept"
+lists "$shim" "$tcsim" exec -- env -i "$(command -v python3)" -c "$slept"
+lists "$shim" "$tcsim" exec -- env -u LD_PRELOAD -u TCS_SOCKET python3 -c "$slept"
+lists "$buf:$shim" "$tcsim" exec -- env LD_PRELOAD="$buf" python3 -c "$slept"
+lists "$buf:$shim" "$tcsim" exec -- sh -c 'LD_PRELOAD="$LD_PRELOAD $0" exec python3 -c "$1"' "$buf" "$slept"
+lists "$buf:$shim" "$tcsim" exec -- sh -c 'LD_PRELOAD="$0" sh -c "exec env python3 -c \"\$0\"" "$1"' "$buf" "$slept"
+lists "$buf:$shim" env LD_PRELOAD="$buf" "$tcsim" exec -- python3 -c "$slept"
+lists "$buf:$shim:[^: ]*/libtcs_allocations.so" env LD_PRELOAD="$buf" "$tcsim" exec --accounting fixed -- python3 -c "$slept"
+# It is for programs: tcsim itself has none of it.
+env LD_PRELOAD="$buf" "$tcsim" exec -- sh -c 'tr "\0" "\n" </proc/$PPID/maps' >maps 2>/dev/null
+grep -q '^' maps || fail "tcsim's map cannot be read"
+grep -q stdbuf maps && fail "tcsim has preloaded what is for programs"
+
+cat >scenario.yaml <<YAML
+duration: 2000s
+robots: {r: {clients: {c: {command: [python3, -c, '$slept'], environment: {LD_PRELOAD: "$buf"}}}}}
+YAML
+"$tcsim" run scenario.yaml --out out >/dev/null 2>stderr || fail "$(cat stderr)"
+[[ $(cat out/r-c.out.log) =~ ^1000\ $buf:$shim$ ]] || fail "environment: $(cat out/r-c.out.log)"
+
+jemalloc=$(ldconfig -p | awk '/libjemalloc.so.2 .*x86-64/ {print $NF; exit}')
+if [[ -n $jemalloc ]]; then
+  maps='import time; time.sleep(1000); print("jemalloc" in open("/proc/self/maps").read())'
+  for mode in "${modes[@]}"; do
+    [[ $(LD_PRELOAD=$jemalloc timeout 30 "$tcsim" exec --accounting "$mode" -- python3 -c "$maps") == True ]] ||
+      fail "$mode: jemalloc around tcsim"
+    [[ $(timeout 30 "$tcsim" exec --accounting "$mode" -- env LD_PRELOAD="$jemalloc" python3 -c "$maps") == True ]] ||
+      fail "$mode: jemalloc inside"
+  done
+fi
+
+# Programs linked to AddressSanitizer, and such that have it preloaded: it finds what it finds.
+command -v g++ >/dev/null || exit 0
+cat >checked.cc <<'CC'
+#include <cstdio>
+#include <cstdlib>
+#include <chrono>
+#include <thread>
+void* lost;
+int main(int argc, char** argv) {
+  const auto start = std::chrono::steady_clock::now();
+  std::thread([] { std::this_thread::sleep_for(std::chrono::seconds(1000)); }).join();
+  const auto passed = std::chrono::steady_clock::now() - start;
+  printf("%d\n", static_cast<int>(std::chrono::duration<double>(passed).count() + 0.5));
+  fflush(stdout);
+  char* block = static_cast<char*>(malloc(8));
+  if (argc > 1 && *argv[1] == 'o') block[argc + 6] = 1;
+  if (argc > 1 && *argv[1] == 'l') std::thread([] { lost = malloc(100); lost = nullptr; }).join();
+  free(block);
+}
+CC
+g++ -O0 -fsanitize=address -o checked checked.cc 2>/dev/null || exit 0
+asan=$(ldd ./checked | awk '/libasan/ {print $3}')
+checks() {  # WORD WANTED COMMAND...
+  local status=0 word=$1 wanted=$2
+  shift 2
+  timeout 60 "$@" ./checked "$word" >said 2>&1 || status=$?
+  grep -qx 1000 said || fail "$word: no virtual time: $* says $(cat said)"
+  [[ $wanted == nothing ]] && { ((status == 0)) || fail "status $status: $*: $(cat said)"; return; }
+  ((status != 0 && status != 124)) || fail "status $status: $*: $(cat said)"
+  grep -q "$wanted" said || fail "no $wanted: $*: $(cat said)"
+}
+for mode in "${modes[@]}"; do
+  for run in "$tcsim exec --accounting $mode --" "$tcsim exec --accounting $mode -- env LD_PRELOAD=$asan" \
+    "env LD_PRELOAD=$asan $tcsim exec --accounting $mode --"; do
+    checks in nothing $run
+    checks over heap-buffer-overflow $run
+    checks leak 'detected memory leaks' $run
+  done
+done
