@@ -9,6 +9,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 
 option(TCS_WERROR "Treat warnings as errors" ON)
+# Three quarters of compiling go into headers. Not with ccache, which does not keep what is compiled
+# with them unless told; builds with it also show where an include is missing.
+option(TCS_PRECOMPILE "Precompile what most files of a library include" OFF)
 
 include(TcsSanitizers)
 
@@ -28,6 +31,18 @@ function(tcs_target_defaults target)
   if(NOT ARG_NO_SANITIZE)
     tcs_target_sanitize(${target})
   endif()
+endfunction()
+
+# tcs_precompile(target HEADERS...)
+function(tcs_precompile target)
+  if(TCS_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# What runs once, such as reading a command line by templates, is not worth the time of optimising it.
+function(tcs_compile_quickly)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 function(tcs_add_library target)
