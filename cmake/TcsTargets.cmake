@@ -9,9 +9,10 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 
 option(TCS_WERROR "Treat warnings as errors" ON)
-# Three quarters of compiling go into headers. Not with ccache, which does not keep what is compiled
-# with them unless told; builds with it also show where an include is missing.
-option(TCS_PRECOMPILE "Precompile what most files of a library include" OFF)
+# Three quarters of compiling go into headers. It is for who builds once: ccache does not keep what is
+# compiled with them unless told, missing includes do not show, and GCC forgets what is not to be
+# warned of in the C++ library, so that there are no warnings at all.
+option(TCS_PRECOMPILE "Precompile what most files of a library include; no warnings" OFF)
 
 include(TcsSanitizers)
 
@@ -19,6 +20,9 @@ include(TcsSanitizers)
 function(tcs_target_defaults target)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "NO_SANITIZE" "" "")
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
+  if(TCS_PRECOMPILE)
+    target_compile_options(${target} PRIVATE -w)
+  endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Wno-missing-field-initializers)
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
