@@ -23,11 +23,12 @@
 #include <cstdint>
 
 #include "shm/ipc_times.h"
+#include "shm/receipts.h"
 
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 10;
+inline constexpr std::uint32_t kVersion = 11;
 inline constexpr std::uint32_t kSlotCount = 4096;
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -234,13 +235,16 @@ struct alignas(64) ThreadSlot {
   std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
   // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
   std::atomic<std::uint32_t> signals;
-  std::uint8_t reserved[460];
+  std::uint32_t padding;
+  Receipts receipts;
+  std::uint8_t reserved[240];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
 static_assert(offsetof(ThreadSlot, signals) == 560);
+static_assert(offsetof(ThreadSlot, receipts) == 568);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters.

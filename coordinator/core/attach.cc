@@ -208,6 +208,8 @@ void Engine::Attach(int connection, Process& client) {
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);
+  slot.receipts.count.store(0);
+  shm::NoteStarted(slot.receipts);
   slot.gate.store(shm::kGateClosed);
   LeaveWait(task);
   task.early_trap.reset();

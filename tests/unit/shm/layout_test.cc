@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionTenHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 10u);
+TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 11u);
   EXPECT_EQ(sizeof(SegmentHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -25,6 +25,7 @@ TEST(Layout, VersionTenHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
   EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
+  EXPECT_EQ(offsetof(ThreadSlot, receipts), 568u);
 }
 
 TEST(Layout, SlotsFollowTheHeaderWithoutAGap) {
