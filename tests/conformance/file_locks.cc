@@ -69,7 +69,7 @@ int Open() {
 enum class Ends { kByCall, kByClose, kByExit };
 
 // Of the times below. A loaded host wakes who sleeps late, natively.
-std::int64_t Ms() { return g_mode == Mode::kNative ? 3 * kMs : kMs; }
+std::int64_t Ms() { return g_mode == Mode::kNative ? 2 * kMs : kMs; }
 
 // A child has the lock for 100 ms; the parent waits for it from 50 ms on, and computes on.
 void BetweenProcesses(const Kind& kind, Ends ends) {
