@@ -46,7 +46,7 @@ class Engine {
 
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
-  std::string PrepareSegment();
+  std::string PrepareMemory();
   std::string PrepareListener();
   std::string PrepareDetector();
   std::string StartClients();
@@ -101,6 +101,17 @@ class Engine {
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
   std::int64_t WrittenAt() const;
+
+  // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
+  static constexpr const char* kWrongIpcNotes = "times of System V objects";
+  bool IsOwnDispatch(const Task& task) const;
+  const char* WhatIsImpossible(const Task& task) const;
+  static const char* WhatIsImpossible(const shm::Notification& note);
+  void Expel(Process& process, const char* what);
+  void AwaitDeath(Task& task);
+  std::int64_t StolenOf(const Task& task) const;
+  std::int64_t StalenessOf(const Task& task) const;
+  bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
@@ -304,12 +315,16 @@ class Engine {
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.
   bool PollEvents(std::int64_t timeout_ns);
+  void TakeNotifications(const Process& process);
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
+  bool CutsOff(Task& task);
   void RearmDetector();
-  void Attach(int connection);
-  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid);
-  void SendReply(int connection, const Task& task);
+  void Accept();
+  bool Attach(int connection);
+  void GiveDdsArea(int connection, pid_t pid);
+  void PlaceAtGate(Task& task);
+  Task* TaskFor(pid_t pid, pid_t tid);
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index);
   // What epoll gives back: `number` tells an event of this wait from those of earlier ones.
@@ -322,7 +337,7 @@ class Engine {
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
-  void EndThreadsLostInExec(pid_t pid);
+  bool EndThreadsLostInExec(pid_t pid);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
@@ -350,7 +365,7 @@ class Engine {
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
   shm::ThreadSlot& Slot(const Task& task) const {
-    return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
+    return *task.slot_memory;
   }
 
   const Scenario scenario_;
@@ -367,7 +382,6 @@ class Engine {
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   std::vector<std::int64_t> progress_;  // Refresh's own
-  std::vector<Task*> by_slot_;
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
@@ -376,7 +390,8 @@ class Engine {
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
   std::optional<record::Recording> recording_;
   std::vector<Process*> dds_processes_;  // that have joined it
-  std::deque<int> free_slots_;
+  std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
+  std::deque<int> connections_;  // of those that have not said yet what they want
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
@@ -387,8 +402,9 @@ class Engine {
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
-  shm::SegmentHeader* header_ = nullptr;
-  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, listener_ = -1, signals_ = -1;
+  shm::RunMemory* memory_ = nullptr;
+  shm::RunHeader* header_ = nullptr;  // in it
+  int memfd_ = -1, epoll_ = -1, listener_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t futex_counter_ = 0, key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;

@@ -1,10 +1,12 @@
 // What the kernel says: notifications in the pipe, descriptors that clients wait for, commands,
 // blocked threads, births and deaths.
 #include <fmt/format.h>
+#include <linux/futex.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -57,6 +59,19 @@ void Engine::NotificationArrived(Task& task) {
     if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
     task.trap_id = 0;
     task.notified_early = true;
+  }
+}
+
+// Of one process, so many at a time: others have their turns, too.
+void Engine::TakeNotifications(const Process& process) {
+  constexpr std::size_t kAtOnce = 64;
+  if (process.link == nullptr) return;
+  shm::PipeMessage messages[kAtOnce];
+  const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
+  const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
+    if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
   }
 }
 
@@ -125,6 +140,7 @@ bool Engine::BlockedInKernel() {
     WakeThoseWaitingFor(ended);
     return true;
   }
+  if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
   const bool stopped = state == 'T';  // by a signal, until another one
   if (!stopped && (state != 'S' || running_->slot < 0)) {
     if (state == 'D') LendLevel();
@@ -148,6 +164,25 @@ bool Engine::BlockedInKernel() {
   Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
       running_->process->name, ThreadSystemCall(running_->tid)));
+  return true;
+}
+
+// The running thread is at its gate, but its notification has not come: its process has closed the
+// pipe, or put another file in its place. It is told, and says so itself; or else is ended.
+bool Engine::CutsOff(Task& task) {
+  if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
+  pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
+  if (poll(&incoming, 1, 0) != 0) return false;
+  if (std::exchange(task.is_cut_off, true)) {
+    Expel(*task.process, "a notification that was never sent");
+    return true;
+  }
+  shm::ThreadSlot& slot = Slot(task);
+  slot.wake_reason.store(shm::WakeReason::kCutOff);
+  slot.gate.store(shm::kGateOpen);
+  syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  held_turns_ = 0;
+  RearmDetector();
   return true;
 }
 
@@ -177,31 +212,23 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
     switch (tag) {
-      case Tag::kPipe: {
-        shm::PipeMessage messages[64];
-        const ssize_t bytes = read(pipe_[0], messages, sizeof messages);
-        for (ssize_t m = 0; m * static_cast<ssize_t>(sizeof messages[0]) < bytes; ++m) {
-          if (messages[m].slot >= shm::kSlotCount) continue;
-          Task* task = by_slot_[messages[m].slot];
-          if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
-        }
+      case Tag::kPipe:
+        TakeNotifications(processes_[index]);
         stop = true;
         external_event_ = true;
         break;
-      }
-      case Tag::kListener: {
-        const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-        if (connection >= 0) {
-          Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection));
-        }
+      case Tag::kListener:
+        Accept();
+        break;
+      case Tag::kConnection: {
+        const auto connection = static_cast<int>(index);
+        if (std::erase(connections_, connection) == 0) break;  // it was cut off
+        const bool registers = Attach(connection);
+        close(connection);
+        stop |= registers;
+        external_event_ |= registers;
         break;
       }
-      case Tag::kConnection:
-        Attach(static_cast<int>(index));
-        close(static_cast<int>(index));
-        stop = true;
-        external_event_ = true;
-        break;
       case Tag::kProcess:
         ProcessEnded(index);
         stop = true;

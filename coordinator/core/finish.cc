@@ -86,7 +86,7 @@ void Engine::Report(RunReport* report) {
       if (task->process != &process || task->slot < 0) continue;
       client.charged_ns += task->charged_ns;
       client.host_cpu_ns += HostCpuOf(*task);
-      client.stolen_ns += Slot(*task).clock.stolen_ns.load();
+      client.stolen_ns += StolenOf(*task);
       client.activations += task->activations;
     }
     report->clients.push_back(client);
@@ -94,7 +94,7 @@ void Engine::Report(RunReport* report) {
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;
-      report->staleness_ns = std::max(report->staleness_ns, Slot(*task).clock.staleness_ns.load());
+      report->staleness_ns = std::max(report->staleness_ns, StalenessOf(*task));
     }
   }
 }
