@@ -7,15 +7,11 @@ rounds=${TCS_HOSTILE_ROUNDS:-31}
 first=${TCS_HOSTILE_FIRST:-0}
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-scenario() { # the hostile client, or nothing
-  cat <<YAML
-duration: 100ms
-robots:
-  one:
-    clients: {honest: {command: [$build/bin/honest], class: periodic}}
-${1:+  other:
-    clients: {hostile: {command: [$out/hostile, $1], class: best-effort}}}
-YAML
+scenario() { # SEED of the hostile client, or nothing
+  printf 'duration: 100ms\nrobots:\n'
+  printf '  one:\n    clients: {honest: {command: ["%s"], class: periodic}}\n' "$build/bin/honest"
+  (($# == 0)) && return
+  printf '  other:\n    clients: {hostile: {command: ["%s", "%s"], class: best-effort}}\n' "$out/hostile" "$1"
 }
 # A name of its own, by which all that is left can be found.
 cp "$build/bin/hostile" "$out/hostile"
