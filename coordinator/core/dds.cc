@@ -166,7 +166,7 @@ void Engine::JoinDds(Task& task) {
   LeaveDds(process);
   process.dds_number = hub_.Join(event_ns_);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
-  task.reply[1] = hub_.fd() | scenario_.drift_bound.ns() << shm::kDdsDescriptorBits;
+  task.reply[1] = scenario_.drift_bound.ns();
   if (process.dds_number != 0) dds_processes_.push_back(&process);
 }
 

@@ -60,23 +60,26 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   if (task.host_origin_ns < 0) {
     task.host_origin_ns = HostClockOf(task);
   }
-  page.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
-  page.base_cpu_ns = task.charged_ns;
-  page.horizon_ns = horizon_ns + frozen;
-  page.idle_until_ns = idle_until_ns;
-  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
-  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
-  page.ns_per_tick_q32 =
+  ClockGrant& grant = task.grant;
+  grant.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
+  grant.base_cpu_ns = task.charged_ns;
+  grant.horizon_ns = horizon_ns + frozen;
+  grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
+  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
+  grant.ns_per_tick_q32 =
       IsFixed()
           ? 0
           : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.robot->speed);
-  page.check_after_ticks =
+  grant.check_after_ticks =
       IsFixed() ? ~std::uint64_t{0}
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
-  page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
-  page.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
+  grant.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
+  grant.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
+  grant.NoteLimits();
+  grant.WriteTo(page);
+  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
@@ -98,7 +101,8 @@ void Engine::StartClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
+  page.base_tsc = task.grant.base_tsc =
+      stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
   task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
   page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
   ++task.unchecked_slices;
@@ -144,10 +148,13 @@ void Engine::GoOnBesideWoken() {
   std::int64_t idle_until = 0;
   const std::int64_t allowed = std::max(HorizonFor(*running_, &idle_until), WrittenAt());
   running_horizon_ns_ = std::min(running_horizon_ns_, allowed);
-  page.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
-  page.idle_until_ns = 0;  // it asks
-  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  ClockGrant& grant = running_->grant;
+  grant.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
+  grant.idle_until_ns = 0;  // it asks
+  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.NoteLimits();
+  grant.WriteTo(page);
 }
 
 // What the coordinator did while the thread was only interrupted is not the thread's.
@@ -156,7 +163,7 @@ void Engine::ContinueClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc += stop_tsc_ - stopped_tsc;
+  page.base_tsc = task.grant.base_tsc += stop_tsc_ - stopped_tsc;
   // A new number, so that the thread repeats a reading that it was interrupted in.
   const std::uint64_t number = ++task.dispatches << shm::kAdjustBits;
   page.executed_adjust.store(
@@ -216,6 +223,11 @@ bool Engine::ReachedHorizon(Task& task) {
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
+  if (const char* what = WhatIsImpossible(task); what != nullptr) {
+    task.reached_ns = task.cpu->progress_ns;
+    Expel(*task.process, what);
+    return;
+  }
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   // What the thread has taken out; its origin may have become another one meanwhile.
@@ -274,14 +286,16 @@ void Engine::Settle(Task& task) {
     most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
     trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
     RecordSlice(task.row, start, start, recorded_tsc_);
+    if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
-  page.horizon_ns = 0;
+  page.horizon_ns = task.grant.horizon_ns = 0;
   if (IsRunnable(task)) Requeue(task);
+  if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
@@ -296,6 +310,8 @@ void Engine::AwaitStop(Task& task) {
       task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
+    // What it has made of its clock meanwhile must not be reckoned with.
+    if (!first && task.slot >= 0 && !IsOwnDispatch(task)) return;
     if (!first) ContinueClock(task);
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
     const std::uint64_t asked_tsc = stop_tsc_;
@@ -379,6 +395,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.parked = true;
     SetState(task, TaskState::kReady);
     task.reply[0] = task.reply[1] = 0;
+    if (!TakeIpcNotes(task)) return Expel(*task.process, kWrongIpcNotes);
     const shm::Notification early = Slot(task).note;
     Handle(task, early);
     return;
@@ -433,6 +450,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
   if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);
+  if (task.process->expelled) {
+    if (task.state != TaskState::kDead) AwaitDeath(task);
+    return;
+  }
   if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;

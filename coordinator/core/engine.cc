@@ -40,11 +40,10 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
     : scenario_(scenario),
       options_(options),
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
-      by_slot_(shm::kSlotCount, nullptr),
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], signals_, claim_.fd}) {
+  for (const int fd : {memfd_, epoll_, signals_, claim_.fd}) {
     if (fd >= 0) close(fd);
   }
   for (const Listener& listener : listeners_) close(listener.fd);
@@ -544,6 +543,7 @@ bool Engine::AwaitOutside() {
 
 // One step of the run; false at its end.
 bool Engine::Step() {
+  ended_links_.clear();
   if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   ShowProgress();

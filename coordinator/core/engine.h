@@ -49,12 +49,17 @@ class Engine {
 
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
-  std::string PrepareSegment();
+  std::string PrepareMemory();
   std::string PrepareListener();
   // Where a client and its descendants register.
   struct Listener {
     int fd;
     Process* client;
+  };
+  // Somebody who has not said yet what it wants.
+  struct Connection {
+    int fd;
+    Process* client;  // that its listener is for
   };
   std::string OpenListener();
   std::string PrepareDetector();
@@ -127,6 +132,17 @@ class Engine {
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
   std::int64_t WrittenAt() const;
+
+  // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
+  static constexpr const char* kWrongIpcNotes = "times of System V objects";
+  bool IsOwnDispatch(const Task& task) const;
+  const char* WhatIsImpossible(const Task& task) const;
+  static const char* WhatIsImpossible(const shm::Notification& note);
+  void Expel(Process& process, const char* what);
+  void AwaitDeath(Task& task);
+  std::int64_t StolenOf(const Task& task) const;
+  std::int64_t StalenessOf(const Task& task) const;
+  bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
@@ -327,12 +343,16 @@ class Engine {
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.
   bool PollEvents(std::int64_t timeout_ns);
+  void TakeNotifications(const Process& process);
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
+  bool CutsOff(Task& task);
   void RearmDetector();
-  void Attach(int connection, Process& client);
-  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid, Process& client);
-  void SendReply(int connection, const Task& task);
+  void Accept(const Listener& listener);
+  bool Attach(int connection, Process& client);
+  void GiveDdsArea(int connection, pid_t pid);
+  void PlaceAtGate(Task& task);
+  Task* TaskFor(pid_t pid, pid_t tid, Process& client);
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index, std::uint32_t number = 0);
   // What epoll gives back: `number` tells an event of this wait from those of earlier ones, or
@@ -351,7 +371,7 @@ class Engine {
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
-  void EndThreadsLostInExec(pid_t pid);
+  bool EndThreadsLostInExec(pid_t pid);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
@@ -401,9 +421,7 @@ class Engine {
   bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
-  shm::ThreadSlot& Slot(const Task& task) const {
-    return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
-  }
+  shm::ThreadSlot& Slot(const Task& task) const { return *task.slot_memory; }
 
   const Scenario scenario_;
   const RunOptions options_;
@@ -420,8 +438,7 @@ class Engine {
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
-  std::vector<std::int64_t> progress_;  // Refresh's own
-  std::vector<Task*> by_slot_;
+  std::vector<std::int64_t> progress_;       // Refresh's own
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
@@ -429,8 +446,9 @@ class Engine {
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
   std::optional<record::Recording> recording_;
-  std::vector<Process*> dds_processes_;  // that have joined it
-  std::deque<int> free_slots_;
+  std::vector<Process*> dds_processes_;                    // that have joined it
+  std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
+  std::deque<Connection> connections_;
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
@@ -441,8 +459,9 @@ class Engine {
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
-  shm::SegmentHeader* header_ = nullptr;
-  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, signals_ = -1;
+  shm::RunMemory* memory_ = nullptr;
+  shm::RunHeader* header_ = nullptr;  // in it
+  int memfd_ = -1, epoll_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;

@@ -1,10 +1,12 @@
 // What the kernel says: notifications in the pipe, descriptors that clients wait for, commands,
 // blocked threads, births and deaths.
 #include <fmt/format.h>
+#include <linux/futex.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -58,6 +60,19 @@ void Engine::NotificationArrived(Task& task) {
     if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
     task.trap_id = 0;
     task.notified_early = true;
+  }
+}
+
+// Of one process, so many at a time: others have their turns, too.
+void Engine::TakeNotifications(const Process& process) {
+  constexpr std::size_t kAtOnce = 64;
+  if (process.link == nullptr) return;
+  shm::PipeMessage messages[kAtOnce];
+  const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
+  const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
+    if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
   }
 }
 
@@ -126,6 +141,7 @@ bool Engine::BlockedInKernel() {
     WakeThoseWaitingFor(ended);
     return true;
   }
+  if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
   const bool stopped = state == 'T';  // by a signal, until another one
   if (!stopped && (state != 'S' || running_->slot < 0)) {
     if (state == 'D') LendLevel();
@@ -149,6 +165,25 @@ bool Engine::BlockedInKernel() {
   Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
       running_->process->name, ThreadSystemCall(running_->tid)));
+  return true;
+}
+
+// The running thread is at its gate, but its notification has not come: its process has closed the
+// pipe, or put another file in its place. It is told, and says so itself; or else is ended.
+bool Engine::CutsOff(Task& task) {
+  if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
+  pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
+  if (poll(&incoming, 1, 0) != 0) return false;
+  if (std::exchange(task.is_cut_off, true)) {
+    Expel(*task.process, "a notification that was never sent");
+    return true;
+  }
+  shm::ThreadSlot& slot = Slot(task);
+  slot.wake_reason.store(shm::WakeReason::kCutOff);
+  slot.gate.store(shm::kGateOpen);
+  syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  held_turns_ = 0;
+  RearmDetector();
   return true;
 }
 
@@ -178,114 +213,109 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
     switch (tag) {
-      case Tag::kPipe: {
-        shm::PipeMessage messages[64];
-        const ssize_t bytes = read(pipe_[0], messages, sizeof messages);
-        for (ssize_t m = 0; m * static_cast<ssize_t>(sizeof messages[0]) < bytes; ++m) {
-          if (messages[m].slot >= shm::kSlotCount) continue;
-          Task* task = by_slot_[messages[m].slot];
-          if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
-        }
+      case Tag::kPipe:
+        TakeNotifications(processes_[index]);
         stop = true;
         external_event_ = true;
         break;
-      }
-      case Tag::kListener: {
-        const int connection =
-            accept4(listeners_[index].fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-        if (connection >= 0) {
-          Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection),
-                index);
-        }
-        break;
-      }
-      case Tag::kConnection:
-        Attach(static_cast<int>(index), *listeners_[NumberOf(events[i].data.u64)].client);
-        close(static_cast<int>(index));
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kProcess:
-        ProcessEnded(index);
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kAwaited:
-        if (Task& task = tasks_[index];
-            task.state == TaskState::kWaiting && task.waits_for_fds &&
-            EventData(tag, index, task.wait_number) == events[i].data.u64 &&
-            !std::exchange(task.skips_event, false)) {
-          awaiters.push_back(&task);
-          external_event_ = true;
-        }
-        break;
-      case Tag::kUnknownChild:
-        UnknownChildEnded(static_cast<pid_t>(index));
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kTrap:
-        if ((events[i].events & EPOLLIN) == 0) {
-          // Nobody is left whose calls could arrive here.
-          epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
-          close(static_cast<int>(index));
-          break;
-        }
-        TrapArrived(static_cast<int>(index));
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kCommand:
-        world_.ReceiveCommands(index, event_ns_);
-        break;
-      case Tag::kSignal: {
-        signalfd_siginfo info;
-        if (read(signals_, &info, sizeof info) != sizeof info) break;
-        // ^C is for the program that has the terminal.
-        if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
-            options_.output_directory.empty()) {
-          break;
-        }
-        stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
-        stop = true;
-        break;
-      }
-      case Tag::kGraceRanOut:
-        close(static_cast<int>(index));
-        grace_ran_out_ = stop = true;
-        break;
-      case Tag::kDetector: {
-        std::uint64_t count;
-        if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
-        detector_armed_ = false;
-        TakeLevelBack();
-        blocked = true;
-        break;
-      }
     }
-  }
-  // Something else may have ended the wait meanwhile.
-  std::erase_if(awaiters, [](const Task* task) {
-    return task->state != TaskState::kWaiting || !task->waits_for_fds;
-  });
-  if (!awaiters.empty()) {
-    const bool beside = running_ != nullptr && running_->slot >= 0 &&
-                        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-                          return task->process->robot == running_->process->robot;
-                        });
-    const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
-    WakeAwaiters(std::move(awaiters));
-    event_ns_ = now_ns;
-    if (beside) {
-      GoOnBesideWoken();
-    } else {
+    case Tag::kListener:
+      Accept(listeners_[index]);
+      break;
+    case Tag::kConnection: {
+      const auto fd = static_cast<int>(index);
+      const auto found = std::find_if(connections_.begin(), connections_.end(),
+                                      [fd](const Connection& one) { return one.fd == fd; });
+      if (found == connections_.end()) break;  // it was cut off
+      const Connection connection = *found;
+      connections_.erase(found);
+      const bool registers = Attach(fd, *connection.client);
+      close(fd);
+      stop |= registers;
+      external_event_ |= registers;
+      break;
+    }
+    case Tag::kProcess:
+      ProcessEnded(index);
       stop = true;
+      external_event_ = true;
+      break;
+    case Tag::kAwaited:
+      if (Task& task = tasks_[index];
+          task.state == TaskState::kWaiting && task.waits_for_fds &&
+          EventData(tag, index, task.wait_number) == events[i].data.u64 &&
+          !std::exchange(task.skips_event, false)) {
+        awaiters.push_back(&task);
+        external_event_ = true;
+      }
+      break;
+    case Tag::kUnknownChild:
+      UnknownChildEnded(static_cast<pid_t>(index));
+      stop = true;
+      external_event_ = true;
+      break;
+    case Tag::kTrap:
+      if ((events[i].events & EPOLLIN) == 0) {
+        // Nobody is left whose calls could arrive here.
+        epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
+        close(static_cast<int>(index));
+        break;
+      }
+      TrapArrived(static_cast<int>(index));
+      stop = true;
+      external_event_ = true;
+      break;
+    case Tag::kCommand:
+      world_.ReceiveCommands(index, event_ns_);
+      break;
+    case Tag::kSignal: {
+      signalfd_siginfo info;
+      if (read(signals_, &info, sizeof info) != sizeof info) break;
+      // ^C is for the program that has the terminal.
+      if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
+          options_.output_directory.empty()) {
+        break;
+      }
+      stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+      stop = true;
+      break;
+    }
+    case Tag::kGraceRanOut:
+      close(static_cast<int>(index));
+      grace_ran_out_ = stop = true;
+      break;
+    case Tag::kDetector: {
+      std::uint64_t count;
+      if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
+      detector_armed_ = false;
+      TakeLevelBack();
+      blocked = true;
+      break;
     }
   }
-  if (running_ == nullptr) return true;
-  if (stop || !blocked) return stop;
-  ++held_turns_;
-  return BlockedInKernel();
+}
+// Something else may have ended the wait meanwhile.
+std::erase_if(awaiters, [](const Task* task) {
+  return task->state != TaskState::kWaiting || !task->waits_for_fds;
+});
+if (!awaiters.empty()) {
+  const bool beside = running_ != nullptr && running_->slot >= 0 &&
+                      std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+                        return task->process->robot == running_->process->robot;
+                      });
+  const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
+  WakeAwaiters(std::move(awaiters));
+  event_ns_ = now_ns;
+  if (beside) {
+    GoOnBesideWoken();
+  } else {
+    stop = true;
+  }
+}
+if (running_ == nullptr) return true;
+if (stop || !blocked) return stop;
+++held_turns_;
+return BlockedInKernel();
 }
 
 }  // namespace tcs

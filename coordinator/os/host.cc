@@ -255,6 +255,17 @@ pid_t ProcessOfThread(pid_t tid) {
   return -1;
 }
 
+bool IsThreadOf(pid_t pid, pid_t tid) {
+  char path[64];
+  snprintf(path, sizeof path, "/proc/%d/task/%d", pid, tid);
+  return access(path, F_OK) == 0;
+}
+
+bool DescendsFrom(pid_t pid, pid_t ancestor) {
+  while (pid > 1 && pid != ancestor) pid = ParentOf(pid);
+  return pid == ancestor;
+}
+
 int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 int DuplicateFd(int pidfd, int fd) {
