@@ -5,6 +5,7 @@
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -66,6 +67,17 @@ void Engine::RearmDetector() {
   detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
 }
 
+// Without it the first thread that waits in the kernel would make everybody wait with it.
+void Engine::DetectorEnded() {
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, detector_pidfd_, nullptr);
+  if (header_->shutdown.load() != 0) return;
+  const int status = WaitStatusOf(detector_).value_or(0);
+  report_.error = fmt::format(
+      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
+      "it; what it has written until then can be read",
+      detector_, WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+}
+
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
 // itself), and its process goes on.
 bool Engine::HasExited(const Task& task) const {
@@ -125,7 +137,7 @@ bool Engine::BlockedInKernel() {
     WakeThoseWaitingFor(ended);
     return true;
   }
-  const bool stopped = state == 'T';  // by a signal, until another one
+  const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   if (!stopped && (state != 'S' || running_->slot < 0)) {
     if (state == 'D') LendLevel();
     return false;
@@ -248,6 +260,10 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         blocked = true;
         break;
       }
+      case Tag::kDetectorEnd:
+        DetectorEnded();
+        stop = true;
+        break;
     }
   }
   // Something else may have ended the wait meanwhile.

@@ -20,6 +20,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -143,6 +144,11 @@ std::string Engine::PrepareDetector() {
     if (getppid() != coordinator) _exit(0);
     Detect(detector_arm_, detector_fired_);
   }
+  detector_ = detector;
+  detector_pidfd_ = OpenPidfd(detector);
+  Watch(detector_pidfd_, EPOLLIN, Tag::kDetectorEnd, 0);
+  guarded_ = GuardsOf(coordinator);
+  guarded_.insert(guarded_.end(), {coordinator, detector});
   return {};
 }
 
@@ -167,6 +173,7 @@ std::string Engine::StartClients() {
           options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : "");
       request.environment["TCS_SOCKET"] = socket_name_;
       request.fixed_layout = IsFixed();
+      request.guarded = guarded_;
       if (!options_.output_directory.empty()) {
         std::string base = client.name;
         std::replace(base.begin(), base.end(), '/', '-');

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "coordinator/scenario/duration.h"
@@ -166,6 +167,7 @@ YamlMap YamlValue::AsMap() const {
          "; give it keys with values, or {} for none");
   }
   std::vector<YamlMap::Entry> entries;
+  std::map<std::string, Place> places;
   int previous_line = place_.line;
   for (const auto& pair : node_) {
     const int key_line = LineOf(pair.first, previous_line);
@@ -177,9 +179,8 @@ YamlMap YamlValue::AsMap() const {
     const std::string key = pair.first.Scalar();
     const YamlValue value(PlaceOf(pair.second, LineOfValue(pair.second, key_line)),
                           name_.empty() ? key : name_ + "." + key, pair.second, set_);
-    for (const YamlMap::Entry& earlier : entries) {
-      if (earlier.key != key) continue;
-      value.At(key_place).Fail("is given twice, first " + earlier.key_place.Reference() +
+    if (const auto [earlier, is_new] = places.try_emplace(key, key_place); !is_new) {
+      value.At(key_place).Fail("is given twice, first " + earlier->second.Reference() +
                                "; rename or remove one");
     }
     entries.push_back({key, key_place, value});
