@@ -94,31 +94,32 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
 }
 
 std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
-                         const std::string& path) {
+                         const std::string& path, Withstands what) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
-  nlohmann::ordered_json json{{"scenario", scenario.name},
-                              {"seed", scenario.seed},
-                              {"set", scenario.set},
-                              {"accounting", fixed ? "fixed" : "measured"},
-                              {"sync", callback ? "callback" : "consistent"},
-                              {"engine", EngineOf(scenario)},
-                              {"interrupted", r.interrupted},
-                              {"duration_ns", scenario.duration.ns()},
-                              {"virtual_ns", r.virtual_ns},
-                              {"real_ns", r.real_ns},
-                              {"drift_ns", r.drift_ns},
-                              {"drift_bound_ns", scenario.drift_bound.ns()},
-                              {"staleness_ns", r.staleness_ns},
-                              {"lateness_ns", r.lateness_ns},
-                              {"clients_ns", r.client_ns},
-                              {"dynamics_ns", r.dynamics_ns},
-                              {"coordinating_ns", r.coordinating_ns},
-                              {"overhead_percent", OverheadPercent(r)},
-                              {"dispatches", r.switches},
-                              {"samples", r.samples},
-                              {"commands", r.commands},
-                              {"warnings", r.warnings}};
+  using Json = nlohmann::ordered_json;
+  Json json{{"scenario", scenario.name},
+            {"seed", scenario.seed},
+            {"set", scenario.set},
+            {"accounting", fixed ? "fixed" : "measured"},
+            {"sync", callback ? "callback" : "consistent"},
+            {"engine", EngineOf(scenario)},
+            {"interrupted", r.interrupted},
+            {"duration_ns", scenario.duration.ns()},
+            {"virtual_ns", r.virtual_ns},
+            {"real_ns", r.real_ns},
+            {"drift_ns", r.drift_ns},
+            {"drift_bound_ns", scenario.drift_bound.ns()},
+            {"staleness_ns", r.staleness_ns},
+            {"lateness_ns", r.lateness_ns},
+            {"clients_ns", r.client_ns},
+            {"dynamics_ns", r.dynamics_ns},
+            {"coordinating_ns", r.coordinating_ns},
+            {"overhead_percent", OverheadPercent(r)},
+            {"dispatches", r.switches},
+            {"samples", r.samples},
+            {"commands", r.commands},
+            {"warnings", r.warnings}};
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
     for (const ClientSpec& client : robot.clients) {
@@ -140,7 +141,7 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
         {"wait_status", c.wait_status},
     });
   }
-  return WriteWhole(path, json.dump(2) + "\n");
+  return WriteWhole(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", what);
 }
 
 }  // namespace tcs

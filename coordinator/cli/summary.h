@@ -4,6 +4,7 @@
 #include <string>
 
 #include "coordinator/core/coordinator.h"
+#include "coordinator/os/files.h"
 
 namespace tcs {
 
@@ -18,6 +19,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& report, const std::
 
 // Empty on success, else one sentence. Times are nanoseconds.
 [[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunOptions& options,
-                                       const RunReport& report, const std::string& path);
+                                       const RunReport& report, const std::string& path,
+                                       Withstands what = Withstands::kPowerCut);
 
 }  // namespace tcs

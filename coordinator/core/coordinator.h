@@ -23,6 +23,7 @@ struct RunProgress {
     std::int64_t charged_ns = 0;
   };
   std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0;
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, as in RunReport
   std::vector<Load> clients;
 };
 

@@ -125,7 +125,7 @@ void Engine::Resume(Task& task) {
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
-      ContinueTrapped(task.trap_listener, task.trap_id);
+      ContinueTrap(task);
     } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
       task.handed_lock = 0;
     }
@@ -318,6 +318,7 @@ void Engine::AwaitStop(Task& task) {
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
+    if (!leaving_.empty()) LookAtLeaving();
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
       // It must have run, and come back from the kernel: real time that has passed may be the

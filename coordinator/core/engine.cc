@@ -43,7 +43,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, signals_, claim_.fd}) {
+  for (const int fd : {memfd_, epoll_, signals_, claim_.fd, detector_pidfd_}) {
     if (fd >= 0) close(fd);
   }
   for (const Listener& listener : listeners_) close(listener.fd);
@@ -500,9 +500,14 @@ void Engine::ShowProgress() {
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
   progress.drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
+  progress.client_ns = client_host_ns_;
+  progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
+  progress.coordinating_ns =
+      HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ - progress.dynamics_ns;
   for (const Process& process : processes_) {
     if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
+  FlushRecords();
   options_.on_progress(progress);
 }
 

@@ -44,7 +44,8 @@ class Engine {
     kCommand,
     kSignal,
     kGraceRanOut,
-    kDetector
+    kDetector,
+    kDetectorEnd
   };
 
   // Set-up (setup.cc). Empty on success, else one sentence.
@@ -190,10 +191,19 @@ class Engine {
   // errno.
   void TrapArrived(int listener);
   void ExitThread(Task& task, const TrappedCall& call);
+  void LookAtLeaving();
   void HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call);
   void ReleaseTrapped();
+
+  // Those that could be about tcsim's own processes (guarded_calls.cc).
+  bool IsGuarded(pid_t pid) const;
+  bool MeansGuarded(pid_t caller, pid_t receiver) const;
+  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal) const;
+  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
+  void LetThrough(const TrappedCall& call) const;
+  void ContinueTrap(const Task& task) const;
 
   // Those other than futex (raw_calls.cc).
   void HandleRawCall(Task& task, const TrappedCall& call);
@@ -347,6 +357,7 @@ class Engine {
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
+  void DetectorEnded();
   void RearmDetector();
   void Accept(const Listener& listener);
   bool Attach(int connection, Process& client);
@@ -384,6 +395,7 @@ class Engine {
 
   // What is written about the run (records.cc).
   std::string OpenRecords();
+  void FlushRecords();
   std::string CloseRecords();
   int AddRow(const std::string& group, const std::string& name);
   void NoteReleased(Task& task, shm::WakeReason reason);
@@ -438,9 +450,10 @@ class Engine {
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
-  std::vector<std::int64_t> progress_;       // Refresh's own
-  std::unordered_map<pid_t, Task*> by_tid_;  // the living
-  std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
+  std::vector<std::int64_t> progress_;                       // Refresh's own
+  std::unordered_map<pid_t, Task*> by_tid_;                  // the living
+  std::map<std::pair<std::string, std::string>, int> rows_;  // by group and name
+  std::deque<Task*> ended_tasks_;  // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
@@ -467,7 +480,10 @@ class Engine {
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
-  int detector_arm_ = -1, detector_fired_ = -1;
+  int detector_arm_ = -1, detector_fired_ = -1, detector_pidfd_ = -1;
+  pid_t detector_ = -1;
+  std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
+  std::vector<LeavingThread> leaving_;  // the earliest first
   bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;

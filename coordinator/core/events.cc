@@ -7,6 +7,7 @@
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -82,6 +83,17 @@ void Engine::RearmDetector() {
   detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
 }
 
+// Without it the first thread that waits in the kernel would make everybody wait with it.
+void Engine::DetectorEnded() {
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, detector_pidfd_, nullptr);
+  if (header_->shutdown.load() != 0) return;
+  const int status = WaitStatusOf(detector_).value_or(0);
+  report_.error = fmt::format(
+      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
+      "it; what it has written until then can be read",
+      detector_, WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+}
+
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
 // itself), and its process goes on.
 bool Engine::HasExited(const Task& task) const {
@@ -142,7 +154,7 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
-  const bool stopped = state == 'T';  // by a signal, until another one
+  const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   if (!stopped && (state != 'S' || running_->slot < 0)) {
     if (state == 'D') LendLevel();
     return false;
@@ -218,104 +230,107 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         stop = true;
         external_event_ = true;
         break;
-    }
-    case Tag::kListener:
-      Accept(listeners_[index]);
-      break;
-    case Tag::kConnection: {
-      const auto fd = static_cast<int>(index);
-      const auto found = std::find_if(connections_.begin(), connections_.end(),
-                                      [fd](const Connection& one) { return one.fd == fd; });
-      if (found == connections_.end()) break;  // it was cut off
-      const Connection connection = *found;
-      connections_.erase(found);
-      const bool registers = Attach(fd, *connection.client);
-      close(fd);
-      stop |= registers;
-      external_event_ |= registers;
-      break;
-    }
-    case Tag::kProcess:
-      ProcessEnded(index);
-      stop = true;
-      external_event_ = true;
-      break;
-    case Tag::kAwaited:
-      if (Task& task = tasks_[index];
-          task.state == TaskState::kWaiting && task.waits_for_fds &&
-          EventData(tag, index, task.wait_number) == events[i].data.u64 &&
-          !std::exchange(task.skips_event, false)) {
-        awaiters.push_back(&task);
+      case Tag::kListener:
+        Accept(listeners_[index]);
+        break;
+      case Tag::kConnection: {
+        const auto fd = static_cast<int>(index);
+        const auto found = std::find_if(connections_.begin(), connections_.end(),
+                                        [fd](const Connection& one) { return one.fd == fd; });
+        if (found == connections_.end()) break;  // it was cut off
+        const Connection connection = *found;
+        connections_.erase(found);
+        const bool registers = Attach(fd, *connection.client);
+        close(fd);
+        stop |= registers;
+        external_event_ |= registers;
+        break;
+      }
+      case Tag::kProcess:
+        ProcessEnded(index);
+        stop = true;
         external_event_ = true;
+        break;
+      case Tag::kAwaited:
+        if (Task& task = tasks_[index];
+            task.state == TaskState::kWaiting && task.waits_for_fds &&
+            EventData(tag, index, task.wait_number) == events[i].data.u64 &&
+            !std::exchange(task.skips_event, false)) {
+          awaiters.push_back(&task);
+          external_event_ = true;
+        }
+        break;
+      case Tag::kUnknownChild:
+        UnknownChildEnded(static_cast<pid_t>(index));
+        stop = true;
+        external_event_ = true;
+        break;
+      case Tag::kTrap:
+        if ((events[i].events & EPOLLIN) == 0) {
+          // Nobody is left whose calls could arrive here.
+          epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
+          close(static_cast<int>(index));
+          break;
+        }
+        TrapArrived(static_cast<int>(index));
+        stop = true;
+        external_event_ = true;
+        break;
+      case Tag::kCommand:
+        world_.ReceiveCommands(index, event_ns_);
+        break;
+      case Tag::kSignal: {
+        signalfd_siginfo info;
+        if (read(signals_, &info, sizeof info) != sizeof info) break;
+        // ^C is for the program that has the terminal.
+        if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
+            options_.output_directory.empty()) {
+          break;
+        }
+        stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+        stop = true;
+        break;
       }
-      break;
-    case Tag::kUnknownChild:
-      UnknownChildEnded(static_cast<pid_t>(index));
-      stop = true;
-      external_event_ = true;
-      break;
-    case Tag::kTrap:
-      if ((events[i].events & EPOLLIN) == 0) {
-        // Nobody is left whose calls could arrive here.
-        epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
+      case Tag::kGraceRanOut:
         close(static_cast<int>(index));
+        grace_ran_out_ = stop = true;
+        break;
+      case Tag::kDetector: {
+        std::uint64_t count;
+        if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
+        detector_armed_ = false;
+        TakeLevelBack();
+        blocked = true;
         break;
       }
-      TrapArrived(static_cast<int>(index));
-      stop = true;
-      external_event_ = true;
-      break;
-    case Tag::kCommand:
-      world_.ReceiveCommands(index, event_ns_);
-      break;
-    case Tag::kSignal: {
-      signalfd_siginfo info;
-      if (read(signals_, &info, sizeof info) != sizeof info) break;
-      // ^C is for the program that has the terminal.
-      if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
-          options_.output_directory.empty()) {
+      case Tag::kDetectorEnd:
+        DetectorEnded();
+        stop = true;
         break;
-      }
-      stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+    }
+  }
+  // Something else may have ended the wait meanwhile.
+  std::erase_if(awaiters, [](const Task* task) {
+    return task->state != TaskState::kWaiting || !task->waits_for_fds;
+  });
+  if (!awaiters.empty()) {
+    const bool beside = running_ != nullptr && running_->slot >= 0 &&
+                        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+                          return task->process->robot == running_->process->robot;
+                        });
+    const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
+    WakeAwaiters(std::move(awaiters));
+    event_ns_ = now_ns;
+    if (beside) {
+      GoOnBesideWoken();
+    } else {
       stop = true;
-      break;
-    }
-    case Tag::kGraceRanOut:
-      close(static_cast<int>(index));
-      grace_ran_out_ = stop = true;
-      break;
-    case Tag::kDetector: {
-      std::uint64_t count;
-      if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
-      detector_armed_ = false;
-      TakeLevelBack();
-      blocked = true;
-      break;
     }
   }
-}
-// Something else may have ended the wait meanwhile.
-std::erase_if(awaiters, [](const Task* task) {
-  return task->state != TaskState::kWaiting || !task->waits_for_fds;
-});
-if (!awaiters.empty()) {
-  const bool beside = running_ != nullptr && running_->slot >= 0 &&
-                      std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-                        return task->process->robot == running_->process->robot;
-                      });
-  const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
-  WakeAwaiters(std::move(awaiters));
-  event_ns_ = now_ns;
-  if (beside) {
-    GoOnBesideWoken();
-  } else {
-    stop = true;
-  }
-}
-if (running_ == nullptr) return true;
-if (stop || !blocked) return stop;
-++held_turns_;
-return BlockedInKernel();
+  if (running_ == nullptr) return true;
+  if (stop || !blocked) return stop;
+  ++held_turns_;
+  return BlockedInKernel();
 }
 
 }  // namespace tcs

@@ -6,7 +6,7 @@
 #include "coordinator/channel/udp_socket.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/dds/topics_table.h"
-#include "coordinator/os/guardian.h"
+#include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {

@@ -18,6 +18,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/shared_memory.h"
 #include "shm/check.h"
@@ -138,6 +139,11 @@ std::string Engine::PrepareDetector() {
     if (getppid() != coordinator) _exit(0);
     Detect(detector_arm_, detector_fired_);
   }
+  detector_ = detector;
+  detector_pidfd_ = OpenPidfd(detector);
+  Watch(detector_pidfd_, EPOLLIN, Tag::kDetectorEnd, 0);
+  guarded_ = GuardsOf(coordinator);
+  guarded_.insert(guarded_.end(), {coordinator, detector});
   return {};
 }
 

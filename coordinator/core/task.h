@@ -227,6 +227,13 @@ struct Process {
   std::int64_t started_at_ns = 0, ended_at_ns = -1;
 };
 
+// A thread that has said that it ends, and what it had used of a processor by then.
+struct LeavingThread {
+  pid_t tid = 0;
+  std::int64_t host_ns = 0;
+  std::string process;
+};
+
 // A child that was not announced and has not registered, perhaps never will.
 struct UnknownChild {
   pid_t parent = 0;

@@ -1,5 +1,8 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
+#include <unistd.h>
+
+#include <vector>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -51,9 +54,28 @@ void Engine::TrapArrived(int listener) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
+  std::erase_if(leaving_, [](const LeavingThread& one) { return ThreadState(one.tid) == 'X'; });
+  leaving_.push_back({task.tid, HostClockOf(task), task.process->name});
   EndTask(task);
   WakeThoseWaitingFor(task);
   ContinueTrapped(call.listener, call.id);
+}
+
+// The kernel lets it handle a signal first that comes in just that instant, and there it may stay.
+// It has the active level, so that nobody else would ever run.
+void Engine::LookAtLeaving() {
+  constexpr std::int64_t kMostNs = 1'000'000;  // of processor time, for a thread that does end
+  std::erase_if(leaving_, [this](const LeavingThread& one) {
+    if (KnownTask(one.tid) != nullptr || IsDying(one.tid)) return true;
+    const int clock = OpenThreadCpuClock(one.tid);
+    const std::int64_t used_ns = clock < 0 ? 0 : ReadThreadCpuClock(clock) - one.host_ns;
+    if (clock >= 0) close(clock);
+    if (used_ns < kMostNs) return false;
+    LeaveRealTime(one.tid);
+    Warn("a thread of " + one.process +
+         " has said that it ends, and computes on; it is not scheduled any more");
+    return true;
+  });
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
@@ -66,30 +88,19 @@ void Engine::HandleStranger(const TrappedCall& call) {
     process->has_strangers = true;
     CarryOutWake(*process, call);
   }
-  switch (call.number) {
-    case SYS_sched_setscheduler:
-    case SYS_sched_setparam:
-    case SYS_sched_setattr:
-    case SYS_sched_setaffinity:
-      // The host's scheduler must not hear of it from them either.
-      AnswerTrapped(call.listener, call.id, 0);
-      return;
-    default:
-      ContinueTrapped(call.listener, call.id);
-  }
+  LetThrough(call);
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.
 void Engine::ReleaseTrapped() {
   for (Task& task : tasks_) {
     if (task.state == TaskState::kDead) continue;
-    if (task.trap_id != 0) ContinueTrapped(task.trap_listener, task.trap_id);
-    if (task.early_trap.has_value())
-      ContinueTrapped(task.early_trap->listener, task.early_trap->id);
+    if (task.trap_id != 0) ContinueTrap(task);
+    if (task.early_trap.has_value()) LetThrough(*task.early_trap);
     task.trap_id = 0;
     task.early_trap.reset();
   }
-  if (trapped_.has_value()) ContinueTrapped(trapped_->listener, trapped_->id);
+  if (trapped_.has_value()) LetThrough(*trapped_);
   trapped_.reset();
 }
 

@@ -20,6 +20,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "coordinator/os/say.h"
 #include "coordinator/os/trap.h"
 #include "shm/layout.h"
 
@@ -286,8 +287,8 @@ namespace {
 
 // The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
 // parent has taken it.
-void HandOverTrap(int to_parent, int from_parent) {
-  const int listener = InstallTrap();
+void HandOverTrap(int to_parent, int from_parent, const std::vector<pid_t>& guarded) {
+  const int listener = InstallTrap(guarded);
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
   if (syscall(SYS_write, to_parent, &listener, sizeof listener, 0, 0, own) !=
@@ -341,7 +342,7 @@ Spawned Spawn(const SpawnRequest& request) {
   close(down[1]);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  HandOverTrap(up[1], down[0]);
+  HandOverTrap(up[1], down[0], request.guarded);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -369,8 +370,9 @@ Spawned Spawn(const SpawnRequest& request) {
     _exit(127);
   }
   execvp(argv[0], argv.data());
-  fprintf(stderr, "tcsim: %s cannot be started: %s\n", argv[0], strerror(errno));
-  _exit(errno == ENOENT ? 127 : 126);
+  const int error = errno;
+  Say(std::string(argv[0]) + " cannot be started: " + strerror(error));
+  _exit(error == ENOENT ? 127 : 126);
 }
 
 }  // namespace tcs

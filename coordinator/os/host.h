@@ -114,6 +114,7 @@ struct SpawnRequest {
   std::map<std::string, std::string> environment;
   std::string log_stdout, log_stderr;  // empty: inherited
   bool fixed_layout = false;           // no address-space randomisation
+  std::vector<pid_t> guarded;          // processes that it is not to touch
 };
 
 struct Spawned {

@@ -42,5 +42,9 @@ says 'drone/controller ended at .* with exit status 3: it said nothing'
 mv hover.py.bak hover.py
 hover ''
 [[ -s run/summary.json ]] || fail "no summary"
-hover 's/python3, hover.py/sh, -c, "kill -KILL $PPID"/'
+timeout -s KILL 60 "$tcsim" run changed.yaml --duration 1h --out run >stdout 2>stderr &
+run=$!
+for _ in $(seq 200); do [[ -e run/trace.json && ! -e run/summary.json ]] && break; sleep 0.1; done
+kill -KILL "$(coordinator_of "$(pgrep -P "$run")")"
+status=0; wait "$run" || status=$?
 [[ $status != 0 && ! -e run/summary.json ]] || fail "status $status, and $(ls run)"

@@ -1,0 +1,30 @@
+// The process between the guardian and the coordinator (guardian.h): it watches the coordinator,
+// and ends whatever that one leaves behind.
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "coordinator/os/guardian.h"
+
+namespace tcs {
+
+// In memory that the three processes share.
+struct GuardedState {
+  std::atomic<std::uint64_t> beats{0};  // of the coordinator
+  std::atomic<bool> has_ended{false};   // it has, and the keeper says how
+};
+
+// In the keeper's process, which the guardian has just made with SIGCHLD, SIGTERM and SIGHUP
+// blocked.
+// Does not return: its end is the coordinator's.
+[[noreturn]] void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
+                       const std::function<int()>& coordinate);
+
+// As the shell of a program that died of the signal would see it.
+[[noreturn]] void DieOf(int signal_number);
+
+}  // namespace tcs
