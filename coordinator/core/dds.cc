@@ -82,7 +82,7 @@ dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
 void Engine::TakeOwnMessages() {
   const std::int64_t until = std::min(root_.Least(), end_ns_);
   if (hub_.OwnDueNs() > until) return;
-  if (world_.speaks_dds()) {
+  if (world_.speaks_dds() && WorldGoesOn()) {
     world_.TakeDdsCommands(until);
   } else {
     while (ends_.Take(until).has_value()) {

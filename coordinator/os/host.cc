@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdio.h>
@@ -363,6 +364,9 @@ Spawned Spawn(const SpawnRequest& request) {
   if (!request.log_stdout.empty()) {
     const int null = open("/dev/null", O_RDONLY);
     dup2(null, 0);
+    // Not what tcsim has open, nor what it was started with: which numbers a program gets for its
+    // own is part of what repeats.
+    close_range(3, ~0u, CLOSE_RANGE_CLOEXEC);
   }
   if (!request.working_directory.empty() && chdir(request.working_directory.c_str()) != 0) {
     fprintf(stderr, "tcsim: the working directory %s cannot be entered: %s\n",

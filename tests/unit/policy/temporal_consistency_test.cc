@@ -164,5 +164,19 @@ TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
   EXPECT_EQ(root.DynamicsHorizon(), kNever);
 }
 
+TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto leaf = root.AddLeaf(0);
+  root.Update(leaf, kEnd, kEnd);
+  root.UpdateDynamics(kEnd, kEnd + 10);
+  EXPECT_EQ(root.Horizon(leaf), kEnd);
+  root.EndDynamics();
+  root.EndAt(kEnd + 100);
+  EXPECT_EQ(root.Horizon(leaf), kEnd + 100);
+  EXPECT_EQ(root.DynamicsHorizon(), kNever);
+  EXPECT_EQ(root.NextOutput(), kNever);
+  EXPECT_EQ(root.ReadSafe(leaf), kNever);
+}
+
 }  // namespace
 }  // namespace tcs
