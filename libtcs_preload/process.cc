@@ -6,6 +6,7 @@
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,6 +56,14 @@ long WaitForChild(GuestThread& t, pid_t which, int options, Probe probe) {
       if (!RestartsAfterSignal()) return -EINTR;
     }
   }
+}
+
+// 0 or an errno.
+int OpenPidfd(pid_t child, int* pidfd) {
+  const long opened = RawSyscall(SYS_pidfd_open, child, 0);
+  if (opened < 0) return static_cast<int>(-opened);
+  *pidfd = static_cast<int>(opened);
+  return 0;
 }
 
 }  // namespace
@@ -159,4 +168,23 @@ TCS_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file
   if (pid != nullptr && error == 0) *pid = child;
   if (t != nullptr && error == 0) TellSpawned(*t, child);
   return error;
+}
+
+// Those of glibc 2.39, by what there was before.
+extern "C" {
+TCS_EXPORT int pidfd_spawn(int* pidfd, const char* path, const posix_spawn_file_actions_t* actions,
+                           const posix_spawnattr_t* attributes, char* const argv[],
+                           char* const envp[]) noexcept {
+  pid_t child = 0;
+  const int error = posix_spawn(&child, path, actions, attributes, argv, envp);
+  return error != 0 ? error : OpenPidfd(child, pidfd);
+}
+
+TCS_EXPORT int pidfd_spawnp(int* pidfd, const char* file, const posix_spawn_file_actions_t* actions,
+                            const posix_spawnattr_t* attributes, char* const argv[],
+                            char* const envp[]) noexcept {
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, file, actions, attributes, argv, envp);
+  return error != 0 ? error : OpenPidfd(child, pidfd);
+}
 }

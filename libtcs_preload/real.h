@@ -1,6 +1,7 @@
 // The C library's own versions of functions that cannot be had from the kernel alone.
 //
-// Looked up on first use; only names that exist in glibc 2.36, since a failing dlsym allocates.
+// Looked up on first use; only names that exist in glibc 2.36 already, since a failing dlsym
+// allocates.
 #pragma once
 
 #include <dlfcn.h>

@@ -1,5 +1,6 @@
 // Programs that speak DDS: who has joined, what they send each other, and the thread of each that
 // takes what is for it (shm/dds_exchange.h).
+#include <dds/version.h>
 #include <errno.h>
 #include <fmt/format.h>
 
@@ -138,7 +139,7 @@ void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
   const char* mend = "see its .err.log";
   switch (why) {
     case shm::WhySockets::kOtherLibrary:
-      reason = "its Cyclone DDS is not Debian 12's libddsc.so.0.10.2";
+      reason = "its Cyclone DDS is not Debian's libddsc.so." DDS_VERSION;
       mend = "link it with that one";
       break;
     case shm::WhySockets::kLooksUpItself:

@@ -1,4 +1,5 @@
 // A program that becomes another one, in all the ways there are, goes on in the same time.
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -40,6 +41,26 @@ void InAChild(const char* what, Become become) {
   ExpectSlept(start, pid, what);
 }
 
+// glibc has them from 2.39 on, and before that only tcs.
+void SpawnsWithPidfd(const char* name, const char* path) {
+  using PidfdSpawn =
+      int (*)(int* pidfd, const char* path, const posix_spawn_file_actions_t* actions,
+              const posix_spawnattr_t* attributes, char* const argv[], char* const envp[]);
+  const auto spawn = reinterpret_cast<PidfdSpawn>(dlsym(RTLD_DEFAULT, name));
+  if (spawn == nullptr && g_mode == Mode::kNative) return;
+  EXPECT(spawn != nullptr, "there is no %s", name);
+  int pidfd = -1;
+  const std::int64_t start = Now();
+  EXPECT(spawn(&pidfd, path, nullptr, nullptr, g_arguments, g_environment) == 0, "%s", name);
+  EXPECT((fcntl(pidfd, F_GETFD) & FD_CLOEXEC) != 0, "%s: not closed on exec", name);
+  siginfo_t ended{};
+  EXPECT(waitid(P_PIDFD, static_cast<id_t>(pidfd), &ended, WEXITED | WNOWAIT) == 0, "waitid");
+  ExpectSlept(start, ended.si_pid, name);
+  close(pidfd);
+  EXPECT(spawn(&pidfd, "/nonexistent", nullptr, nullptr, g_arguments, environ) == ENOENT,
+         "%s of nothing", name);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,6 +81,8 @@ int main(int argc, char** argv) {
   start = Now();
   EXPECT(posix_spawnp(&pid, g_sleep, nullptr, nullptr, g_arguments, g_environment) == 0, "spawnp");
   ExpectSlept(start, pid, "posix_spawnp");
+  SpawnsWithPidfd("pidfd_spawn", kPath);
+  SpawnsWithPidfd("pidfd_spawnp", g_sleep);
 
   EXPECT(execl("/nonexistent", g_sleep, nullptr) == -1 && errno == ENOENT, "execl of nothing");
   EXPECT(posix_spawn(&pid, "/nonexistent", nullptr, nullptr, g_arguments, environ) == ENOENT,

@@ -24,16 +24,16 @@ Topic<Message> MakeTopic(const DdsEntity& participant, const dds_topic_descripto
 
 }  // namespace
 
-void AddDdsOptions(CLI::App& app, DdsOptions& options) {
-  app.add_option("--domain", options.domain,
-                 "DDS domain [that of CYCLONEDDS_URI, or 0, unless told]")
-      ->check(CLI::Range(0, kHighestDomain));
-  AddNamespace(app, "--namespace", options.predator, "namespace of the predator's topics");
+void AddDdsOptions(CommandLine& command_line, DdsOptions& options) {
+  command_line.AddUnlessTold("--domain", options.domain,
+                             "DDS domain [that of CYCLONEDDS_URI, or 0, unless told]", 0,
+                             kHighestDomain);
+  AddNamespace(command_line, "--namespace", options.predator, "namespace of the predator's topics");
 }
 
-void AddNamespace(CLI::App& app, const std::string& name, std::string& value,
-                  const std::string& help) {
-  app.add_option(name, value, help)->capture_default_str()->check(WhatIsWrongWithNamespace, "");
+void AddNamespace(CommandLine& command_line, const char* name, std::string& value,
+                  const char* help) {
+  command_line.AddText(name, value, help, WhatIsWrongWithNamespace);
 }
 
 DdsEntity JoinDomain(const DdsOptions& options) {

@@ -2,11 +2,11 @@
 // named and typed as ROS 2 would (`rt/` stands before each of its topics' names).
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "examples/predator_prey/common/dds_endpoints.h"
 #include "examples/predator_prey/common/dds_messages.h"
+#include "examples/predator_prey/common/program.h"
 
 namespace predator_prey {
 
@@ -16,11 +16,11 @@ struct DdsOptions {
 };
 
 // --domain and --namespace.
-void AddDdsOptions(CLI::App& app, DdsOptions& options);
+void AddDdsOptions(CommandLine& command_line, DdsOptions& options);
 
 // The option for one ROS 2 namespace.
-void AddNamespace(CLI::App& app, const std::string& name, std::string& value,
-                  const std::string& help);
+void AddNamespace(CommandLine& command_line, const char* name, std::string& value,
+                  const char* help);
 
 DdsEntity JoinDomain(const DdsOptions& options);
 

@@ -75,9 +75,9 @@ void Run(const Options& options) {
   }
 }
 
-void AddFollowerOptions(CLI::App& app, FollowerOptions& follower) {
-  const auto add = [&app](const char* name, double& value, const char* help) {
-    app.add_option(name, value, help)->capture_default_str()->check(CLI::NonNegativeNumber);
+void AddFollowerOptions(CommandLine& command_line, FollowerOptions& follower) {
+  const auto add = [&command_line](const char* name, double& value, const char* help) {
+    command_line.Add(name, value, help, Accept::kNotNegative);
   };
   add("--execute", follower.execute_s, "how much of a plan is executed [s]");
   add("--kp", follower.kp_per_s2, "feedback of position [1/s²]");
@@ -94,13 +94,12 @@ void AddFollowerOptions(CLI::App& app, FollowerOptions& follower) {
 int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
-  CLI::App app("Controls the predator along the plans of predator_planner.", "predator_controller");
-  AddDdsOptions(app, options.dds);
-  AddNamespace(app, "--prey-namespace", options.prey, "namespace of the prey's topics");
-  app.add_option("--request-timeout", options.request_timeout_s,
-                 "ask again when a plan does not come for so long [s]")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  AddFollowerOptions(app, options.follower);
-  return RunProgram(app, argc, argv, [&] { Run(options); });
+  CommandLine command_line("Controls the predator along the plans of predator_planner.",
+                           "predator_controller");
+  AddDdsOptions(command_line, options.dds);
+  AddNamespace(command_line, "--prey-namespace", options.prey, "namespace of the prey's topics");
+  command_line.Add("--request-timeout", options.request_timeout_s,
+                   "ask again when a plan does not come for so long [s]", Accept::kPositive);
+  AddFollowerOptions(command_line, options.follower);
+  return command_line.Run(argc, argv, [&] { Run(options); });
 }

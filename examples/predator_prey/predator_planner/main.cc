@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 
 #include "examples/predator_prey/common/dds_waitset.h"
 #include "examples/predator_prey/common/predator_topics.h"
@@ -59,23 +60,18 @@ void Run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
-  CLI::App app("Plans how the predator catches the prey.", "predator_planner");
-  AddDdsOptions(app, options.dds);
-  app.add_option("--seed", options.seed, "seed of the planner's random numbers, 1 or more")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--budget", options.planner.budget_s, "how long to plan [s]")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--iterations", options.planner.iterations,
-                 "plan for so many iterations, however long they take, not for a time")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--reply-duration", options.planner.reply_s, "how much of a plan to send back [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 1.0));
-  app.add_option("--flee-distance", options.planner.model.flee_distance_m,
-                 "the prey is taken to flee when the predator is nearer [m]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  return RunProgram(app, argc, argv, [&] { Run(options); });
+  CommandLine command_line("Plans how the predator catches the prey.", "predator_planner");
+  AddDdsOptions(command_line, options.dds);
+  command_line.Add("--seed", options.seed, "seed of the planner's random numbers, 1 or more",
+                   Accept::kPositive);
+  command_line.Add("--budget", options.planner.budget_s, "how long to plan [s]", Accept::kPositive);
+  command_line.AddUnlessTold("--iterations", options.planner.iterations,
+                             "plan for so many iterations, however long they take, not for a time",
+                             1, std::numeric_limits<int>::max());
+  command_line.AddBetween("--reply-duration", options.planner.reply_s,
+                          "how much of a plan to send back [s]", 0.01, 1.0);
+  command_line.Add("--flee-distance", options.planner.model.flee_distance_m,
+                   "the prey is taken to flee when the predator is nearer [m]",
+                   Accept::kNotNegative);
+  return command_line.Run(argc, argv, [&] { Run(options); });
 }

@@ -54,10 +54,6 @@ void Run(const Options& options) {
   }
 }
 
-void AddPort(CLI::App& app, const std::string& name, std::uint16_t& port, const std::string& help) {
-  app.add_option(name, port, help)->required()->check(CLI::Range(1, 65535));
-}
-
 }  // namespace
 }  // namespace predator_prey
 
@@ -65,21 +61,19 @@ int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
   PreyOptions& prey = options.prey;
-  CLI::App app("Controls the prey: flees from the predator or wanders.", "prey_controller");
-  AddPort(app, "--sensors-port", options.sensors_port, "UDP port to receive sensor readings on");
-  AddPort(app, "--commands-port", options.commands_port, "UDP port to send force commands to");
-  app.add_option("--seed", prey.seed, "seed of the random walk")->capture_default_str();
-  app.add_option("--flee-distance", prey.flee_distance_m, "flee when the predator is nearer [m]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--flee-force", prey.flee_force_n, "[N]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--wander-force", prey.wander_force_n, "root mean square [N]")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--wander-hold", prey.wander_hold_s, "how long each random force is held [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 1e6));
-  return RunProgram(app, argc, argv, [&] { Run(options); });
+  CommandLine command_line("Controls the prey: flees from the predator or wanders.",
+                           "prey_controller");
+  command_line.AddPort("--sensors-port", options.sensors_port,
+                       "UDP port to receive sensor readings on");
+  command_line.AddPort("--commands-port", options.commands_port,
+                       "UDP port to send force commands to");
+  command_line.Add("--seed", prey.seed, "seed of the random walk", Accept::kAll);
+  command_line.Add("--flee-distance", prey.flee_distance_m, "flee when the predator is nearer [m]",
+                   Accept::kNotNegative);
+  command_line.Add("--flee-force", prey.flee_force_n, "[N]", Accept::kNotNegative);
+  command_line.Add("--wander-force", prey.wander_force_n, "root mean square [N]",
+                   Accept::kNotNegative);
+  command_line.AddBetween("--wander-hold", prey.wander_hold_s,
+                          "how long each random force is held [s]", 0.01, 1e6);
+  return command_line.Run(argc, argv, [&] { Run(options); });
 }
