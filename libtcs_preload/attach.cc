@@ -67,7 +67,8 @@ Received Exchange(int socket, shm::AttachWants wants) {
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
   if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {
     const std::size_t size = header->cmsg_len - CMSG_LEN(0);
-    memcpy(received.fds, CMSG_DATA(header), size < sizeof received.fds ? size : sizeof received.fds);
+    memcpy(received.fds, CMSG_DATA(header),
+           size < sizeof received.fds ? size : sizeof received.fds);
   }
   return received;
 }
@@ -83,8 +84,8 @@ void MapRun(int fd) {
   }
 }
 
-// A child by fork has not inherited its parent's. Its own goes to the same place, if that is free: a
-// handler that forked may still look there.
+// A child by fork has not inherited its parent's. Its own goes to the same place, if that is free:
+// a handler that forked may still look there.
 void MapSlots(int fd) {
   constexpr long kSize = static_cast<long>(shm::kProcessMemorySize);
   const auto map = [fd](long where, int how) {

@@ -1,9 +1,10 @@
 // When System V objects were changed and used, in virtual time: what the kernel keeps of that is
-// the host's. A table, zero at first, that all clients read and only the coordinator writes: a thread
-// notes in its slot what it has done, and the coordinator takes that over when the thread stops.
+// the host's. A table, zero at first, that all clients read and only the coordinator writes: a
+// thread notes in its slot what it has done, and the coordinator takes that over when the thread
+// stops.
 //
-// A place belongs to an object from its first use on. Those of removed objects are used again, in no
-// particular order, once all places that an object may have are taken.
+// A place belongs to an object from its first use on. Those of removed objects are used again, in
+// no particular order, once all places that an object may have are taken.
 #pragma once
 
 #include <atomic>

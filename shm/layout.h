@@ -84,8 +84,8 @@ enum class NotificationKind : std::uint32_t {
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).
-  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the drift bound, ns. It
-                  // then asks for its area (attach_protocol.h)
+  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the drift bound, ns.
+                  // It then asks for its area (attach_protocol.h)
   kDdsSend = 26,  // args[0]: bytes of messages in the outbox
   kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
                   // messages in the inbox
@@ -116,8 +116,8 @@ enum class WaitKey : std::uint32_t {
   kKernelWaits = 5
 };
 
-// What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is signal
-// 1.
+// What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is
+// signal 1.
 enum class TimerClock : std::uint16_t { kTime = 0, kProcessCpu = 1, kThreadCpu = 2 };
 struct TimerKind {
   TimerClock clock = TimerClock::kTime;

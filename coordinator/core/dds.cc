@@ -163,7 +163,9 @@ void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
 
 void Engine::JoinDds(Task& task) {
   Process& process = *task.process;
+  const bool warned = process.dds_warned;
   LeaveDds(process);
+  process.dds_warned = warned;
   process.dds_number = hub_.Join(event_ns_);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
   task.reply[1] = scenario_.drift_bound.ns();

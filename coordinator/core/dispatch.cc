@@ -40,6 +40,9 @@ constexpr int kStartTurns = 30;
 // Under set costs, a thread that computes for so many turns without a call is taken to spin.
 constexpr int kSilentTurns = 5;
 constexpr std::int64_t kSpinTurnNs = 1'000'000;
+// Where a thread may take long it is looked at so often before: does it have the processor at all?
+constexpr int kFirstLooks = 2;
+constexpr std::int64_t kUnservedNs = 2'000'000;
 
 }  // namespace
 
@@ -301,21 +304,56 @@ void Engine::Settle(Task& task) {
   RecordSlice(task.row, start, busy_until, recorded_tsc_);
 }
 
+// Who has the processor may be somebody whose turn it is not: threads that nobody announced, with
+// the level of who made them; or one that has notified, and goes on instead of to its gate.
+void Engine::SeeThatItRuns(Task& task, std::uint64_t since_tsc, Unserved* unserved) {
+  unserved->real_ns +=
+      static_cast<std::int64_t>(static_cast<double>(stop_tsc_ - since_tsc) / ticks_per_ns_);
+  if (unserved->real_ns < kUnservedNs) return;
+  const std::int64_t cpu_ns = HostClockOf(task);
+  const bool is_unserved =
+      unserved->cpu_ns >= 0 && cpu_ns - unserved->cpu_ns < unserved->real_ns / 8;
+  *unserved = {0, cpu_ns};
+  if (!is_unserved || ThreadState(task.tid) != 'R') return;
+  for (Task& other : tasks_) {
+    if (&other == &task || &other == lent_ || other.state == TaskState::kDead) continue;
+    if (other.level == Level::kActive) SetLevel(other.tid, Level::kWaiting);
+    other.level = Level::kWaiting;
+  }
+  std::vector<pid_t> pending = ChildrenOf(getpid());
+  while (!pending.empty()) {
+    const pid_t pid = pending.back();
+    pending.pop_back();
+    if (pid == detector_pid_) continue;
+    for (const pid_t tid : ThreadsOf(pid)) {
+      if (KnownTask(tid) == nullptr) SetLevel(tid, Level::kWaiting);
+    }
+    const std::vector<pid_t> children = ChildrenOf(pid);
+    pending.insert(pending.end(), children.begin(), children.end());
+  }
+}
+
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, silent_turns = 0;
   std::int64_t silent_at_ns =
       task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
   held_turns_ = 0;
-  for (bool first = true;; first = false) {
+  Unserved unserved;
+  for (int turn = 0;; ++turn) {
+    const bool first = turn == 0;
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !IsOwnDispatch(task)) return;
     if (!first) ContinueClock(task);
-    const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
+    std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
+    const bool only_looks = asked_ns == kStartTurnNs && turn < kFirstLooks;
+    if (only_looks) asked_ns = kLaxTimerNs;
     const std::uint64_t asked_tsc = stop_tsc_;
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
+    SeeThatItRuns(task, asked_tsc, &unserved);
+    if (only_looks) continue;
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
       // It must have run: real time that has passed may be the host's.

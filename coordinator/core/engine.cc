@@ -25,6 +25,7 @@ constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'00
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr int kDeathTurns = 25;  // of kOutsidePollNs
+constexpr std::int64_t kMostForStrangersNs = 5'000'000'000;
 constexpr std::int64_t kShowEveryNs = 200'000'000;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
@@ -463,14 +464,29 @@ bool Engine::HasJumpedOver() {
   external_event_ = false;
   PollEvents(0);
   PollUnseen();
-  if (StrangersRun()) {
+  if (WaitsForStrangers()) {
     PollEvents(kUnseenPollNs);
     return false;
   }
   return !external_event_;
 }
 
-// Threads that never registered are at work: time waits for them.
+// Threads that never registered are at work: time waits for them. But not for ever.
+bool Engine::WaitsForStrangers() {
+  if (ignores_strangers_ || !StrangersRun()) {
+    strangers_since_ns_ = -1;
+    return false;
+  }
+  const std::int64_t now = HostClockNs(CLOCK_MONOTONIC);
+  if (strangers_since_ns_ < 0) strangers_since_ns_ = now;
+  if (now - strangers_since_ns_ < kMostForStrangersNs) return true;
+  Warn(
+      "a thread or child that tcs was told nothing of has computed for 5 s: time waits for such "
+      "no longer; start it by the C library's functions");
+  ignores_strangers_ = true;
+  return false;
+}
+
 bool Engine::StrangersRun() {
   for (const Process& process : processes_) {
     if (!process.has_strangers || process.dead) continue;

@@ -70,6 +70,7 @@ class Engine {
   bool IsSafe(const Task& task) const;
   void PollUnseen();
   bool StrangersRun();
+  bool WaitsForStrangers();
   void WaitOutside();
   void ShowProgress();
 
@@ -93,6 +94,10 @@ class Engine {
   void ContinueClock(Task& task);
   void GoOnBesideWoken();
   void AwaitStop(Task& task);
+  struct Unserved {
+    std::int64_t real_ns = 0, cpu_ns = -1;  // since the last look, and the thread's clock then
+  };
+  void SeeThatItRuns(Task& task, std::uint64_t since_tsc, Unserved* unserved);
   std::int64_t HostNsToHorizon(const Task& task);
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
@@ -364,9 +369,7 @@ class Engine {
   void Warn(const std::string& text);
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
-  shm::ThreadSlot& Slot(const Task& task) const {
-    return *task.slot_memory;
-  }
+  shm::ThreadSlot& Slot(const Task& task) const { return *task.slot_memory; }
 
   const Scenario scenario_;
   const RunOptions options_;
@@ -381,7 +384,7 @@ class Engine {
   std::deque<VirtualCpu> cpus_;  // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
-  std::vector<std::int64_t> progress_;  // Refresh's own
+  std::vector<std::int64_t> progress_;       // Refresh's own
   std::unordered_map<pid_t, Task*> by_tid_;  // the living
   std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
@@ -389,13 +392,13 @@ class Engine {
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
   std::optional<record::Recording> recording_;
-  std::vector<Process*> dds_processes_;  // that have joined it
+  std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<int> connections_;  // of those that have not said yet what they want
-  int living_ = 0;             // threads that are not dead
-  int unseen_ = 0;             // threads in TaskState::kUnseen
-  int waiting_for_child_ = 0;  // and such that wait for a child
-  int waiting_for_room_ = 0;   // and such that have sent more than others could take at once
+  int living_ = 0;               // threads that are not dead
+  int unseen_ = 0;               // threads in TaskState::kUnseen
+  int waiting_for_child_ = 0;    // and such that wait for a child
+  int waiting_for_room_ = 0;     // and such that have sent more than others could take at once
   int waiting_for_signals_ = 0;
   int waiting_for_stops_ = 0;
   std::map<pid_t, UnknownChild> unknown_children_;
@@ -412,6 +415,7 @@ class Engine {
   std::uint32_t key_waiters_ = 0;
   int detector_arm_ = -1, detector_fired_ = -1;
   bool detector_armed_ = false;
+  pid_t detector_pid_ = -1;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::string socket_name_;
   std::uint64_t ns_per_tick_q32_ = 0;
@@ -431,6 +435,8 @@ class Engine {
   Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
   Task* lent_ = nullptr;            // has the active level beside the running thread
   bool stop_requested_ = false;
+  std::int64_t strangers_since_ns_ = -1;       // on the host's clock: time has waited for them
+  bool ignores_strangers_ = false;             // it has waited long enough
   bool from_outside_ = false;                  // time or the world wakes, not another thread
   bool has_spinners_ = false;                  // threads that stepped aside
   bool notified_ = false, preempted_ = false;  // why the running thread was stopped

@@ -22,7 +22,8 @@ namespace tcs {
 
 namespace {
 
-constexpr int kEventsAtOnce = 64;
+// More than there are: what one program makes ready must not keep what others wait for from them.
+constexpr int kEventsAtOnce = 4096;
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
 constexpr std::int64_t kLentTurnNs = 20'000;  // where another one has its level

@@ -38,8 +38,9 @@ void Engine::Shutdown() {
   }
   for (Process& process : processes_) {
     if (process.dead) continue;
-    kill(process.pid, SIGTERM);
-    if (process.pidfd >= 0) ends.push_back({process.pidfd, POLLIN, 0});
+    if (process.pidfd < 0) continue;
+    syscall(SYS_pidfd_send_signal, process.pidfd, SIGTERM, nullptr, 0);
+    ends.push_back({process.pidfd, POLLIN, 0});
   }
   const std::int64_t until = HostClockNs(CLOCK_MONOTONIC) + std::int64_t{kGraceMs} * 1'000'000;
   // What clients do meanwhile the kernel does for them.

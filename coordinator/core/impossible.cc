@@ -1,6 +1,5 @@
 // What a process can write into the memory that it shares with the coordinator, and cannot mean:
 // then a pointer has gone astray there, or the program means harm. It is ended; the run goes on.
-#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/syscall.h>
@@ -58,8 +57,7 @@ void ClockGrant::NoteLimits() {
 bool Engine::IsOwnDispatch(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;
   const std::uint64_t number = shm::DispatchNumber(task.dispatches << shm::kAdjustBits);
-  return task.grant.StandsIn(page) &&
-         shm::DispatchNumber(page.executed_adjust.load()) == number &&
+  return task.grant.StandsIn(page) && shm::DispatchNumber(page.executed_adjust.load()) == number &&
          shm::DispatchNumber(page.waited_adjust.load()) == number;
 }
 
@@ -72,8 +70,8 @@ const char* Engine::WhatIsImpossible(const Task& task) const {
   if (moved < 0 || moved > kLargeSlackNs) return "its processor clock";
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());
-  const std::int64_t ran = shm::MulQ32(static_cast<std::int64_t>(stop_tsc_ - grant.base_tsc),
-                                       grant.ns_per_tick_q32);
+  const std::int64_t ran =
+      shm::MulQ32(static_cast<std::int64_t>(stop_tsc_ - grant.base_tsc), grant.ns_per_tick_q32);
   if (added < -kSlackNs - std::max<std::int64_t>(0, ran)) return "a clock that went back";
   if (!IsFixed() && added > kLargeSlackNs) return "a clock that went ahead";
   const std::int64_t idle = std::max<std::int64_t>(0, grant.most_idle_ns - grant.base_time_ns);
@@ -119,9 +117,15 @@ std::int64_t Engine::StalenessOf(const Task& task) const {
 // Its threads get to the end at once, and nobody runs meanwhile: it takes the kernel some steps.
 void Engine::Expel(Process& process, const char* what) {
   if (std::exchange(process.expelled, true)) return;
-  Warn(fmt::format("{} (pid {}) has written what cannot be into the memory that it shares with "
-                   "tcs ({}), and was ended; look for a pointer gone astray in it",
-                   process.name, process.pid, what));
+  // Once of a program, however many children of its do so.
+  const std::string begin =
+      process.name + " has written what cannot be into the memory that it shares with tcs (";
+  const bool is_said =
+      std::any_of(report_.warnings.begin(), report_.warnings.end(),
+                  [&](const std::string& warning) { return warning.rfind(begin, 0) == 0; });
+  if (!is_said) {
+    Warn(begin + what + "), and was ended; look for a pointer gone astray in it");
+  }
   syscall(SYS_pidfd_send_signal, process.pidfd, SIGKILL, nullptr, 0);
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {

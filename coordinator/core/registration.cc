@@ -145,8 +145,8 @@ bool Engine::Attach(int connection) {
     return false;
   }
   const Task* stranger = KnownTask(hello.tid);
-  const bool is_anothers = stranger != nullptr && stranger == running_ &&
-                           stranger->process->pid != hello.pid;
+  const bool is_anothers =
+      stranger != nullptr && stranger == running_ && stranger->process->pid != hello.pid;
   if (is_anothers || (hello.tid == hello.pid && !EndThreadsLostInExec(hello.pid))) {
     Refuse(connection, "it has a place there already");
     return false;

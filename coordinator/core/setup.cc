@@ -63,6 +63,7 @@ std::string Engine::Prepare() {
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
+  AllowManyDescriptors();
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = OpenDds(); !error.empty()) return error;
@@ -130,6 +131,7 @@ std::string Engine::PrepareDetector() {
   const pid_t coordinator = getpid();
   const pid_t detector = fork();
   if (detector < 0) return "the block detector's process cannot be made";
+  detector_pid_ = detector;
   if (detector == 0) {
     if (getppid() != coordinator) _exit(0);
     Detect(detector_arm_, detector_fired_);

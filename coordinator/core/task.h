@@ -66,11 +66,11 @@ struct Task {
   Process* process = nullptr;
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   pid_t tid = 0;
-  int slot = -1;                             // -1: it has not registered yet
-  shm::ThreadSlot* slot_memory = nullptr;    // of that; readable until the engine's next step
-  int order = 0;     // of registration; its number in the scheduling policies
-  int priority = 0;  // on its robot; higher is more urgent
-  int policy = 0;    // POSIX: SCHED_OTHER …
+  int slot = -1;                           // -1: it has not registered yet
+  shm::ThreadSlot* slot_memory = nullptr;  // of that; readable until the engine's next step
+  int order = 0;                           // of registration; its number in the scheduling policies
+  int priority = 0;                        // on its robot; higher is more urgent
+  int policy = 0;                          // POSIX: SCHED_OTHER …
   int posix_priority = 0;
   bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: whom it makes is an ordinary thread
   std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
@@ -147,7 +147,7 @@ struct Task {
   std::int64_t page_origin_ns = 0;  // what its page says of that
   ClockGrant grant;
   bool is_cut_off = false;  // it has been told that its connection is not there any more
-  int cpu_clock_fd = -1;            // where its CPU clock is read, if it is not its process's
+  int cpu_clock_fd = -1;    // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
   bool spins = false;           // computes without calls where computing takes no time
   bool parked = true;           // at its gate, rather than stopped by priority
@@ -187,7 +187,7 @@ struct TimerSignal {
 
 struct Process {
   std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
-  std::uint32_t index = 0;  // its place in the engine's list
+  std::uint32_t index = 0;            // its place in the engine's list
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
   Robot* robot = nullptr;

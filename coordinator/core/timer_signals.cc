@@ -2,6 +2,8 @@
 // end the process; at the dispatch of the thread that will run a handler, for the handler is its
 // work.
 #include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 
@@ -31,7 +33,7 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
                      .overruns = static_cast<int>(signal.overruns),
                      .value = signal.value});
   } else if (tid == 0 || process.threads == 1) {
-    kill(process.pid, signal.number);
+    syscall(SYS_pidfd_send_signal, process.pidfd, signal.number, nullptr, 0);
   } else {
     tgkill(process.pid, tid, signal.number);
   }

@@ -100,7 +100,9 @@ void Engine::CreateTimer(Task& task, const shm::Notification& note) {
   Timer timer;
   static_assert(sizeof timer.kind == sizeof note.args - sizeof note.args[0]);
   memcpy(static_cast<void*>(&timer.kind), &note.args[1], sizeof timer.kind);
-  if (timer.kind.signal < 0 || timer.kind.signal > SIGRTMAX) return;
+  const auto is_own = [&](pid_t tid) { return IsThreadOf(process.pid, tid); };
+  if (timer.kind.signal_tid != 0 && !is_own(timer.kind.signal_tid)) return;
+  if (timer.kind.clock == TimerClock::kThreadCpu && !is_own(timer.kind.clock_tid)) return;
   if (note.args[0] >= 0) {
     timer.fd = TimerDescriptorOf(process, static_cast<int>(note.args[0]));
     if (timer.fd < 0) return;

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -71,6 +72,18 @@ std::string WhyNoRealTime() {
   std::string why = TakeCoordinatorLevel();
   if (why.empty()) LeaveRealTime(0);
   return why;
+}
+
+namespace {
+
+rlimit g_descriptors_before{0, 0};
+
+}  // namespace
+
+void AllowManyDescriptors() {
+  if (getrlimit(RLIMIT_NOFILE, &g_descriptors_before) != 0) return;
+  const rlimit most{g_descriptors_before.rlim_max, g_descriptors_before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &most);
 }
 
 void SetLevel(pid_t tid, Level level) {
@@ -347,6 +360,7 @@ Spawned Spawn(const SpawnRequest& request) {
   sigprocmask(SIG_SETMASK, &none, nullptr);
   signal(SIGINT, SIG_DFL);
   signal(SIGPIPE, SIG_DFL);
+  if (g_descriptors_before.rlim_max != 0) setrlimit(RLIMIT_NOFILE, &g_descriptors_before);
   if (request.fixed_layout) personality(ADDR_NO_RANDOMIZE);
   for (const auto& [name, value] : request.environment) {
     setenv(name.c_str(), value.c_str(), 1);

@@ -37,6 +37,10 @@ std::string WhyNoRealTime();
 
 void SetLevel(pid_t tid, Level level);
 
+// The coordinator needs some descriptors for each process and thread. What Spawn starts has the
+// limit that there was before.
+void AllowManyDescriptors();
+
 // Back to ordinary scheduling.
 void LeaveRealTime(pid_t tid);
 

@@ -1,4 +1,5 @@
-// What runs beside a hostile program: it does what ordinary ones do, and says when.
+// What runs beside a hostile program: it does for a tenth of a second what
+// ordinary ones do, and says when.
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -65,4 +66,6 @@ int main() {
     }
   }
   puts("done");
+  fflush(stdout);
+  for (;;) usleep(1000);  // to the run's end
 }

@@ -39,8 +39,8 @@ std::uint64_t Below(std::uint64_t n) { return g_dice() % n; }
 
 // Values at the edges of what is stored.
 std::uint64_t Odd() {
-  constexpr std::uint64_t kOdd[] = {0,       1,       2,           4096,       UINT32_MAX, INT64_MAX,
-                                    1ul<<63, 1ul<<47, ~0ul,        1'000'000'000'000'000'000};
+  constexpr std::uint64_t kOdd[] = {
+      0, 1, 2, 4096, UINT32_MAX, INT64_MAX, 1ul << 63, 1ul << 47, ~0ul, 1'000'000'000'000'000'000};
   return Below(2) == 0 ? kOdd[Below(std::size(kOdd))] : g_dice();
 }
 
@@ -99,7 +99,9 @@ void ScribbleWords() {
   for (std::uint64_t i = 1 + Below(6); i > 0; --i) words[Below(sizeof(ThreadSlot) / 8)] = Odd();
 }
 
-void ScribbleOverAll() { memset(static_cast<void*>(Slots()), static_cast<int>(g_dice()), kProcessMemorySize); }
+void ScribbleOverAll() {
+  memset(static_cast<void*>(Slots()), static_cast<int>(g_dice()), kProcessMemorySize);
+}
 
 void TakePagesAway() { madvise(Slots(), kProcessMemorySize, MADV_REMOVE); }
 
@@ -166,8 +168,8 @@ void WriteIntoHeader() {
   snprintf(path, sizeof path, "/proc/self/map_files/%lx-%lx", reinterpret_cast<long>(run.at),
            reinterpret_cast<long>(run.at) + static_cast<long>(run.size));
   const int fd = open(path, O_RDWR | O_CLOEXEC);
-  void* at = fd < 0 ? MAP_FAILED
-                    : mmap(nullptr, run.size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+  void* at =
+      fd < 0 ? MAP_FAILED : mmap(nullptr, run.size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (at != MAP_FAILED) {
     memset(at, 0xff, run.size);
     puts("the header can be written");
@@ -272,10 +274,15 @@ void* SpinForEver(void*) {
 // A thread that tcs is told nothing of.
 void SpinBare() {
   constexpr std::size_t kStack = 65'536;
-  char* stack = static_cast<char*>(mmap(nullptr, kStack, PROT_READ | PROT_WRITE,
-                                        MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
-  clone([](void*) -> int { SpinForEver(nullptr); return 0; }, stack + kStack,
-        CLONE_VM | CLONE_FS | CLONE_FILES | CLONE_SIGHAND | CLONE_THREAD | CLONE_SYSVSEM, nullptr);
+  char* stack = static_cast<char*>(
+      mmap(nullptr, kStack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+  clone(
+      [](void*) -> int {
+        SpinForEver(nullptr);
+        return 0;
+      },
+      stack + kStack,
+      CLONE_VM | CLONE_FS | CLONE_FILES | CLONE_SIGHAND | CLONE_THREAD | CLONE_SYSVSEM, nullptr);
 }
 
 void SpinInBareChild() {
@@ -386,7 +393,8 @@ void CorruptDds() {
   };
   ask(NotificationKind::kDdsJoin, 0);
   const int socket = Connect();
-  const AttachHello hello{kMagic, kVersion, getpid(), getpid(), getppid(), AttachWants::kDdsArea, 0};
+  const AttachHello hello{kMagic, kVersion, getpid(), getpid(), getppid(), AttachWants::kDdsArea,
+                          0};
   send(socket, &hello, sizeof hello, MSG_NOSIGNAL);
   AttachReply reply;
   iovec iov{&reply, sizeof reply};

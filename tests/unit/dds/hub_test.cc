@@ -309,7 +309,8 @@ TEST(DdsHub, EachProcessHasAFileOfItsOwn) {
   Peer a(hub, 0), b(hub, 0);
   EXPECT_EQ(hub.AreaOf(0), -1);
   EXPECT_EQ(hub.AreaOf(b.number() + 1), -1);
-  struct stat of_a {}, of_b {};
+  struct stat of_a {
+  }, of_b{};
   ASSERT_EQ(fstat(hub.AreaOf(a.number()), &of_a), 0);
   ASSERT_EQ(fstat(hub.AreaOf(b.number()), &of_b), 0);
   EXPECT_NE(of_a.st_ino, of_b.st_ino);
