@@ -155,12 +155,13 @@ class Engine {
   void ReleaseTrapped();
 
   // Those that could be about tcsim's own processes (guarded_calls.cc).
+  pid_t CallerOf(const TrappedCall& call);
   bool IsGuarded(pid_t pid) const;
   bool MeansGuarded(pid_t caller, pid_t receiver) const;
-  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal) const;
-  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
-  void LetThrough(const TrappedCall& call) const;
-  void ContinueTrap(const Task& task) const;
+  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal);
+  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call);
+  void LetThrough(const TrappedCall& call);
+  void ContinueTrap(const Task& task);
 
   // Those other than futex (raw_calls.cc).
   void HandleRawCall(Task& task, const TrappedCall& call);

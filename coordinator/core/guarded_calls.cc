@@ -16,7 +16,6 @@
 #include <string>
 
 #include "coordinator/core/engine.h"
-#include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -68,6 +67,12 @@ bool SendAs(pid_t caller, const Credentials& sender, pid_t to, int signal) {
 
 }  // namespace
 
+// Threads that are known need no look at /proc.
+pid_t Engine::CallerOf(const TrappedCall& call) {
+  const Task* task = KnownTask(call.tid);
+  return task != nullptr ? task->process->pid : ProcessOfThread(call.tid);
+}
+
 bool Engine::IsGuarded(pid_t pid) const {
   return std::find(guarded_.begin(), guarded_.end(), pid) != guarded_.end();
 }
@@ -82,22 +87,27 @@ bool Engine::MeansGuarded(pid_t caller, pid_t receiver) const {
 
 // In the caller's stead: to those of the run whom it means. So -1 is everybody on the robots, as
 // it would be there.
-std::int64_t Engine::SignalOurs(pid_t caller, pid_t receiver, int signal) const {
+std::int64_t Engine::SignalOurs(pid_t caller, pid_t receiver, int signal) {
   if (signal < 0 || signal >= _NSIG) return -EINVAL;
   const Credentials sender = ReadCredentials(caller);
   const pid_t group = receiver == 0 ? getpgid(caller) : -receiver;
   bool found = false, sent = false;
-  for (const pid_t pid : DescendantsOf(getpid())) {
-    if (IsGuarded(pid)) continue;
-    if (receiver == -1 ? pid == caller : getpgid(pid) != group) continue;
+  const auto send = [&](pid_t pid) {
+    if (receiver == -1 ? pid == caller : getpgid(pid) != group) return;
     found = true;
     sent |= MaySignal(sender, pid) && (signal == 0 || SendAs(caller, sender, pid, signal));
+  };
+  for (const Process& process : processes_) {
+    if (!process.dead) send(process.pid);
+  }
+  for (const auto& [pid, child] : unknown_children_) {
+    if (LivingProcess(pid) == nullptr) send(pid);
   }
   return sent ? 0 : found ? -EPERM : -ESRCH;
 }
 
 // What the call returns without the kernel's carrying it out; none if it may.
-std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) const {
+std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) {
   constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
   const auto refused_if = [](bool refused) -> std::optional<std::int64_t> {
     return refused ? std::optional<std::int64_t>(-EPERM) : std::nullopt;
@@ -105,17 +115,16 @@ std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) con
   const auto first = static_cast<int>(call.args[0]);
   switch (call.number) {
     case SYS_kill: {
-      const pid_t caller = first > 0 ? 0 : ProcessOfThread(call.tid);
+      const pid_t caller = first > 0 ? 0 : CallerOf(call);
       if (first > 0 || !MeansGuarded(caller, first)) return std::nullopt;
       return SignalOurs(caller, first, static_cast<int>(call.args[1]));
     }
     case SYS_pidfd_send_signal:
     case SYS_pidfd_getfd:
     case SYS_process_madvise:
-      return refused_if(IsGuarded(ProcessOfFd(ProcessOfThread(call.tid), first)));
+      return refused_if(IsGuarded(ProcessOfFd(CallerOf(call), first)));
     case SYS_ptrace:  // its parent would be told of each signal, and does not ask
-      return refused_if(call.args[0] == PTRACE_TRACEME &&
-                        IsGuarded(ParentOf(ProcessOfThread(call.tid))));
+      return refused_if(call.args[0] == PTRACE_TRACEME && IsGuarded(ParentOf(CallerOf(call))));
     case SYS_fcntl: {
       struct {
         int type, pid;
@@ -142,7 +151,7 @@ std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) con
   }
 }
 
-void Engine::LetThrough(const TrappedCall& call) const {
+void Engine::LetThrough(const TrappedCall& call) {
   if (const auto result = InsteadOfKernel(call); result.has_value()) {
     AnswerTrapped(call.listener, call.id, *result);
   } else {
@@ -151,7 +160,7 @@ void Engine::LetThrough(const TrappedCall& call) const {
 }
 
 // The call that the task has stopped in.
-void Engine::ContinueTrap(const Task& task) const {
+void Engine::ContinueTrap(const Task& task) {
   const TrappedCall& call = task.trapped_call;
   if (call.id == task.trap_id && call.listener == task.trap_listener) {
     LetThrough(call);

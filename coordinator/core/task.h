@@ -202,10 +202,10 @@ struct Process {
   std::int64_t ended_at_ns = -1;
 };
 
-// A thread that has said that it ends, and what it had used of a processor by then.
+// A thread that has said that it ends, and when.
 struct LeavingThread {
-  pid_t tid = 0;
-  std::int64_t host_ns = 0;
+  pid_t pid = 0, tid = 0;
+  std::uint64_t tsc = 0;
   std::string process;
 };
 

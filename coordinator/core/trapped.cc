@@ -1,6 +1,7 @@
 // System calls of clients that the kernel hands over.
+#include <signal.h>
 #include <sys/syscall.h>
-#include <unistd.h>
+#include <x86intrin.h>
 
 #include <vector>
 
@@ -8,6 +9,13 @@
 #include "coordinator/os/host.h"
 
 namespace tcs {
+
+namespace {
+
+// Without /proc, where who looks for a thread that is just ending has to wait for it.
+bool IsThere(const LeavingThread& one) { return tgkill(one.pid, one.tid, 0) == 0; }
+
+}  // namespace
 
 void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   event_ns_ = task.reached_ns;
@@ -54,8 +62,8 @@ void Engine::TrapArrived(int listener) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  std::erase_if(leaving_, [](const LeavingThread& one) { return ThreadState(one.tid) == 'X'; });
-  leaving_.push_back({task.tid, HostClockOf(task), task.process->name});
+  std::erase_if(leaving_, [](const LeavingThread& one) { return !IsThere(one); });
+  leaving_.push_back({task.process->pid, task.tid, __rdtsc(), task.process->name});
   EndTask(task);
   WakeThoseWaitingFor(task);
   ContinueTrapped(call.listener, call.id);
@@ -64,13 +72,11 @@ void Engine::ExitThread(Task& task, const TrappedCall& call) {
 // The kernel lets it handle a signal first that comes in just that instant, and there it may stay.
 // It has the active level, so that nobody else would ever run.
 void Engine::LookAtLeaving() {
-  constexpr std::int64_t kMostNs = 1'000'000;  // of processor time, for a thread that does end
-  std::erase_if(leaving_, [this](const LeavingThread& one) {
-    if (KnownTask(one.tid) != nullptr || IsDying(one.tid)) return true;
-    const int clock = OpenThreadCpuClock(one.tid);
-    const std::int64_t used_ns = clock < 0 ? 0 : ReadThreadCpuClock(clock) - one.host_ns;
-    if (clock >= 0) close(clock);
-    if (used_ns < kMostNs) return false;
+  constexpr double kMostNs = 500e6;  // real time; at its level it is the first to run
+  const std::uint64_t now = __rdtsc();
+  std::erase_if(leaving_, [&](const LeavingThread& one) {
+    if (KnownTask(one.tid) != nullptr || !IsThere(one)) return true;
+    if (static_cast<double>(now - one.tsc) < kMostNs * ticks_per_ns_) return false;
     LeaveRealTime(one.tid);
     Warn("a thread of " + one.process +
          " has said that it ends, and computes on; it is not scheduled any more");

@@ -19,12 +19,9 @@ constexpr int kKillTurns = 400;  // of 5 ms
 constexpr useconds_t kKillTurnUs = 5'000;
 
 // All at once, not only the children: one that spins at real-time priority keeps its killed parent
-// from the processor, and with it from dying, for ever. And above them all, where that is
-// permitted: nobody forks faster than it is killed.
+// from the processor, and with it from dying, for ever.
 void KillTree() {
-  SetLevel(0, Level::kKernelOnly);
   for (const pid_t pid : DescendantsOf(getpid())) kill(pid, SIGKILL);
-  LeaveRealTime(0);
 }
 
 }  // namespace

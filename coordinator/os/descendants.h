@@ -10,7 +10,8 @@
 
 namespace tcs {
 
-// All of them, as they are at this moment.
+// All of them, as they are at this moment. Not at a real-time priority: who looks up in /proc what
+// is just ending spins in the kernel until that has removed its entries.
 std::vector<pid_t> DescendantsOf(pid_t root);
 
 // Kills and reaps what descends from this process, until nothing is left; gives up after two

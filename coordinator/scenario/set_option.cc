@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/yaml_documents.h"
 #include "coordinator/scenario/yaml_reader.h"
 
 namespace tcs {
@@ -47,10 +48,10 @@ class SetOption {
     path_ = option.substr(0, equals);
     const std::string text = option.substr(equals + 1);
     try {
-      const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-      if (documents.empty()) Fail("there is no value; give one, or null to remove the key");
-      if (documents.size() > 1) Fail("the value is more than one YAML document; give one");
-      value_ = documents[0];
+      const YamlDocuments documents = LoadDocuments(text);
+      if (documents.count == 0) Fail("there is no value; give one, or null to remove the key");
+      if (documents.count > 1) Fail("the value is more than one YAML document; give one");
+      value_.reset(documents.first);
     } catch (const YAML::Exception& error) {
       Fail("the value is not valid YAML (" + error.msg +
            "); quote a text that holds : # { } [ or ]");

@@ -1,4 +1,4 @@
-"""whoever_is_killed.py TCSIM BIN ROUNDS: kill -9 of every party of a run, ROUNDS times at random instants.
+"""whoever_is_killed.py TCSIM BIN ROUNDS [PARTY...]: kill -9 of every party of a run, ROUNDS times at random instants.
 
 Nothing hangs, and nothing is left: no process (and so no real-time thread, and no claim of a CPU),
 and nothing in /dev/shm. What ends the run is said in one sentence, and the results can be read.
@@ -164,8 +164,9 @@ def main():
     random.seed(int(os.environ.get("TCS_SEED", "1")))
     shared = set(os.listdir("/dev/shm"))
     bad = 0
+    parties = sys.argv[4:] or list(SENTENCES)
     for number in range(ROUNDS):
-        for party in SENTENCES:
+        for party in parties:
             with tempfile.TemporaryDirectory() as folder:
                 folder = pathlib.Path(folder)
                 (folder / "scenario.yaml").write_text(SCENARIO)
@@ -176,7 +177,7 @@ def main():
     left = [entry for entry in set(os.listdir("/dev/shm")) - shared if "tcs" in entry]
     if left:
         sys.exit(f"left in /dev/shm: {left}")
-    print(f"{ROUNDS} rounds of {len(SENTENCES)} parties, {bad} went wrong")
+    print(f"{ROUNDS} rounds of {len(parties)} parties, {bad} went wrong")
     sys.exit(bad != 0)
 
 

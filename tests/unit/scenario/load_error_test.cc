@@ -222,6 +222,8 @@ const WholeFile kWholeFiles[] = {
     {"TabIndentation", "duration: 1s\nrobots:\n\tr: 1\n", "s.yaml:3: this is not valid YAML"},
     {"UnquotedVariable", "duration: 1s\nrobots: {a: [b, ${seed}]}\n", "s.yaml:2: "},
     {"UnclosedList", "duration: 1s\nname: [a\n", "s.yaml:3: this is not valid YAML"},
+    {"WhatIsNoDocument", "duration: 1s\n---\n ,\n", "s.yaml:3: "},
+    {"OnlyAComma", " ,", "s.yaml:1: the scenario is empty"},
     {"TwoDocuments", "duration: 1s\n---\nduration: 2s\n", "s.yaml:3: a second YAML document"},
     {"NoRobots", "duration: 1s\n", "s.yaml:1: the scenario lacks the key 'robots'"},
     {"EmptyRobots", "duration: 1s\nrobots: {}\n", "s.yaml:2: robots is empty"},
