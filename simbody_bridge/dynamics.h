@@ -7,14 +7,16 @@
 // in and out. Not thread-safe: one thread, the coordinator's, calls it.
 //
 // Errors: a violated precondition is a bug of ours and aborts. A world or a wrench without physical
-// meaning, or an integration that cannot be completed, throws DynamicsError with one sentence. A
-// call other than AdvanceTo that throws has changed nothing; after AdvanceTo has thrown, only
-// Restore and destruction are meaningful.
+// meaning, or an integration that cannot be completed, throws DynamicsError with one sentence. An
+// integration fails where it is done: in AdvanceTo, or when somebody looks at what came of it.
+// After that only Restore and destruction are meaningful; any other call that throws has changed
+// nothing.
 //
-// Determinism: two instances given the same world and the same calls compute bitwise the same
-// states (same build, same kind of processor). AdvanceTo's targets belong to "the same calls": each
-// one ends an integration step, so other targets on the way give states that differ within the
-// integrator's accuracy. Read and Save change nothing.
+// Determinism: what becomes of a body depends on the commands to it and to what can touch it, on
+// their times, and on the times at which it was read: the same ones give bitwise the same states
+// (same build, same kind of processor). Where AdvanceTo has stopped on the way is not among them. A
+// reading ends an integration step, so other readings give states that differ within the
+// integrator's accuracy.
 #pragma once
 
 #include <array>
@@ -109,7 +111,8 @@ class Dynamics {
 
   virtual VirtualTime Now() const = 0;
 
-  // Integrates to exactly `t` >= Now(), never beyond, in pieces at the times of pending commands.
+  // Time passes to `t` >= Now(). What that does to bodies is computed then or when they are read,
+  // never beyond `t`, in pieces at the times of pending commands.
   virtual void AdvanceTo(VirtualTime t) = 0;
 
   // From `t` >= Now() on, `wrench` acts on body `body` (index into WorldSpec::bodies) until a later
@@ -128,7 +131,8 @@ class Dynamics {
   virtual void Restore(const Checkpoint& checkpoint) = 0;
 };
 
-// On the engine that world.integrator names. Throws DynamicsError for a world that it refuses.
+// On the engine that world.integrator names; bodies that cannot touch or pull each other are
+// integrated apart (islands.h). Throws DynamicsError for a world that it refuses.
 std::unique_ptr<Dynamics> MakeDynamics(const WorldSpec& world);
 
 }  // namespace tcs

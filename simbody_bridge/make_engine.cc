@@ -1,13 +1,11 @@
-// The one place that knows all engines.
-#include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/make_engine.h"
+
 #include "simbody_bridge/ode/ode_dynamics.h"
 #include "simbody_bridge/simbody_dynamics.h"
-#include "simbody_bridge/world_check.h"
 
 namespace tcs {
 
-std::unique_ptr<Dynamics> MakeDynamics(const WorldSpec& world) {
-  CheckWorld(world);
+std::unique_ptr<Dynamics> MakeEngine(const WorldSpec& world) {
   switch (world.integrator.engine) {
     case EngineKind::kSimbody:
       return MakeSimbodyDynamics(world);
