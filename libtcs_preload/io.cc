@@ -18,6 +18,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/receipts.h"
 #include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
 #include "libtcs_preload/transfer.h"
@@ -46,19 +47,28 @@ int WithoutMore(int fd, int flags) {
 
 bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 
+// Whether what a call with these flags receives is not there any more.
+bool Takes(int flags) { return (flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0; }
+
+struct Reads {
+  bool dont_wait = false, socket = false, takes = true;
+};
+
 // `at_once` returns what the kernel answers without waiting, or -EAGAIN.
 template <class AtOnce, class Call>
-ssize_t ReadLike(int fd, bool dont_wait, bool socket, AtOnce at_once, Call call) {
+ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
   GuestThread* t = Enter();
   pthread_testcancel();
   bool any_socket = false;
   if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
   auto take = [&] {
     if (any_socket) AcknowledgeAtOnce(fd);
-    return ToErrno(call());
+    const long result = call();
+    if (result > 0 && reads.takes) NoteReceivedFrom(*t, fd);
+    return ToErrno(result);
   };
-  if (dont_wait || IsNonBlocking(fd)) {
-    HoldForReadFrom(*t, fd, socket);
+  if (reads.dont_wait || IsNonBlocking(fd)) {
+    HoldForReadFrom(*t, fd, reads.socket);
     return take();
   }
   bool ready = PollNow(fd, POLLIN);
@@ -67,13 +77,14 @@ ssize_t ReadLike(int fd, bool dont_wait, bool socket, AtOnce at_once, Call call)
     if (!any_socket || !WantsMore(fd)) {
       if (const long answer = at_once(); answer != -EAGAIN) return ToErrno(answer);
     }
-    if (socket) deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
+    if (reads.socket) deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
   }
   for (;; ready = false) {
     const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline);
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
-    if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, socket) || PollNow(fd, POLLIN)) {
+    if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, reads.socket) ||
+        PollNow(fd, POLLIN)) {
       const ssize_t result = take();
       const int error = errno;
       PassOn(*t);
@@ -176,6 +187,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
         return got;
       },
       whole);
+  if (done > 0) NoteReceived(*t);
   PassOn(*t);
   return ToErrno(done);
 }
@@ -186,7 +198,7 @@ TCS_EXPORT ssize_t read(int fd, void* buffer, std::size_t size) {
   auto whole = [&] { return RawSyscall(SYS_read, fd, Arg(buffer), size); };
   const iovec iov{buffer, size};
   return ReadLike(
-      fd, false, false, [&] { return size == 0 ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
+      fd, {}, [&] { return size == 0 ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
 }
 
 TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_t room) {
@@ -196,7 +208,7 @@ TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_
 
 TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
   return ReadLike(
-      fd, false, false, [&] { return ReadAtOnce(fd, iov, count); },
+      fd, {}, [&] { return ReadAtOnce(fd, iov, count); },
       [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); });
 }
 
@@ -214,7 +226,8 @@ TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, s
     return ReceiveAll(fd, &message, flags, whole);
   }
   return ReadLike(
-      fd, ReceivesAtOnce(fd, flags), true, [&] { return call(flags | MSG_DONTWAIT); }, whole);
+      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags)},
+      [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 
 TCS_EXPORT ssize_t __recvfrom_chk(int fd, void* buffer, std::size_t size, std::size_t room,
@@ -241,7 +254,8 @@ TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   auto whole = [&] { return call(flags); };
   if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
   return ReadLike(
-      fd, ReceivesAtOnce(fd, flags), true, [&] { return call(flags | MSG_DONTWAIT); }, whole);
+      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags)},
+      [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 
 // One message is waited for; those that are there with it come along. A timeout is a virtual one.
@@ -275,6 +289,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
   const long result = at_once();
+  if (result > 0 && Takes(flags)) NoteReceived(*t);
   PassOn(*t);
   return static_cast<int>(ToErrno(result));
 }
@@ -282,7 +297,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
 TCS_EXPORT int accept4(int fd, sockaddr* address, socklen_t* size, int flags) {
   auto whole = [&] { return RawSyscall(SYS_accept4, fd, Arg(address), Arg(size), flags); };
   const auto connection = static_cast<int>(ReadLike(
-      fd, false, true, [&] { return AcceptWaits(fd, flags) ? -EAGAIN : whole(); }, whole));
+      fd, {.socket = true}, [&] { return AcceptWaits(fd, flags) ? -EAGAIN : whole(); }, whole));
   if (GuestThread* t = Current(); t != nullptr && connection >= 0) {
     SendAtOnce(connection);  // the listener may be from elsewhere
     TellChanged(*t, kBacklogs, 0);

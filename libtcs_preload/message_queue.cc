@@ -10,6 +10,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/receipts.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -96,7 +97,9 @@ ssize_t TimedReceive(mqd_t queue, char* text, std::size_t size, unsigned* priori
     return ToErrno(RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size),
                               Arg(priority), Arg(timeout)));
   }
-  return ToErrno(Receive(*t, queue, text, size, priority, timeout));
+  const long got = Receive(*t, queue, text, size, priority, timeout);
+  if (got >= 0) NoteReceived(*t);
+  return ToErrno(got);
 }
 
 int TimedSend(mqd_t queue, const char* text, std::size_t size, unsigned priority,

@@ -14,6 +14,7 @@
 #include "libtcs_preload/ipc_times.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/receipts.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -161,6 +162,7 @@ TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) 
       ToErrno(WaitAndCall(*t, WaitKey::kMessages, id, blocks, tcs::shm::kNeverNs, [&] {
         const long sent = call(flags | IPC_NOWAIT);
         if (sent >= 0) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kPut);
+        if (sent >= 0) NoteSent(*t);
         return sent;
       })));
 }
@@ -177,6 +179,7 @@ TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, in
     // A copy leaves the queue as it is.
     if (got >= 0 && (flags & MSG_COPY) == 0) {
       NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kTaken);
+      NoteReceived(*t);
     }
     return got;
   }));

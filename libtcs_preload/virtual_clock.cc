@@ -1,6 +1,7 @@
 #include "libtcs_preload/virtual_clock.h"
 
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/receipts.h"
 
 namespace tcs::preload {
 
@@ -96,6 +97,7 @@ void HoldForRead(GuestThread& thread) {
 }
 
 void HoldForWrite(GuestThread& thread) {
+  NoteSent(thread);
   const std::int64_t now = NowNs(thread);
   if (now <= thread.slot->clock.write_safe_ns) return;
   if (g_header->sync != shm::Sync::kConsistent) return;

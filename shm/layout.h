@@ -27,6 +27,7 @@
 #include <cstdint>
 
 #include "shm/ipc_times.h"
+#include "shm/receipts.h"
 
 namespace tcs::shm {
 
@@ -249,7 +250,8 @@ struct alignas(64) ThreadSlot {
   // Written by the thread, emptied by the coordinator when it has stopped.
   std::atomic<std::uint32_t> ipc_count;
   IpcNote ipc_notes[kMostIpcNotes];
-  std::uint8_t reserved[264];
+  Receipts receipts;
+  std::uint8_t reserved[48];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
@@ -257,6 +259,7 @@ static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
 static_assert(offsetof(ThreadSlot, signals) == 560);
 static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
+static_assert(offsetof(ThreadSlot, receipts) == 760);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters and kernel_waiters.

@@ -172,7 +172,10 @@ int main(int argc, char** argv) {
   doctor->add_flag("--json", as_json, "for programs");
 
   std::string accounting = "measured";
+  bool no_wait = false;
   for (CLI::App* sub : {run, exec}) {
+    sub->add_flag("--no-wait", no_wait,
+                  "fail at once where other runs have all processors, and say which");
     sub->add_option("--accounting", accounting,
                     "measured: computing takes the processor time it takes (default); fixed: a set "
                     "cost per call, so that two runs are identical")
@@ -203,6 +206,7 @@ int main(int argc, char** argv) {
     }
   }
   options.record = record;
+  options.waits_for_cpu = !no_wait;
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");

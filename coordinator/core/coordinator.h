@@ -32,6 +32,7 @@ struct RunOptions {
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   bool record = false;           // all DDS topics, into a bag in output_directory
+  bool waits_for_cpu = true;     // where other runs have them all
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides under fixed accounting

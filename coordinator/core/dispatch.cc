@@ -278,6 +278,7 @@ void Engine::Settle(Task& task) {
   }
   task.debt_ns = reached - progress;
   if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
+  TakeReceipts(task, progress + frozen);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
     task.frozen_ns = frozen + progress - start;

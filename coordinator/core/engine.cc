@@ -93,15 +93,24 @@ bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
   return IsCallback() && task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
 }
 
-// A core without a turn acts when somebody's wait ends by itself: one core is enough for that.
+// A core without a turn, or before its turn begins, acts when somebody's wait ends by itself: one
+// core is enough for that.
 void Engine::Refresh(Robot& robot) {
   progress_.clear();
   for (const VirtualCpu* cpu : robot.cpus) progress_.push_back(cpu->progress_ns);
   robot.ready.Assign(progress_);
+  const auto turn_of = [&robot](const VirtualCpu& cpu) {
+    return robot.ready.Next(cpu.core).start_ns;
+  };
   const VirtualCpu* idle = nullptr;
-  for (const VirtualCpu* cpu : robot.cpus) {
-    if (robot.ready.Next(cpu->core).thread != FixedPriority::kNobody) continue;
-    if (idle == nullptr || cpu->progress_ns < idle->progress_ns) idle = cpu;
+  for (const bool without_turn : {true, false}) {
+    for (const VirtualCpu* cpu : robot.cpus) {
+      if (without_turn ? turn_of(*cpu) != shm::kNeverNs : turn_of(*cpu) <= cpu->progress_ns) {
+        continue;
+      }
+      if (idle == nullptr || cpu->progress_ns < idle->progress_ns) idle = cpu;
+    }
+    if (idle != nullptr) break;
   }
   std::int64_t due = shm::kNeverNs;
   if (idle != nullptr) {
@@ -118,8 +127,8 @@ void Engine::Refresh(Robot& robot) {
     if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
   }
   for (const VirtualCpu* cpu : robot.cpus) {
-    const std::int64_t turn = robot.ready.Next(cpu->core).start_ns;
-    root_.Update(cpu->leaf, cpu->progress_ns, cpu == idle ? due : turn);
+    const std::int64_t turn = turn_of(*cpu);
+    root_.Update(cpu->leaf, cpu->progress_ns, cpu == idle ? std::min(due, turn) : turn);
   }
 }
 

@@ -229,6 +229,7 @@ class Engine {
 
   // Those that transfer data (raw_transfers.cc).
   void TransferRaw(Task& task, const TrappedCall& call);
+  static bool Receives(const TrappedCall& call);
 
   // Locks of files (keys.cc).
   void LockRaw(Task& task);
@@ -399,6 +400,9 @@ class Engine {
   std::string CloseRecords();
   int AddRow(const std::string& group, const std::string& name);
   void NoteReleased(Task& task, shm::WakeReason reason);
+  void NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns, bool of_timer);
+  void TakeReceipts(Task& task, std::int64_t now_ns);
+  void NoteReceivedRaw(Task& task, bool of_timer);
   void NoteIdle(Task& task);
   void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc);
 

@@ -435,6 +435,9 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
     task.trap_result = timed_out ? -ETIMEDOUT : static_cast<std::int64_t>(task.woken_futex);
   }
   if (wait == TrapWait::kChild && task.awaits_stops) ForgetNews(*task.process);
+  if (!timed_out && wait == TrapWait::kTransfer && Receives(task.trapped_call)) {
+    NoteReceivedRaw(task, false);
+  }
   if (timed_out && wait == TrapWait::kTransfer) {
     task.trap_continues = false;
     task.trap_result = -EAGAIN;

@@ -124,6 +124,8 @@ bool AnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd
 
 }  // namespace
 
+bool Engine::Receives(const TrappedCall& call) { return TransferOf(call).reads; }
+
 // Goes on once it is ready, or can find all that was sent until now.
 void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
@@ -136,6 +138,12 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   // Those who connect wait for room in the backlog.
   if (call.number == SYS_accept || call.number == SYS_accept4) {
     task.follow_up = FollowUp::kBacklogs;
+  }
+  if (!transfer.reads) {
+    shm::NoteSent(Slot(task).receipts);
+  } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
+    const bool of_timer = FindTimerFd(task, number).owner != nullptr;
+    if (of_timer || !fd.IsEventFd()) NoteReceivedRaw(task, of_timer);
   }
   if (fd.IsNonBlocking() || fd.IsReady(events) || AnswersAtOnce(task, call, fd, transfer)) {
     HoldRaw(task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);

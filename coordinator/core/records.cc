@@ -83,6 +83,37 @@ void Engine::NoteReleased(Task& task, shm::WakeReason reason) {
   if (IsCallback()) activation.release_ns = std::max(activation.release_ns, process.shown_ns);
   activation.start_ns = -1;
   activation.charged_ns = std::max(activation.charged_ns, task.charged_ns);
+  if (task.slot >= 0) shm::NoteWoken(Slot(task).receipts);
+}
+
+// It did not wait, and is at its next activation all the same (shm/receipts.h).
+void Engine::NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns, bool of_timer) {
+  Activation& activation = task.activation;
+  if (activation.start_ns < 0) activation.start_ns = activation.release_ns;
+  now_ns = std::max(now_ns, activation.start_ns);
+  charged_ns = std::max(charged_ns, activation.charged_ns);
+  activation_log_.Write(task.process->name, task.is_further ? task.order : 0, activation, now_ns,
+                        charged_ns);
+  ++task.activations;
+  activation = {of_timer ? ReleaseCause::kTime : ReleaseCause::kInput, now_ns, now_ns, charged_ns};
+}
+
+// What the thread has said of that since its dispatch, up to `now_ns` on its clock.
+void Engine::TakeReceipts(Task& task, std::int64_t now_ns) {
+  shm::Receipts& receipts = Slot(task).receipts;
+  const std::uint32_t count = std::min(receipts.count.load(), shm::Receipts::kMost);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const shm::Receipts::Entry entry = receipts.entries[i];
+    NoteNext(task, std::min(entry.time_ns, now_ns), std::min(entry.cpu_ns, task.charged_ns),
+             entry.of == shm::Receipts::Of::kTimer);
+  }
+  receipts.count.store(0);
+}
+
+// The same of a call that the kernel is to carry out, and that finds something there.
+void Engine::NoteReceivedRaw(Task& task, bool of_timer) {
+  if (task.slot < 0 || !shm::NoteReceived(Slot(task).receipts, task.charged_ns)) return;
+  NoteNext(task, task.reached_ns + task.process->frozen_ns, task.charged_ns, of_timer);
 }
 
 // It waits again, or has ended.

@@ -194,6 +194,8 @@ void Engine::PlaceAtGate(Task& task) {
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);
+  slot.receipts.count.store(0);
+  shm::NoteStarted(slot.receipts);
   slot.gate.store(shm::kGateClosed);
   LeaveWait(task);
   task.early_trap.reset();

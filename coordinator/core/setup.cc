@@ -55,7 +55,9 @@ std::string Engine::Prepare() {
   // results are written over.
   if (std::string error = WhyNoRealTime(); !error.empty()) return error;
   if (std::string error = world_.Open(scenario_); !error.empty()) return error;
-  claim_ = ClaimCpu();
+  std::string taken;
+  claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
+  if (!taken.empty()) return taken;
   if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;

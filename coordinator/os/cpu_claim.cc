@@ -4,8 +4,14 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "coordinator/os/say.h"
@@ -39,6 +45,68 @@ int TryToClaim(int cpu) {
   return held ? -1 : -2;
 }
 
+// Who holds the lock on the CPU's folder; 0 if that cannot be found out.
+pid_t HolderOf(int cpu) {
+  struct stat folder;
+  if (stat(("/sys/devices/system/cpu/cpu" + std::to_string(cpu)).c_str(), &folder) != 0) return 0;
+  std::ifstream locks("/proc/locks");
+  const std::string inode = ":" + std::to_string(folder.st_ino);
+  // 1: FLOCK  ADVISORY  WRITE 1234 00:16:5678 0 EOF
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream fields(line);
+    std::string number, kind, advisory, access, place;
+    pid_t pid = 0;
+    if (!(fields >> number >> kind >> advisory >> access >> pid >> place)) continue;
+    if (kind == "FLOCK" && place.size() > inode.size() &&
+        place.compare(place.size() - inode.size(), inode.size(), inode) == 0) {
+      return pid;
+    }
+  }
+  return 0;
+}
+
+// As it was typed; shortened.
+std::string CommandOf(pid_t pid) {
+  constexpr std::size_t kMost = 60;
+  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline");
+  std::string command, word;
+  while (std::getline(file, word, '\0')) command += (command.empty() ? "" : " ") + word;
+  for (char& c : command) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return command.size() > kMost ? command.substr(0, kMost) + "…" : command;
+}
+
+// For how long the process has been there, in seconds; negative if that is not known.
+std::int64_t AgeOf(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t end = text.rfind(')');  // of its name, which may hold anything
+  if (end == std::string::npos) return -1;
+  std::istringstream fields(text.substr(end + 1));
+  std::string field;
+  for (int i = 3; i <= 21; ++i) fields >> field;
+  std::int64_t started = 0;
+  timespec now;
+  if (!(fields >> started) || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return -1;
+  return std::max<std::int64_t>(0, now.tv_sec - started / sysconf(_SC_CLK_TCK));
+}
+
+// " (CPU 1: pid 1234, for 12 s: tcsim run flight.yaml)"; empty if nothing is known.
+std::string WhoHas(const std::vector<int>& cpus) {
+  std::string who;
+  for (const int cpu : cpus) {
+    const pid_t pid = HolderOf(cpu);
+    if (pid <= 0) continue;
+    who +=
+        (who.empty() ? " (CPU " : "; CPU ") + std::to_string(cpu) + ": pid " + std::to_string(pid);
+    if (const std::int64_t age = AgeOf(pid); age >= 0) who += ", for " + std::to_string(age) + " s";
+    if (const std::string command = CommandOf(pid); !command.empty()) who += ": " + command;
+  }
+  return who.empty() ? who : who + ")";
+}
+
 }  // namespace
 
 int LastAllowedCpu() {
@@ -46,7 +114,7 @@ int LastAllowedCpu() {
   return cpus.empty() ? 0 : cpus.front();
 }
 
-CpuClaim ClaimCpu() {
+CpuClaim ClaimCpu(bool waits, std::string* taken) {
   std::vector<int> cpus = AllowedCpus();
   if (cpus.size() > 1) cpus.pop_back();
   for (bool said = false;; usleep(kRetryUs)) {
@@ -55,7 +123,12 @@ CpuClaim ClaimCpu() {
       if (fd != -1) return {cpu, fd < 0 ? -1 : fd};
     }
     if (!said) {
-      Say("other runs of tcsim have the processors; waiting for one of them");
+      const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);
+      if (!waits) {
+        *taken = who + "; wait for one of them, or run without --no-wait";
+        return {};
+      }
+      Say(who + "; waiting for one of them");
     }
     said = true;
   }

@@ -13,9 +13,10 @@ struct CpuClaim {
 
 // The last CPU that the calling process may use and no other tcsim has claimed; the first one only
 // if there is no other, so that the rest of the machine keeps a CPU. Where all are claimed, waits
-// for one, and says so on stderr. Claims are locks on the CPU's folder in /sys: nothing is left
-// behind. Where that cannot be opened, the CPU is taken unclaimed.
-CpuClaim ClaimCpu();
+// for one, and says on stderr who has them; or, if it is not to wait, returns that sentence in
+// `taken` instead of a CPU. Claims are locks on the CPU's folder in /sys: nothing is left behind.
+// Where that cannot be opened, the CPU is taken unclaimed.
+CpuClaim ClaimCpu(bool waits, std::string* taken);
 
 // The CPU that ClaimCpu tries first.
 int LastAllowedCpu();

@@ -9,7 +9,7 @@
 
 namespace tcs {
 
-// What ended the wait before an activation.
+// What ended the wait before an activation; or, without one, what was received as it began.
 enum class ReleaseCause { kStart, kTime, kInput, kThread, kChild, kSignal };
 
 // One that has not ended yet. Times are those of the thread's own clock.

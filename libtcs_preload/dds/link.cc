@@ -11,6 +11,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/receipts.h"
 #include "libtcs_preload/virtual_clock.h"
 #include "shm/dds_exchange.h"
 
@@ -69,9 +70,14 @@ bool Send(const iovec* parts, int count) {
     memcpy(to, parts[i].iov_base, parts[i].iov_len);
     to += parts[i].iov_len;
   }
+  NoteSent(*t);
   Exchange(*t,
            Request{.kind = NotificationKind::kDdsSend, .args = {static_cast<std::int64_t>(size)}});
   return true;
+}
+
+void Taken() {
+  if (GuestThread* t = Current(); t != nullptr) NoteReceived(*t);
 }
 
 bool AnyIsFull() { return g_area != nullptr && g_area->full_count.load() != 0; }
@@ -126,8 +132,8 @@ std::int64_t NowOfThread() {
 
 namespace tcs::preload {
 
-const dds::Link kDdsLink{Join, Send,   AnyIsFull, IsFull,      AwaitRoom, Wait,
-                         Sync, Settle, BehindNs,  NowOfThread, LookUp};
+const dds::Link kDdsLink{Join, Send,   AnyIsFull, IsFull,   AwaitRoom,   Wait,
+                         Sync, Settle, Taken,     BehindNs, NowOfThread, LookUp};
 
 const char* DdsLibrary(char (&path)[kDdsPathSize]) {
   static const char kName[] = "libtcs_dds.so";

@@ -40,6 +40,9 @@ struct Link {
   // The same for what is due by now: does not wait for what others may still send from before.
   void (*settle)();
 
+  // The calling thread has taken samples, which may be the beginning of an activation.
+  void (*taken)();
+
   // How much earlier than others of its process, on other cores, the calling thread may be at most.
   std::int64_t (*behind_ns)();
 

@@ -1,6 +1,7 @@
 #include "libtcs_preload/dds/reading.h"
 
 #include <algorithm>
+#include <string_view>
 #include <type_traits>
 
 #include "libtcs_preload/dds/cyclone.h"
@@ -24,6 +25,7 @@ class Reading {
   ~Reading() {
     if (outermost_) t_reading = false;
   }
+  bool outermost() const { return outermost_; }
   Reading(const Reading&) = delete;
   Reading& operator=(const Reading&) = delete;
 
@@ -55,28 +57,35 @@ void AwaitWrites(const dds_sample_info_t* infos, dds_return_t count) {
   if (ahead > 0 && ahead <= most) dds_sleepfor(ahead);
 }
 
-template <auto RealCalls::*kCall, class Function>
+template <auto RealCalls::*kCall, bool kTakes, class Function>
 struct Hooked;
 
-template <auto RealCalls::*kCall, class Result, class... Arguments>
-struct Hooked<kCall, Result (*)(Arguments...)> {
+template <auto RealCalls::*kCall, bool kTakes, class Result, class... Arguments>
+struct Hooked<kCall, kTakes, Result (*)(Arguments...)> {
   static Result Do(Arguments... arguments) {
     const Reading reading;
     const Result result = (Real().*kCall)(arguments...);
     if constexpr ((std::is_same_v<Arguments, dds_sample_info_t*> || ...)) {
-      if (result > 0) AwaitWrites(InfosOf(arguments...), static_cast<dds_return_t>(result));
+      if (result > 0) {
+        AwaitWrites(InfosOf(arguments...), static_cast<dds_return_t>(result));
+        if (kTakes && reading.outermost()) TheLink().taken();
+      }
     }
     return result;
   }
 };
 
+// Samples that are only read are there again the next time.
+constexpr bool IsTake(std::string_view name) { return name.find("take") != std::string_view::npos; }
+
 }  // namespace
 
 void* ReadingHook(Call call) {
   switch (call) {
-#define TCS_DDS_HOOK(name) \
-  case kCall_##name:       \
-    return reinterpret_cast<void*>(Hooked<&RealCalls::name, decltype(RealCalls::name)>::Do);
+#define TCS_DDS_HOOK(name)          \
+  case kCall_##name:                \
+    return reinterpret_cast<void*>( \
+        Hooked<&RealCalls::name, IsTake(#name), decltype(RealCalls::name)>::Do);
     TCS_DDS_READING_CALLS(TCS_DDS_HOOK)
 #undef TCS_DDS_HOOK
     default:

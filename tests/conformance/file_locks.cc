@@ -68,6 +68,9 @@ int Open() {
 
 enum class Ends { kByCall, kByClose, kByExit };
 
+// Of the times below. A loaded host wakes who sleeps late, natively.
+std::int64_t Ms() { return g_mode == Mode::kNative ? 2 * kMs : kMs; }
+
 // A child has the lock for 100 ms; the parent waits for it from 50 ms on, and computes on.
 void BetweenProcesses(const Kind& kind, Ends ends) {
   const std::int64_t start = Now();
@@ -75,17 +78,17 @@ void BetweenProcesses(const Kind& kind, Ends ends) {
   if (child == 0) {
     const int fd = Open();
     EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
-    SleepUntil(start + 100 * kMs);
+    SleepUntil(start + 100 * Ms());
     if (ends == Ends::kByCall) EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
     if (ends == Ends::kByClose) EXPECT(close(fd) == 0, "%s", kind.name);
-    if (ends != Ends::kByExit) SleepUntil(start + 200 * kMs);
+    if (ends != Ends::kByExit) SleepUntil(start + 200 * Ms());
     _exit(0);
   }
   const int fd = Open();
-  SleepUntil(start + 50 * kMs);
+  SleepUntil(start + 50 * Ms());
   EXPECT(kind.try_it(fd) == -1 && (errno == EAGAIN || errno == EACCES), "%s: not held", kind.name);
   EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
-  ExpectPassed(start, 100 * kMs, kind.name);
+  ExpectPassed(start, 100 * Ms(), kind.name);
   EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
@@ -103,14 +106,14 @@ void InOrder(const Kind& kind) {
     if (children[i] != 0) continue;
     close(fd);
     const int own = Open();
-    SleepUntil(start + (i + 1) * 10 * kMs);
+    SleepUntil(start + (i + 1) * 10 * Ms());
     EXPECT(kind.lock(own) == 0, "%s", kind.name);
-    ExpectPassed(start, (100 + i * 20) * kMs, kind.name);
-    SleepUntil(start + (120 + i * 20) * kMs);
+    ExpectPassed(start, (100 + i * 20) * Ms(), kind.name);
+    SleepUntil(start + (120 + i * 20) * Ms());
     EXPECT(kind.unlock(own) == 0, "%s", kind.name);
     _exit(0);
   }
-  SleepUntil(start + 100 * kMs);
+  SleepUntil(start + 100 * Ms());
   EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
   for (const pid_t child : children) {
     int status = 0;
@@ -132,16 +135,16 @@ void Interrupted(const Kind& kind) {
   if (child == 0) {
     const int fd = Open();
     EXPECT(kind.lock(fd) == 0 && write(ready[1], "x", 1) == 1, "%s", kind.name);
-    SleepUntil(start + 60 * kMs);
+    SleepUntil(start + 60 * Ms());
     kill(parent, SIGUSR1);
-    SleepUntil(start + 100 * kMs);
+    SleepUntil(start + 100 * Ms());
     _exit(0);
   }
   const int fd = Open();
   char byte;
   EXPECT(read(ready[0], &byte, 1) == 1, "read");
   EXPECT(kind.lock(fd) == -1 && errno == EINTR, "%s: %s", kind.name, strerror(errno));
-  ExpectPassed(start, 60 * kMs, "a handler");
+  ExpectPassed(start, 60 * Ms(), "a handler");
   EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
   close(ready[0]);
   close(ready[1]);
@@ -172,17 +175,17 @@ void Deadlock() {
   const pid_t child = fork();
   if (child == 0) {
     EXPECT(lock(F_SETLKW, 100) == 0, "fcntl");
-    SleepUntil(start + 50 * kMs);
+    SleepUntil(start + 50 * Ms());
     _exit(lock(F_SETLKW, 0) == 0 ? 0 : 1);
   }
-  SleepUntil(start + 100 * kMs);
+  SleepUntil(start + 100 * Ms());
   EXPECT(lock(F_SETLKW, 100) == -1 && errno == EDEADLK, "%s", strerror(errno));
-  ExpectPassed(start, 100 * kMs, "EDEADLK");
+  ExpectPassed(start, 100 * Ms(), "EDEADLK");
   EXPECT(lock(F_SETLKW, 200) == 0, "fcntl");
   close(fd);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
-  ExpectPassed(start, 100 * kMs, "the other one");
+  ExpectPassed(start, 100 * Ms(), "the other one");
 }
 
 }  // namespace

@@ -203,10 +203,11 @@ void Run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace predator_prey;
   Options options;
-  CLI::App app("Plays the robot of the predator's programs.", "predator_robot");
-  AddDdsOptions(app, options.dds);
-  AddNamespace(app, "--prey-namespace", options.prey, "namespace of the prey's topics");
-  app.add_option("--plans", options.plans, "how many plans are to be followed");
-  app.add_option("--patience", options.patience_s, "how long all may take [s]");
-  return RunProgram(app, argc, argv, [&] { Run(options); });
+  CommandLine command_line("Plays the robot of the predator's programs.", "predator_robot");
+  AddDdsOptions(command_line, options.dds);
+  AddNamespace(command_line, "--prey-namespace", options.prey, "namespace of the prey's topics");
+  command_line.Add("--plans", options.plans, "how many plans are to be followed", Accept::kAll);
+  command_line.Add("--patience", options.patience_s, "how long all may take [s]",
+                   Accept::kPositive);
+  return command_line.Run(argc, argv, [&] { Run(options); });
 }

@@ -45,7 +45,7 @@ elif kind == "killed":
 elif kind == "lives":  # as the run ends
     compute(0.2)
     say()
-    time.sleep(100)
+    while True: time.sleep(100)
 say()
 PY
 cat >scenario.yaml <<'YAML'

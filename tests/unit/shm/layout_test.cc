@@ -26,6 +26,7 @@ TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
   EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
   EXPECT_EQ(offsetof(ThreadSlot, ipc_notes), 568u);
+  EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderAndTheTimesOfSystemVObjects) {

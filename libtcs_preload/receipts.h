@@ -1,0 +1,18 @@
+// What the shim says of messages that a thread receives and sends, for its activations
+// (shm/receipts.h). Async-signal-safe.
+#pragma once
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// The calling thread has received something that others, or a timer, have sent.
+void NoteReceived(GuestThread& thread, shm::Receipts::Of of = shm::Receipts::Of::kMessage);
+
+// The same of what it has just read from a descriptor: nothing for one that tells a program's own
+// threads of each other (eventfd, signalfd).
+void NoteReceivedFrom(GuestThread& thread, int fd);
+
+inline void NoteSent(GuestThread& thread) { shm::NoteSent(thread.slot->receipts); }
+
+}  // namespace tcs::preload

@@ -1,0 +1,62 @@
+// Where one activation of a thread ends and the next begins though it did not wait between: it
+// received what was there already. The same rule on both sides of the segment.
+//
+// An activation begins with a wait's end, and what the thread receives then it was woken for, or
+// finds on the way. A thread that receives once more after it has worked on that (it has sent
+// something, or computed for kWorkNs) is at its next activation, whether it had to wait or not. A
+// program's start counts as such work, so that its first message begins an activation, too. What
+// is received in one go, several pieces of one message or all that waits in a socket, begins none.
+//
+// The state is written by the thread, and by the coordinator while the thread is stopped. The
+// coordinator empties the list at each stop, and trusts nothing in it.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace tcs::shm {
+
+struct Receipts {
+  static constexpr std::int64_t kWorkNs = 1'000'000;  // charged
+  static constexpr std::uint32_t kMost = 8;
+
+  enum class Of : std::uint32_t { kMessage = 0, kTimer = 1 };
+
+  // At which an activation began.
+  struct Entry {
+    std::int64_t time_ns;  // the thread's clock
+    std::int64_t cpu_ns;   // what it had been charged
+    Of of;
+    std::uint32_t padding;
+  };
+
+  std::int64_t received_cpu_ns;  // what the thread had been charged at the last one
+  std::uint32_t has_received;    // 1: in this activation
+  std::uint32_t has_sent;        // 1: since then
+  std::atomic<std::uint32_t> count;
+  std::uint32_t padding;
+  Entry entries[kMost];
+};
+static_assert(sizeof(Receipts) == 24 + 24 * Receipts::kMost);
+static_assert(offsetof(Receipts, entries) == 24);
+
+// Its wait is over.
+inline void NoteWoken(Receipts& receipts) { receipts.has_received = receipts.has_sent = 0; }
+
+inline void NoteStarted(Receipts& receipts) { receipts.has_received = receipts.has_sent = 1; }
+
+inline void NoteSent(Receipts& receipts) { receipts.has_sent = 1; }
+
+// True if this is where an activation begins. `cpu_ns`: what the thread has been charged.
+inline bool NoteReceived(Receipts& receipts, std::int64_t cpu_ns) {
+  const bool worked =
+      receipts.has_sent != 0 || cpu_ns - receipts.received_cpu_ns >= Receipts::kWorkNs;
+  const bool begins = receipts.has_received != 0 && worked;
+  receipts.has_received = 1;
+  receipts.has_sent = 0;
+  receipts.received_cpu_ns = cpu_ns;
+  return begins;
+}
+
+}  // namespace tcs::shm
