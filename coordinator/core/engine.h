@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "coordinator/calls/futex_table.h"
@@ -472,7 +473,8 @@ class Engine {
   int waiting_for_room_ = 0;   // and such that have sent more than others could take at once
   int waiting_for_signals_ = 0;
   int waiting_for_stops_ = 0;
-  std::map<pid_t, UnknownChild> unknown_children_;
+  std::map<pid_t, UnknownChild> unknown_children_;  // the living
+  std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;

@@ -237,7 +237,7 @@ struct LeavingThread {
 // A child that was not announced and has not registered, perhaps never will.
 struct UnknownChild {
   pid_t parent = 0;
-  int pidfd = -1;  // -1: it has ended, and its parent has heard of it, but not taken it yet
+  int pidfd = -1;
 };
 
 struct VirtualCpu {

@@ -20,11 +20,9 @@ constexpr std::int64_t kStrangersTurnNs = 1'000'000;
 
 // When a thread comes to wait for its children.
 void Engine::FindUnknownChildren(Process& parent) {
-  std::erase_if(unknown_children_, [](const auto& child) {
-    return child.second.pidfd < 0 && ThreadState(child.first) != 'Z';
-  });
+  std::erase_if(untaken_children_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
   for (const pid_t pid : ChildrenOf(parent.pid)) {
-    if (unknown_children_.contains(pid)) continue;
+    if (unknown_children_.contains(pid) || untaken_children_.contains(pid)) continue;
     const bool known = std::any_of(processes_.begin(), processes_.end(),
                                    [pid](const Process& p) { return p.pid == pid; });
     if (known) continue;
@@ -37,12 +35,13 @@ void Engine::FindUnknownChildren(Process& parent) {
 
 void Engine::UnknownChildEnded(pid_t pid) {
   const auto found = unknown_children_.find(pid);
-  if (found == unknown_children_.end() || found->second.pidfd < 0) return;
+  if (found == unknown_children_.end()) return;
   const UnknownChild child = found->second;
   epoll_ctl(epoll_, EPOLL_CTL_DEL, child.pidfd, nullptr);
   close(child.pidfd);
+  unknown_children_.erase(found);
   // A parent that waits for children of another kind leaves it there.
-  found->second.pidfd = -1;
+  untaken_children_.insert(pid);
   Process* parent = LivingProcess(child.parent);
   if (parent == nullptr) return;
   ++parent->children_changed;
@@ -56,9 +55,8 @@ void Engine::UnknownChildEnded(pid_t pid) {
 }
 
 bool Engine::HasUnknownChild(const Process& parent) const {
-  return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
-    return child.second.parent == parent.pid && child.second.pidfd >= 0;
-  });
+  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
+                     [&](const auto& child) { return child.second.parent == parent.pid; });
 }
 
 // Equals have their turn. Whoever yields again and again may wait for a process that shares its
