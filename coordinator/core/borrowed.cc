@@ -9,9 +9,8 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <string_view>
-
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
 
 namespace tcs {
@@ -40,13 +39,7 @@ bool Borrowed::IsReady(short events) const {
   return poll(&probe, 1, 0) != 0;
 }
 
-bool Borrowed::IsEventFd() const {
-  char link[64], name[64];
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd_);
-  const ssize_t size = readlink(link, name, sizeof name);
-  return size > 0 &&
-         std::string_view(name, static_cast<std::size_t>(size)) == "anon_inode:[eventfd]";
-}
+bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd_, kEventFd); }
 
 bool Borrowed::IsTimer() const { return IsTimerDescriptor(fd_); }
 

@@ -102,15 +102,14 @@ void Engine::Refresh(Robot& robot) {
   const auto turn_of = [&robot](const VirtualCpu& cpu) {
     return robot.ready.Next(cpu.core).start_ns;
   };
+  // Those without a turn first, of them the least advanced.
+  const auto rank = [&turn_of](const VirtualCpu& cpu) {
+    return std::pair(turn_of(cpu) != shm::kNeverNs, cpu.progress_ns);
+  };
   const VirtualCpu* idle = nullptr;
-  for (const bool without_turn : {true, false}) {
-    for (const VirtualCpu* cpu : robot.cpus) {
-      if (without_turn ? turn_of(*cpu) != shm::kNeverNs : turn_of(*cpu) <= cpu->progress_ns) {
-        continue;
-      }
-      if (idle == nullptr || cpu->progress_ns < idle->progress_ns) idle = cpu;
-    }
-    if (idle != nullptr) break;
+  for (const VirtualCpu* cpu : robot.cpus) {
+    if (turn_of(*cpu) <= cpu->progress_ns) continue;
+    if (idle == nullptr || rank(*cpu) < rank(*idle)) idle = cpu;
   }
   std::int64_t due = shm::kNeverNs;
   if (idle != nullptr) {

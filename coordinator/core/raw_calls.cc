@@ -98,7 +98,7 @@ bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
   const int most = static_cast<int>(call.args[2]);
   if (most <= 0 || most > kMostEvents || static_cast<std::int64_t>(call.args[1]) < 0) return false;
   if (call.number != SYS_epoll_wait && !IsSoundMask(call.args[4], call.args[5])) return false;
-  return IsEpollSet(task.process->pid, static_cast<int>(call.args[0]));
+  return IsAnonymous(task.process->pid, static_cast<int>(call.args[0]), kEpollSet);
 }
 
 }  // namespace

@@ -34,12 +34,11 @@ bool IsAbout(int epoll_fd, const EpollEntry& entry, int fd) {
   return syscall(SYS_kcmp, own, own, KCMP_EPOLL_TFD, fd, &slot) == 0;
 }
 
-bool IsEpollSet(pid_t pid, int fd) {
-  constexpr char kName[] = "anon_inode:[eventpoll]";
-  char target[sizeof kName] = {};
+bool IsAnonymous(pid_t pid, int fd, std::string_view kind) {
   const std::string link = "/proc/" + std::to_string(pid) + "/fd/" + std::to_string(fd);
-  return readlink(link.c_str(), target, sizeof target) == sizeof kName - 1 &&
-         std::string(target) == kName;
+  char target[64];
+  const ssize_t size = readlink(link.c_str(), target, sizeof target);
+  return size > 0 && std::string_view(target, static_cast<std::size_t>(size)) == kind;
 }
 
 std::size_t RoomForDescriptors(pid_t pid) {

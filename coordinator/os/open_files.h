@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace tcs {
@@ -23,8 +24,12 @@ std::vector<EpollEntry> EntriesOf(int epoll_fd);
 // Whether `fd` is the open file that the set's entry is about.
 bool IsAbout(int epoll_fd, const EpollEntry& entry, int fd);
 
-// Whether the process's descriptor is an epoll set.
-bool IsEpollSet(pid_t pid, int fd);
+// Whether the process's descriptor is a file without a name of that kind, for example kEpollSet. No
+// file with a name can be taken for one: those begin with a slash.
+inline constexpr std::string_view kEpollSet = "anon_inode:[eventpoll]",
+                                  kEventFd = "anon_inode:[eventfd]",
+                                  kTimerFd = "anon_inode:[timerfd]";
+bool IsAnonymous(pid_t pid, int fd, std::string_view kind);
 
 // How large the process's table of descriptors is.
 std::size_t RoomForDescriptors(pid_t pid);

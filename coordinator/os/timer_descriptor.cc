@@ -1,7 +1,6 @@
 #include "coordinator/os/timer_descriptor.h"
 
 #include <poll.h>
-#include <stdio.h>
 #include <sys/ioctl.h>
 #include <sys/timerfd.h>
 #include <time.h>
@@ -10,7 +9,8 @@
 #include <fstream>
 #include <limits>
 #include <string>
-#include <string_view>
+
+#include "coordinator/os/open_files.h"
 
 namespace tcs {
 
@@ -35,14 +35,7 @@ std::uint64_t Unread(int timer_fd) {
 
 }  // namespace
 
-// No file can have this name: those of files begin with a slash.
-bool IsTimerDescriptor(int fd) {
-  constexpr std::string_view kName = "anon_inode:[timerfd]";
-  char link[64], name[64];
-  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-  const ssize_t size = readlink(link, name, sizeof name);
-  return size > 0 && std::string_view(name, static_cast<std::size_t>(size)) == kName;
-}
+bool IsTimerDescriptor(int fd) { return IsAnonymous(getpid(), fd, kTimerFd); }
 
 bool IsOfRealtime(int timer_fd) {
   const auto clock = static_cast<clockid_t>(NumberInInfo(timer_fd, "clockid"));

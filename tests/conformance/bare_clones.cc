@@ -74,14 +74,18 @@ void Check(const char* what, pid_t (*make)()) {
   }
 }
 
+// One that is known, and lives for a while.
+pid_t ByFork() {
+  const pid_t pid = fork();
+  if (pid != 0) return pid;
+  usleep(100'000);
+  _exit(4);
+}
+
 // Beside one that is known.
 void Beside() {
   const std::int64_t start = Now();
-  const pid_t known = fork();
-  if (known == 0) {
-    usleep(100'000);
-    _exit(4);
-  }
+  const pid_t known = ByFork();
   const pid_t unknown = ByRawFork();
   int status = 0;
   EXPECT(wait(&status) == unknown && WEXITSTATUS(status) == 3, "%x", status);
@@ -93,11 +97,7 @@ void Beside() {
 // Beside one that only a wait for all kinds of children finds.
 void BesideOneWithoutASignal() {
   const std::int64_t start = Now();
-  const pid_t known = fork();
-  if (known == 0) {
-    usleep(100'000);
-    _exit(4);
-  }
+  const pid_t known = ByFork();
   clone_args arguments{};
   const long quiet = syscall(SYS_clone3, &arguments, sizeof arguments);
   if (quiet == 0) End(3);
