@@ -93,8 +93,9 @@ bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
   return IsCallback() && task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
 }
 
-// A core without a turn, or before its turn begins, acts when somebody's wait ends by itself: one
-// core is enough for that.
+// A core without a turn, or before its turn begins, acts when somebody's wait ends by itself. One
+// core is enough for that: the least advanced, so that no end of a wait comes into sight only once
+// another core has a turn.
 void Engine::Refresh(Robot& robot) {
   progress_.clear();
   for (const VirtualCpu* cpu : robot.cpus) progress_.push_back(cpu->progress_ns);
@@ -102,9 +103,8 @@ void Engine::Refresh(Robot& robot) {
   const auto turn_of = [&robot](const VirtualCpu& cpu) {
     return robot.ready.Next(cpu.core).start_ns;
   };
-  // Those without a turn first, of them the least advanced.
   const auto rank = [&turn_of](const VirtualCpu& cpu) {
-    return std::pair(turn_of(cpu) != shm::kNeverNs, cpu.progress_ns);
+    return std::pair(cpu.progress_ns, turn_of(cpu) != shm::kNeverNs);
   };
   const VirtualCpu* idle = nullptr;
   for (const VirtualCpu* cpu : robot.cpus) {
@@ -115,8 +115,9 @@ void Engine::Refresh(Robot& robot) {
   if (idle != nullptr) {
     for (const Task* task : robot.tasks) {
       if (task->state == TaskState::kWaiting) {
-        due = std::min(due,
-                       HasRunOut(*task, idle->progress_ns) ? idle->progress_ns : task->deadline_ns);
+        due = std::min(due, HasRunOut(*task, idle->progress_ns)
+                                ? std::max(idle->progress_ns, task->reached_ns)
+                                : task->deadline_ns);
       }
       if (task->process->next_expiry_ns != shm::kNeverNs) {
         due = std::min(due, task->process->next_expiry_ns);
@@ -362,9 +363,9 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   robot.ready.Rotate(std::exchange(cpu.turn_over, FixedPriority::kNobody));
   Refresh(robot);
   const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
-  // What was due may have woken somebody who acts on another virtual CPU first.
-  if (turn.thread == FixedPriority::kNobody || root_.First() != cpu.leaf) return;
-  cpu.progress_ns = std::max(cpu.progress_ns, turn.start_ns);
+  // What was due may have woken somebody who acts on another virtual CPU first; and more may be due
+  // here before the turn begins.
+  if (turn.start_ns > cpu.progress_ns || root_.First() != cpu.leaf) return;
   Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;

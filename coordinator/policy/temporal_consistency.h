@@ -25,6 +25,8 @@ class TemporalConsistency {
 
   // The leaf has come to `progress_ns` and can neither act nor cause anything before `next_ns`:
   // its progress if it has something to run, later if it idles, never if only others can wake it.
+  // A time that others have left behind further than the drift bound becomes the earliest possible
+  // one.
   void Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns);
   // The same for the dynamics, which can always be advanced; nothing leaves them before
   // `output_ns`.

@@ -77,6 +77,20 @@ TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) 
   EXPECT_EQ(root.DynamicsHorizon(), 7'000'000 + kDrift);
 }
 
+TEST(TemporalConsistency, NobodyActsFurtherBehindOthersThanTheDriftBound) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
+  root.Update(prey, 0, 7'000'000);
+  root.Update(predator, 8'000'000, 8'000'000);
+  root.Update(prey, 0, 6'000'000);
+  EXPECT_EQ(root.First(), prey);
+  EXPECT_EQ(root.Least(), 7'000'000);
+  root.Update(prey, 0, 7'500'000);
+  EXPECT_EQ(root.Least(), 7'500'000);
+  root.Update(prey, 7'500'000, 7'500'000);
+  EXPECT_EQ(root.drift_ns(), kDrift);
+}
+
 TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0);
