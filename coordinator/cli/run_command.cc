@@ -34,8 +34,8 @@ RunReport UntilNow(const RunProgress& progress) {
   for (const RunProgress::Load& load : progress.clients) {
     ClientReport client;
     client.name = load.client;
-    client.charged_ns = load.charged_ns;
-    client.host_cpu_ns = -1;
+    client.usage.charged_ns = load.charged_ns;
+    client.usage.host_cpu_ns = -1;
     report.clients.push_back(client);
   }
   return report;

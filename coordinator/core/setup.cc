@@ -58,6 +58,7 @@ std::string Engine::Prepare() {
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
+  ClientsRunOn(claim_.cpu);
   if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;

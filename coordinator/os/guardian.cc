@@ -13,10 +13,10 @@
 #include <new>
 #include <string>
 
-#include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/keeper.h"
 #include "coordinator/os/say.h"
+#include "coordinator/os/strays.h"
 
 namespace tcs {
 
@@ -29,6 +29,7 @@ void ShareState() {
       mmap(nullptr, sizeof *g_state, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   static GuardedState alone;  // nobody would see its beats
   g_state = page != MAP_FAILED ? new (page) GuardedState : &alone;
+  g_state->pid_max = MostPids();
 }
 
 // Passes signals on to the keeper until it has ended: how, as of waitpid.
@@ -56,6 +57,10 @@ std::string NameOf(pid_t pid) {
 }
 
 }  // namespace
+
+void ClientsRunOn(int cpu) {
+  if (g_state != nullptr) g_state->clients_cpu.store(cpu);
+}
 
 void Beat() {
   if (g_state != nullptr) g_state->beats.fetch_add(1, std::memory_order_relaxed);
@@ -96,11 +101,11 @@ int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_DUMPABLE, 0);
   signal(SIGQUIT, SIG_IGN);
   const int status = AwaitKeeper(keeper, awaited);
+  EndWhatIsLeft(status, *g_state);
   if (!g_state->has_ended.load() && WIFSIGNALED(status)) {
     Say("the process that watches over the run (process " + std::to_string(keeper) +
         ") was killed, and the run with it; what it has written until then can be read");
   }
-  KillDescendants();
   if (WIFSIGNALED(status)) DieOf(WTERMSIG(status));
   return WEXITSTATUS(status);
 }

@@ -35,6 +35,10 @@ struct GuardLimits {
 // stops it without the guardian it is made to go on, with a sentence, too.
 int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits = {});
 
+// Says from inside `coordinate` which CPU the clients are bound to, so that none of them keeps its
+// real-time priority when the coordinator is killed. Does nothing outside.
+void ClientsRunOn(int cpu);
+
 // Says from inside `coordinate` that it gets on. Costs nothing; does nothing outside.
 void Beat();
 

@@ -18,6 +18,7 @@
 #include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
+#include "coordinator/os/strays.h"
 
 namespace tcs {
 
@@ -182,6 +183,12 @@ class Keeper {
 
 }  // namespace
 
+void EndWhatIsLeft(int status, const GuardedState& state) {
+  const int cpu = state.clients_cpu.load();
+  if (WIFSIGNALED(status) && cpu >= 0) LowerStraysOn(cpu, state.pid_max);
+  KillDescendants();
+}
+
 void DieOf(int signal_number) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
@@ -218,8 +225,8 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
   Keeper watch(guardian, coordinator, limits, state);
   const int status = watch.Watch();
   state->has_ended.store(true);
+  EndWhatIsLeft(status, *state);
   watch.SayHowItEnded(status);
-  KillDescendants();
   if (WIFSIGNALED(status)) DieOf(WTERMSIG(status));
   _exit(WEXITSTATUS(status));
 }

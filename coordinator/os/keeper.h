@@ -16,6 +16,8 @@ namespace tcs {
 struct GuardedState {
   std::atomic<std::uint64_t> beats{0};  // of the coordinator
   std::atomic<bool> has_ended{false};   // it has, and the keeper says how
+  std::atomic<int> clients_cpu{-1};     // of its clients; -1: there are none yet
+  int pid_max = 0;
 };
 
 // In the keeper's process, which the guardian has just made with SIGCHLD, SIGTERM and SIGHUP
@@ -23,6 +25,9 @@ struct GuardedState {
 // Does not return: its end is the coordinator's.
 [[noreturn]] void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
                        const std::function<int()>& coordinate);
+
+// Ends all that the coordinator has left behind. `status`: how it has ended, as of waitpid.
+void EndWhatIsLeft(int status, const GuardedState& state);
 
 // As the shell of a program that died of the signal would see it.
 [[noreturn]] void DieOf(int signal_number);
