@@ -125,7 +125,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
 // What is wrong is said once of each process: it may send as often as it likes.
 void Engine::SendDds(Process& process, std::size_t bytes) {
   const std::string wrong = hub_.Send(process.dds_number, bytes, event_ns_);
-  if (!wrong.empty() && !std::exchange(process.dds_warned, true)) {
+  if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     Warn(fmt::format("{} {}", process.name, wrong));
   }
   if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
@@ -173,7 +173,6 @@ void Engine::JoinDds(Task& task) {
 
 // It has died, or executes another program.
 void Engine::LeaveDds(Process& process) {
-  process.dds_warned = false;
   if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
     deliverer->is_deliverer = false;
     ReleaseThoseAwaitingDeliverer(process);

@@ -37,10 +37,13 @@ constexpr int kMostBriefTurns = 100;
 constexpr std::int64_t kLaxTimerNs = 4'100'000;
 constexpr std::int64_t kOftenShorter = 4;
 constexpr std::int64_t kForgetRuns = 16;
-constexpr std::int64_t kStartTurnNs = 1'000'000'000;
-constexpr int kStartTurns = 30;
+// Where no clock tells when to look again.
+constexpr std::int64_t kLookTurnNs = 50'000'000;
+constexpr int kStartTurns = 600;
 // Under set costs, a thread that computes for so many turns without a call is taken to spin.
-constexpr int kSilentTurns = 5;
+constexpr int kSilentTurns = 100;
+// A thread that has not had the CPU for so long: others have it. The next look takes twice as long.
+constexpr std::int64_t kStarvedNs = 20'000'000;
 constexpr std::int64_t kSpinTurnNs = 1'000'000;
 
 }  // namespace
@@ -173,7 +176,7 @@ void Engine::ContinueClock(Task& task) {
 
 // Real time until the running thread has to be preempted, less what timers are late.
 std::int64_t Engine::HostNsToHorizon(const Task& task) {
-  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kStartTurnNs;
+  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kLookTurnNs;
   const std::int64_t now =
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
@@ -309,6 +312,9 @@ void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, silent_turns = 0, brief_turns = 0;
   std::int64_t silent_at_ns =
       task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+  std::uint64_t looked_tsc = stop_tsc_;
+  double starved_ticks = kStarvedNs * ticks_per_ns_;
+  std::int64_t looked_at_ns = -1;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
@@ -319,7 +325,14 @@ void Engine::AwaitStop(Task& task) {
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
-    if (!leaving_.empty()) LookAtLeaving();
+    if (static_cast<double>(stop_tsc_ - looked_tsc) > starved_ticks) {
+      const std::int64_t had_ns = HostClockOf(task);
+      if (had_ns >= 0 && had_ns == std::exchange(looked_at_ns, had_ns)) {
+        LowerUnknownThreads();
+        starved_ticks *= 2;
+      }
+      looked_tsc = stop_tsc_;
+    }
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
       // It must have run, and come back from the kernel: real time that has passed may be the

@@ -488,8 +488,8 @@ bool Engine::StrangersRun() {
   for (const Process& process : processes_) {
     if (!process.has_strangers || process.dead) continue;
     for (const pid_t tid : ThreadsOf(process.pid)) {
-      const char state = KnownTask(tid) == nullptr ? ThreadState(tid) : 'S';
-      if (state == 'R' || state == 'D') return true;
+      if (KnownTask(tid) != nullptr || IsAstray(tid)) continue;
+      if (const char state = ThreadState(tid); state == 'R' || state == 'D') return true;
     }
   }
   return UnknownChildrenRun();
@@ -541,8 +541,7 @@ bool Engine::AwaitOutside() {
     PollEvents(0);
     PollUnseen();
     if (external_event_ || root_.Least() != shm::kNeverNs) return true;
-    if (unseen_ == 0 && !has_spinners_ && unknown_children_.empty() && !StrangersRun())
-      return false;
+    if (unseen_ == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun()) return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
     if (now_ns - idle_since_real_ns_ >= end_ns_ - furthest_ns) return false;

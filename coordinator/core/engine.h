@@ -20,6 +20,7 @@
 #include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
+#include "coordinator/os/strays.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
@@ -173,7 +174,13 @@ class Engine {
   void FindUnknownChildren(Process& parent);
   void UnknownChildEnded(pid_t pid);
   bool HasUnknownChild(const Process& parent) const;
+  bool AwaitsUnknownChildren() const;
   bool UnknownChildrenRun() const;
+
+  // Threads that nobody announced, or that do not end (unknown_threads.cc).
+  void LowerUnknownThreads();
+  bool IsAstray(pid_t tid) const;
+  std::string NameOfMakerOf(pid_t tid);
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
@@ -192,7 +199,6 @@ class Engine {
   // errno.
   void TrapArrived(int listener);
   void ExitThread(Task& task, const TrappedCall& call);
-  void LookAtLeaving();
   void HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call);
@@ -354,6 +360,7 @@ class Engine {
 
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.
+  bool TakeEvents(std::int64_t timeout_ns, bool* is_full);
   bool PollEvents(std::int64_t timeout_ns);
   void TakeNotifications(const Process& process);
   void NotificationArrived(Task& task);
@@ -489,7 +496,9 @@ class Engine {
   int detector_arm_ = -1, detector_fired_ = -1, detector_pidfd_ = -1;
   pid_t detector_ = -1;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
-  std::vector<LeavingThread> leaving_;  // the earliest first
+  // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
+  std::map<pid_t, std::int64_t> lowered_;
+  int most_pids_ = MostPids();
   bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;

@@ -118,10 +118,11 @@ std::int64_t Engine::StalenessOf(const Task& task) const {
 // Its threads get to the end at once, and nobody runs meanwhile: it takes the kernel some steps.
 void Engine::Expel(Process& process, const char* what) {
   if (std::exchange(process.expelled, true)) return;
-  Warn(
-      fmt::format("{} (pid {}) has written what cannot be into the memory that it shares with "
-                  "tcs ({}), and was ended; look for a pointer gone astray in it",
-                  process.name, process.pid, what));
+  if (!std::exchange(process.client->has_erred, true))
+    Warn(
+        fmt::format("{} (pid {}) has written what cannot be into the memory that it shares with "
+                    "tcs ({}), and was ended; look for a pointer gone astray in it",
+                    process.name, process.pid, what));
   syscall(SYS_pidfd_send_signal, process.pidfd, SIGKILL, nullptr, 0);
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {

@@ -214,7 +214,8 @@ struct Process {
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
-  bool dds_warned = false;        // of what it sends
+  bool dds_warned = false;        // a client: of what it, or a descendant, sends
+  bool has_erred = false;         // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;      // its thread that takes what is for it
   int waiting_for_deliverer = 0;  // threads
   bool dead = false;
@@ -225,13 +226,6 @@ struct Process {
   bool is_client = false;      // named in the scenario, rather than a child of one
   int wait_status = 0;         // once dead, of the coordinator's own children
   std::int64_t started_at_ns = 0, ended_at_ns = -1;
-};
-
-// A thread that has said that it ends, and what it had used of a processor by then.
-struct LeavingThread {
-  pid_t tid = 0;
-  std::int64_t host_ns = 0;
-  std::string process;
 };
 
 // A child that was not announced and has not registered, perhaps never will.

@@ -54,28 +54,9 @@ void Engine::TrapArrived(int listener) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  std::erase_if(leaving_, [](const LeavingThread& one) { return ThreadState(one.tid) == 'X'; });
-  leaving_.push_back({task.tid, HostClockOf(task), task.process->name});
   EndTask(task);
   WakeThoseWaitingFor(task);
   ContinueTrapped(call.listener, call.id);
-}
-
-// The kernel lets it handle a signal first that comes in just that instant, and there it may stay.
-// It has the active level, so that nobody else would ever run.
-void Engine::LookAtLeaving() {
-  constexpr std::int64_t kMostNs = 1'000'000;  // of processor time, for a thread that does end
-  std::erase_if(leaving_, [this](const LeavingThread& one) {
-    if (KnownTask(one.tid) != nullptr || IsDying(one.tid)) return true;
-    const int clock = OpenThreadCpuClock(one.tid);
-    const std::int64_t used_ns = clock < 0 ? 0 : ReadThreadCpuClock(clock) - one.host_ns;
-    if (clock >= 0) close(clock);
-    if (used_ns < kMostNs) return false;
-    LeaveRealTime(one.tid);
-    Warn("a thread of " + one.process +
-         " has said that it ends, and computes on; it is not scheduled any more");
-    return true;
-  });
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it

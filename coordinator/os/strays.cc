@@ -30,16 +30,21 @@ bool HasLevelOfARun(int tid) {
 
 }  // namespace
 
+std::vector<pid_t> RealTimeThreadsOn(int cpu, int pid_max) {
+  std::vector<pid_t> found;
+  for (pid_t tid = 2; tid <= pid_max; ++tid) {
+    if (HasLevelOfARun(tid) && IsBoundTo(tid, cpu)) found.push_back(tid);
+  }
+  return found;
+}
+
 void LowerStraysOn(int cpu, int pid_max) {
   SetLevel(0, Level::kKernelOnly);  // before those that spin, where that is permitted
   bool found = true;
   for (int pass = 0; found && pass < kMostPasses; ++pass) {
-    found = false;
-    for (int tid = 2; tid <= pid_max; ++tid) {
-      if (!HasLevelOfARun(tid) || !IsBoundTo(tid, cpu)) continue;
-      LeaveRealTime(tid);
-      found = true;
-    }
+    const std::vector<pid_t> threads = RealTimeThreadsOn(cpu, pid_max);
+    for (const pid_t tid : threads) LeaveRealTime(tid);
+    found = !threads.empty();
   }
   LeaveRealTime(0);
 }
