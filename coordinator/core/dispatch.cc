@@ -350,6 +350,11 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     if (task.slot < 0) {
+      if (NeverRegisters(task)) {
+        Lower(task.tid);
+        EndTask(task);
+        return;
+      }
       if (++starting_turns < kStartTurns) continue;
       report_.error = fmt::format(
           "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "

@@ -179,6 +179,8 @@ class Engine {
 
   // Threads that nobody announced, or that do not end (unknown_threads.cc).
   void LowerUnknownThreads();
+  void Lower(pid_t tid);
+  bool NeverRegisters(Task& task);
   bool IsAstray(pid_t tid) const;
   std::string NameOfMakerOf(pid_t tid);
 

@@ -64,7 +64,7 @@ void Engine::WaitForChild(Task& task, pid_t which, bool stops) {
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (KnownTask(tid) != nullptr) continue;
+    if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
     SetLevel(tid, Level::kWaiting);
     Task& thread = *AddThread(*creator.process, tid);
     InheritScheduling(thread, creator);

@@ -33,15 +33,23 @@ bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0;
 void Engine::LowerUnknownThreads() {
   for (const pid_t tid : RealTimeThreadsOn(claim_.cpu, most_pids_)) {
     if (KnownTask(tid) != nullptr || tid == detector_ || IsOwnThread(tid)) continue;
-    LeaveRealTime(tid);
-    lowered_[tid] = ClockOf(tid) + kCountsNs;
-    const Process* process = LivingProcess(ProcessOfThread(tid));
-    Warn(
-        (process == nullptr ? "a process that " + NameOfMakerOf(tid) + " has started"
-                            : "a thread of " + process->name) +
-        " computes on and on, and tcs was told nothing of it, or that it ends; it is not scheduled "
-        "any more, and gets what others leave");
+    Lower(tid);
   }
+}
+
+void Engine::Lower(pid_t tid) {
+  LeaveRealTime(tid);
+  lowered_[tid] = ClockOf(tid) + kCountsNs;
+  const Process* process = LivingProcess(ProcessOfThread(tid));
+  Warn((process == nullptr ? "a process that " + NameOfMakerOf(tid) + " has started"
+                           : "a thread of " + process->name) +
+       " computes on and on, and tcs was told nothing of it, or that it ends; it is not scheduled "
+       "any more, and gets what others leave");
+}
+
+// A thread of a process that has registered does so itself before it computes anything.
+bool Engine::NeverRegisters(Task& task) {
+  return task.process->link != nullptr && HostClockOf(task) > kCountsNs;
 }
 
 // It has had its time, and is not waited for any more.
