@@ -131,6 +131,8 @@ def one_round(party, folder):
             return "there is still: " + ", ".join("%d %s" % (pid, name(pid)) for pid in marked())
         words = said.read_text()
         words = re.sub(r"tcsim: other runs of tcsim have.*\n", "", words)
+        # The spinner ignores SIGTERM, on purpose, and that is said, too.
+        words = re.sub(r"tcsim: warning: \S+ was killed: after SIGTERM it did not end within.*\n", "", words)
         if ends and was_running and SENTENCES[party]:
             if not re.search("^tcsim: " + SENTENCES[party], words, re.M):
                 return "it says: " + words
