@@ -32,7 +32,7 @@ for ((seed = first; seed < first + rounds; ++seed)); do
     wrong="$wrong changes what another program prints"
   grep -q 'can be written\|has been written' <<<"$deeds" && wrong="$wrong writes where it must not"
   sentences=$(grep -c hostile "$out/warned" || true)
-  ((sentences <= 2)) || wrong="$wrong is spoken of in $sentences sentences"
+  ((sentences <= 3)) || wrong="$wrong is spoken of in $sentences sentences"
   grep -q 'bug in tcs\|fault of tcsim' "$out/warned" && wrong="$wrong finds a bug"
   left=$(pgrep -f "$out/hostile" || true)
   [[ -z $left ]] || wrong="$wrong leaves processes: $left"
