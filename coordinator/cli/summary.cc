@@ -73,6 +73,12 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
       "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
       Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
       Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
+  if (r.untold > 0) {
+    Print(
+        "the processor was gone {} in the middle of a turn, and no clock told: {:.3f} ms that "
+        "nobody computed in are not charged (in the column 'stolen')\n",
+        r.untold == 1 ? "once" : fmt::format("{} times", r.untold), Milliseconds(r.untold_ns));
+  }
   std::size_t width = 6;
   for (const ClientReport& c : r.clients) width = std::max(width, c.name.size());
   Print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
@@ -116,6 +122,8 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
             {"dynamics_ns", r.dynamics_ns},
             {"coordinating_ns", r.coordinating_ns},
             {"overhead_percent", OverheadPercent(r)},
+            {"untold", r.untold},
+            {"untold_ns", r.untold_ns},
             {"dispatches", r.switches},
             {"samples", r.samples},
             {"commands", r.commands},

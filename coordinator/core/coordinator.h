@@ -67,6 +67,7 @@ struct RunReport {
   std::int64_t lateness_ns = 0;
   std::int64_t real_ns = 0;
   std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
+  std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
   std::vector<ClientReport> clients;
   std::vector<std::string> warnings;

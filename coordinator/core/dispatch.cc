@@ -12,6 +12,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/policy/stolen_time.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -35,6 +36,9 @@ constexpr int kMostBriefTurns = 100;
 // (250 Hz). Should it compute on this once, it is as with any late timer: its clock stops at the
 // horizon, and the rest is a debt.
 constexpr std::int64_t kLaxTimerNs = 4'100'000;
+// Nobody computes for longer than this without the coordinator's looking: what is stolen and no
+// clock tells of, it finds by its timer.
+constexpr std::int64_t kLongestTimerNs = kLaxTimerNs;
 constexpr std::int64_t kOftenShorter = 4;
 constexpr std::int64_t kForgetRuns = 16;
 // Where no clock tells when to look again.
@@ -181,7 +185,8 @@ std::int64_t Engine::HostNsToHorizon(const Task& task) {
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
   const auto asked = static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_);
-  return std::max(task.recent_run_ns < asked / kOftenShorter ? kLaxTimerNs : kLeastSliceNs, asked);
+  if (task.recent_run_ns < asked / kOftenShorter) return kLaxTimerNs;
+  return std::clamp(asked, kLeastSliceNs, kLongestTimerNs);
 }
 
 void Engine::CheckCpuClock(Task& task) {
@@ -205,6 +210,37 @@ void Engine::CheckCpuClock(Task& task) {
   }
   task.unchecked_slices = task.unchecked_from_gate = 0;
   shm::RemoveStolen(page, reading, cpu);
+}
+
+shm::ClockReading Engine::ClockWhenStopped(const Task& task) const {
+  return shm::ReadClockAt(Slot(task).clock, stop_tsc_);
+}
+
+// The coordinator has waited for the running thread, since its clock was at `before`, with a timer
+// of `asked_ns`. Had that come in time, a look at the TSC is all there is to do.
+void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
+  const auto most_ticks = static_cast<std::uint64_t>(
+      static_cast<double>(asked_ns + kMostTimerLatenessNs) * ticks_per_ns_);
+  if (stop_tsc_ - before.tsc <= most_ticks || !IsOwnDispatch(task)) return;
+  CheckCpuClock(task);  // which tells of most thieves
+  shm::ClockPage& page = Slot(task).clock;
+  const shm::ClockReading now = ClockWhenStopped(task);
+  const double speed = task.process->robot->speed;
+  const auto host = [speed](std::int64_t ns) {
+    return static_cast<std::int64_t>(static_cast<double>(ns) * speed);
+  };
+  const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
+  const std::int64_t stolen_ns = StolenUntold({.counted_ns = host(now.cpu_ns - before.cpu_ns),
+                                               .asked_ns = asked_ns,
+                                               .usual_ns = task.recent_run_ns,
+                                               .shown_ns = host(shown_ns - before.time_ns)});
+  if (stolen_ns <= 0) return;
+  shm::RemoveUntold(page, now, stolen_ns);
+  // The coordinator has moved its origin, not the thread.
+  task.page_origin_ns += stolen_ns;
+  task.host_origin_ns += stolen_ns;
+  report_.untold_ns += stolen_ns;
+  ++report_.untold;
 }
 
 // The virtual time of what the running thread has just done to others: the time that its clock

@@ -25,6 +25,7 @@
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
 #include "coordinator/trace/schedule_trace.h"
+#include "shm/clock_page.h"
 
 namespace tcs {
 
@@ -131,6 +132,8 @@ class Engine {
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
   void CheckCpuClock(Task& task);
+  shm::ClockReading ClockWhenStopped(const Task& task) const;
+  void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);

@@ -18,6 +18,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/attach_protocol.h"
+#include "shm/clock_page.h"
 
 namespace tcs {
 
@@ -216,11 +217,14 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   epoll_event events[kEventsAtOnce];
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0 && !IsFixed();
+  const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
   const int n =
       epoll_pwait2(epoll_, events, kEventsAtOnce, timeout_ns < 0 ? nullptr : &timeout, nullptr);
   stop_tsc_ = __rdtsc();
   const bool is_rest = std::exchange(*is_full, n == kEventsAtOnce);
   if (n == 0 && is_rest) return false;
+  if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
     if (held) {
       TakeLevelBack();
