@@ -100,6 +100,10 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
     line.Clear();
     Say("warning: " + warning);
   };
+  options.on_notice = [&line](const std::string& notice) {
+    line.Clear();
+    Say(notice);
+  };
   const RunReport report = RunScenario(scenario, options);
   line.Clear();
   if (!report.error.empty()) return Fail(report.error);

@@ -44,6 +44,8 @@ struct RunOptions {
   std::function<void(const RunProgress&)> on_progress;
   // Called with each warning when it arises, if set.
   std::function<void(const std::string&)> on_warning;
+  // Called with what people who wait for the run are to know now, if set.
+  std::function<void(const std::string&)> on_notice;
 };
 
 struct ClientReport {

@@ -560,6 +560,7 @@ bool Engine::Step() {
   if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
+  LookAround();
   TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();

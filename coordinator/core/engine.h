@@ -9,7 +9,10 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/coordinator.h"
@@ -107,6 +110,15 @@ class Engine {
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void ShowProgress();
+
+  // What a user is told who sees nothing happen (standstill.cc).
+  void LookAround();
+  void NoteStandstill(std::int64_t now_ns);
+  void NoteLeftBehind(std::int64_t now_ns);
+  bool AwaitsTerminal() const;
+  std::vector<std::string> WhatIsAwaited() const;
+  std::pair<int, std::string> WhatItAwaits(const Task& task) const;
+  std::string AwaitedDescriptors(const Task& task) const;
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
@@ -540,6 +552,15 @@ class Engine {
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
   std::uint64_t start_tsc_ = 0;
   std::uint64_t next_progress_tsc_ = 0;
+
+  struct Standstill {
+    std::int64_t dispatches = -1, at_ns = -1;  // virtual
+    std::int64_t since_ns = 0;                 // real
+  };
+  Standstill standstill_;
+  std::uint64_t next_look_tsc_ = 0;
+  std::int64_t alone_since_ns_ = -1;  // real
+  bool has_said_standstill_ = false, has_said_left_behind_ = false;
 };
 
 }  // namespace tcs
