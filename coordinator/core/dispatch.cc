@@ -320,6 +320,7 @@ void Engine::Settle(Task& task) {
   TakeReceipts(task, progress + frozen);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
+    NoteHeld(*task.process, start, progress - start);
     task.frozen_ns = frozen + progress - start;
     task.process->frozen_ns = task.frozen_ns;
     task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);

@@ -2,6 +2,7 @@
 #include "coordinator/core/engine.h"
 
 #include <errno.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <time.h>
 #include <unistd.h>
@@ -24,7 +25,8 @@ constexpr std::int64_t kGrainNs = 100'000;
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
-constexpr int kDeathTurns = 25;  // of kOutsidePollNs
+constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
+constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
@@ -277,7 +279,10 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const Robot& robot = *cpu.robot;
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
-  if (IsCallback()) return std::min(furthest, HorizonWhileWorldStands(task));
+  if (IsCallback()) {
+    return std::min(
+        {furthest, HorizonWhileWorldStands(task), cpu.progress_ns + LeftToHoldNs(task)});
+  }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
     limit = std::min(limit, cpu.progress_ns + left);
@@ -341,6 +346,40 @@ void Engine::LetWorldCatchUp(Process& process, std::int64_t now_ns) {
   process.frozen_ns = std::max<std::int64_t>(0, process.shown_ns - now_ns);
 }
 
+// A program that computes for as long as the run is to be, all at one instant of the world's, would
+// have the world stand for ever. Short runs, too, may have long plans computed.
+std::int64_t Engine::MostHeldNs() const {
+  return IsInGrace() ? kMostHeldNs : std::max(kMostHeldNs, scenario_.duration.ns());
+}
+
+std::int64_t Engine::LeftToHoldNs(const Task& task) const {
+  const Process& process = *task.process;
+  const std::int64_t held = process.held_at_ns == task.cpu->progress_ns ? process.held_ns : 0;
+  return std::clamp<std::int64_t>(MostHeldNs() - held, 0, shm::kMaxDispatchNs);
+}
+
+void Engine::NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns) {
+  if (std::exchange(process.held_at_ns, at_ns) != at_ns) process.held_ns = 0;
+  process.held_ns += ns;
+}
+
+// The thread stays where it is, and the world goes on to the end.
+void Engine::LetWorldGoOnWithout(Task& task) {
+  Warn(
+      fmt::format("{} has computed for {:.0f} s at one instant of the world's: under --sync "
+                  "callback the world waits for it, but not for longer than the run is to be; from "
+                  "{:.3f} s on it goes on without that program",
+                  task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
+                  static_cast<double>(task.cpu->progress_ns) * 1e-9));
+  if (task.level != Level::kWaiting) {
+    SetLevel(task.tid, Level::kWaiting);
+    task.level = Level::kWaiting;
+  }
+  SetState(task, TaskState::kWaiting);
+  task.deadline_ns = shm::kNeverNs;
+  Refresh(*task.process->robot);
+}
+
 // Its clock has shown so much of the time to come already: it passes without the thread.
 void Engine::PayDebt(Task& task, std::int64_t ns) {
   task.debt_ns -= ns;
@@ -371,6 +410,10 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   task.reached_ns = cpu.progress_ns;
   if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
   TCS_CHECK(IsSafe(task));
+  if (IsCallback() && LeftToHoldNs(task) == 0) {
+    LetWorldGoOnWithout(task);
+    return;
+  }
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
   std::int64_t horizon = HorizonFor(task, &idle_until);

@@ -91,6 +91,10 @@ class Engine {
   bool Step();
   bool AwaitDeaths();
   static void LetWorldCatchUp(Process& process, std::int64_t now_ns);
+  std::int64_t MostHeldNs() const;
+  std::int64_t LeftToHoldNs(const Task& task) const;
+  static void NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns);
+  void LetWorldGoOnWithout(Task& task);
   std::int64_t HorizonWhileWorldStands(const Task& task) const;
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);

@@ -199,6 +199,7 @@ struct Process {
   // behind the end of a wait that is over by time.
   std::int64_t frozen_ns = 0;
   std::int64_t shown_ns = 0;                    // the furthest that its clock has come
+  std::int64_t held_at_ns = -1, held_ns = 0;    // where and for how long it last held the world up
   std::map<std::int64_t, Timer> timers;         // by id
   std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
   std::int64_t expired_ns = shm::kNeverNs;      // the last one, while nobody has come to wait since
