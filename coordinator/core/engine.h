@@ -121,6 +121,7 @@ class Engine {
   void NoteLeftBehind(std::int64_t now_ns);
   bool AwaitsTerminal() const;
   std::vector<std::string> WhatIsAwaited() const;
+  std::vector<std::string> ComputingStrangers() const;
   std::pair<int, std::string> WhatItAwaits(const Task& task) const;
   std::string AwaitedDescriptors(const Task& task) const;
 

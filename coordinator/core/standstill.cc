@@ -140,6 +140,21 @@ bool Engine::AwaitsTerminal() const {
          });
 }
 
+// Who computes without tcs's knowing of it: a program with threads that never registered, a child
+// of a bare clone.
+std::vector<std::string> Engine::ComputingStrangers() const {
+  std::vector<std::string> strangers;
+  for (const Process& process : processes_) {
+    if (process.has_strangers && !process.dead) {
+      strangers.push_back("a thread of " + NameOf(process));
+    }
+  }
+  for (const auto& [pid, child] : unknown_children_) {
+    strangers.push_back(fmt::format("{} (pid {})", ProgramNameOf(pid), pid));
+  }
+  return strangers;
+}
+
 void Engine::NoteStandstill(std::int64_t now_ns) {
   Standstill now{report_.switches, FurthestNs(), now_ns};
   if (now.dispatches != standstill_.dispatches || now.at_ns != standstill_.at_ns) {
@@ -148,10 +163,13 @@ void Engine::NoteStandstill(std::int64_t now_ns) {
   }
   if (now_ns - standstill_.since_ns < kPatienceNs || AwaitsTerminal()) return;
   has_said_standstill_ = true;
-  options_.on_notice(fmt::format(
-      "virtual time has stood still at {:.3f} s for {:.0f} s: nothing can happen any more but from "
-      "outside; {}; Ctrl-C ends the run",
-      Seconds(now.at_ns), Seconds(now_ns - standstill_.since_ns), Joined(WhatIsAwaited())));
+  const std::string why =
+      StrangersRun() ? "it waits for what computes without tcs's knowing of it: " +
+                           Joined(ComputingStrangers())
+                     : "nothing can happen any more but from outside; " + Joined(WhatIsAwaited());
+  options_.on_notice(
+      fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
+                  Seconds(now.at_ns), Seconds(now_ns - standstill_.since_ns), why));
 }
 
 // A program alone has ended, and the run goes on for what it has left in the background.

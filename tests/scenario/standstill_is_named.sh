@@ -39,6 +39,13 @@ names "$out/stderr" "${stood}sh waits for a signal, as of a child's end; [a-z]+ 
 names "$out/stderr" '^tcsim: sh has ended; the run goes on for what it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
   "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
 
+names "$out/stderr" '^tcsim: virtual time has .* it waits for what computes without tcs.s knowing of it: python3[.0-9]* \(pid' \
+  "$tcsim" exec -- python3 -c '
+import ctypes, os, signal, time
+if ctypes.CDLL(None).syscall(56, signal.SIGCHLD, 0, 0, 0, 0) == 0:  # a bare clone
+    while True: pass
+os.wait()'
+
 # A call that only the kernel knows the end of (no world goes on meanwhile).
 printf '%s\n' 'duration: 3600s' "robots: {r: {clients: {held: {command: [cat, '$out/late']}}}}" \
   >"$out/held.yaml"
