@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <system_error>
-
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/summary.h"
 #include "coordinator/os/files.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
 
@@ -85,16 +83,14 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   const int progress_fd = arguments.progress_fd;
   const bool is_seen = progress_fd < 0 && TerminalLine::IsSeen();
   if (progress_fd >= 0) fcntl(progress_fd, F_SETFD, FD_CLOEXEC);
-  const std::string unfinished = arguments.out + "/unfinished.json";
+  const std::string unfinished = overrides.result_directory + "/unfinished.json";
   std::int64_t next_note_ns = 0;
   options.on_progress = [&](const RunProgress& progress) {
     if (progress_fd >= 0) SayHowFar(progress_fd, progress);
     if (is_seen) line.Show(progress);
     if (progress.real_ns < next_note_ns) return;
     next_note_ns = progress.real_ns + kNoteEveryNs;
-    // A full disk is said of the results themselves.
-    static_cast<void>(
-        WriteSummary(scenario, options, UntilNow(progress), unfinished, Withstands::kCrash));
+    LeaveNote(unfinished, SummaryText(scenario, options, UntilNow(progress)));
   };
   options.on_warning = [&line](const std::string& warning) {
     line.Clear();
@@ -113,8 +109,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
       !error.empty()) {
     return Fail(error);
   }
-  std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
+  TakeNoteBack();
   if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }

@@ -99,8 +99,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
 }
 
-std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
-                         const std::string& path, Withstands what) {
+std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
   using Json = nlohmann::ordered_json;
@@ -149,7 +148,12 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
         {"wait_status", c.wait_status},
     });
   }
-  return WriteWhole(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", what);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
+                         const std::string& path) {
+  return WriteWhole(path, SummaryText(scenario, options, r));
 }
 
 }  // namespace tcs

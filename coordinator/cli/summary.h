@@ -4,7 +4,6 @@
 #include <string>
 
 #include "coordinator/core/coordinator.h"
-#include "coordinator/os/files.h"
 
 namespace tcs {
 
@@ -17,9 +16,12 @@ bool HasFailedClient(const RunReport& report);
 // To stdout; what went wrong in clients, to stderr.
 void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
 
-// Empty on success, else one sentence. Times are nanoseconds.
+// As JSON; times are nanoseconds.
+std::string SummaryText(const Scenario& scenario, const RunOptions& options,
+                        const RunReport& report);
+
+// Empty on success, else one sentence.
 [[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunOptions& options,
-                                       const RunReport& report, const std::string& path,
-                                       Withstands what = Withstands::kPowerCut);
+                                       const RunReport& report, const std::string& path);
 
 }  // namespace tcs

@@ -28,6 +28,7 @@ constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
 constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
@@ -545,9 +546,11 @@ std::int64_t Engine::FurthestNs() const {
 }
 
 void Engine::ShowProgress() {
-  if (!options_.on_progress || IsInGrace() || __rdtsc() < next_progress_tsc_) return;
+  if (IsInGrace() || __rdtsc() < next_progress_tsc_) return;
   next_progress_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kShowEveryNs) * ticks_per_ns_);
+  LookAtDetector();
+  if (!options_.on_progress) return;
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
@@ -559,7 +562,7 @@ void Engine::ShowProgress() {
   for (const Process& process : processes_) {
     if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
-  FlushRecords();
+  if (shows_++ % kShowsPerFlush == 0) FlushRecords();
   options_.on_progress(progress);
 }
 

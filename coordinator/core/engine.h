@@ -388,7 +388,8 @@ class Engine {
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
-  void DetectorEnded();
+  void DetectorEnded(int signal);
+  void LookAtDetector();
   void RearmDetector();
   void Accept(const Listener& listener);
   bool Attach(int connection, Process& client);
@@ -557,6 +558,7 @@ class Engine {
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
   std::uint64_t start_tsc_ = 0;
   std::uint64_t next_progress_tsc_ = 0;
+  int shows_ = 0;
 
   struct Standstill {
     std::int64_t dispatches = -1, at_ns = -1;  // virtual

@@ -66,6 +66,20 @@ void Beat() {
   if (g_state != nullptr) g_state->beats.fetch_add(1, std::memory_order_relaxed);
 }
 
+void LeaveNote(const std::string& path, const std::string& text) {
+  if (g_state == nullptr || path.size() >= Note::kMostPath || text.size() > Note::kMostText) return;
+  const int which = g_state->note.load() == 0 ? 1 : 0;
+  Note& note = g_state->notes[which];
+  memcpy(note.path, path.c_str(), path.size() + 1);
+  memcpy(note.text, text.data(), text.size());
+  note.size = text.size();
+  g_state->note.store(which);
+}
+
+void TakeNoteBack() {
+  if (g_state != nullptr) g_state->note.store(-1);
+}
+
 // By name: of a process that is not dumpable nobody may ask which program it executes.
 std::vector<pid_t> GuardsOf(pid_t coordinator) {
   std::vector<pid_t> guards;
@@ -101,7 +115,7 @@ int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_DUMPABLE, 0);
   signal(SIGQUIT, SIG_IGN);
   const int status = AwaitKeeper(keeper, awaited);
-  EndWhatIsLeft(status, *g_state);
+  EndWhatIsLeft(status, g_state);
   if (!g_state->has_ended.load() && WIFSIGNALED(status)) {
     Say("the process that watches over the run (process " + std::to_string(keeper) +
         ") was killed, and the run with it; what it has written until then can be read");

@@ -15,6 +15,7 @@
 #include <sys/types.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace tcs {
@@ -41,6 +42,13 @@ void ClientsRunOn(int cpu);
 
 // Says from inside `coordinate` that it gets on. Costs nothing; does nothing outside.
 void Beat();
+
+// A file that is to be written, whole, should `coordinate` end and not have taken its note back:
+// what is left of a run that is killed. It replaces the note before. Only copies: a coordinator
+// that wrote it itself would wait for the disk, and its clients compute on meanwhile. What is too
+// long for a note is none. Does nothing outside.
+void LeaveNote(const std::string& path, const std::string& text);
+void TakeNoteBack();
 
 // tcsim's own processes around and above this one, which its clients are not to touch.
 std::vector<pid_t> GuardsOf(pid_t coordinator);

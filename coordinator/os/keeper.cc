@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "coordinator/os/descendants.h"
+#include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/strays.h"
@@ -183,10 +184,15 @@ class Keeper {
 
 }  // namespace
 
-void EndWhatIsLeft(int status, const GuardedState& state) {
-  const int cpu = state.clients_cpu.load();
-  if (WIFSIGNALED(status) && cpu >= 0) LowerStraysOn(cpu, state.pid_max);
+void EndWhatIsLeft(int status, GuardedState* state) {
+  const int cpu = state->clients_cpu.load();
+  if (WIFSIGNALED(status) && cpu >= 0) LowerStraysOn(cpu, state->pid_max);
   KillDescendants();
+  const int which = state->note.exchange(-1);
+  if (which < 0) return;
+  const Note& note = state->notes[which];
+  // Nobody could do anything about a disk that is full.
+  static_cast<void>(WriteWhole(note.path, std::string(note.text, note.size), Withstands::kCrash));
 }
 
 void DieOf(int signal_number) {
@@ -225,7 +231,7 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
   Keeper watch(guardian, coordinator, limits, state);
   const int status = watch.Watch();
   state->has_ended.store(true);
-  EndWhatIsLeft(status, *state);
+  EndWhatIsLeft(status, state);
   watch.SayHowItEnded(status);
   if (WIFSIGNALED(status)) DieOf(WTERMSIG(status));
   _exit(WEXITSTATUS(status));

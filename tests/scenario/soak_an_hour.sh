@@ -22,7 +22,7 @@ run=$!
 while kill -0 "$run" 2>/dev/null; do
   coordinator=$(coordinator_of "$run" 2>/dev/null | head -1 || true)
   if [[ -n $coordinator ]]; then
-    echo "$(sed -n 's/^VmRSS: *\([0-9]*\) kB/\1/p' "/proc/$coordinator/status" 2>/dev/null)" \
+    echo "$(sed -n 's/^VmRSS:[[:space:]]*\([0-9]*\) kB/\1/p' "/proc/$coordinator/status" 2>/dev/null)" \
       "$(ls "/proc/$coordinator/fd" 2>/dev/null | wc -l)" >>"$out/sizes" || true
   fi
   sleep 0.2

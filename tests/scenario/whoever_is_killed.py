@@ -107,15 +107,19 @@ def one_round(party, folder):
         run = subprocess.Popen([TCSIM, "run", str(folder / "scenario.yaml"), "--out", str(folder / "out")],
                                stdout=subprocess.DEVNULL, stderr=err, env=environment, process_group=0)
     try:
-        results = folder / "out/unfinished.json"
+        table = folder / "out/dispatches.csv"
+
+        def has_begun():
+            return table.exists() and table.read_text().count("\n") > 1
+
         if random.random() < 0.8:  # else while it starts
-            if not until(results.exists, 60):
+            if not until(has_begun, 60):
                 return "the run did not begin"
         time.sleep(random.random())
         victim = find(party, run.pid)
         if victim is None:
             party, victim = "guardian", run.pid
-        was_running = results.exists()
+        was_running = has_begun()
         os.kill(-victim if party == "group" else victim, signal.SIGKILL)
         ends = SENTENCES[party] is not None
         if not ends:
