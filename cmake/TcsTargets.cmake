@@ -53,6 +53,11 @@ function(tcs_compile_quickly)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
+# The same of a whole library.
+function(tcs_target_compile_quickly target)
+  target_compile_options(${target} PRIVATE -O0)
+endfunction()
+
 function(tcs_add_library target)
   add_library(${target} STATIC ${ARGN})
   tcs_target_defaults(${target})

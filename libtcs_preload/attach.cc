@@ -17,6 +17,8 @@ namespace tcs::preload {
 
 namespace {
 
+shm::ThreadSlot* g_slots = nullptr;
+
 constexpr int kWantedNotifyFd = 960;  // out of the way of programs that count descriptors from 0
 
 int Connect() {
@@ -36,11 +38,11 @@ int Connect() {
 
 struct Received {
   shm::AttachReply reply{};
-  int fds[2] = {-1, -1};
+  int fds[shm::kMostAttachFds] = {-1, -1, -1};
 };
 
-Received Exchange(int socket) {
-  shm::AttachHello hello{shm::kMagic, shm::kVersion, 0, 0, 0};
+Received Exchange(int socket, shm::AttachWants wants) {
+  shm::AttachHello hello{shm::kMagic, shm::kVersion, 0, 0, 0, wants, 0};
   hello.pid = static_cast<std::int32_t>(RawSyscall(SYS_getpid));
   hello.tid = static_cast<std::int32_t>(RawSyscall(SYS_gettid));
   hello.parent_pid = static_cast<std::int32_t>(RawSyscall(SYS_getppid));
@@ -64,23 +66,46 @@ Received Exchange(int socket) {
   }
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
   if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {
-    memcpy(received.fds, CMSG_DATA(header), sizeof received.fds);
+    const std::size_t size = header->cmsg_len - CMSG_LEN(0);
+    memcpy(received.fds, CMSG_DATA(header),
+           size < sizeof received.fds ? size : sizeof received.fds);
   }
   return received;
 }
 
-void MapSegment(int memfd) {
-  const long at = RawSyscall(SYS_mmap, 0, static_cast<long>(shm::kSegmentSize),
-                             PROT_READ | PROT_WRITE, MAP_SHARED, memfd, 0);
+void MapRun(int fd) {
+  const long at = RawSyscall(SYS_mmap, 0, sizeof(shm::RunMemory), PROT_READ, MAP_SHARED, fd, 0);
   if (at < 0 && at > -4096) DieWithoutCoordinator("the shared memory cannot be mapped");
-  g_header = reinterpret_cast<shm::SegmentHeader*>(at);
+  g_run = reinterpret_cast<const shm::RunMemory*>(at);
+  g_header = &g_run->header;
   if (g_header->magic != shm::kMagic || g_header->version != shm::kVersion ||
       g_header->slot_size != sizeof(shm::ThreadSlot)) {
     DieWithoutCoordinator("the shared memory has another layout (another version of tcs?)");
   }
 }
 
+// A child by fork has not inherited its parent's. Its own goes to the same place, if that is free:
+// a handler that forked may still look there.
+void MapSlots(int fd) {
+  constexpr long kSize = static_cast<long>(shm::kProcessMemorySize);
+  const auto map = [fd](long where, int how) {
+    return RawSyscall(SYS_mmap, where, kSize, PROT_READ | PROT_WRITE, MAP_SHARED | how, fd, 0L);
+  };
+  const auto failed = [](long at) { return at < 0 && at > -4096; };
+  long at = g_slots == nullptr ? -1 : map(Arg(g_slots), MAP_FIXED_NOREPLACE);
+  if (failed(at)) at = map(0, 0);
+  if (failed(at)) DieWithoutCoordinator("the shared memory cannot be mapped");
+  RawSyscall(SYS_madvise, at, kSize, MADV_DONTFORK);
+  g_slots = reinterpret_cast<shm::ThreadSlot*>(at);
+}
+
 void KeepNotifyFd(int fd) {
+  if (g_notify_fd >= 0) {  // the parent's
+    if (RawSyscall(SYS_dup3, fd, g_notify_fd, O_CLOEXEC) == g_notify_fd) {
+      RawSyscall(SYS_close, fd);
+      return;
+    }
+  }
   rlimit64 limit{};
   RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&limit));
   const long room = static_cast<long>(limit.rlim_cur) - 8;
@@ -96,22 +121,32 @@ void KeepNotifyFd(int fd) {
 }  // namespace
 
 void Attach(GuestThread& thread) {
+  // What it has inherited, or an earlier attach has left, is this process's own only if one of its
+  // threads has a place already.
+  const bool is_first = g_process->mode != ProcessState::kAttached;
   const int socket = Connect();
-  const Received received = Exchange(socket);
+  const Received received =
+      Exchange(socket, is_first ? shm::AttachWants::kAll : shm::AttachWants::kSlot);
   RawSyscall(SYS_close, socket);
   if (received.reply.refused != 0) DieWithoutCoordinator(received.reply.text);
-  // A forked child has inherited the mapping and the pipe.
-  if (g_header == nullptr) {
-    MapSegment(received.fds[0]);
-    KeepNotifyFd(received.fds[1]);
-  } else {
+  if (is_first) {
+    if (g_header == nullptr) MapRun(received.fds[0]);
+    MapSlots(received.fds[1]);
+    KeepNotifyFd(received.fds[2]);
+    RawSyscall(SYS_close, received.fds[0]);
     RawSyscall(SYS_close, received.fds[1]);
   }
-  RawSyscall(SYS_close, received.fds[0]);
   if (received.reply.slot >= shm::kSlotCount) DieWithoutCoordinator("it gave a wrong slot");
-  thread.slot = shm::SlotAt(g_header, received.reply.slot);
+  thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
   AwaitFirstDispatch(thread);
+}
+
+int OpenDdsArea() {
+  const int socket = Connect();
+  const Received received = Exchange(socket, shm::AttachWants::kDdsArea);
+  RawSyscall(SYS_close, socket);
+  return received.fds[0];
 }
 
 }  // namespace tcs::preload

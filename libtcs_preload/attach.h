@@ -9,4 +9,8 @@ namespace tcs::preload {
 // process where there is no coordinator or it refuses. Async-signal-safe.
 void Attach(GuestThread& thread);
 
+// A descriptor of the process's area of DDS (shm/dds_exchange.h), once it has joined; -1: there is
+// none.
+int OpenDdsArea();
+
 }  // namespace tcs::preload

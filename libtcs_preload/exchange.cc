@@ -58,7 +58,12 @@ void Notify(const GuestThread& thread) {
 bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
   for (;;) {
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
-    if (gate == shm::kGateOpen || IsShutDown()) return true;
+    if (gate == shm::kGateOpen || IsShutDown()) {
+      if (slot.wake_reason.load(std::memory_order_relaxed) == WakeReason::kCutOff) {
+        DieWithoutCoordinator("it has closed the connection to it");
+      }
+      return true;
+    }
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
       continue;
     }

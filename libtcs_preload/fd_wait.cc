@@ -46,6 +46,7 @@ WaitResult ToResult(WakeReason reason) {
     case WakeReason::kSignal:
       return WaitResult::kInterrupted;
     case WakeReason::kGo:
+    case WakeReason::kCutOff:  // nobody comes back with that
       break;
   }
   return WaitResult::kRetry;

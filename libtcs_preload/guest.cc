@@ -36,7 +36,8 @@ __attribute__((constructor)) void Start(int, char**, char** envp) {
 
 ProcessState* g_process = &g_unprotected_state;
 __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
-shm::SegmentHeader* g_header = nullptr;
+const shm::RunMemory* g_run = nullptr;
+const shm::RunHeader* g_header = nullptr;
 int g_notify_fd = -1;
 
 GuestThread* CurrentSlow() {

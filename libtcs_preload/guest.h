@@ -43,8 +43,10 @@ struct ProcessState {
 
 extern ProcessState* g_process;
 extern __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
-extern shm::SegmentHeader* g_header;  // mapped once per process image; forks inherit the mapping
-extern int g_notify_fd;  // write end of the notification pipe, close-on-exec, at a high number
+extern const shm::RunMemory* g_run;     // mapped once per process image; forks inherit the mapping,
+extern const shm::RunHeader* g_header;  // which begins with this
+extern int
+    g_notify_fd;  // write end of the process's notification pipe, close-on-exec, at a high number
 
 // Attaches the process or thread if it is not yet; null: let the call through.
 GuestThread* CurrentSlow();

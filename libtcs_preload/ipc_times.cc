@@ -1,5 +1,6 @@
 #include "libtcs_preload/ipc_times.h"
 
+#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/virtual_clock.h"
 
 namespace tcs::preload {
@@ -9,36 +10,70 @@ namespace {
 using shm::IpcEvent;
 using shm::IpcKind;
 
-shm::IpcTimes& Times() { return *shm::IpcTimesOf(g_header); }
+// What the thread itself has noted since its last dispatch is not in the table yet; null: nothing.
+const shm::IpcNote* OwnNote(const GuestThread& thread, std::uint64_t object, IpcEvent event) {
+  const shm::ThreadSlot& slot = *thread.slot;
+  for (std::uint32_t i = slot.ipc_count.load(std::memory_order_relaxed); i > 0; --i) {
+    const shm::IpcNote& note = slot.ipc_notes[i - 1];
+    if (note.object != object) continue;
+    if (note.event == event || note.event == IpcEvent::kRemoved) return &note;
+  }
+  return nullptr;
+}
+
+// Of the table and what the thread has noted; 0: never.
+std::int64_t TimeOf(const GuestThread& thread, std::uint64_t object, IpcEvent event) {
+  if (const shm::IpcNote* note = OwnNote(thread, object, event); note != nullptr) {
+    return note->event == event ? note->at_ns : 0;
+  }
+  const shm::IpcPlace* place = shm::FindIpcPlace(g_run->ipc_times, object);
+  if (place == nullptr) return 0;
+  return place->at_ns[static_cast<std::uint32_t>(event)].load(std::memory_order_relaxed);
+}
 
 std::int64_t RealtimeNs(GuestThread& thread) { return NowNs(thread) + OffsetNs(Clock::kRealtime); }
 
 void Show(GuestThread& thread, IpcKind kind, int id, IpcEvent event, __time_t* seconds) {
   if (*seconds == 0) return;
-  const shm::IpcPlace* place = shm::FindIpcPlace(Times(), shm::IpcObject(kind, id));
-  const std::int64_t at =
-      place == nullptr
-          ? 0
-          : place->at_ns[static_cast<std::uint32_t>(event)].load(std::memory_order_relaxed);
+  const std::int64_t at = TimeOf(thread, shm::IpcObject(kind, id), event);
   *seconds = (at != 0 ? at : RealtimeNs(thread)) / kNsPerSecond;
 }
 
 }  // namespace
 
+// A handler that notes something meanwhile may have it overwritten.
 void NoteIpc(GuestThread& thread, IpcKind kind, int id, IpcEvent event) {
-  shm::IpcPlace* place = shm::TakeIpcPlace(Times(), shm::IpcObject(kind, id));
-  if (place == nullptr) return;
-  place->at_ns[static_cast<std::uint32_t>(event)].store(RealtimeNs(thread),
-                                                        std::memory_order_relaxed);
+  shm::ThreadSlot& slot = *thread.slot;
+  const std::uint64_t object = shm::IpcObject(kind, id);
+  const std::int64_t now = RealtimeNs(thread);
+  std::uint32_t count = slot.ipc_count.load(std::memory_order_relaxed);
+  if (count > 0 && count <= shm::kMostIpcNotes) {
+    shm::IpcNote& last = slot.ipc_notes[count - 1];
+    if (last.object == object && last.event == event) {
+      last.at_ns = now;
+      return;
+    }
+  }
+  if (count >= shm::kMostIpcNotes) {  // the coordinator takes them over at any stop
+    Exchange(thread, Request{.kind = shm::NotificationKind::kPassOn});
+    count = 0;
+  }
+  slot.ipc_notes[count] = shm::IpcNote{object, now, event, 0};
+  slot.ipc_count.store(count + 1, std::memory_order_relaxed);
 }
 
-bool IsNotedIpc(IpcKind kind, int id) {
-  return shm::FindIpcPlace(Times(), shm::IpcObject(kind, id)) != nullptr;
+bool IsNotedIpc(const GuestThread& thread, IpcKind kind, int id) {
+  const std::uint64_t object = shm::IpcObject(kind, id);
+  const shm::ThreadSlot& slot = *thread.slot;
+  for (std::uint32_t i = slot.ipc_count.load(std::memory_order_relaxed); i > 0; --i) {
+    const shm::IpcNote& note = slot.ipc_notes[i - 1];
+    if (note.object == object) return note.event != IpcEvent::kRemoved;
+  }
+  return shm::FindIpcPlace(g_run->ipc_times, object) != nullptr;
 }
 
-void ForgetIpc(IpcKind kind, int id) {
-  shm::IpcPlace* place = shm::FindIpcPlace(Times(), shm::IpcObject(kind, id));
-  if (place != nullptr) place->object.store(shm::IpcTimes::kRemoved, std::memory_order_release);
+void ForgetIpc(GuestThread& thread, IpcKind kind, int id) {
+  NoteIpc(thread, kind, id, IpcEvent::kRemoved);
 }
 
 void ShowIpcTimes(GuestThread& thread, int id, msqid_ds* status) {

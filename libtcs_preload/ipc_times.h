@@ -14,9 +14,9 @@ namespace tcs::preload {
 void NoteIpc(GuestThread& thread, shm::IpcKind kind, int id, shm::IpcEvent event);
 
 // True once anything has been noted of it.
-bool IsNotedIpc(shm::IpcKind kind, int id);
+bool IsNotedIpc(const GuestThread& thread, shm::IpcKind kind, int id);
 
-void ForgetIpc(shm::IpcKind kind, int id);
+void ForgetIpc(GuestThread& thread, shm::IpcKind kind, int id);
 
 // Puts virtual times where the kernel has put some of its own. What no program under tcs has done
 // is shown as done now.

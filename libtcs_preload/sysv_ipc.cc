@@ -142,7 +142,7 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
       TellChanged(*t, WaitKey::kSemaphores, id);
       break;
     case IPC_RMID:
-      ForgetIpc(IpcKind::kSemaphores, id);
+      ForgetIpc(*t, IpcKind::kSemaphores, id);
       TellChanged(*t, WaitKey::kSemaphores, id);
       break;
     default:
@@ -195,7 +195,7 @@ TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
     ShowIpcTimes(*t, static_cast<int>(result), buffer);
   }
   if (command == IPC_SET) NoteIpc(*t, IpcKind::kMessages, id, IpcEvent::kChanged);
-  if (command == IPC_RMID) ForgetIpc(IpcKind::kMessages, id);
+  if (command == IPC_RMID) ForgetIpc(*t, IpcKind::kMessages, id);
   if (command == IPC_RMID || command == IPC_SET) TellChanged(*t, WaitKey::kMessages, id);
   return static_cast<int>(ToErrno(result));
 }

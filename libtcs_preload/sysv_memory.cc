@@ -49,7 +49,7 @@ int Forget(const void* at) {
 // An object that is new to tcs counts as made now.
 int Made(IpcKind kind, long id) {
   GuestThread* t = Current();
-  if (id >= 0 && t != nullptr && !IsNotedIpc(kind, static_cast<int>(id))) {
+  if (id >= 0 && t != nullptr && !IsNotedIpc(*t, kind, static_cast<int>(id))) {
     NoteIpc(*t, kind, static_cast<int>(id), IpcEvent::kChanged);
   }
   return static_cast<int>(ToErrno(id));

@@ -1,8 +1,8 @@
 // How a process comes to its slot: one exchange over a SOCK_SEQPACKET socket with an abstract name,
 // which the environment variable TCS_SOCKET carries (without the leading NUL). The shim sends
-// AttachHello; the coordinator answers AttachReply, with two descriptors: the segment's memfd and
-// the write end of the notification pipe. The thread is then stopped at its gate until its first
-// dispatch.
+// AttachHello; the coordinator answers AttachReply, with the descriptors that were asked for. The
+// thread is then stopped at its gate until its first dispatch; but not where it asked for its area
+// of DDS only.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,26 @@ namespace tcs::shm {
 
 inline constexpr char kSocketVariable[] = "TCS_SOCKET";
 
+enum class AttachWants : std::uint32_t {
+  kSlot = 0,  // of a further thread
+  // A slot, and three descriptors: the run's memory, which cannot be written; the process's; and
+  // the write end of the pipe for its notifications.
+  kAll = 1,
+  kDdsArea = 2,  // one descriptor (dds_exchange.h), of a process that has joined
+};
+
 struct AttachHello {
   std::uint64_t magic;
   std::uint32_t version;
   std::int32_t pid;
   std::int32_t tid;
   std::int32_t parent_pid;
+  AttachWants wants;
+  std::uint32_t reserved;
 };
-static_assert(sizeof(AttachHello) == 24);
+static_assert(sizeof(AttachHello) == 32);
+
+inline constexpr int kMostAttachFds = 3;
 
 struct AttachReply {
   std::uint64_t magic;
@@ -31,7 +43,7 @@ struct AttachReply {
 };
 static_assert(sizeof(AttachReply) == 128);
 
-// What a notification puts into the pipe: the index of the slot whose record is filled.
+// What a notification puts into the process's pipe: the index of the slot whose record is filled.
 struct PipeMessage {
   std::uint32_t slot;
 };

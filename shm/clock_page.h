@@ -111,6 +111,18 @@ inline bool RemoveStolen(ClockPage& page, const ClockReading& r, std::int64_t ho
   return true;
 }
 
+// Takes out what the TSC and the CPU clock have both counted and the thread has not had; the thread
+// is stopped.
+inline void RemoveUntold(ClockPage& page, const ClockReading& r, std::int64_t host_ns) {
+  const std::int64_t stolen = MulQ32(host_ns, page.ns_per_host_ns_q32);
+  std::uint64_t expected = r.executed_word;
+  const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - stolen);
+  if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
+  page.host_cpu_origin_ns += host_ns;
+  page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
+  page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
+}
+
 // What has been executed since the dispatch was the way out of the gate: neither time nor charge of
 // the thread's. Nothing is taken out if that was more than `most_ns`: a handler has run.
 inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {

@@ -2,7 +2,7 @@
 // memory that they pass through.
 //
 // The coordinator is in the middle. A process that has a participant joins: it gets a number and an
-// area of a memfd of its own (whose pages cost nothing until they are used):
+// area, a memfd that nobody else sees (whose pages cost nothing until they are used):
 //
 //   +---------+------------------+------------------+
 //   | DdsArea | outbox           | inbox            |
@@ -45,7 +45,7 @@ inline constexpr std::size_t kDdsUsualSize = std::size_t{16} << 20;
 inline constexpr std::size_t kDdsAreaSize = kDdsHeaderSize + 2 * kDdsBoxSize;
 inline constexpr std::uint32_t kDdsMostProcesses = 1024;
 
-// Numbers of processes. Process n has the area that starts at (n - 1) * kDdsAreaSize.
+// Numbers of processes.
 inline constexpr std::uint32_t kDdsCoordinator = 0;
 inline constexpr std::uint32_t kDdsEverybody = UINT32_MAX;
 

@@ -1,9 +1,10 @@
 // When System V objects were changed and used, in virtual time: what the kernel keeps of that is
-// the host's. A table at the end of the segment, zero at first.
+// the host's. A table, zero at first, that all clients read and only the coordinator writes: a
+// thread notes in its slot what it has done, and the coordinator takes that over when the thread
+// stops.
 //
-// Written and read by clients alone, without a lock; the coordinator never looks at it. A place
-// belongs to an object from its first use on. Those of removed objects are used again, in no
-// particular order, once all places that an object may have are taken.
+// A place belongs to an object from its first use on. Those of removed objects are used again, in
+// no particular order, once all places that an object may have are taken.
 #pragma once
 
 #include <atomic>
@@ -19,6 +20,7 @@ enum class IpcEvent : std::uint32_t {
   kChanged = 0,  // made, or its properties set
   kPut = 1,      // a message sent, semaphores operated on, memory attached
   kTaken = 2,    // a message received, memory detached
+  kRemoved = 3,  // the object is no more
 };
 
 struct IpcPlace {
@@ -39,10 +41,10 @@ constexpr std::uint64_t IpcObject(IpcKind kind, std::int32_t id) {
 }
 
 // The object's place; null if it has none.
-inline IpcPlace* FindIpcPlace(IpcTimes& times, std::uint64_t object) {
+inline const IpcPlace* FindIpcPlace(const IpcTimes& times, std::uint64_t object) {
   const std::uint64_t first = object * 0x9e3779b97f4a7c15 >> 40;
   for (std::uint32_t i = 0; i < IpcTimes::kTried; ++i) {
-    IpcPlace& place = times.places[(first + i) % IpcTimes::kPlaces];
+    const IpcPlace& place = times.places[(first + i) % IpcTimes::kPlaces];
     const std::uint64_t holder = place.object.load(std::memory_order_acquire);
     if (holder == object) return &place;
     if (holder == 0) return nullptr;
@@ -52,15 +54,15 @@ inline IpcPlace* FindIpcPlace(IpcTimes& times, std::uint64_t object) {
 
 // The same, made if need be; null if there is no room.
 inline IpcPlace* TakeIpcPlace(IpcTimes& times, std::uint64_t object) {
-  if (IpcPlace* place = FindIpcPlace(times, object); place != nullptr) return place;
+  if (const IpcPlace* place = FindIpcPlace(times, object); place != nullptr) {
+    return const_cast<IpcPlace*>(place);
+  }
   const std::uint64_t first = object * 0x9e3779b97f4a7c15 >> 40;
   for (std::uint32_t i = 0; i < IpcTimes::kTried; ++i) {
     IpcPlace& place = times.places[(first + i) % IpcTimes::kPlaces];
-    std::uint64_t holder = place.object.load(std::memory_order_acquire);
-    if (holder > IpcTimes::kRemoved || !place.object.compare_exchange_strong(holder, object)) {
-      continue;
-    }
+    if (place.object.load(std::memory_order_relaxed) > IpcTimes::kRemoved) continue;
     for (auto& at : place.at_ns) at.store(0, std::memory_order_relaxed);
+    place.object.store(object, std::memory_order_release);
     return &place;
   }
   return nullptr;

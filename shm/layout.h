@@ -1,12 +1,16 @@
-// The shared-memory segment: the contract between the coordinator and the shim inside each client.
+// The shared memory: the contract between the coordinator and the shim inside each client.
 //
-//   +---------------+----------------------------------------------+----------+
-//   | SegmentHeader | ThreadSlot[0] | ThreadSlot[1] | ...          | IpcTimes |
-//   +---------------+----------------------------------------------+----------+
+//   of the run:            +-----------+----------+
+//   the coordinator's      | RunHeader | IpcTimes |
+//                          +-----------+----------+
+//   of each process:       +---------------+---------------+-----
+//   its and the            | ThreadSlot[0] | ThreadSlot[1] | ...
+//   coordinator's          +---------------+---------------+-----
 //
-// One segment per run: a sealed memfd that never has a name. The coordinator creates it, the shim
-// maps it when its process attaches (attach_protocol.h). A thread slot belongs to one kernel thread
-// from its attach to its end.
+// Sealed memfds that never have a name. The coordinator makes them, the shim maps them when its
+// process attaches (attach_protocol.h). What is of the run everybody reads, and only the
+// coordinator can write; what is of a process nobody else sees. A thread slot belongs to one kernel
+// thread from its attach to its end.
 //
 // Who writes what. Each group of fields names its writer. The coordinator writes a slot's clock
 // only while the slot's thread is stopped, and bumps the dispatch number in the two adjustment
@@ -29,7 +33,7 @@ namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
 inline constexpr std::uint32_t kVersion = 11;
-inline constexpr std::uint32_t kSlotCount = 4096;
+inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
 // hours.
@@ -52,7 +56,7 @@ enum class NotificationKind : std::uint32_t {
   kPassOn = 32,    // the thread has taken what it was woken for
   kWaitChild = 6,  // sleep until a child process ends (args[0]: its pid, or 0 for any), or also, if
                    // args[1] is not 0, until one stops or goes on; or deadline_ns
-  kTimerCreate = 7,  // args[0]: an eventfd that the coordinator makes readable, or -1; args[1] to
+  kTimerCreate = 7,  // args[0]: a timerfd that the coordinator makes readable, or -1; args[1] to
                      // args[3]: TimerKind; reply[0]: timer id
   kTimerSet = 8,  // args[0]: timer id, args[1]: first expiry (0 disarms), args[2]: interval; reply:
                   // as kTimerGet
@@ -81,9 +85,8 @@ enum class NotificationKind : std::uint32_t {
   kTimerOverrun = 24,  // args[0]: timer id; args[1]: 1 if its signal has just been accepted;
                        // reply[0]: overruns of the signal accepted last
   // Of programs that speak DDS (dds_exchange.h).
-  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the coordinator's
-                  // descriptor of the memory with the areas, and from bit
-                  // kDdsDescriptorBits on the drift bound, ns
+  kDdsJoin = 25,  // reply[0]: its number, or negative for an errno; reply[1]: the drift bound, ns.
+                  // It then asks for its area (attach_protocol.h)
   kDdsSend = 26,  // args[0]: bytes of messages in the outbox
   kDdsWait = 27,  // the thread is the deliverer: sleep until something is due; reply[0]: bytes of
                   // messages in the inbox
@@ -95,8 +98,6 @@ enum class NotificationKind : std::uint32_t {
 };
 
 inline constexpr std::int64_t kKeepPolicy = -1;
-
-inline constexpr int kDdsDescriptorBits = 16;
 
 enum class WhySockets : std::uint32_t {
   kOtherLibrary = 1,     // its libddsc is none that libtcs_dds.so is written for
@@ -116,8 +117,8 @@ enum class WaitKey : std::uint32_t {
   kKernelWaits = 5
 };
 
-// What a timer runs on, and what it does besides writing to an eventfd. A sigset's bit 0 is signal
-// 1.
+// What a timer runs on, and what it does besides making a descriptor readable. A sigset's bit 0 is
+// signal 1.
 enum class TimerClock : std::uint16_t { kTime = 0, kProcessCpu = 1, kThreadCpu = 2 };
 struct TimerKind {
   TimerClock clock = TimerClock::kTime;
@@ -142,6 +143,7 @@ enum class WakeReason : std::uint32_t {
   kGo = 0,        // nothing was waited for, or what was waited for is there
   kDeadline = 1,  // deadline_ns was reached
   kSignal = 2,    // a signal was sent to the process
+  kCutOff = 3,    // its notification has not arrived: the connection is another file by now
 };
 
 enum class Accounting : std::uint32_t { kMeasured = 1, kFixed = 2 };
@@ -212,6 +214,16 @@ static_assert(sizeof(Notification) == 312);
 // wait or read time are handed to the coordinator.
 inline constexpr std::uint32_t kOwnCallMark = 0x7c57a7e1;
 
+// What a thread has done to a System V object since it was last dispatched (ipc_times.h).
+struct IpcNote {
+  std::uint64_t object;
+  std::int64_t at_ns;  // CLOCK_REALTIME
+  IpcEvent event;
+  std::uint32_t reserved;
+};
+static_assert(sizeof(IpcNote) == 24);
+inline constexpr std::uint32_t kMostIpcNotes = 8;
+
 // Gate values.
 inline constexpr std::uint32_t kGateClosed = 0;  // written by the thread before it notifies
 inline constexpr std::uint32_t kGateOpen = 1;    // written by the coordinator: dispatched
@@ -235,20 +247,23 @@ struct alignas(64) ThreadSlot {
   std::uint32_t dds_endpoints;  // 1: Cyclone DDS is to use dds_exchange.h instead of sockets
   // Written by the thread: not 0 while it may have sent a signal and not yet said so (kSignalled).
   std::atomic<std::uint32_t> signals;
-  std::uint32_t padding;
+  // Written by the thread, emptied by the coordinator when it has stopped.
+  std::atomic<std::uint32_t> ipc_count;
+  IpcNote ipc_notes[kMostIpcNotes];
   Receipts receipts;
-  std::uint8_t reserved[240];
+  std::uint8_t reserved[48];
 };
 static_assert(sizeof(ThreadSlot) == 1024);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
 static_assert(offsetof(ThreadSlot, signals) == 560);
-static_assert(offsetof(ThreadSlot, receipts) == 568);
+static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
+static_assert(offsetof(ThreadSlot, receipts) == 760);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
-// and key_waiters.
-struct alignas(64) SegmentHeader {
+// and key_waiters and kernel_waiters.
+struct alignas(64) RunHeader {
   std::uint64_t magic;
   std::uint32_t version;
   std::uint32_t header_size;
@@ -267,21 +282,17 @@ struct alignas(64) SegmentHeader {
   std::uint32_t padding;
   std::uint64_t reserved[6];
 };
-static_assert(sizeof(SegmentHeader) == 128);
-static_assert(offsetof(SegmentHeader, monotonic_offset_ns) == 32);
+static_assert(sizeof(RunHeader) == 128);
+static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);
 
-inline constexpr std::size_t kIpcTimesAt =
-    sizeof(SegmentHeader) + std::size_t{kSlotCount} * sizeof(ThreadSlot);
-inline constexpr std::size_t kSegmentSize = kIpcTimesAt + sizeof(IpcTimes);
+// What only the coordinator writes.
+struct RunMemory {
+  RunHeader header;
+  IpcTimes ipc_times;
+};
+static_assert(offsetof(RunMemory, ipc_times) == 128);
 
-inline ThreadSlot* SlotAt(SegmentHeader* header, std::uint32_t index) {
-  return reinterpret_cast<ThreadSlot*>(reinterpret_cast<char*>(header) + sizeof(SegmentHeader)) +
-         index;
-}
-
-inline IpcTimes* IpcTimesOf(SegmentHeader* header) {
-  return reinterpret_cast<IpcTimes*>(reinterpret_cast<char*>(header) + kIpcTimesAt);
-}
+inline constexpr std::size_t kProcessMemorySize = std::size_t{kSlotCount} * sizeof(ThreadSlot);
 
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);

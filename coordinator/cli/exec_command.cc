@@ -79,6 +79,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   if (call_cost.has_value()) client.fixed_call_cost = *call_cost;
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
+  options.on_notice = [](const std::string& notice) { Say(notice); };
   const RunReport report = RunScenario(scenario, options);
   for (const std::string& w : report.warnings) Say("warning: " + w);
   if (!report.error.empty()) return Fail(report.error);

@@ -90,6 +90,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
       ->capture_default_str();
+  run->add_flag("--check", arguments.check, "only load the scenario, and say whether it is sound");
   bool record = false;
   run->add_flag("--record", record,
                 "also write all DDS topics into the folder, as the rosbag2 bag `bag`");

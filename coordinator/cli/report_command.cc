@@ -2,6 +2,7 @@
 
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/os/visible.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/text.h"
@@ -33,7 +34,7 @@ int ReportCommand(const ReportArguments& arguments) {
   std::vector<std::string> written;
   const std::string error = report::WritePage(page, arguments.out, files, &written);
   if (!error.empty()) return Fail(error);
-  Print("{}\nwritten: {}\n", page.text, report::Listed(written));
+  Print("{}\nwritten: {}\n", VisibleLines(page.text), report::Listed(written));
   return kSucceeded;
 }
 

@@ -4,18 +4,50 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <filesystem>
-
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
+#include "coordinator/cli/print.h"
 #include "coordinator/cli/summary.h"
 #include "coordinator/os/files.h"
+#include "coordinator/os/guardian.h"
+#include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
 
 namespace tcs {
 
 namespace {
+
+constexpr std::int64_t kNoteEveryNs = 1'000'000'000;  // real time
+
+// What there is to say of a run that goes on.
+RunReport UntilNow(const RunProgress& progress) {
+  RunReport report;
+  report.virtual_ns = progress.virtual_ns;
+  report.real_ns = progress.real_ns;
+  report.drift_ns = progress.drift_ns;
+  report.client_ns = progress.client_ns;
+  report.dynamics_ns = progress.dynamics_ns;
+  report.coordinating_ns = progress.coordinating_ns;
+  for (const RunProgress::Load& load : progress.clients) {
+    ClientReport client;
+    client.name = load.client;
+    client.usage.charged_ns = load.charged_ns;
+    client.usage.host_cpu_ns = -1;
+    report.clients.push_back(client);
+  }
+  return report;
+}
+
+int SaySound(const Scenario& scenario) {
+  for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
+  std::size_t clients = 0;
+  for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
+  Print("{} is sound: robots {}, clients {}, bodies {}\n", Visible(scenario.path),
+        scenario.robots.size(), clients,
+        scenario.world.has_value() ? scenario.world->bodies.size() : 0);
+  return kSucceeded;
+}
 
 // For `tcsim trials`, which made the file: the virtual time, as one number at its beginning.
 void SayHowFar(int fd, const RunProgress& progress) {
@@ -38,6 +70,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   auto loaded = LoadScenario(arguments.scenario, overrides);
   if (const auto* error = std::get_if<LoadError>(&loaded)) return Fail(error->message);
   const Scenario& scenario = std::get<Scenario>(loaded);
+  if (arguments.check) return SaySound(scenario);
   if (const std::string error = MakeFolder(arguments.out); !error.empty()) return Fail(error);
   const FolderLock lock(arguments.out);
   if (!lock.IsOurs()) {
@@ -48,15 +81,24 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
 
   LiveLine line(scenario.duration.ns());
   const int progress_fd = arguments.progress_fd;
-  if (progress_fd >= 0) {
-    fcntl(progress_fd, F_SETFD, FD_CLOEXEC);
-    options.on_progress = [progress_fd](const RunProgress& p) { SayHowFar(progress_fd, p); };
-  } else if (TerminalLine::IsSeen()) {
-    options.on_progress = [&line](const RunProgress& progress) { line.Show(progress); };
-  }
+  const bool is_seen = progress_fd < 0 && TerminalLine::IsSeen();
+  if (progress_fd >= 0) fcntl(progress_fd, F_SETFD, FD_CLOEXEC);
+  const std::string unfinished = overrides.result_directory + "/unfinished.json";
+  std::int64_t next_note_ns = 0;
+  options.on_progress = [&](const RunProgress& progress) {
+    if (progress_fd >= 0) SayHowFar(progress_fd, progress);
+    if (is_seen) line.Show(progress);
+    if (progress.real_ns < next_note_ns) return;
+    next_note_ns = progress.real_ns + kNoteEveryNs;
+    LeaveNote(unfinished, SummaryText(scenario, options, UntilNow(progress)));
+  };
   options.on_warning = [&line](const std::string& warning) {
     line.Clear();
     Say("warning: " + warning);
+  };
+  options.on_notice = [&line](const std::string& notice) {
+    line.Clear();
+    Say(notice);
   };
   const RunReport report = RunScenario(scenario, options);
   line.Clear();
@@ -67,6 +109,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
       !error.empty()) {
     return Fail(error);
   }
+  TakeNoteBack();
   if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }

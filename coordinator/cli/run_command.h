@@ -14,6 +14,7 @@ struct RunArguments {
   std::string scenario, duration, drift, out = "out";
   std::optional<std::uint64_t> seed;
   std::vector<std::string> set;  // KEY=VALUE
+  bool check = false;            // load the scenario, and no more
   int progress_fd = -1;          // a file that gets the virtual time; -1: none
 };
 

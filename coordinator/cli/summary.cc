@@ -73,6 +73,12 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
       "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
       Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
       Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
+  if (r.untold > 0) {
+    Print(
+        "the processor was gone {} in the middle of a turn, and no clock told: {:.3f} ms that "
+        "nobody computed in are not charged (in the column 'stolen')\n",
+        r.untold == 1 ? "once" : fmt::format("{} times", r.untold), Milliseconds(r.untold_ns));
+  }
   std::size_t width = 6;
   for (const ClientReport& c : r.clients) width = std::max(width, c.name.size());
   Print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
@@ -93,32 +99,34 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
 }
 
-std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
-                         const std::string& path) {
+std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
-  nlohmann::ordered_json json{{"scenario", scenario.name},
-                              {"seed", scenario.seed},
-                              {"set", scenario.set},
-                              {"accounting", fixed ? "fixed" : "measured"},
-                              {"sync", callback ? "callback" : "consistent"},
-                              {"engine", EngineOf(scenario)},
-                              {"interrupted", r.interrupted},
-                              {"duration_ns", scenario.duration.ns()},
-                              {"virtual_ns", r.virtual_ns},
-                              {"real_ns", r.real_ns},
-                              {"drift_ns", r.drift_ns},
-                              {"drift_bound_ns", scenario.drift_bound.ns()},
-                              {"staleness_ns", r.staleness_ns},
-                              {"lateness_ns", r.lateness_ns},
-                              {"clients_ns", r.client_ns},
-                              {"dynamics_ns", r.dynamics_ns},
-                              {"coordinating_ns", r.coordinating_ns},
-                              {"overhead_percent", OverheadPercent(r)},
-                              {"dispatches", r.switches},
-                              {"samples", r.samples},
-                              {"commands", r.commands},
-                              {"warnings", r.warnings}};
+  using Json = nlohmann::ordered_json;
+  Json json{{"scenario", scenario.name},
+            {"seed", scenario.seed},
+            {"set", scenario.set},
+            {"accounting", fixed ? "fixed" : "measured"},
+            {"sync", callback ? "callback" : "consistent"},
+            {"engine", EngineOf(scenario)},
+            {"interrupted", r.interrupted},
+            {"duration_ns", scenario.duration.ns()},
+            {"virtual_ns", r.virtual_ns},
+            {"real_ns", r.real_ns},
+            {"drift_ns", r.drift_ns},
+            {"drift_bound_ns", scenario.drift_bound.ns()},
+            {"staleness_ns", r.staleness_ns},
+            {"lateness_ns", r.lateness_ns},
+            {"clients_ns", r.client_ns},
+            {"dynamics_ns", r.dynamics_ns},
+            {"coordinating_ns", r.coordinating_ns},
+            {"overhead_percent", OverheadPercent(r)},
+            {"untold", r.untold},
+            {"untold_ns", r.untold_ns},
+            {"dispatches", r.switches},
+            {"samples", r.samples},
+            {"commands", r.commands},
+            {"warnings", r.warnings}};
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
     for (const ClientSpec& client : robot.clients) {
@@ -140,7 +148,12 @@ std::string WriteSummary(const Scenario& scenario, const RunOptions& options, co
         {"wait_status", c.wait_status},
     });
   }
-  return WriteWhole(path, json.dump(2) + "\n");
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
+                         const std::string& path) {
+  return WriteWhole(path, SummaryText(scenario, options, r));
 }
 
 }  // namespace tcs

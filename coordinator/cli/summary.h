@@ -16,7 +16,11 @@ bool HasFailedClient(const RunReport& report);
 // To stdout; what went wrong in clients, to stderr.
 void PrintSummary(const Scenario& scenario, const RunReport& report, const std::string& directory);
 
-// Empty on success, else one sentence. Times are nanoseconds.
+// As JSON; times are nanoseconds.
+std::string SummaryText(const Scenario& scenario, const RunOptions& options,
+                        const RunReport& report);
+
+// Empty on success, else one sentence.
 [[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunOptions& options,
                                        const RunReport& report, const std::string& path);
 

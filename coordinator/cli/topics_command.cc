@@ -8,6 +8,7 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/dds/topics_file.h"
 #include "coordinator/dds/topics_table.h"
+#include "coordinator/os/visible.h"
 
 namespace tcs {
 
@@ -15,7 +16,7 @@ int TopicsCommand(const TopicsArguments& arguments) {
   const auto read = dds::ReadTopics(arguments.folder);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
   const auto& topics = std::get<std::vector<dds::TopicReport>>(read);
-  Print("{}", dds::TopicsTable(topics, arguments.with_qos));
+  Print("{}", VisibleLines(dds::TopicsTable(topics, arguments.with_qos)));
   for (const std::string& warning : dds::TopicWarnings(topics)) {
     Say("warning: " + warning);
   }

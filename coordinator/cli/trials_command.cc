@@ -1,6 +1,7 @@
 #include "coordinator/cli/trials_command.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
@@ -137,6 +139,14 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   return options;
 }
 
+// For trials that are not to wait: who has the processors; empty if one is free.
+std::string WhoHasProcessors() {
+  std::string taken;
+  const CpuClaim claim = ClaimCpu(false, &taken);
+  if (claim.fd >= 0) close(claim.fd);
+  return taken;
+}
+
 // "seed 3", "seed 3 with drift=1ms"
 std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
   const std::string seed = fmt::format("seed {}", trial.seed);
@@ -186,7 +196,11 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
   RunnerReport report;
   if (!todo.empty()) {
     if (const std::string error = WhyNoRealTime(); !error.empty()) return Fail(error);
-    const RunnerOptions options = ShareMachine(arguments, scenarios.front());
+    if (arguments.no_wait) {
+      if (const std::string taken = WhoHasProcessors(); !taken.empty()) return Fail(taken);
+    }
+    RunnerOptions options = ShareMachine(arguments, scenarios.front());
+    options.waits_for_cpu = !arguments.no_wait;
     if (!earlier.empty()) {
       Print("{} of {} trials are done already\n", earlier.size(), earlier.size() + todo.size());
       std::fflush(stdout);

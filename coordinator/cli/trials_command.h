@@ -14,7 +14,7 @@ struct TrialsArguments {
   int trials = 0;
   int jobs = 0;  // 0: as many as there is room for
   std::optional<std::uint64_t> first_seed;
-  bool restart = false, host_network = false;
+  bool restart = false, host_network = false, no_wait = false;
   TrialOptions options;
 };
 

@@ -25,6 +25,8 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_option("--vary", arguments->vary,
                      "KEY=V1,V2,...: all trials for each of these values of a key of the scenario");
   trials->add_option("--name", arguments->name, "what the trials are called in a report");
+  trials->add_flag("--no-wait", arguments->no_wait,
+                   "fail at once where other runs have all processors, and say which");
   trials->add_flag("--restart", arguments->restart, "throw away the trials that the folder has");
   trials->add_flag("--host-network", arguments->host_network,
                    "one at a time, in this machine's network, not each in one of its own");

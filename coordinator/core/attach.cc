@@ -1,33 +1,20 @@
-// Births and deaths: threads that register themselves, and processes that end.
+// Births and deaths of threads and processes.
 #include <fmt/format.h>
 #include <sys/epoll.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
-#include <new>
 #include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
-#include "shm/attach_protocol.h"
 
 namespace tcs {
 
 namespace {
 
 constexpr std::size_t kKeptAfterEnd = 64;
-
-void Refuse(int connection, const char* why) {
-  shm::AttachReply reply{};
-  reply.magic = shm::kMagic;
-  reply.version = shm::kVersion;
-  reply.refused = 1;
-  strncpy(reply.text, why, sizeof reply.text - 1);
-  send(connection, &reply, sizeof reply, MSG_NOSIGNAL);
-}
 
 }  // namespace
 
@@ -132,118 +119,6 @@ Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker) {
   return NewTask(pid, parent, maker.robot, maker.name, maker.priority, &maker);
 }
 
-// The thread that registers: known already (a client, an announced child), a further thread of a
-// known process, or a process that nobody announced. If whoever made it has ended, it is at least
-// known which client's descendant it is: by the socket that it has come to.
-Task* Engine::TaskFor(pid_t pid, pid_t parent_pid, pid_t tid, Process& client) {
-  if (Task* known = KnownTask(tid); known != nullptr) return known;
-  if (Process* known = LivingProcess(pid); known != nullptr) return AddThread(*known, tid);
-  const Process* parent = LivingProcess(parent_pid);
-  return NewChild(pid, parent_pid, parent != nullptr ? *parent : client);
-}
-
-// A thread that executes another program becomes its process's first one; all others have ended,
-// and nobody else says so.
-void Engine::EndThreadsLostInExec(pid_t pid) {
-  Task* first = KnownTask(pid);
-  Process* of = LivingProcess(pid);
-  if (of == nullptr || of->threads == 1) return;
-  const bool by_another = running_ != nullptr && running_ != first && running_->process == of;
-  if (by_another) {
-    Settle(*running_);
-    event_ns_ = running_->reached_ns;
-  }
-  const std::vector<Task*> threads = of->robot->tasks;
-  for (Task* task : threads) {
-    if (task->process != of || task == first) continue;
-    EndTask(*task);
-    WakeThoseWaitingFor(*task);
-  }
-  of->has_strangers = false;
-  if (first == nullptr || !by_another) return;
-  of->ended.NoteChangedClocks();
-  // The processor clock under its number is another thread's from now on.
-  if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
-  first->host_origin_ns =
-      HostClockOf(*first) -
-      static_cast<std::int64_t>(static_cast<double>(first->charged_ns) * of->robot->speed);
-}
-
-void Engine::Attach(int connection, Process& client) {
-  shm::AttachHello hello{};
-  const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size);
-  if (n != sizeof hello || hello.magic != shm::kMagic || hello.version != shm::kVersion ||
-      hello.pid != peer.pid) {
-    Refuse(connection, "it comes from another version of tcs");
-    return;
-  }
-  if (hello.tid == hello.pid) EndThreadsLostInExec(hello.pid);
-  Task& task = *TaskFor(hello.pid, hello.parent_pid, hello.tid, client);
-  if (task.slot < 0 && free_slots_.empty()) {
-    Refuse(connection, "there is no room for more threads");
-    return;
-  }
-  if (&task != running_) {
-    SetLevel(task.tid, Level::kWaiting);
-    task.level = Level::kWaiting;
-  }
-  if (task.slot < 0) {
-    task.slot = free_slots_.front();
-    free_slots_.pop_front();
-    by_slot_[static_cast<std::size_t>(task.slot)] = &task;
-    new (&Slot(task)) shm::ThreadSlot{};
-  }
-  if (hello.tid == hello.pid) {  // a new process; or it has executed another program
-    DeletePosixTimers(*task.process);
-    LeaveDds(*task.process);
-  }
-  shm::ThreadSlot& slot = Slot(task);
-  slot.pid = task.process->pid;
-  slot.tid = task.tid;
-  slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
-  slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
-  slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
-  slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
-  slot.signals.store(0);
-  slot.receipts.count.store(0);
-  shm::NoteStarted(slot.receipts);
-  slot.gate.store(shm::kGateClosed);
-  LeaveWait(task);
-  task.early_trap.reset();
-  task.trap_id = 0;
-  task.notified_early = false;
-  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
-  SetState(task, TaskState::kReady);
-  task.parked = true;
-  task.reason = shm::WakeReason::kGo;
-  Refresh(*task.process->robot);
-  SendReply(connection, task);
-}
-
-void Engine::SendReply(int connection, const Task& task) {
-  shm::AttachReply reply{};
-  reply.magic = shm::kMagic;
-  reply.version = shm::kVersion;
-  reply.slot = static_cast<std::uint32_t>(task.slot);
-  iovec iov{&reply, sizeof reply};
-  alignas(cmsghdr) char control[CMSG_SPACE(2 * sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &iov;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  cmsghdr* header = CMSG_FIRSTHDR(&message);
-  header->cmsg_level = SOL_SOCKET;
-  header->cmsg_type = SCM_RIGHTS;
-  header->cmsg_len = CMSG_LEN(2 * sizeof(int));
-  const int fds[2] = {memfd_, pipe_[1]};
-  memcpy(CMSG_DATA(header), fds, sizeof fds);
-  sendmsg(connection, &message, MSG_NOSIGNAL);
-}
-
 // Whatever the thread waits for, it waits no longer.
 void Engine::LeaveWait(Task& task) {
   EndWatches(task);
@@ -267,16 +142,14 @@ void Engine::LeaveWait(Task& task) {
   LeaveLock(task);
 }
 
-// What the thread has had and done goes to its process. The slot goes to the end of the queue: a
-// last word of its thread may still be in the pipe.
+// What the thread has had and done goes to its process.
 void Engine::EndTask(Task& task) {
   Process& process = *task.process;
   KeepUsageOf(task);
   if (task.cpu_clock_fd >= 0) close(task.cpu_clock_fd);
   if (task.slot >= 0) {
-    const shm::ClockPage& clock = Slot(task).clock;
-    report_.staleness_ns = std::max(report_.staleness_ns, clock.staleness_ns.load());
-    by_slot_[static_cast<std::size_t>(task.slot)] = nullptr;
+    report_.staleness_ns = std::max(report_.staleness_ns, StalenessOf(task));
+    process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
   PassOn(task);
@@ -285,7 +158,6 @@ void Engine::EndTask(Task& task) {
   --living_;
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);
-  if (task.slot >= 0) free_slots_.push_back(task.slot);
   if (last_ == &task) last_ = nullptr;
   by_tid_.erase(task.tid);
   ended_tasks_.push_back(&task);
@@ -314,6 +186,7 @@ void Engine::ProcessEnded(std::size_t index) {
   epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
   close(process.pidfd);
   process.pidfd = -1;
+  if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
   Process* parent = LivingProcess(process.parent);
   if (parent != nullptr) {
     parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;

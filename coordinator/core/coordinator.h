@@ -23,6 +23,7 @@ struct RunProgress {
     std::int64_t charged_ns = 0;
   };
   std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0;
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, as in RunReport
   std::vector<Load> clients;
 };
 
@@ -43,6 +44,8 @@ struct RunOptions {
   std::function<void(const RunProgress&)> on_progress;
   // Called with each warning when it arises, if set.
   std::function<void(const std::string&)> on_warning;
+  // Called with what people who wait for the run are to know now, if set.
+  std::function<void(const std::string&)> on_notice;
 };
 
 struct ClientReport {
@@ -66,6 +69,7 @@ struct RunReport {
   std::int64_t lateness_ns = 0;
   std::int64_t real_ns = 0;
   std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
+  std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
   std::vector<ClientReport> clients;
   std::vector<std::string> warnings;

@@ -125,7 +125,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
 // What is wrong is said once of each process: it may send as often as it likes.
 void Engine::SendDds(Process& process, std::size_t bytes) {
   const std::string wrong = hub_.Send(process.dds_number, bytes, event_ns_);
-  if (!wrong.empty() && !std::exchange(process.dds_warned, true)) {
+  if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     Warn(fmt::format("{} {}", process.name, wrong));
   }
   if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
@@ -167,13 +167,12 @@ void Engine::JoinDds(Task& task) {
   LeaveDds(process);
   process.dds_number = hub_.Join(event_ns_);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
-  task.reply[1] = hub_.fd() | scenario_.drift_bound.ns() << shm::kDdsDescriptorBits;
+  task.reply[1] = scenario_.drift_bound.ns();
   if (process.dds_number != 0) dds_processes_.push_back(&process);
 }
 
 // It has died, or executes another program.
 void Engine::LeaveDds(Process& process) {
-  process.dds_warned = false;
   if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
     deliverer->is_deliverer = false;
     ReleaseThoseAwaitingDeliverer(process);

@@ -12,6 +12,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/policy/stolen_time.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -35,12 +36,18 @@ constexpr int kMostBriefTurns = 100;
 // (250 Hz). Should it compute on this once, it is as with any late timer: its clock stops at the
 // horizon, and the rest is a debt.
 constexpr std::int64_t kLaxTimerNs = 4'100'000;
+// Nobody computes for longer than this without the coordinator's looking: what is stolen and no
+// clock tells of, it finds by its timer.
+constexpr std::int64_t kLongestTimerNs = kLaxTimerNs;
 constexpr std::int64_t kOftenShorter = 4;
 constexpr std::int64_t kForgetRuns = 16;
-constexpr std::int64_t kStartTurnNs = 1'000'000'000;
-constexpr int kStartTurns = 30;
+// Where no clock tells when to look again.
+constexpr std::int64_t kLookTurnNs = 50'000'000;
+constexpr int kStartTurns = 600;
 // Under set costs, a thread that computes for so many turns without a call is taken to spin.
-constexpr int kSilentTurns = 5;
+constexpr int kSilentTurns = 100;
+// A thread that has not had the CPU for so long: others have it. The next look takes twice as long.
+constexpr std::int64_t kStarvedNs = 20'000'000;
 constexpr std::int64_t kSpinTurnNs = 1'000'000;
 
 }  // namespace
@@ -60,23 +67,26 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   if (task.host_origin_ns < 0) {
     task.host_origin_ns = HostClockOf(task);
   }
-  page.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
-  page.base_cpu_ns = task.charged_ns;
-  page.horizon_ns = horizon_ns + frozen;
-  page.idle_until_ns = idle_until_ns;
-  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
-  page.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
-  page.ns_per_tick_q32 =
+  ClockGrant& grant = task.grant;
+  grant.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
+  grant.base_cpu_ns = task.charged_ns;
+  grant.horizon_ns = horizon_ns + frozen;
+  grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
+  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
+  grant.ns_per_tick_q32 =
       IsFixed()
           ? 0
           : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.robot->speed);
-  page.check_after_ticks =
+  grant.check_after_ticks =
       IsFixed() ? ~std::uint64_t{0}
                 : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
-  page.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
-  page.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
+  grant.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
+  grant.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
+  grant.NoteLimits();
+  grant.WriteTo(page);
+  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
@@ -98,7 +108,8 @@ void Engine::StartClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
+  page.base_tsc = task.grant.base_tsc =
+      stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
   task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
   page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
   ++task.unchecked_slices;
@@ -121,7 +132,7 @@ void Engine::Resume(Task& task) {
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
-      ContinueTrapped(task.trap_listener, task.trap_id);
+      ContinueTrap(task);
     } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
       task.handed_lock = 0;
     }
@@ -144,10 +155,13 @@ void Engine::GoOnBesideWoken() {
   std::int64_t idle_until = 0;
   const std::int64_t allowed = std::max(HorizonFor(*running_, &idle_until), WrittenAt());
   running_horizon_ns_ = std::min(running_horizon_ns_, allowed);
-  page.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
-  page.idle_until_ns = 0;  // it asks
-  page.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  page.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  ClockGrant& grant = running_->grant;
+  grant.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
+  grant.idle_until_ns = 0;  // it asks
+  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.NoteLimits();
+  grant.WriteTo(page);
 }
 
 // What the coordinator did while the thread was only interrupted is not the thread's.
@@ -156,7 +170,7 @@ void Engine::ContinueClock(Task& task) {
   stop_tsc_ = __rdtsc();
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc += stop_tsc_ - stopped_tsc;
+  page.base_tsc = task.grant.base_tsc += stop_tsc_ - stopped_tsc;
   // A new number, so that the thread repeats a reading that it was interrupted in.
   const std::uint64_t number = ++task.dispatches << shm::kAdjustBits;
   page.executed_adjust.store(
@@ -166,12 +180,13 @@ void Engine::ContinueClock(Task& task) {
 
 // Real time until the running thread has to be preempted, less what timers are late.
 std::int64_t Engine::HostNsToHorizon(const Task& task) {
-  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kStartTurnNs;
+  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kLookTurnNs;
   const std::int64_t now =
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
   const auto asked = static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_);
-  return std::max(task.recent_run_ns < asked / kOftenShorter ? kLaxTimerNs : kLeastSliceNs, asked);
+  if (task.recent_run_ns < asked / kOftenShorter) return kLaxTimerNs;
+  return std::clamp(asked, kLeastSliceNs, kLongestTimerNs);
 }
 
 void Engine::CheckCpuClock(Task& task) {
@@ -197,6 +212,37 @@ void Engine::CheckCpuClock(Task& task) {
   shm::RemoveStolen(page, reading, cpu);
 }
 
+shm::ClockReading Engine::ClockWhenStopped(const Task& task) const {
+  return shm::ReadClockAt(Slot(task).clock, stop_tsc_);
+}
+
+// The coordinator has waited for the running thread, since its clock was at `before`, with a timer
+// of `asked_ns`. Had that come in time, a look at the TSC is all there is to do.
+void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
+  const auto most_ticks = static_cast<std::uint64_t>(
+      static_cast<double>(asked_ns + kMostTimerLatenessNs) * ticks_per_ns_);
+  if (stop_tsc_ - before.tsc <= most_ticks || !IsOwnDispatch(task)) return;
+  CheckCpuClock(task);  // which tells of most thieves
+  shm::ClockPage& page = Slot(task).clock;
+  const shm::ClockReading now = ClockWhenStopped(task);
+  const double speed = task.process->robot->speed;
+  const auto host = [speed](std::int64_t ns) {
+    return static_cast<std::int64_t>(static_cast<double>(ns) * speed);
+  };
+  const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
+  const std::int64_t stolen_ns = StolenUntold({.counted_ns = host(now.cpu_ns - before.cpu_ns),
+                                               .asked_ns = asked_ns,
+                                               .usual_ns = task.recent_run_ns,
+                                               .shown_ns = host(shown_ns - before.time_ns)});
+  if (stolen_ns <= 0) return;
+  shm::RemoveUntold(page, now, stolen_ns);
+  // The coordinator has moved its origin, not the thread.
+  task.page_origin_ns += stolen_ns;
+  task.host_origin_ns += stolen_ns;
+  report_.untold_ns += stolen_ns;
+  ++report_.untold;
+}
+
 // The virtual time of what the running thread has just done to others: the time that its clock
 // showed when it held for the write.
 std::int64_t Engine::WrittenAt() const {
@@ -216,6 +262,11 @@ bool Engine::ReachedHorizon(Task& task) {
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
+  if (const char* what = WhatIsImpossible(task); what != nullptr) {
+    task.reached_ns = task.cpu->progress_ns;
+    Expel(*task.process, what);
+    return;
+  }
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   // What the thread has taken out; its origin may have become another one meanwhile.
@@ -269,20 +320,23 @@ void Engine::Settle(Task& task) {
   TakeReceipts(task, progress + frozen);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
+    NoteHeld(*task.process, start, progress - start);
     task.frozen_ns = frozen + progress - start;
     task.process->frozen_ns = task.frozen_ns;
     task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
     most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
     trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
     RecordSlice(task.row, start, start, recorded_tsc_);
+    if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
   task.cpu->progress_ns = progress;
   task.reached_ns = progress;
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
-  page.horizon_ns = 0;
+  page.horizon_ns = task.grant.horizon_ns = 0;
   if (IsRunnable(task)) Requeue(task);
+  if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
@@ -295,14 +349,27 @@ void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, silent_turns = 0, brief_turns = 0;
   std::int64_t silent_at_ns =
       task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+  std::uint64_t looked_tsc = stop_tsc_;
+  double starved_ticks = kStarvedNs * ticks_per_ns_;
+  std::int64_t looked_at_ns = -1;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
+    // What it has made of its clock meanwhile must not be reckoned with.
+    if (!first && task.slot >= 0 && !IsOwnDispatch(task)) return;
     if (!first) ContinueClock(task);
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
     const std::uint64_t asked_tsc = stop_tsc_;
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
+    if (static_cast<double>(stop_tsc_ - looked_tsc) > starved_ticks) {
+      const std::int64_t had_ns = HostClockOf(task);
+      if (had_ns >= 0 && had_ns == std::exchange(looked_at_ns, had_ns)) {
+        LowerUnknownThreads();
+        starved_ticks *= 2;
+      }
+      looked_tsc = stop_tsc_;
+    }
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
       // It must have run, and come back from the kernel: real time that has passed may be the
@@ -320,6 +387,11 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     if (task.slot < 0) {
+      if (NeverRegisters(task)) {
+        Lower(task.tid);
+        EndTask(task);
+        return;
+      }
       if (++starting_turns < kStartTurns) continue;
       report_.error = fmt::format(
           "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
@@ -380,6 +452,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.parked = true;
     SetState(task, TaskState::kReady);
     task.reply[0] = task.reply[1] = 0;
+    if (!TakeIpcNotes(task)) return Expel(*task.process, kWrongIpcNotes);
     const shm::Notification early = Slot(task).note;
     Handle(task, early);
     return;
@@ -434,6 +507,10 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
   if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);
+  if (task.process->expelled) {
+    if (task.state != TaskState::kDead) AwaitDeath(task);
+    return;
+  }
   if (task.spins) StepAside(task);
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;

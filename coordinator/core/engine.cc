@@ -2,6 +2,7 @@
 #include "coordinator/core/engine.h"
 
 #include <errno.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <time.h>
 #include <unistd.h>
@@ -24,8 +25,10 @@ constexpr std::int64_t kGrainNs = 100'000;
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
-constexpr int kDeathTurns = 25;  // of kOutsidePollNs
+constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
+constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
 constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
@@ -40,11 +43,10 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
     : scenario_(scenario),
       options_(options),
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
-      by_slot_(shm::kSlotCount, nullptr),
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, pipe_[0], pipe_[1], signals_, claim_.fd}) {
+  for (const int fd : {memfd_, epoll_, signals_, claim_.fd, detector_pidfd_}) {
     if (fd >= 0) close(fd);
   }
   for (const Listener& listener : listeners_) close(listener.fd);
@@ -278,7 +280,10 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const Robot& robot = *cpu.robot;
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
-  if (IsCallback()) return std::min(furthest, HorizonWhileWorldStands(task));
+  if (IsCallback()) {
+    return std::min(
+        {furthest, HorizonWhileWorldStands(task), cpu.progress_ns + LeftToHoldNs(task)});
+  }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
     limit = std::min(limit, cpu.progress_ns + left);
@@ -342,6 +347,40 @@ void Engine::LetWorldCatchUp(Process& process, std::int64_t now_ns) {
   process.frozen_ns = std::max<std::int64_t>(0, process.shown_ns - now_ns);
 }
 
+// A program that computes for as long as the run is to be, all at one instant of the world's, would
+// have the world stand for ever. Short runs, too, may have long plans computed.
+std::int64_t Engine::MostHeldNs() const {
+  return IsInGrace() ? kMostHeldNs : std::max(kMostHeldNs, scenario_.duration.ns());
+}
+
+std::int64_t Engine::LeftToHoldNs(const Task& task) const {
+  const Process& process = *task.process;
+  const std::int64_t held = process.held_at_ns == task.cpu->progress_ns ? process.held_ns : 0;
+  return std::clamp<std::int64_t>(MostHeldNs() - held, 0, shm::kMaxDispatchNs);
+}
+
+void Engine::NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns) {
+  if (std::exchange(process.held_at_ns, at_ns) != at_ns) process.held_ns = 0;
+  process.held_ns += ns;
+}
+
+// The thread stays where it is, and the world goes on to the end.
+void Engine::LetWorldGoOnWithout(Task& task) {
+  Warn(
+      fmt::format("{} has computed for {:.0f} s at one instant of the world's: under --sync "
+                  "callback the world waits for it, but not for longer than the run is to be; from "
+                  "{:.3f} s on it goes on without that program",
+                  task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
+                  static_cast<double>(task.cpu->progress_ns) * 1e-9));
+  if (task.level != Level::kWaiting) {
+    SetLevel(task.tid, Level::kWaiting);
+    task.level = Level::kWaiting;
+  }
+  SetState(task, TaskState::kWaiting);
+  task.deadline_ns = shm::kNeverNs;
+  Refresh(*task.process->robot);
+}
+
 // Its clock has shown so much of the time to come already: it passes without the thread.
 void Engine::PayDebt(Task& task, std::int64_t ns) {
   task.debt_ns -= ns;
@@ -372,6 +411,10 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   task.reached_ns = cpu.progress_ns;
   if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
   TCS_CHECK(IsSafe(task));
+  if (IsCallback() && LeftToHoldNs(task) == 0) {
+    LetWorldGoOnWithout(task);
+    return;
+  }
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
   std::int64_t horizon = HorizonFor(task, &idle_until);
@@ -489,8 +532,8 @@ bool Engine::StrangersRun() {
   for (const Process& process : processes_) {
     if (!process.has_strangers || process.dead) continue;
     for (const pid_t tid : ThreadsOf(process.pid)) {
-      const char state = KnownTask(tid) == nullptr ? ThreadState(tid) : 'S';
-      if (state == 'R' || state == 'D') return true;
+      if (KnownTask(tid) != nullptr || IsAstray(tid)) continue;
+      if (const char state = ThreadState(tid); state == 'R' || state == 'D') return true;
     }
   }
   return UnknownChildrenRun();
@@ -503,16 +546,23 @@ std::int64_t Engine::FurthestNs() const {
 }
 
 void Engine::ShowProgress() {
-  if (!options_.on_progress || IsInGrace() || __rdtsc() < next_progress_tsc_) return;
+  if (IsInGrace() || __rdtsc() < next_progress_tsc_) return;
   next_progress_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kShowEveryNs) * ticks_per_ns_);
+  LookAtDetector();
+  if (!options_.on_progress) return;
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
   progress.drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
+  progress.client_ns = client_host_ns_;
+  progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
+  progress.coordinating_ns =
+      HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ - progress.dynamics_ns;
   for (const Process& process : processes_) {
     if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
+  if (shows_++ % kShowsPerFlush == 0) FlushRecords();
   options_.on_progress(progress);
 }
 
@@ -537,8 +587,7 @@ bool Engine::AwaitOutside() {
     PollEvents(0);
     PollUnseen();
     if (external_event_ || root_.Least() != shm::kNeverNs) return true;
-    if (unseen_ == 0 && !has_spinners_ && unknown_children_.empty() && !StrangersRun())
-      return false;
+    if (unseen_ == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun()) return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
     if (now_ns - idle_since_real_ns_ >= end_ns_ - furthest_ns) return false;
@@ -553,9 +602,11 @@ bool Engine::AwaitOutside() {
 
 // One step of the run; false at its end.
 bool Engine::Step() {
+  ended_links_.clear();
   if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   ShowProgress();
+  LookAround();
   TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();

@@ -9,7 +9,10 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/coordinator.h"
@@ -20,10 +23,12 @@
 #include "coordinator/dds/topic_log.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
+#include "coordinator/os/strays.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/dispatch_log.h"
 #include "coordinator/trace/schedule_trace.h"
+#include "shm/clock_page.h"
 
 namespace tcs {
 
@@ -45,17 +50,23 @@ class Engine {
     kCommand,
     kSignal,
     kGraceRanOut,
-    kDetector
+    kDetector,
+    kDetectorEnd
   };
 
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
-  std::string PrepareSegment();
+  std::string PrepareMemory();
   std::string PrepareListener();
   // Where a client and its descendants register.
   struct Listener {
     int fd;
     Process* client;
+  };
+  // Somebody who has not said yet what it wants.
+  struct Connection {
+    int fd;
+    Process* client;  // that its listener is for
   };
   std::string OpenListener();
   std::string PrepareDetector();
@@ -80,6 +91,10 @@ class Engine {
   bool Step();
   bool AwaitDeaths();
   static void LetWorldCatchUp(Process& process, std::int64_t now_ns);
+  std::int64_t MostHeldNs() const;
+  std::int64_t LeftToHoldNs(const Task& task) const;
+  static void NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns);
+  void LetWorldGoOnWithout(Task& task);
   std::int64_t HorizonWhileWorldStands(const Task& task) const;
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
@@ -99,6 +114,16 @@ class Engine {
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void ShowProgress();
+
+  // What a user is told who sees nothing happen (standstill.cc).
+  void LookAround();
+  void NoteStandstill(std::int64_t now_ns);
+  void NoteLeftBehind(std::int64_t now_ns);
+  bool AwaitsTerminal() const;
+  std::vector<std::string> WhatIsAwaited() const;
+  std::vector<std::string> ComputingStrangers() const;
+  std::pair<int, std::string> WhatItAwaits(const Task& task) const;
+  std::string AwaitedDescriptors(const Task& task) const;
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
@@ -124,10 +149,23 @@ class Engine {
   bool ReachedHorizon(Task& task);
   void Settle(Task& task);
   void CheckCpuClock(Task& task);
+  shm::ClockReading ClockWhenStopped(const Task& task) const;
+  void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
   std::int64_t WrittenAt() const;
+
+  // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
+  static constexpr const char* kWrongIpcNotes = "times of System V objects";
+  bool IsOwnDispatch(const Task& task) const;
+  const char* WhatIsImpossible(const Task& task) const;
+  static const char* WhatIsImpossible(const shm::Notification& note);
+  void Expel(Process& process, const char* what);
+  void AwaitDeath(Task& task);
+  std::int64_t StolenOf(const Task& task) const;
+  std::int64_t StalenessOf(const Task& task) const;
+  bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
   // Notifications (notifications.cc).
   void Handle(Task& task, const shm::Notification& note);
@@ -156,7 +194,15 @@ class Engine {
   void FindUnknownChildren(Process& parent);
   void UnknownChildEnded(pid_t pid);
   bool HasUnknownChild(const Process& parent) const;
+  bool AwaitsUnknownChildren() const;
   bool UnknownChildrenRun() const;
+
+  // Threads that nobody announced, or that do not end (unknown_threads.cc).
+  void LowerUnknownThreads();
+  void Lower(pid_t tid);
+  bool NeverRegisters(Task& task);
+  bool IsAstray(pid_t tid) const;
+  std::string NameOfMakerOf(pid_t tid);
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
@@ -179,6 +225,14 @@ class Engine {
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call);
   void ReleaseTrapped();
+
+  // Those that could be about tcsim's own processes (guarded_calls.cc).
+  bool IsGuarded(pid_t pid) const;
+  bool MeansGuarded(pid_t caller, pid_t receiver) const;
+  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal) const;
+  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
+  void LetThrough(const TrappedCall& call) const;
+  void ContinueTrap(const Task& task) const;
 
   // Those other than futex (raw_calls.cc).
   void HandleRawCall(Task& task, const TrappedCall& call);
@@ -328,13 +382,20 @@ class Engine {
 
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
   // negative: none.
+  bool TakeEvents(std::int64_t timeout_ns, bool* is_full);
   bool PollEvents(std::int64_t timeout_ns);
+  void TakeNotifications(const Process& process);
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
+  bool CutsOff(Task& task);
+  void DetectorEnded(int signal);
+  void LookAtDetector();
   void RearmDetector();
-  void Attach(int connection, Process& client);
-  Task* TaskFor(pid_t pid, pid_t parent_pid, pid_t tid, Process& client);
-  void SendReply(int connection, const Task& task);
+  void Accept(const Listener& listener);
+  bool Attach(int connection, Process& client);
+  void GiveDdsArea(int connection, pid_t pid);
+  void PlaceAtGate(Task& task);
+  Task* TaskFor(pid_t pid, pid_t tid, Process& client);
   void ProcessEnded(std::size_t index);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index, std::uint32_t number = 0);
   // What epoll gives back: `number` tells an event of this wait from those of earlier ones, or
@@ -353,7 +414,7 @@ class Engine {
   Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid);
   Task* AddThread(Process& process, pid_t tid);
-  void EndThreadsLostInExec(pid_t pid);
+  bool EndThreadsLostInExec(pid_t pid);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
@@ -366,6 +427,7 @@ class Engine {
 
   // What is written about the run (records.cc).
   std::string OpenRecords();
+  void FlushRecords();
   std::string CloseRecords();
   int AddRow(const std::string& group, const std::string& name);
   void NoteReleased(Task& task, shm::WakeReason reason);
@@ -406,9 +468,7 @@ class Engine {
   bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
   bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
-  shm::ThreadSlot& Slot(const Task& task) const {
-    return *shm::SlotAt(header_, static_cast<std::uint32_t>(task.slot));
-  }
+  shm::ThreadSlot& Slot(const Task& task) const { return *task.slot_memory; }
 
   const Scenario scenario_;
   const RunOptions options_;
@@ -425,17 +485,18 @@ class Engine {
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
   FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
-  std::vector<std::int64_t> progress_;  // Refresh's own
-  std::vector<Task*> by_slot_;
-  std::unordered_map<pid_t, Task*> by_tid_;  // the living
-  std::deque<Task*> ended_tasks_;            // whose places can be had again, the earliest first
+  std::vector<std::int64_t> progress_;                       // Refresh's own
+  std::unordered_map<pid_t, Task*> by_tid_;                  // the living
+  std::map<std::pair<std::string, std::string>, int> rows_;  // by group and name
+  std::deque<Task*> ended_tasks_;  // whose places can be had again, the earliest first
   std::deque<Process*> ended_processes_;
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
   std::optional<record::Recording> recording_;
-  std::vector<Process*> dds_processes_;  // that have joined it
-  std::deque<int> free_slots_;
+  std::vector<Process*> dds_processes_;                    // that have joined it
+  std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
+  std::deque<Connection> connections_;
   int living_ = 0;             // threads that are not dead
   int unseen_ = 0;             // threads in TaskState::kUnseen
   int waiting_for_child_ = 0;  // and such that wait for a child
@@ -447,14 +508,20 @@ class Engine {
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
-  shm::SegmentHeader* header_ = nullptr;
-  int memfd_ = -1, epoll_ = -1, pipe_[2] = {-1, -1}, signals_ = -1;
+  shm::RunMemory* memory_ = nullptr;
+  shm::RunHeader* header_ = nullptr;  // in it
+  int memfd_ = -1, epoll_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
-  int detector_arm_ = -1, detector_fired_ = -1;
+  int detector_arm_ = -1, detector_fired_ = -1, detector_pidfd_ = -1;
+  pid_t detector_ = -1;
+  std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
+  // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
+  std::map<pid_t, std::int64_t> lowered_;
+  int most_pids_ = MostPids();
   bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;
@@ -491,6 +558,16 @@ class Engine {
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
   std::uint64_t start_tsc_ = 0;
   std::uint64_t next_progress_tsc_ = 0;
+  int shows_ = 0;
+
+  struct Standstill {
+    std::int64_t dispatches = -1, at_ns = -1;  // virtual
+    std::int64_t since_ns = 0;                 // real
+  };
+  Standstill standstill_;
+  std::uint64_t next_look_tsc_ = 0;
+  std::int64_t alone_since_ns_ = -1;  // real
+  bool has_said_standstill_ = false, has_said_left_behind_ = false;
 };
 
 }  // namespace tcs

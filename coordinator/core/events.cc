@@ -1,10 +1,13 @@
 // What the kernel says: notifications in the pipe, descriptors that clients wait for, commands,
 // blocked threads, births and deaths.
 #include <fmt/format.h>
+#include <linux/futex.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
@@ -15,12 +18,14 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/attach_protocol.h"
+#include "shm/clock_page.h"
 
 namespace tcs {
 
 namespace {
 
 constexpr int kEventsAtOnce = 64;
+constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
 constexpr std::int64_t kLentTurnNs = 20'000;  // where another one has its level
@@ -61,10 +66,40 @@ void Engine::NotificationArrived(Task& task) {
   }
 }
 
+// Of one process, so many at a time: others have their turns, too.
+void Engine::TakeNotifications(const Process& process) {
+  constexpr std::size_t kAtOnce = 64;
+  if (process.link == nullptr) return;
+  shm::PipeMessage messages[kAtOnce];
+  const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
+  const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
+    if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
+  }
+}
+
 void Engine::RearmDetector() {
   if (detector_armed_) return;
   const std::uint64_t one = 1;
   detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
+}
+
+// Without it the first thread that waits in the kernel would make everybody wait with it.
+void Engine::DetectorEnded(int signal) {
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, detector_pidfd_, nullptr);
+  if (header_->shutdown.load() != 0) return;
+  report_.error = fmt::format(
+      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
+      "it; what it has written until then can be read",
+      detector_, signal);
+}
+
+// While programs compute all the time it does not even get the processor to die.
+void Engine::LookAtDetector() {
+  constexpr std::uint64_t kKilled = std::uint64_t{1} << (SIGKILL - 1);
+  const SignalSets sets = ReadSignalSets(detector_);
+  if (((sets.own_pending | sets.shared_pending) & kKilled) != 0) DetectorEnded(SIGKILL);
 }
 
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
@@ -126,7 +161,8 @@ bool Engine::BlockedInKernel() {
     WakeThoseWaitingFor(ended);
     return true;
   }
-  const bool stopped = state == 'T';  // by a signal, until another one
+  if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
+  const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   if (!stopped && (state != 'S' || running_->slot < 0)) {
     if (state == 'D') LendLevel();
     return false;
@@ -152,15 +188,49 @@ bool Engine::BlockedInKernel() {
   return true;
 }
 
+// The running thread is at its gate, but its notification has not come: its process has closed the
+// pipe, or put another file in its place. It is told, and says so itself; or else is ended.
+bool Engine::CutsOff(Task& task) {
+  if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
+  pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
+  if (poll(&incoming, 1, 0) != 0) return false;
+  if (std::exchange(task.is_cut_off, true)) {
+    Expel(*task.process, "a notification that was never sent");
+    return true;
+  }
+  shm::ThreadSlot& slot = Slot(task);
+  slot.wake_reason.store(shm::WakeReason::kCutOff);
+  slot.gate.store(shm::kGateOpen);
+  syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  held_turns_ = 0;
+  RearmDetector();
+  return true;
+}
+
+// All that there is at this instant: were the rest found later, it would have happened later.
 bool Engine::PollEvents(std::int64_t timeout_ns) {
+  bool is_full = false;
+  bool stop = TakeEvents(timeout_ns, &is_full);
+  for (int turn = 0; is_full && turn < kMostFullTurns; ++turn) {
+    stop |= TakeEvents(0, &is_full);
+  }
+  return stop;
+}
+
+bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
   const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   epoll_event events[kEventsAtOnce];
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0 && !IsFixed();
+  const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
   const int n =
       epoll_pwait2(epoll_, events, kEventsAtOnce, timeout_ns < 0 ? nullptr : &timeout, nullptr);
   stop_tsc_ = __rdtsc();
+  const bool is_rest = std::exchange(*is_full, n == kEventsAtOnce);
+  if (n == 0 && is_rest) return false;
+  if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
     if (held) {
       TakeLevelBack();
@@ -178,33 +248,27 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
     const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
     switch (tag) {
-      case Tag::kPipe: {
-        shm::PipeMessage messages[64];
-        const ssize_t bytes = read(pipe_[0], messages, sizeof messages);
-        for (ssize_t m = 0; m * static_cast<ssize_t>(sizeof messages[0]) < bytes; ++m) {
-          if (messages[m].slot >= shm::kSlotCount) continue;
-          Task* task = by_slot_[messages[m].slot];
-          if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
-        }
+      case Tag::kPipe:
+        TakeNotifications(processes_[index]);
         stop = true;
         external_event_ = true;
         break;
-      }
-      case Tag::kListener: {
-        const int connection =
-            accept4(listeners_[index].fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-        if (connection >= 0) {
-          Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection),
-                index);
-        }
+      case Tag::kListener:
+        Accept(listeners_[index]);
+        break;
+      case Tag::kConnection: {
+        const auto fd = static_cast<int>(index);
+        const auto found = std::find_if(connections_.begin(), connections_.end(),
+                                        [fd](const Connection& one) { return one.fd == fd; });
+        if (found == connections_.end()) break;  // it was cut off
+        const Connection connection = *found;
+        connections_.erase(found);
+        const bool registers = Attach(fd, *connection.client);
+        close(fd);
+        stop |= registers;
+        external_event_ |= registers;
         break;
       }
-      case Tag::kConnection:
-        Attach(static_cast<int>(index), *listeners_[NumberOf(events[i].data.u64)].client);
-        close(static_cast<int>(index));
-        stop = true;
-        external_event_ = true;
-        break;
       case Tag::kProcess:
         ProcessEnded(index);
         stop = true;
@@ -262,6 +326,10 @@ bool Engine::PollEvents(std::int64_t timeout_ns) {
         blocked = true;
         break;
       }
+      case Tag::kDetectorEnd:
+        DetectorEnded(WTERMSIG(WaitStatusOf(detector_).value_or(0)));
+        stop = true;
+        break;
     }
   }
   // Something else may have ended the wait meanwhile.

@@ -6,7 +6,7 @@
 #include "coordinator/channel/udp_socket.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/dds/topics_table.h"
-#include "coordinator/os/guardian.h"
+#include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -51,7 +51,7 @@ void Engine::Report(RunReport* report) {
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;
-      report->staleness_ns = std::max(report->staleness_ns, Slot(*task).clock.staleness_ns.load());
+      report->staleness_ns = std::max(report->staleness_ns, StalenessOf(*task));
     }
   }
 }

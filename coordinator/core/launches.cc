@@ -144,6 +144,7 @@ std::string Engine::Start(Launch& launch) {
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;
   request.fixed_layout = IsFixed();
+  request.guarded = guarded_;
   if (!options_.output_directory.empty()) {
     const std::string base = options_.output_directory + "/" + FileNameOf(client);
     request.log_stdout = base + ".out.log";

@@ -64,7 +64,7 @@ void Engine::WaitForChild(Task& task, pid_t which, bool stops) {
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (KnownTask(tid) != nullptr) continue;
+    if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
     SetLevel(tid, Level::kWaiting);
     Task& thread = *AddThread(*creator.process, tid);
     InheritScheduling(thread, creator);
@@ -73,23 +73,33 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   }
 }
 
+// Only a child of its own: with CLONE_PARENT its parent's. It has not been waited for, so that its
+// number is nobody else's.
 void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
-  if (LivingProcess(pid) != nullptr) return;
+  Process& of = *parent.process;
+  if (pid <= 0 || LivingProcess(pid) != nullptr || KnownTask(pid) != nullptr) return;
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
+  const pid_t actual = ParentOf(pid);
+  if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   SetLevel(pid, Level::kWaiting);
-  InheritScheduling(*NewChild(pid, parent.process->pid, *parent.process), parent);
+  InheritScheduling(*NewChild(pid, of.pid, of), parent);
 }
 
 void Engine::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
   event_ns_ = task.reached_ns;
+  if (task.process->expelled) return AwaitDeath(task);
+  if (const char* what = WhatIsImpossible(note); what != nullptr) {
+    return Expel(*task.process, what);
+  }
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
   // From the program's clock to the robot's.
   task.deadline_ns = shm::kNeverNs;
   if (note.deadline_ns != shm::kNeverNs) {
-    task.deadline_ns = std::max(note.deadline_ns - task.process->frozen_ns, task.reached_ns);
+    const std::int64_t deadline_ns = std::max<std::int64_t>(0, note.deadline_ns);
+    task.deadline_ns = std::max(deadline_ns - task.process->frozen_ns, task.reached_ns);
   }
   switch (note.kind) {
     case Kind::kRead:
@@ -104,7 +114,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       if (note.args[0] == 2) AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
       break;
     case Kind::kWaitFds:
-      WatchFds(task, note.fds, std::min(note.fd_count, shm::kMaxWaitFds));
+      WatchFds(task, note.fds, note.fd_count);
       task.takes =
           note.args[0] != 0 && task.watched.size() == 1 && note.fd_count == 1 && note.args[1] == 0;
       task.last_is_first = note.args[0] == 2;

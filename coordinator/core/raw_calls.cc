@@ -30,7 +30,8 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kMostPolled = 65'536, kSets = 3;
-constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
+constexpr int kTimerAbsolute = 1;          // TIMER_ABSTIME
+constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
 
 bool IsRealtime(std::uint64_t clock) {
   return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
@@ -54,6 +55,10 @@ std::optional<std::vector<shm::WaitFd>> PolledFds(const Task& task, const Trappe
     if (fd.fd >= 0) waited.push_back({fd.fd, static_cast<unsigned short>(fd.events)});
   }
   return waited;
+}
+
+bool IsOfOwner(const TrappedCall& call) {
+  return call.number == SYS_fcntl && call.args[1] == kSetOwnerEx;
 }
 
 // So many descriptors the kernel looks at: no more than the process's table has room for.
@@ -383,7 +388,17 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
       break;
     case SYS_flock:
     case SYS_fcntl:
-      LockRaw(task);
+      if (IsOfOwner(call)) {
+        task.trap_continues = true;
+      } else {
+        LockRaw(task);
+      }
+      break;
+    case SYS_ioctl:
+    case SYS_ptrace:
+    case SYS_pidfd_getfd:
+    case SYS_process_madvise:
+      task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
       break;
     case SYS_futex_waitv:
       task.trap_result = FutexWaitForAny(task, call);

@@ -34,7 +34,9 @@ std::string Engine::OpenRecords() {
   if (directory.empty()) return {};
   // It says that a run has ended, and that of an earlier one would say it of this one.
   std::error_code ignored;
-  std::filesystem::remove(directory + "/summary.json", ignored);
+  for (const char* file : {"/summary.json", "/unfinished.json"}) {
+    std::filesystem::remove(directory + file, ignored);
+  }
   std::string error = trace_.Open(directory + "/trace.json");
   if (error.empty()) error = world_.OpenCsv(directory + "/bodies.csv");
   if (error.empty()) error = activation_log_.Open(directory + "/activations.csv");
@@ -51,9 +53,22 @@ std::string Engine::CloseRecords() {
   return {};
 }
 
+// So that what is left of a run that is killed ends shortly before.
+void Engine::FlushRecords() {
+  trace_.Flush();
+  activation_log_.Flush();
+  dispatch_log_.Flush();
+  world_.FlushCsv();
+}
+
+// Children come and go, and take over the names of those that have gone.
 int Engine::AddRow(const std::string& group, const std::string& name) {
-  dispatch_log_.AddRow(name);
-  return trace_.AddRow(group, name);
+  const auto [row, is_new] = rows_.try_emplace({group, name}, 0);
+  if (is_new) {
+    dispatch_log_.AddRow(name);
+    row->second = trace_.AddRow(group, name);
+  }
+  return row->second;
 }
 
 // It waits no longer. What was due before the robot could look at it was due then.

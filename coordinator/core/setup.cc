@@ -1,4 +1,4 @@
-// What a run needs before its first step: the segment, the pipe and socket that clients find us by,
+// What a run needs before its first step: the run's memory, the sockets that clients find us by,
 // the block detector.
 #include <errno.h>
 #include <fcntl.h>
@@ -6,20 +6,21 @@
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <cstring>
+#include <new>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/shared_memory.h"
 #include "shm/check.h"
 
 namespace tcs {
@@ -57,6 +58,7 @@ std::string Engine::Prepare() {
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
+  ClientsRunOn(claim_.cpu);
   if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;
@@ -67,7 +69,7 @@ std::string Engine::Prepare() {
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
-  if (std::string error = PrepareSegment(); !error.empty()) return error;
+  if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = OpenDds(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
@@ -77,20 +79,15 @@ std::string Engine::Prepare() {
   return PrepareDetector();
 }
 
-std::string Engine::PrepareSegment() {
-  // Sealed: a program that has it cannot make it shorter under everybody's feet.
-  constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
-  memfd_ = memfd_create("tcs", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (memfd_ < 0 || fchmod(memfd_, 0600) != 0 || ftruncate(memfd_, shm::kSegmentSize) != 0 ||
-      fcntl(memfd_, F_ADD_SEALS, kSeals) != 0) {
-    return fmt::format("the shared memory cannot be made: {}", strerror(errno));
-  }
-  void* at = mmap(nullptr, shm::kSegmentSize, PROT_READ | PROT_WRITE, MAP_SHARED, memfd_, 0);
-  if (at == MAP_FAILED) return "the shared memory cannot be mapped";
-  header_ = static_cast<shm::SegmentHeader*>(at);
+std::string Engine::PrepareMemory() {
+  const SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
+  if (memory.fd < 0) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
+  memfd_ = memory.fd;
+  memory_ = new (memory.at) shm::RunMemory{};
+  header_ = &memory_->header;
   header_->magic = shm::kMagic;
   header_->version = shm::kVersion;
-  header_->header_size = sizeof(shm::SegmentHeader);
+  header_->header_size = sizeof(shm::RunHeader);
   header_->slot_size = sizeof(shm::ThreadSlot);
   header_->slot_count = shm::kSlotCount;
   header_->accounting = options_.accounting;
@@ -99,13 +96,10 @@ std::string Engine::PrepareSegment() {
   header_->realtime_offset_ns =
       options_.date_ns.value_or(IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   header_->coordinator_pid = getpid();
-  for (int slot = 0; slot < static_cast<int>(shm::kSlotCount); ++slot) free_slots_.push_back(slot);
   return {};
 }
 
 std::string Engine::PrepareListener() {
-  if (pipe2(pipe_, O_CLOEXEC | O_NONBLOCK) != 0) return "no pipe can be made";
-  fcntl(pipe_[1], F_SETFL, 0);
   sigset_t blocked;
   sigemptyset(&blocked);
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
@@ -114,7 +108,6 @@ std::string Engine::PrepareListener() {
   signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
 
   socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
-  Watch(pipe_[0], EPOLLIN, Tag::kPipe, 0);
   Watch(signals_, EPOLLIN, Tag::kSignal, 0);
   return {};
 }
@@ -149,6 +142,11 @@ std::string Engine::PrepareDetector() {
     if (getppid() != coordinator) _exit(0);
     Detect(detector_arm_, detector_fired_);
   }
+  detector_ = detector;
+  detector_pidfd_ = OpenPidfd(detector);
+  Watch(detector_pidfd_, EPOLLIN, Tag::kDetectorEnd, 0);
+  guarded_ = GuardsOf(coordinator);
+  guarded_.insert(guarded_.end(), {coordinator, detector});
   return {};
 }
 

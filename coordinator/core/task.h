@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
@@ -43,14 +45,34 @@ struct Process;
 struct Robot;
 struct VirtualCpu;
 
+// What a thread's clock page was given, and how far the thread can come by itself.
+struct ClockGrant {
+  std::int64_t base_time_ns = 0, base_cpu_ns = 0;
+  std::uint64_t base_tsc = 0, ns_per_tick_q32 = 0;
+  std::int64_t horizon_ns = 0, idle_until_ns = 0, read_safe_ns = 0, write_safe_ns = 0;
+  std::uint64_t ns_per_host_ns_q32 = 0, check_after_ticks = 0;
+  std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
+  std::int64_t most_idle_ns = 0;   // of this dispatch
+  std::int64_t most_shown_ns = 0;  // of all dispatches
+  std::int64_t most_stale_ns = 0;  // of all
+
+  // Copies the fields that are the coordinator's.
+  void WriteTo(shm::ClockPage& page) const;
+  // False if one of them is another by now.
+  bool StandsIn(const shm::ClockPage& page) const;
+  // May be called again with others in the same dispatch.
+  void NoteLimits();
+};
+
 struct Task {
   Process* process = nullptr;
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   pid_t tid = 0;
-  int slot = -1;
-  int order = 0;     // of registration; its number in the scheduling policies
-  int priority = 0;  // on its robot; higher is more urgent
-  int policy = 0;    // POSIX: SCHED_OTHER …
+  int slot = -1;                           // -1: it has not registered yet
+  shm::ThreadSlot* slot_memory = nullptr;  // of that; readable until the engine's next step
+  int order = 0;                           // of registration; its number in the scheduling policies
+  int priority = 0;                        // on its robot; higher is more urgent
+  int policy = 0;                          // POSIX: SCHED_OTHER …
   int posix_priority = 0;
   bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: whom it makes is an ordinary thread
   std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
@@ -119,7 +141,9 @@ struct Task {
   std::int64_t charged_ns = 0;
   std::int64_t host_origin_ns = -1;
   std::int64_t page_origin_ns = 0;  // what its page says of that
-  int cpu_clock_fd = -1;            // where its CPU clock is read, if it is not its process's
+  ClockGrant grant;
+  bool is_cut_off = false;  // it has been told that its connection is not there any more
+  int cpu_clock_fd = -1;    // where its CPU clock is read, if it is not its process's
   std::uint64_t dispatches = 0;
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
@@ -159,9 +183,10 @@ struct TimerSignal {
 };
 
 struct Process {
-  std::uint32_t index = 0;           // its place in the engine's list
-  Process* client = nullptr;         // the client that it is or descends from
-  const ClientSpec* spec = nullptr;  // of a client
+  std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
+  std::uint32_t index = 0;            // its place in the engine's list
+  Process* client = nullptr;          // the client that it is or descends from
+  const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;
   int pidfd = -1;
   Robot* robot = nullptr;
@@ -174,6 +199,7 @@ struct Process {
   // behind the end of a wait that is over by time.
   std::int64_t frozen_ns = 0;
   std::int64_t shown_ns = 0;                    // the furthest that its clock has come
+  std::int64_t held_at_ns = -1, held_ns = 0;    // where and for how long it last held the world up
   std::map<std::int64_t, Timer> timers;         // by id
   std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
   std::int64_t expired_ns = shm::kNeverNs;      // the last one, while nobody has come to wait since
@@ -189,11 +215,13 @@ struct Process {
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
-  bool dds_warned = false;        // of what it sends
+  bool dds_warned = false;        // a client: of what it, or a descendant, sends
+  bool has_erred = false;         // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;      // its thread that takes what is for it
   int waiting_for_deliverer = 0;  // threads
   bool dead = false;
   bool killed = false;         // at the end of its grace
+  bool expelled = false;       // killed, for what it has written into shared memory
   int threads = 1;             // that ever attached
   bool has_strangers = false;  // threads that never will
   bool is_client = false;      // named in the scenario, rather than a child of one

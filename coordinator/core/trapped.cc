@@ -1,5 +1,8 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
+#include <unistd.h>
+
+#include <vector>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
@@ -66,30 +69,19 @@ void Engine::HandleStranger(const TrappedCall& call) {
     process->has_strangers = true;
     CarryOutWake(*process, call);
   }
-  switch (call.number) {
-    case SYS_sched_setscheduler:
-    case SYS_sched_setparam:
-    case SYS_sched_setattr:
-    case SYS_sched_setaffinity:
-      // The host's scheduler must not hear of it from them either.
-      AnswerTrapped(call.listener, call.id, 0);
-      return;
-    default:
-      ContinueTrapped(call.listener, call.id);
-  }
+  LetThrough(call);
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.
 void Engine::ReleaseTrapped() {
   for (Task& task : tasks_) {
     if (task.state == TaskState::kDead) continue;
-    if (task.trap_id != 0) ContinueTrapped(task.trap_listener, task.trap_id);
-    if (task.early_trap.has_value())
-      ContinueTrapped(task.early_trap->listener, task.early_trap->id);
+    if (task.trap_id != 0) ContinueTrap(task);
+    if (task.early_trap.has_value()) LetThrough(*task.early_trap);
     task.trap_id = 0;
     task.early_trap.reset();
   }
-  if (trapped_.has_value()) ContinueTrapped(trapped_->listener, trapped_->id);
+  if (trapped_.has_value()) LetThrough(*trapped_);
   trapped_.reset();
 }
 

@@ -69,9 +69,14 @@ void Engine::Yield(Task& task) {
   if (UnknownChildrenRun()) PollEvents(kStrangersTurnNs);
 }
 
+bool Engine::AwaitsUnknownChildren() const {
+  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
+                     [this](const auto& child) { return !IsAstray(child.first); });
+}
+
 bool Engine::UnknownChildrenRun() const {
   return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
-    if (by_tid_.contains(child.first)) return false;
+    if (by_tid_.contains(child.first) || IsAstray(child.first)) return false;
     const char state = ThreadState(child.first);
     return state == 'R' || state == 'D';
   });

@@ -38,7 +38,7 @@ Usage Engine::UsageOf(const Process& process) {
     if (task->process != &process || task->slot < 0) continue;
     usage += {.charged_ns = task->charged_ns,
               .host_cpu_ns = HostCpuOf(*task),
-              .stolen_ns = Slot(*task).clock.stolen_ns.load(),
+              .stolen_ns = StolenOf(*task),
               .activations = task->activations};
   }
   return usage;
@@ -58,7 +58,7 @@ void Engine::KeepUsageOf(Task& ended) {
   Process& process = *ended.process;
   const Usage usage{
       .charged_ns = ended.charged_ns,
-      .stolen_ns = ended.slot < 0 ? 0 : Slot(ended).clock.stolen_ns.load(),
+      .stolen_ns = ended.slot < 0 ? 0 : StolenOf(ended),
       .activations = ended.activations,
   };
   if (ended.host_origin_ns < 0) {  // it never ran under its clock

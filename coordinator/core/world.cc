@@ -16,6 +16,8 @@ namespace tcs {
 
 namespace {
 
+constexpr std::size_t kCsvAtOnce = 64 << 10;
+
 // Adds to `total_ns` what the coordinator spends in a scope.
 class Spent {
  public:
@@ -56,6 +58,7 @@ std::string World::OpenCsv(const std::string& path) {
   if (!present()) return {};
   csv_path_ = path;
   errno = 0;
+  csv_.rdbuf()->pubsetbuf(nullptr, 0);
   csv_.open(path);
   if (!csv_) return CannotBeWritten(path);
   csv_ << "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
@@ -63,9 +66,16 @@ std::string World::OpenCsv(const std::string& path) {
   return {};
 }
 
+// Whole lines: what a run leaves that is killed has no halves.
+void World::FlushCsv() {
+  csv_ << csv_text_;
+  csv_text_.clear();
+}
+
 std::string World::CloseCsv() {
   if (!csv_.is_open()) return {};
   errno = 0;
+  FlushCsv();
   csv_.close();
   return csv_ ? "" : NotWrittenWhole(csv_path_);
 }
@@ -102,11 +112,12 @@ void World::WriteCsv() {
   next_csv_ns_ += scenario_.csv_period.ns();
   for (std::size_t i = 0; i < scenario_.world->bodies.size(); ++i) {
     const BodyState s = dynamics_->Read(static_cast<int>(i));
-    csv_ << fmt::format("{:.9f},{},{},{},{},{}\n", static_cast<double>(now) * 1e-9,
-                        scenario_.world->bodies[i].name, fmt::join(s.position_m, ","),
-                        fmt::join(s.orientation_xyzw, ","), fmt::join(s.linear_velocity_mps, ","),
-                        fmt::join(s.angular_velocity_radps, ","));
+    csv_text_ += fmt::format(
+        "{:.9f},{},{},{},{},{}\n", static_cast<double>(now) * 1e-9, scenario_.world->bodies[i].name,
+        fmt::join(s.position_m, ","), fmt::join(s.orientation_xyzw, ","),
+        fmt::join(s.linear_velocity_mps, ","), fmt::join(s.angular_velocity_radps, ","));
   }
+  if (csv_text_.size() > kCsvAtOnce) FlushCsv();
 }
 
 void World::Sample(Sensor& sensor) {

@@ -27,6 +27,7 @@ class World {
   // Where the body states are written to; none without a world. Empty on success, else one
   // sentence.
   std::string OpenCsv(const std::string& path);
+  void FlushCsv();
   std::string CloseCsv();
 
   // The channels on DDS, once there are such endpoints; they outlive this.
@@ -92,7 +93,7 @@ class World {
   std::optional<UdpSocket> out_;
   std::optional<DdsChannels> dds_;
   std::ofstream csv_;
-  std::string csv_path_;
+  std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
   std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
 };

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "coordinator/dds/well_formed.h"
+#include "coordinator/os/shared_memory.h"
 
 namespace tcs::dds {
 
@@ -53,22 +53,19 @@ bool IsNewsOfEntity(const DdsMessage& header) {
          header.kind == DdsKind::kTopic;
 }
 
-// The file cannot be made shorter by a program that has it, so that nobody's access fails.
-int MakeFile() {
-  const int fd = memfd_create("tcs-dds", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (fd < 0) return -1;
-  if (fchmod(fd, 0600) == 0 && fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_SEAL) == 0) return fd;
-  close(fd);
-  return -1;
-}
-
 }  // namespace
 
 Hub::~Hub() {
   for (const Member& member : members_) {
-    if (member.area != nullptr) munmap(member.area, shm::kDdsAreaSize);
+    if (member.area == nullptr) continue;
+    munmap(member.area, shm::kDdsAreaSize);
+    close(member.fd);
   }
-  if (fd_ >= 0) close(fd_);
+}
+
+int Hub::AreaOf(Number number) const {
+  const Member* member = Find(number);
+  return member == nullptr ? -1 : member->fd;
 }
 
 void Hub::Member::ShowDue() const {
@@ -98,19 +95,17 @@ const Hub::Member* Hub::Find(Number number) const {
 }
 
 Hub::Number Hub::Join(std::int64_t now_ns) {
-  if (fd_ < 0 && (fd_ = MakeFile()) < 0) return 0;
   if (members_.size() == shm::kDdsMostProcesses) {
     errno = ENOSPC;
     return 0;
   }
-  const auto start = static_cast<off_t>(members_.size() * shm::kDdsAreaSize);
-  if (ftruncate(fd_, start + static_cast<off_t>(shm::kDdsAreaSize)) != 0) return 0;
-  void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, start);
-  if (at == MAP_FAILED) return 0;
+  const SharedMemory memory = MakeSharedMemory("tcs-dds", shm::kDdsAreaSize);
+  if (memory.fd < 0) return 0;
   Member& member = members_.emplace_back();
-  member.area = static_cast<char*>(at);
+  member.area = static_cast<char*>(memory.at);
+  member.fd = memory.fd;
   const Number number = count();
-  auto* area = new (at) shm::DdsArea{};
+  auto* area = new (memory.at) shm::DdsArea{};
   area->process = number;
   member.ShowDue();
   for (Number other = 1; other < number; ++other) {
@@ -120,18 +115,19 @@ Hub::Number Hub::Join(std::int64_t now_ns) {
   return number;
 }
 
-// Its number is not given again: others may still hear from it. But its memory goes back.
+// Its number is not given again: others may still hear from it. But its memory goes back, should
+// it still have that, too.
 void Hub::Leave(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return;
   munmap(member->area, shm::kDdsAreaSize);
+  fallocate(member->fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+            static_cast<off_t>(shm::kDdsAreaSize));
+  close(member->fd);
   const bool was_full = member->full, was_stopped = member->stopped;
   *member = Member{};
   // Who waits for it goes on when others miss it.
   member->full = was_full;
-  fallocate(fd_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-            static_cast<off_t>((number - 1) * shm::kDdsAreaSize),
-            static_cast<off_t>(shm::kDdsAreaSize));
   std::vector<Known> left;
   std::erase_if(known_, [&](const Known& known) {
     if (known.from == number) left.push_back(known);
@@ -230,7 +226,7 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
   }
   std::string wrong =
       EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
-  GiveBack(from, shm::kDdsHeaderSize, bytes);
+  GiveBack(*Find(from), shm::kDdsHeaderSize, bytes);
   return wrong;
 }
 
@@ -292,10 +288,10 @@ bool Hub::IsAnothers(const Guid& guid, Number number) const {
 }
 
 // Of a box of which so many bytes have been used.
-void Hub::GiveBack(Number number, std::size_t box, std::size_t bytes) const {
+void Hub::GiveBack(const Member& member, std::size_t box, std::size_t bytes) {
   if (bytes <= shm::kDdsUsualSize) return;
-  fallocate(fd_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-            static_cast<off_t>((number - 1) * shm::kDdsAreaSize + box + shm::kDdsUsualSize),
+  fallocate(member.fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+            static_cast<off_t>(box + shm::kDdsUsualSize),
             static_cast<off_t>(bytes - shm::kDdsUsualSize));
 }
 
@@ -463,7 +459,7 @@ void Hub::CameBack(Number number) {
   Member* member = Find(number);
   if (member == nullptr) return;
   member->delivers = false;
-  GiveBack(number, shm::kDdsHeaderSize + shm::kDdsBoxSize, member->delivered_bytes);
+  GiveBack(*member, shm::kDdsHeaderSize + shm::kDdsBoxSize, member->delivered_bytes);
   member->delivered_bytes = 0;
   member->shown().delivers.store(0);
   ShowFull(number);

@@ -86,8 +86,8 @@ class Hub {
 
   // How many processes have joined so far: the largest number.
   Number count() const { return static_cast<Number>(members_.size()); }
-  // Of the memory with the areas; -1 before the first process has joined.
-  int fd() const { return fd_; }
+  // The memory of the process's area, where nobody else looks; -1 if there is no such process.
+  int AreaOf(Number number) const;
   // Samples that a process did not get because too much waits for it.
   struct Drops {
     std::uint64_t unreliable = 0;  // promised to nobody
@@ -102,6 +102,7 @@ class Hub {
 
   struct Member {
     char* area = nullptr;  // null: it has left
+    int fd = -1;           // of the area
     bool delivers = false;
     bool full = false;
     bool stopped = false;
@@ -147,9 +148,8 @@ class Hub {
   void Drop(const shm::DdsMessage& header, Number to, std::uint64_t& count);
   void Replace(Number to, Queued::iterator latest);
   void ShowFull(Number number);
-  void GiveBack(Number number, std::size_t box, std::size_t bytes) const;
+  static void GiveBack(const Member& member, std::size_t box, std::size_t bytes);
 
-  int fd_ = -1;
   HubObserver* observer_ = nullptr;
   bool tells_own_ = false;
   Queued own_;                           // for the coordinator

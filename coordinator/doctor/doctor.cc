@@ -83,7 +83,7 @@ Finding TryShim(const std::string& path) {
 // In a child, for a filter stays for ever.
 int TryTrap() {
   const pid_t child = fork();
-  if (child == 0) _exit(InstallTrap() >= 0 ? 0 : errno);
+  if (child == 0) _exit(InstallTrap({}) >= 0 ? 0 : errno);
   int status = -1;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return ECHILD;
   return WEXITSTATUS(status);
@@ -156,7 +156,7 @@ std::string ToJson(const std::vector<Finding>& findings) {
     json.push_back(
         {{"name", f.name}, {"verdict", Word(f.verdict)}, {"found", f.found}, {"mend", f.mend}});
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 bool CanRun(const std::vector<Finding>& findings) {

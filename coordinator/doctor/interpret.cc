@@ -123,7 +123,7 @@ Finding JudgeLibc(const std::string& version) {
     return {"C library", Verdict::kOk, "glibc " + version, ""};
   }
   return {"C library", Verdict::kWarning, "glibc " + version,
-          "tcs is made and tested with glibc 2.36 (Debian 12)"};
+          "tcs is made and tested with glibc 2.36 and 2.41 (Debian 12, 13)"};
 }
 
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said) {

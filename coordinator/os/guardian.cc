@@ -1,187 +1,127 @@
 #include "coordinator/os/guardian.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cstdint>
 #include <cstdlib>
-#include <map>
+#include <fstream>
 #include <new>
-#include <vector>
+#include <string>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/keeper.h"
+#include "coordinator/os/say.h"
+#include "coordinator/os/strays.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr int kKillTurns = 400;  // of 5 ms
-constexpr useconds_t kKillTurnUs = 5'000;
+GuardedState* g_state = nullptr;
 
-volatile sig_atomic_t g_coordinator = 0, g_is_to_stop = 0;
-GuardLimits g_limits;
-// In memory that both processes share.
-std::atomic<std::uint64_t>* g_beats = nullptr;
-std::uint64_t g_beats_seen = 0;
-std::int64_t g_computed_ns = 0;
-
-void PassOn(int signal) {
-  if (g_coordinator <= 0) return;
-  kill(static_cast<pid_t>(g_coordinator), signal);
-  g_is_to_stop = 1;
-  alarm(g_limits.stop_within_s);
-}
-
-// ^C at a terminal reaches the child by itself; what somebody has sent, only this process may have.
-void PassOnInterrupt(int signal, siginfo_t* info, void*) {
-  if (info->si_code != SI_KERNEL) PassOn(signal);
-}
-
-void EndIt(const char* sentence) {
-  const ssize_t n = write(STDERR_FILENO, sentence, strlen(sentence));
-  static_cast<void>(n);
-  // In the kernel it may spin for something that its priority prevents.
-  LeaveRealTime(static_cast<pid_t>(g_coordinator));
-  kill(static_cast<pid_t>(g_coordinator), SIGKILL);
-}
-
-// In the handler of SIGALRM.
-void Look(int) {
-  const auto pid = static_cast<pid_t>(g_coordinator);
-  if (pid <= 0) return;
-  if (g_is_to_stop != 0) return EndIt("tcsim: the run did not stop in time, and is killed\n");
-  const std::uint64_t beats = g_beats->load();
-  const std::int64_t computed_ns = std::max<std::int64_t>(0, ProcessCpuClockNs(pid));
-  const bool busy = computed_ns - g_computed_ns > std::int64_t{g_limits.look_every_s} * 800'000'000;
-  if (busy && beats == g_beats_seen) {
-    return EndIt(
-        "tcsim: the coordinator computes without getting on, and is killed; this is a fault of "
-        "tcsim, please report it\n");
-  }
-  g_beats_seen = beats;
-  g_computed_ns = computed_ns;
-  alarm(g_limits.look_every_s);
-}
-
-void MakeBeats() {
+void ShareState() {
   void* page =
-      mmap(nullptr, sizeof *g_beats, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (page != MAP_FAILED) g_beats = new (page) std::atomic<std::uint64_t>(0);
+      mmap(nullptr, sizeof *g_state, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  static GuardedState alone;  // nobody would see its beats
+  g_state = page != MAP_FAILED ? new (page) GuardedState : &alone;
+  g_state->pid_max = MostPids();
 }
 
-void Handle(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;
-  sigaction(signal, &action, nullptr);
-}
-
-// All at once, not only the children: one that spins at real-time priority keeps its killed parent
-// from the processor, and with it from dying, for ever.
-void KillTree() {
-  DIR* proc = opendir("/proc");
-  if (proc == nullptr) return;
-  std::multimap<pid_t, pid_t> children;
-  while (const dirent* entry = readdir(proc)) {
-    if (const int pid = atoi(entry->d_name); pid > 0) children.emplace(ParentOf(pid), pid);
-  }
-  closedir(proc);
-  std::vector<pid_t> parents{getpid()};
-  while (!parents.empty()) {
-    const auto [first, last] = children.equal_range(parents.back());
-    parents.pop_back();
-    for (auto child = first; child != last; ++child) {
-      kill(child->second, SIGKILL);
-      parents.push_back(child->second);
+// Passes signals on to the keeper until it has ended: how, as of waitpid.
+int AwaitKeeper(pid_t keeper, const sigset_t& awaited) {
+  for (;;) {
+    siginfo_t info{};
+    const int signal = sigwaitinfo(&awaited, &info);
+    // ^C reaches the coordinator by itself; what somebody has sent, only this process may have.
+    const bool is_for_all = signal == SIGINT && info.si_code == SI_KERNEL;
+    const bool ends = signal == SIGTERM || signal == SIGHUP || signal == SIGINT;
+    if (ends && !is_for_all) kill(keeper, signal);
+    int status = 0;
+    while (waitpid(keeper, &status, WNOHANG | WUNTRACED) == keeper) {
+      if (!WIFSTOPPED(status)) return status;
+      kill(keeper, SIGCONT);  // it is in nobody's job
     }
   }
 }
 
-// As the shell of a program that died of a signal would see it.
-[[noreturn]] void DieOf(int signal_number) {
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  signal(signal_number, SIG_DFL);
-  raise(signal_number);
-  _exit(128 + signal_number);
+std::string NameOf(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/comm");
+  std::string name;
+  std::getline(file, name);
+  return name;
 }
 
 }  // namespace
 
-void KillDescendants() {
-  for (int turn = 0; turn < kKillTurns; ++turn) {
-    KillTree();
-    pid_t reaped;
-    while ((reaped = waitpid(-1, nullptr, WNOHANG)) > 0) {
-    }
-    if (reaped < 0 && errno == ECHILD) return;
-    usleep(kKillTurnUs);
-  }
+void ClientsRunOn(int cpu) {
+  if (g_state != nullptr) g_state->clients_cpu.store(cpu);
 }
 
 void Beat() {
-  if (g_beats != nullptr) g_beats->fetch_add(1, std::memory_order_relaxed);
+  if (g_state != nullptr) g_state->beats.fetch_add(1, std::memory_order_relaxed);
+}
+
+void LeaveNote(const std::string& path, const std::string& text) {
+  if (g_state == nullptr || path.size() >= Note::kMostPath || text.size() > Note::kMostText) return;
+  const int which = g_state->note.load() == 0 ? 1 : 0;
+  Note& note = g_state->notes[which];
+  memcpy(note.path, path.c_str(), path.size() + 1);
+  memcpy(note.text, text.data(), text.size());
+  note.size = text.size();
+  g_state->note.store(which);
+}
+
+void TakeNoteBack() {
+  if (g_state != nullptr) g_state->note.store(-1);
+}
+
+// By name: of a process that is not dumpable nobody may ask which program it executes.
+std::vector<pid_t> GuardsOf(pid_t coordinator) {
+  std::vector<pid_t> guards;
+  const std::string own = NameOf(coordinator);
+  for (pid_t pid = ParentOf(coordinator); pid > 1 && NameOf(pid) == own; pid = ParentOf(pid)) {
+    guards.push_back(pid);
+  }
+  return guards;
 }
 
 int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  g_limits = limits;
-  MakeBeats();
-  // Until the handlers stand, nothing may get past them to the guardian alone.
-  sigset_t passed_on, before;
-  sigemptyset(&passed_on);
-  for (const int signal : {SIGTERM, SIGHUP}) sigaddset(&passed_on, signal);
-  sigprocmask(SIG_BLOCK, &passed_on, &before);
-  const pid_t guardian = getpid();
-  const pid_t coordinator = fork();
-  if (coordinator == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != guardian) _exit(127);
-    sigprocmask(SIG_SETMASK, &before, nullptr);
-    // Not _exit: what the run printed is still to be flushed.
-    exit(coordinate());
+  ShareState();
+  sigset_t awaited, before;
+  sigemptyset(&awaited);
+  for (const int signal : {SIGCHLD, SIGTERM, SIGHUP, SIGINT}) sigaddset(&awaited, signal);
+  sigprocmask(SIG_BLOCK, &awaited, &before);
+  const pid_t guardian = getpid(), keeper = fork();
+  if (keeper == 0) {
+    Keep(guardian, limits, g_state, [&] {
+      sigprocmask(SIG_SETMASK, &before, nullptr);
+      // Not _exit: what the run printed is still to be flushed.
+      exit(coordinate());
+      return 0;
+    });
   }
-  if (coordinator < 0) {
-    fprintf(stderr, "tcsim: no process can be made: %s; end some, or raise `ulimit -u`\n",
-            strerror(errno));
+  if (keeper < 0) {
+    sigprocmask(SIG_SETMASK, &before, nullptr);
+    Say(std::string("no process can be made: ") + strerror(errno) +
+        "; end some, or raise `ulimit -u`");
     return 2;
   }
-  g_coordinator = coordinator;
-  for (const int signal : {SIGTERM, SIGHUP}) Handle(signal, PassOn);
-  Handle(SIGALRM, Look);
-  if (g_beats != nullptr) alarm(limits.look_every_s);
-  Handle(SIGQUIT, SIG_IGN);
-  struct sigaction interrupt {};
-  interrupt.sa_sigaction = PassOnInterrupt;
-  interrupt.sa_flags = SA_RESTART | SA_SIGINFO;
-  sigaction(SIGINT, &interrupt, nullptr);
-  sigprocmask(SIG_SETMASK, &before, nullptr);
-
-  for (;;) {
-    int status = 0;
-    const pid_t pid = waitpid(coordinator, &status, WUNTRACED);
-    if (pid < 0 && errno == EINTR) continue;
-    if (pid == coordinator && WIFSTOPPED(status)) {
-      raise(SIGSTOP);
-      kill(coordinator, SIGCONT);
-      continue;
-    }
-    alarm(0);
-    KillDescendants();
-    if (pid == coordinator && WIFSIGNALED(status)) DieOf(WTERMSIG(status));
-    return pid == coordinator ? WEXITSTATUS(status) : 2;
+  prctl(PR_SET_DUMPABLE, 0);
+  signal(SIGQUIT, SIG_IGN);
+  const int status = AwaitKeeper(keeper, awaited);
+  EndWhatIsLeft(status, g_state);
+  if (!g_state->has_ended.load() && WIFSIGNALED(status)) {
+    Say("the process that watches over the run (process " + std::to_string(keeper) +
+        ") was killed, and the run with it; what it has written until then can be read");
   }
+  if (WIFSIGNALED(status)) DieOf(WTERMSIG(status));
+  return WEXITSTATUS(status);
 }
 
 }  // namespace tcs

@@ -1,13 +1,22 @@
-// A process around the coordinator that ends whatever it leaves behind.
+// Two processes around the coordinator, so that nothing outlives a run, whoever is killed.
+//
+//   guardian     the process that the user started; waits for the keeper
+//   └─ keeper      in a process group of its own, which a kill of the job's does not reach
+//      └─ coordinator ── clients and all that they start
 //
 // Clients die with the coordinator (PDEATHSIG), but a client's own children do not, and one of
-// those may spin at real-time priority. So tcsim is two processes: the guardian, which the user
-// started, and the coordinator, its child. Both are subreapers: orphans come to the coordinator
-// while it lives, then to the guardian. Neither outlives the other: the guardian's end is a SIGTERM
-// to the coordinator, the coordinator's end makes the guardian kill and reap all that is left.
+// those may spin at real-time priority. So all three are subreapers: orphans come to the
+// coordinator while it lives, then to the keeper, then to the guardian, who kills and reaps them.
+// None of the three outlives another one: the guardian's end is an orderly end of the run, the
+// keeper's is the coordinator's at once, and the coordinator's end makes the keeper kill what is
+// left.
 #pragma once
 
+#include <sys/types.h>
+
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace tcs {
 
@@ -17,20 +26,31 @@ struct GuardLimits {
 };
 
 // Runs `coordinate` in a child process and returns its exit status once nothing that descends from
-// it lives any more. Dies of the signal that the child died of. SIGTERM, SIGHUP and a
-// SIGINT that somebody has sent are passed on, ^C and ^\ reach the child by the terminal, a stop
-// stops both. Call it before there are threads.
+// it lives any more. Dies of the signal that the child died of, after a sentence on stderr.
+// SIGTERM, SIGHUP and a SIGINT that somebody has sent are passed on, ^C and ^\ reach the child by
+// the terminal, ^Z stops it with the job. Call it before there are threads.
 //
 // The child runs at real-time priority, so it must not go astray: it is killed, with a sentence on
-// stderr, if it has computed all the time between two looks without a single Beat, and if it has
-// not ended some time after a SIGTERM or SIGHUP.
+// stderr, if it has computed all the time between two looks without a single Beat, if a tracer
+// holds it as long, and if it has not ended some time after a SIGTERM or SIGHUP. Where somebody
+// stops it without the guardian it is made to go on, with a sentence, too.
 int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits = {});
+
+// Says from inside `coordinate` which CPU the clients are bound to, so that none of them keeps its
+// real-time priority when the coordinator is killed. Does nothing outside.
+void ClientsRunOn(int cpu);
 
 // Says from inside `coordinate` that it gets on. Costs nothing; does nothing outside.
 void Beat();
 
-// Kills and reaps the children of this process, and the orphans that come to it, until none is
-// left; gives up after two seconds (a process in the disk's hands does not die).
-void KillDescendants();
+// A file that is to be written, whole, should `coordinate` end and not have taken its note back:
+// what is left of a run that is killed. It replaces the note before. Only copies: a coordinator
+// that wrote it itself would wait for the disk, and its clients compute on meanwhile. What is too
+// long for a note is none. Does nothing outside.
+void LeaveNote(const std::string& path, const std::string& text);
+void TakeNoteBack();
+
+// tcsim's own processes around and above this one, which its clients are not to touch.
+std::vector<pid_t> GuardsOf(pid_t coordinator);
 
 }  // namespace tcs

@@ -21,6 +21,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "coordinator/os/say.h"
 #include "coordinator/os/trap.h"
 #include "shm/layout.h"
 
@@ -256,6 +257,17 @@ pid_t ProcessOfThread(pid_t tid) {
   return -1;
 }
 
+bool IsThreadOf(pid_t pid, pid_t tid) {
+  char path[64];
+  snprintf(path, sizeof path, "/proc/%d/task/%d", pid, tid);
+  return access(path, F_OK) == 0;
+}
+
+bool DescendsFrom(pid_t pid, pid_t ancestor) {
+  while (pid > 1 && pid != ancestor) pid = ParentOf(pid);
+  return pid == ancestor;
+}
+
 int OpenPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 int DuplicateFd(int pidfd, int fd) {
@@ -276,8 +288,8 @@ namespace {
 
 // The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
 // parent has taken it.
-void HandOverTrap(int to_parent, int from_parent) {
-  const int listener = InstallTrap();
+void HandOverTrap(int to_parent, int from_parent, const std::vector<pid_t>& guarded) {
+  const int listener = InstallTrap(guarded);
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
   if (syscall(SYS_write, to_parent, &listener, sizeof listener, 0, 0, own) !=
@@ -331,7 +343,7 @@ Spawned Spawn(const SpawnRequest& request) {
   close(down[1]);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  HandOverTrap(up[1], down[0]);
+  HandOverTrap(up[1], down[0], request.guarded);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -362,8 +374,9 @@ Spawned Spawn(const SpawnRequest& request) {
     _exit(127);
   }
   execvp(argv[0], argv.data());
-  fprintf(stderr, "tcsim: %s cannot be started: %s\n", argv[0], strerror(errno));
-  _exit(errno == ENOENT ? 127 : 126);
+  const int error = errno;
+  Say(std::string(argv[0]) + " cannot be started: " + strerror(error));
+  _exit(error == ENOENT ? 127 : 126);
 }
 
 }  // namespace tcs

@@ -98,6 +98,10 @@ std::string ProgramOf(pid_t pid);
 std::vector<pid_t> ThreadsOf(pid_t pid);
 // -1 if it has ended.
 pid_t ProcessOfThread(pid_t tid);
+bool IsThreadOf(pid_t pid, pid_t tid);
+
+// Whether it is a child of that one, or a child of its children, and so on.
+bool DescendsFrom(pid_t pid, pid_t ancestor);
 
 int OpenPidfd(pid_t pid);
 int DuplicateFd(int pidfd, int fd);
@@ -110,6 +114,7 @@ struct SpawnRequest {
   std::map<std::string, std::string> environment;
   std::string log_stdout, log_stderr;  // empty: inherited
   bool fixed_layout = false;           // no address-space randomisation
+  std::vector<pid_t> guarded;          // processes that it is not to touch
 };
 
 struct Spawned {

@@ -4,12 +4,14 @@
 #include <cstdio>
 #include <string>
 
+#include "coordinator/os/visible.h"
+
 namespace tcs {
 
-// One line, "tcsim: SENTENCE". A stderr that cannot be written, on a full disk for one, ends
-// nobody's run.
+// One line, "tcsim: SENTENCE", whatever the sentence quotes. A stderr that cannot be written, on a
+// full disk for one, ends nobody's run.
 inline void Say(const std::string& sentence) {
-  const std::string line = "tcsim: " + sentence + "\n";
+  const std::string line = "tcsim: " + Visible(sentence) + "\n";
   const std::size_t written = std::fwrite(line.data(), 1, line.size(), stderr);
   static_cast<void>(written);
 }

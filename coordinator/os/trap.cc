@@ -16,6 +16,7 @@
 
 #include <vector>
 
+#include "coordinator/os/protection.h"
 #include "shm/layout.h"
 
 namespace tcs {
@@ -78,14 +79,11 @@ sock_filter LoadArgument(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
 }
 
-std::vector<sock_filter> Program() {
+// What programs of this architecture call, after the number was loaded.
+std::vector<sock_filter> NativeProgram() {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
   constexpr std::size_t count = sizeof kTrapped / sizeof kTrapped[0];
   std::vector<sock_filter> program{
-      Load(offsetof(seccomp_data, arch)),
-      JumpIfEqual(AUDIT_ARCH_X86_64, 1, 0),
-      allow,
-      Load(offsetof(seccomp_data, nr)),
       JumpIfEqual(kNuma, 0, 1),
       Return(SECCOMP_RET_ERRNO | ENOSYS),
       JumpIfEqual(SYS_futex, 0, 6),
@@ -134,10 +132,32 @@ std::vector<sock_filter> Program() {
   return program;
 }
 
+std::vector<sock_filter> Program(const std::vector<pid_t>& guarded) {
+  constexpr std::uint32_t kX32 = 0x40000000;  // a third table of numbers, which nobody uses
+  const std::vector<sock_filter> of_32_bits = Protection(CallTable::kOf32Bits, guarded);
+  std::vector<sock_filter> program{
+      Load(offsetof(seccomp_data, arch)),
+      JumpIfEqual(AUDIT_ARCH_X86_64, 0, 1),
+      {BPF_JMP | BPF_JA, 0, 0, static_cast<std::uint32_t>(of_32_bits.size() + 2)},
+      Load(offsetof(seccomp_data, nr)),
+  };
+  const auto append = [&program](const std::vector<sock_filter>& more) {
+    program.insert(program.end(), more.begin(), more.end());
+  };
+  append(of_32_bits);
+  program.push_back(Return(SECCOMP_RET_ALLOW));
+  program.push_back(Load(offsetof(seccomp_data, nr)));
+  program.push_back({BPF_JMP | BPF_JGE | BPF_K, 0, 1, kX32});
+  program.push_back(Return(SECCOMP_RET_ERRNO | ENOSYS));
+  append(Protection(CallTable::kNative, guarded));
+  append(NativeProgram());
+  return program;
+}
+
 }  // namespace
 
-int InstallTrap() {
-  std::vector<sock_filter> program = Program();
+int InstallTrap(const std::vector<pid_t>& guarded) {
+  std::vector<sock_filter> program = Program(guarded);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter] {
     return static_cast<int>(

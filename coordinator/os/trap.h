@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace tcs {
 
@@ -20,9 +21,9 @@ struct TrappedCall {
 
 // Installs the filter in the calling process, which must be about to exec. It traps all futex
 // calls, and what else reads time, sleeps, waits or speaks of the scheduler (trap.cc has the list),
-// unless the shim made the call (shm::kOwnCallMark). The descriptor at which the calls arrive; -1:
-// errno is set.
-int InstallTrap();
+// unless the shim made the call (shm::kOwnCallMark); and it keeps the program from the `guarded`
+// processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
+int InstallTrap(const std::vector<pid_t>& guarded);
 
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);

@@ -1,7 +1,9 @@
 #include "coordinator/record/bag.h"
 
+#include <errno.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <string.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -30,6 +32,12 @@ CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 INSERT INTO schema(schema_version, ros_distro) VALUES (3, 'humble');
 )";
+
+// In the words of the kernel, which the other messages of a full disk have.
+std::string Why(sqlite3* database) {
+  if (sqlite3_errcode(database) == SQLITE_FULL) return strerror(ENOSPC);
+  return sqlite3_errmsg(database);
+}
 
 // The folder's own name: that of "out/bag/" is "bag".
 std::string NameOf(const std::string& folder) {
@@ -80,7 +88,7 @@ std::string Bag::Open(const std::string& folder) {
   constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
   const bool done =
       (sqlite3_open_v2(path_.c_str(), &database_, kFlags, nullptr) == SQLITE_OK ||
-       Fail(sqlite3_errmsg(database_))) &&
+       Fail(Why(database_))) &&
       Run("PRAGMA journal_mode = WAL") && Run("PRAGMA synchronous = NORMAL") && Run("BEGIN") &&
       Run(kTables) && Run("COMMIT") &&
       Prepare(
@@ -97,7 +105,9 @@ std::string Bag::Open(const std::string& folder) {
   insert_message_.reset();
   sqlite3_close(database_);
   database_ = nullptr;
-  return fmt::format("the recording {} cannot be made: {}", path_, failure_);
+  return fmt::format(
+      "the recording {} cannot be made: {}; choose another folder with --out, or make room there",
+      path_, failure_);
 }
 
 std::string Bag::UniqueName(const std::string& name) {
@@ -171,7 +181,7 @@ std::string Bag::Close() {
   insert_message_.reset();
   // One file, as readers that may not write beside it want it.
   if (failure_.empty()) Run("PRAGMA journal_mode = DELETE");
-  if (sqlite3_close(database_) != SQLITE_OK && failure_.empty()) Fail(sqlite3_errmsg(database_));
+  if (sqlite3_close(database_) != SQLITE_OK && failure_.empty()) Fail(Why(database_));
   database_ = nullptr;
   WriteMetadata(Withstands::kPowerCut);
   if (failure_.empty()) return {};
@@ -181,19 +191,19 @@ std::string Bag::Close() {
 
 bool Bag::Run(const char* sql) {
   return sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) == SQLITE_OK ||
-         Fail(sqlite3_errmsg(database_));
+         Fail(Why(database_));
 }
 
 bool Bag::Prepare(const char* sql, Statement* statement) {
   sqlite3_stmt* prepared = nullptr;
   const int result = sqlite3_prepare_v2(database_, sql, -1, &prepared, nullptr);
   statement->reset(prepared);
-  return result == SQLITE_OK || Fail(sqlite3_errmsg(database_));
+  return result == SQLITE_OK || Fail(Why(database_));
 }
 
 bool Bag::Step(sqlite3_stmt* statement) {
   const bool done = sqlite3_step(statement) == SQLITE_DONE;
-  const std::string why = done ? "" : sqlite3_errmsg(database_);
+  const std::string why = done ? "" : Why(database_);
   sqlite3_reset(statement);
   sqlite3_clear_bindings(statement);
   return done || Fail(why);

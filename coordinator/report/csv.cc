@@ -7,8 +7,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
+#include <system_error>
+#include <utility>
 
 namespace tcs::report {
 
@@ -42,11 +45,15 @@ std::optional<std::int64_t> ToInteger(std::string_view text) {
 }
 
 std::optional<std::string> ReadFile(const std::string& path) {
+  // What else has a name may never come to an end.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
   std::ifstream file(path, std::ios::binary);
   if (!file) return {};
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::ostringstream text;
+  text << file.rdbuf();
   if (file.bad()) return {};
-  return text;
+  return std::move(text).str();
 }
 
 LoadResult<std::int64_t> ReadCsv(const std::string& path,

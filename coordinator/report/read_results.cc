@@ -26,6 +26,12 @@ struct Plan {
   std::vector<std::string> values;
 };
 
+// Throws nothing, whatever stands in the way.
+bool IsThere(const std::string& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
 std::string TextOf(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -69,7 +75,7 @@ std::string FolderOf(std::string value) {
 // What tcsim said last about a trial that has no summary.
 std::string LastWords(const std::string& folder) {
   const std::optional<std::string> log = ReadFile(folder + "/tcsim.log");
-  if (!log) return fs::exists(folder) ? "it did not end" : "it was not made";
+  if (!log) return IsThere(folder) ? "it did not end" : "it was not made";
   std::string last;
   for (std::size_t from = 0; from < log->size();) {
     const std::size_t end = std::min(log->find('\n', from), log->size());
@@ -93,16 +99,17 @@ class Reader {
 
   // One sentence, or empty.
   std::string Add(const std::string& folder) {
-    if (!fs::is_directory(folder)) {
+    std::error_code error;
+    if (!fs::is_directory(folder, error)) {
       return fmt::format("there is no folder '{}'; give one that tcsim run or tcsim trials wrote",
                          folder);
     }
-    if (fs::exists(folder + "/trials.json")) return AddTrials(folder);
-    if (fs::exists(folder + "/summary.json") || fs::exists(folder + "/trace.json")) {
+    if (IsThere(folder + "/trials.json")) return AddTrials(folder);
+    if (IsThere(folder + "/summary.json") || IsThere(folder + "/trace.json")) {
       System system{FolderName(folder), {}, {}};
-      std::string error = AddRun(folder, FolderName(folder), &system);
-      if (error.empty()) Keep(folder, std::move(system));
-      return error;
+      std::string mistake = AddRun(folder, FolderName(folder), Ends::kAny, &system);
+      if (mistake.empty()) Keep(folder, std::move(system));
+      return mistake;
     }
     return fmt::format(
         "'{}' is no result folder: it has neither summary.json nor trials.json; give one that "
@@ -153,19 +160,22 @@ class Reader {
   std::string AddSeeds(const std::string& folder, const Plan& plan, System* system) {
     for (std::int64_t i = 0; i < std::min<std::int64_t>(plan.trials, 100'000); ++i) {
       const std::string name = fmt::format("seed-{:04}", plan.first_seed + i);
-      if (std::string error = AddRun(folder + "/" + name, name, system); !error.empty()) {
+      if (std::string error = AddRun(folder + "/" + name, name, Ends::kWhole, system);
+          !error.empty()) {
         return error;
       }
     }
     return {};
   }
 
-  std::string AddRun(const std::string& folder, const std::string& name, System* system) {
-    if (!fs::exists(folder + "/summary.json")) {
+  std::string AddRun(const std::string& folder, const std::string& name, Ends ends,
+                     System* system) {
+    const bool was_noted = ends == Ends::kAny && IsThere(folder + "/unfinished.json");
+    if (!IsThere(folder + "/summary.json") && !was_noted) {
       system->failed.push_back({name, LastWords(folder)});
       return {};
     }
-    auto read = ReadRun(folder, bodies_, &results_.warnings);
+    auto read = ReadRun(folder, bodies_, ends, &results_.warnings);
     if (const auto* error = std::get_if<LoadError>(&read)) {
       // A wrong name is the caller's mistake, not the run's.
       if (error->message.starts_with("there is no body")) return error->message;

@@ -30,9 +30,15 @@ std::optional<std::string> FailureOf(const Json& clients) {
   return {};
 }
 
-LoadResult<Run> FromSummary(const std::string& folder) {
-  const std::string path = folder + "/summary.json";
-  const std::optional<std::string> text = ReadFile(path);
+LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
+                            std::vector<std::string>* warnings) {
+  std::string path = folder + "/summary.json";
+  std::optional<std::string> text = ReadFile(path);
+  const bool was_cut = !text && ends == Ends::kAny;
+  if (was_cut) {
+    path = folder + "/unfinished.json";
+    text = ReadFile(path);
+  }
   if (!text) return LoadError{folder + " has no summary.json: the run did not end"};
   Run run;
   run.folder = folder;
@@ -53,7 +59,16 @@ LoadResult<Run> FromSummary(const std::string& folder) {
     json.at("dynamics_ns").get_to(run.dynamics_ns);
     run.overhead = json.at("overhead_percent").get<double>() / 100.0;
     const Json& clients = json.at("clients");
-    if (const auto failure = FailureOf(clients)) return LoadError{folder + ": " + *failure};
+    if (const auto failure = was_cut ? std::nullopt : FailureOf(clients)) {
+      return LoadError{folder + ": " + *failure};
+    }
+    if (was_cut) {
+      warnings->push_back(
+          fmt::format("{} is of a run that was cut off soon after {} (killed, ended by an error, "
+                      "or it is still "
+                      "going on); this is what it had written",
+                      folder, Seconds(static_cast<double>(run.virtual_ns) * 1e-9)));
+    }
     for (const auto& [name, entry] : clients.items()) {
       Client& client = run.clients[name];
       client.robot = entry.value("robot", "");
@@ -161,8 +176,8 @@ void WarnOfLines(const std::string& path, std::int64_t lines, std::vector<std::s
 }  // namespace
 
 LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string>& bodies,
-                        std::vector<std::string>* warnings) {
-  LoadResult<Run> result = FromSummary(folder);
+                        Ends ends, std::vector<std::string>* warnings) {
+  LoadResult<Run> result = FromSummary(folder, ends, warnings);
   Run* run = std::get_if<Run>(&result);
   if (run == nullptr) return result;
 

@@ -9,11 +9,15 @@
 
 namespace tcs::report {
 
+// Which runs are wanted: those that went to their end, or also one that was cut off; then what it
+// noted last is taken as its summary, and a warning says so.
+enum class Ends { kWhole, kAny };
+
 // The distance is that between `bodies`, or, if those are empty, between the first two that
 // bodies.csv names. Lines that are of no use are left out with a warning. The sentence of an error
 // names the folder.
 [[nodiscard]] LoadResult<Run> ReadRun(const std::string& folder,
-                                      const std::vector<std::string>& bodies,
+                                      const std::vector<std::string>& bodies, Ends ends,
                                       std::vector<std::string>* warnings);
 
 }  // namespace tcs::report

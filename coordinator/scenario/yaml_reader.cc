@@ -1,9 +1,15 @@
 #include "coordinator/scenario/yaml_reader.h"
 
+#include <yaml-cpp/emitterstyle.h>
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <sstream>
+#include <utility>
 
 #include "coordinator/scenario/duration.h"
 #include "coordinator/scenario/nearest.h"
@@ -27,6 +33,50 @@ std::optional<Number> ParseWhole(std::string_view text) {
 int LineOf(const YAML::Node& node, int otherwise) {
   const YAML::Mark mark = node.Mark();
   return mark.is_null() ? otherwise : mark.line + 1;
+}
+
+// Notes where what it is told of begins.
+class FirstPlace : public YAML::EventHandler {
+ public:
+  int line() const { return line_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { Note(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { NoteNode(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { NoteNode(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    NoteNode(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    NoteNode(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    NoteNode(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void Note(const YAML::Mark& mark) { line_ = mark.line + 1; }
+  // The first thing in a document rather than the line above it.
+  void NoteNode(const YAML::Mark& mark) {
+    if (!std::exchange(has_node_, true) && !mark.is_null()) Note(mark);
+  }
+
+  int line_ = 1;
+  bool has_node_ = false;
+};
+
+// Not by YAML::LoadAll, which never comes to an end of what follows a document and is none.
+std::optional<int> LineOfSecondDocument(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  FirstPlace first, second;
+  if (!parser.HandleNextDocument(first) || !parser.HandleNextDocument(second)) return std::nullopt;
+  return second.line();
 }
 
 // A text may stand on a later line than its key; of everything else the key's line is the place.
@@ -166,6 +216,7 @@ YamlMap YamlValue::AsMap() const {
          "; give it keys with values, or {} for none");
   }
   std::vector<YamlMap::Entry> entries;
+  std::map<std::string, Place> places;
   int previous_line = place_.line;
   for (const auto& pair : node_) {
     const int key_line = LineOf(pair.first, previous_line);
@@ -177,9 +228,8 @@ YamlMap YamlValue::AsMap() const {
     const std::string key = pair.first.Scalar();
     const YamlValue value(PlaceOf(pair.second, LineOfValue(pair.second, key_line)),
                           name_.empty() ? key : name_ + "." + key, pair.second, set_);
-    for (const YamlMap::Entry& earlier : entries) {
-      if (earlier.key != key) continue;
-      value.At(key_place).Fail("is given twice, first " + earlier.key_place.Reference() +
+    if (const auto [earlier, is_new] = places.try_emplace(key, key_place); !is_new) {
+      value.At(key_place).Fail("is given twice, first " + earlier->second.Reference() +
                                "; rename or remove one");
     }
     entries.push_back({key, key_place, value});
@@ -215,25 +265,27 @@ const YamlValue& YamlMap::Require(std::string_view key, std::string_view example
 YamlValue ParseYaml(const std::string& file, const std::string& text,
                     const std::vector<std::string>& set) {
   const int last_line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-  std::vector<YAML::Node> documents;
+  YAML::Node document;
+  std::optional<int> second;
   try {
-    documents = YAML::LoadAll(text);
+    document = YAML::Load(text);
+    second = LineOfSecondDocument(text);
   } catch (const YAML::Exception& error) {
     const int line = error.mark.is_null() ? last_line : error.mark.line + 1;
     throw ScenarioMistake{Place{file, line}.Prefix() + "this is not valid YAML (" + error.msg +
                           "); indent with spaces, and quote a text that holds : # { } [ or ]"};
   }
-  if (documents.empty() || documents[0].IsNull()) {
+  if (document.IsNull()) {
     throw ScenarioMistake{Place{file, 1}.Prefix() +
                           "the scenario is empty; write at least duration and robots"};
   }
-  if (documents.size() > 1) {
-    throw ScenarioMistake{Place{file, LineOf(documents[1], last_line)}.Prefix() +
+  if (second.has_value()) {
+    throw ScenarioMistake{Place{file, *second}.Prefix() +
                           "a second YAML document begins here; keep one scenario to a file"};
   }
   const auto options = std::make_shared<SetOptions>();
-  const YAML::Node tree = options->Apply(documents[0], set);
-  return YamlValue({file, LineOf(documents[0], 1)}, "", tree, options);
+  const YAML::Node tree = options->Apply(document, set);
+  return YamlValue({file, LineOf(document, 1)}, "", tree, options);
 }
 
 void CheckName(const YamlMap::Entry& entry) {

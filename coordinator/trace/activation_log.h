@@ -27,6 +27,7 @@ class ActivationLog {
   // all.
   void Write(const std::string& client, int thread, const Activation& activation,
              std::int64_t end_ns, std::int64_t charged_ns);
+  void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close() { return file_.Close(); }
 
  private:

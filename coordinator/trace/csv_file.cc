@@ -26,8 +26,10 @@ std::string CsvFile::Open(const std::string& path, std::string_view header) {
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return CannotBeWritten(path);
   noted_.resize(kNotedBytes);
-  std::fwrite(header.data(), 1, header.size(), file_);
-  std::fputc('\n', file_);
+  // What is written is whole lines, and in the file at once: a run that is killed leaves no halves.
+  std::setvbuf(file_, nullptr, _IONBF, 0);
+  const std::string line = std::string(header) + "\n";
+  std::fwrite(line.data(), 1, line.size(), file_);
   return {};
 }
 
@@ -59,6 +61,10 @@ void CsvFile::WriteNoted() {
   }
   std::fwrite(text.data(), 1, static_cast<std::size_t>(to - text.data()), file_);
   used_ = 0;
+}
+
+void CsvFile::Flush() {
+  if (file_ != nullptr && used_ > 0) WriteNoted();
 }
 
 std::string CsvFile::Close() {

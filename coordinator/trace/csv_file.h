@@ -37,6 +37,9 @@ class CsvFile {
     Append(kLineEnd);
   }
 
+  // Writes what is noted.
+  void Flush();
+
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Close();
 

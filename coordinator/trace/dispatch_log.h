@@ -28,6 +28,7 @@ class DispatchLog {
   // `real` counts from the run's start.
   void Slice(int row, Span virtual_time, Span real);
 
+  void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close();
 
  private:

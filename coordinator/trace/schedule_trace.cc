@@ -17,9 +17,11 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kNotedAtOnce = 2048;
-constexpr std::string_view kSeparator = ",\n";
+constexpr std::string_view kSeparator = ",\n", kEnd = "\n]}\n";
 
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string Quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 }  // namespace
 
@@ -32,13 +34,23 @@ std::string ScheduleTrace::Open(const std::string& path) {
   file_ = std::fopen(path.c_str(), "we");
   if (file_ == nullptr) return CannotBeWritten(path);
   noted_.reserve(kNotedAtOnce);
-  std::fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file_);
+  std::setvbuf(file_, nullptr, _IONBF, 0);
+  const std::string begin = "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n" + std::string(kEnd);
+  std::fwrite(begin.data(), 1, begin.size(), file_);
   return {};
 }
 
+// In place of the file's end, which comes after it.
+void ScheduleTrace::Write(std::string_view events) {
+  const std::string text = std::string(events) + std::string(kEnd);
+  std::fseek(file_, -static_cast<long>(kEnd.size()), SEEK_CUR);
+  std::fwrite(text.data(), 1, text.size(), file_);
+}
+
+// After what was noted before it: the file is the same, whenever that is written.
 void ScheduleTrace::Event(std::string_view json) {
-  if (!std::exchange(first_, false)) std::fwrite(kSeparator.data(), 1, kSeparator.size(), file_);
-  std::fwrite(json.data(), 1, json.size(), file_);
+  Flush();
+  Write(std::string(std::exchange(first_, false) ? "" : kSeparator) + std::string(json));
 }
 
 int ScheduleTrace::AddRow(const std::string& group, const std::string& name) {
@@ -79,8 +91,12 @@ void ScheduleTrace::WriteNoted() {
           length_ns % 1000);
     }
   }
-  std::fwrite(text.data(), 1, text.size(), file_);
+  Write({text.data(), text.size()});
   noted_.clear();
+}
+
+void ScheduleTrace::Flush() {
+  if (file_ != nullptr && !noted_.empty()) WriteNoted();
 }
 
 void ScheduleTrace::Note(const Noted& noted) {
@@ -114,7 +130,6 @@ std::string ScheduleTrace::Close() {
   if (file_ == nullptr) return {};
   for (int row = 0; row < static_cast<int>(rows_.size()); ++row) NoteSlice(row);
   WriteNoted();
-  std::fputs("\n]}\n", file_);
   const bool bad = std::ferror(file_) != 0;
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;

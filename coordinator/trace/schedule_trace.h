@@ -33,6 +33,10 @@ class ScheduleTrace {
   // Something happened at one instant. `what` is a literal.
   void Instant(int row, const char* what, std::int64_t at_ns);
 
+  // Writes what is noted. The file is whole then, and after every other write: so is what a run
+  // leaves that is killed.
+  void Flush();
+
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Close();
 
@@ -52,6 +56,7 @@ class ScheduleTrace {
   void Note(const Noted& noted);
   void NoteSlice(int row);
   void WriteNoted();
+  void Write(std::string_view events);
 
   std::FILE* file_ = nullptr;
   std::string path_;

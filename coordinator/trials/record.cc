@@ -55,7 +55,7 @@ std::string ToJson(const TrialsRecord& record) {
   if (plan.vary.has_value()) {
     json["vary"] = {{"key", plan.vary->key}, {"values", plan.vary->values}};
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text) {

@@ -136,6 +136,7 @@ std::string Runner::Start(const Trial& trial, std::size_t place) {
   RunProcessRequest request;
   request.arguments = RunArgumentsOf(plan_, trial);
   request.arguments.insert(request.arguments.end(), {"--out", folder});
+  if (!options_.waits_for_cpu) request.arguments.emplace_back("--no-wait");
   request.log = folder + "/tcsim.log";
   request.own_network = options_.own_networks;
   request.cpus = PlaceOfRun(cpus_, options_.whole_cores, options_.at_once, static_cast<int>(place));

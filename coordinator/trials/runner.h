@@ -19,6 +19,7 @@ struct RunnerOptions {
   int at_once = 1;
   bool whole_cores = false;  // see os/cpu_places.h
   bool own_networks = false;
+  bool waits_for_cpu = true;  // see os/cpu_claim.h
 };
 
 struct TrialEnd {

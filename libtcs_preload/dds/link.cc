@@ -3,10 +3,10 @@
 #include "libtcs_preload/dds/link.h"
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
 
+#include "libtcs_preload/attach.h"
 #include "libtcs_preload/dds/shim_link.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
@@ -29,35 +29,11 @@ __thread bool t_delivers __attribute__((tls_model("initial-exec"))) = false;
 char* Outbox() { return reinterpret_cast<char*>(g_area) + tcs::shm::kDdsHeaderSize; }
 const char* Inbox() { return Outbox() + tcs::shm::kDdsBoxSize; }
 
-// "/proc/PID/fd/FD": the coordinator's own descriptor. The buffer is large enough for any two.
-void PathOf(char* path, long pid, long fd) {
-  const auto number = [&path](long value) {
-    char digits[24];
-    int count = 0;
-    do {
-      digits[count++] = static_cast<char>('0' + value % 10);
-      value /= 10;
-    } while (value > 0);
-    while (count > 0) *path++ = digits[--count];
-  };
-  const auto text = [&path](const char* from) {
-    while (*from != '\0') *path++ = *from++;
-  };
-  text("/proc/");
-  number(pid);
-  text("/fd/");
-  number(fd);
-  *path = '\0';
-}
-
-DdsArea* MapArea(long fd_of_coordinator, std::uint32_t process) {
-  char path[80];
-  PathOf(path, g_header->coordinator_pid, fd_of_coordinator);
-  const long fd = RawSyscall(SYS_openat, AT_FDCWD, Arg(path), O_RDWR | O_CLOEXEC);
+DdsArea* MapArea(std::uint32_t process) {
+  const int fd = OpenDdsArea();
   if (fd < 0) return nullptr;
-  const long at =
-      RawSyscall(SYS_mmap, 0, static_cast<long>(tcs::shm::kDdsAreaSize), PROT_READ | PROT_WRITE,
-                 MAP_SHARED, fd, static_cast<long>((process - 1) * tcs::shm::kDdsAreaSize));
+  const long at = RawSyscall(SYS_mmap, 0, static_cast<long>(tcs::shm::kDdsAreaSize),
+                             PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0L);
   RawSyscall(SYS_close, fd);
   if (at < 0 && at > -4096) return nullptr;
   auto* area = reinterpret_cast<DdsArea*>(at);
@@ -69,11 +45,10 @@ std::uint32_t Join() {
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
-  constexpr int kDescriptorBits = tcs::shm::kDdsDescriptorBits;
   if (reply.values[0] > 0) {
     g_owner = t->slot->pid;
-    g_behind_ns = t->slot->cores > 1 ? reply.values[1] >> kDescriptorBits : 0;
-    g_area = MapArea(reply.values[1] & ((1 << kDescriptorBits) - 1), process);
+    g_behind_ns = t->slot->cores > 1 ? reply.values[1] : 0;
+    g_area = MapArea(process);
   }
   if (g_area != nullptr) return process;
   static const char kLine[] = "tcs: there is no room for this program's DDS: it uses sockets.\n";

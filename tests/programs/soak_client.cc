@@ -203,6 +203,41 @@ void Descriptors() {
   }
 }
 
+// In a program of its own, given up by its parent, or with what it leaves open and running when it
+// ends.
+void LiveShortly(int way) {
+  if (way == 1) execlp("true", "true", nullptr);
+  if (way == 2 && fork() > 0) _exit(0);
+  if (way == 3) {
+    const int timer = timerfd_create(CLOCK_MONOTONIC, 0), set = epoll_create1(0);
+    const itimerspec every{{0, kMs}, {0, kMs}};
+    timerfd_settime(timer, 0, &every, nullptr);
+    epoll_event event{};
+    event.events = EPOLLIN;
+    epoll_ctl(set, EPOLL_CTL_ADD, timer, &event);
+    Expect(epoll_wait(set, &event, 1, 100) == 1, "a timerfd in an epoll set");
+    timer_t own;
+    timer_create(CLOCK_MONOTONIC, nullptr, &own);
+    std::thread([] { SleepTo(Now() + kMs); }).detach();
+  }
+  SleepTo(Now() + 2 * kMs);
+  _exit(0);
+}
+
+// A child each 36 s: 100 an hour.
+void Offspring() {
+  int way = getpid();
+  for (std::int64_t next = Now() + getpid() % 36 * kSecond; next < g_end; next += 36 * kSecond) {
+    SleepTo(next);
+    way = (way + 1) % 4;
+    const pid_t child = fork();
+    if (child == 0) LiveShortly(way);
+    int status = 0;
+    Expect(waitpid(child, &status, 0) == child && status == 0, "a child was lost");
+  }
+  SleepTo(g_end);
+}
+
 void MakePipes(int* ends) { Expect(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0, "socketpair"); }
 
 void MakeDatagrams(int* ends) {
@@ -224,6 +259,7 @@ const Kind kKinds[] = {
     {"datagrams", [] { Tokens(MakeDatagrams); }},
     {"signals", Signals},
     {"descriptors", Descriptors},
+    {"offspring", Offspring},
 };
 
 }  // namespace

@@ -3,4 +3,6 @@ set -euo pipefail
 build=$1
 source_root=$2
 tcsim=$build/bin/tcsim
+# The process that coordinates the run whose tcsim has this number: tcsim > its keeper > it.
+coordinator_of() { pgrep -P "$(pgrep -P "$1")"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }

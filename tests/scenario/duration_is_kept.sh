@@ -8,7 +8,7 @@ mkfifo "$out/never"
 
 lasts() {  # NAME SECONDS ACCOUNTING [WORLD]: exactly so long, and nobody has failed
   printf '%s\n' "duration: $2s" "${4:-}" "robots: {r: {clients: {$clients}}}" >"$out/$1.yaml"
-  timeout 60 "$tcsim" run "$out/$1.yaml" --accounting "$3" --out "$out/run" >"$out/said" 2>&1 ||
+  timeout 60 "$tcsim" run "$out/$1.yaml" --accounting "$3" --sync "${sync:-consistent}" --out "$out/run" >"$out/said" 2>&1 ||
     fail "$1 $3: status $?: $(cat "$out/said")"
   python3 - "$out/run/summary.json" "$2" <<'PY' || fail "$1 $3: $(cat "$out/said")"
 import json, sys
@@ -37,6 +37,11 @@ for accounting in measured fixed; do
   clients=$sleeping lasts sleeping 5.25 "$accounting" "$world"
 done
 clients="$waiting, $computing" lasts computing 1.5 measured
+# Also where the world waits for who computes: for so long, and no longer.
+looking='looks: {command: [python3, -c, "import time\nwhile True: time.monotonic()"]}'
+clients="$waiting, $computing" sync=callback lasts held_up 1.5 measured "$world"
+grep -q 'r/busy has computed for 10 s at one instant' "$out/said" || fail "$(cat "$out/said")"
+clients="$sleeping, $looking" sync=callback lasts held_up 1.5 fixed
 
 # It ends earlier where all programs have ended.
 clients='a: {command: [sh, -c, "for i in 1 2 3; do sleep 1; echo $i; done"]}'

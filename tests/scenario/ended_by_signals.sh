@@ -69,16 +69,14 @@ done
 # Several at the same moment are one: to tcsim, to its group, and while it cannot look.
 for times in 1 2 3; do
   begun "${run[@]}"
-  coordinator=$(pgrep -P "$tcsim_pid")
+  coordinator=$(coordinator_of "$tcsim_pid")
   case $times in
     1) kill -TERM "$tcsim_pid" && kill -TERM "$tcsim_pid" && kill -INT "$tcsim_pid" "$coordinator" ;;
     2) kill -INT "$tcsim_pid" "$coordinator" && kill -TERM "$coordinator" "$tcsim_pid" ;;
     3)
       kill -STOP "$coordinator"
       kill -TERM "$coordinator" && kill -INT "$coordinator" && kill -HUP "$coordinator"
-      # tcsim stops with its coordinator, and goes on before it.
-      for _ in $(seq 200); do grep -q 'State:.T' "/proc/$tcsim_pid/status" && break; sleep 0.1; done
-      kill -CONT "$tcsim_pid"
+      # Its keeper makes it go on.
       ;;
   esac
   status=0

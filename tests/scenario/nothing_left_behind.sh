@@ -8,10 +8,11 @@ trap 'pkill -9 -f "$mark" || true' EXIT
 shared_before=$(ls /dev/shm | wc -l)
 
 tcsim_pid() { echo "$tcsim_pid"; }
-coordinator_pid() { pgrep -P "$tcsim_pid"; }
+keeper_pid() { pgrep -P "$tcsim_pid"; }
+coordinator_pid() { coordinator_of "$tcsim_pid"; }
 client_pid() { pgrep -P "$(coordinator_pid)" -f "^sh -c"; }
 
-for victim in tcsim_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
+for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
   "$tcsim" exec -- sh -c "$program" 2>/dev/null &
   tcsim_pid=$!
   for _ in $(seq 100); do

@@ -41,7 +41,7 @@ for _ in $(seq 200); do
   [[ -e $bag/metadata.yaml && $(sed -n 's/^  message_count: //p' "$bag/metadata.yaml") -gt 500 ]] && break
   sleep 0.1
 done
-kill -9 "$(pgrep -P "$run")"
+kill -9 "$(coordinator_of "$run")"
 wait "$run" 2>/dev/null || true
 run=
 check cut-off "$out/killed"

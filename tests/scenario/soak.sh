@@ -26,7 +26,7 @@ shared_before=$(ls /dev/shm | wc -l)
 run=$!
 # How many descriptors and threads the coordinator has, over its life.
 while kill -0 "$run" 2>/dev/null; do
-  coordinator=$(pgrep -P "$run" | head -1 || true)
+  coordinator=$(coordinator_of "$run" 2>/dev/null | head -1 || true)
   if [[ -n $coordinator ]]; then
     ls "/proc/$coordinator/fd" 2>/dev/null | wc -l >>"$out/descriptors" || true
     ls "/proc/$coordinator/task" 2>/dev/null | wc -l >>"$out/threads" || true

@@ -7,9 +7,9 @@ shared_before=$(ls /dev/shm | wc -l)
 victims() {  # what to kill of the call whose process is $1
   case $2 in
     guardian) echo "$1" ;;
-    trials) pgrep -P "$1" ;;
-    both) echo "$1 $(pgrep -P "$1")" ;;
-    run) pgrep -P "$(pgrep -P "$1")" ;;
+    trials) coordinator_of "$1" ;;
+    both) echo "$1 $(coordinator_of "$1")" ;;
+    run) pgrep -P "$(coordinator_of "$1")" ;;
   esac
 }
 for victim in guardian:KILL trials:KILL both:KILL guardian:TERM guardian:HUP; do
@@ -31,5 +31,5 @@ for _ in $(seq 300); do pgrep -f "python.*$mark" >/dev/null && break; sleep 0.1;
 kill -KILL "$(victims "$call" run)"
 status=0; wait "$call" || status=$?
 ((status == 1)) || fail "exit status $status: $(cat "$out/said")"
-grep -q 'seed 1 failed: .*signal 9' "$out/said" || fail "$(cat "$out/said")"
+grep -q 'seed 1 failed: .*was killed' "$out/said" || fail "$(cat "$out/said")"
 nothing_is_left run

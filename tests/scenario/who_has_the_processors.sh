@@ -22,6 +22,15 @@ done
 [[ $(wc -l <"$out/stderr") == 1 ]] || fail "not one line: $(cat "$out/stderr")"
 grep -Eq '^tcsim: other runs of tcsim have the processors \(CPU [0-9]+: pid [0-9]+, for [0-9]+ s: .*; wait for one of them, or run without --no-wait$' \
   "$out/stderr" || fail "$(cat "$out/stderr")"
+# So do trials.
+printf '%s\n' 'duration: 1s' 'robots: {r: {clients: {c: {command: ["true"]}}}}' >"$out/s.yaml"
+status=0
+timeout 20 "$tcsim" trials "$out/s.yaml" --trials 2 --no-wait --out "$out/trials" \
+  >"$out/stdout" 2>"$out/stderr" || status=$?
+((status == 2)) || fail "trials: exit status $status instead of 2: $(cat "$out/stderr")"
+grep -Eq '^tcsim: other runs of tcsim have the processors .*; wait for one of them, or run without --no-wait$' \
+  "$out/stderr" || fail "trials: $(cat "$out/stderr")"
+[[ ! -e $out/trials/seed-0001 ]] || fail "a trial was begun"
 # Who waits says the same, and goes on when there is one.
 timeout 60 "$tcsim" exec -- true 2>"$out/waited" &
 waiter=$!

@@ -35,8 +35,8 @@ struct Received {
 class Client {
  public:
   Client(Hub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
-    void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED, hub.fd(),
-                    static_cast<off_t>((number_ - 1) * shm::kDdsAreaSize));
+    void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED,
+                    hub.AreaOf(number_), 0);
     area_ = static_cast<char*>(at);
   }
   ~Client() { munmap(area_, shm::kDdsAreaSize); }

@@ -26,8 +26,8 @@ using Number = Hub::Number;
 class Peer {
  public:
   Peer(Hub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
-    void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED, hub.fd(),
-                    static_cast<off_t>((number_ - 1) * shm::kDdsAreaSize));
+    void* at = mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED,
+                    hub.AreaOf(number_), 0);
     area_ = static_cast<char*>(at);
   }
   ~Peer() { munmap(area_, shm::kDdsAreaSize); }
@@ -296,14 +296,27 @@ TEST(DdsHub, NobodyIsSentToWhoNeverWas) {
               HasSubstr("to a process that does not exist, 3"));
 }
 
-TEST(DdsHub, TheFileOfTheAreasCannotBeCutOff) {
+TEST(DdsHub, AnAreaCannotBeCutOff) {
   Hub hub;
   Peer a(hub, 0);
-  EXPECT_EQ(ftruncate(hub.fd(), 0), -1);
+  EXPECT_EQ(ftruncate(hub.AreaOf(a.number()), 0), -1);
   EXPECT_EQ(errno, EPERM);
-  EXPECT_EQ(fcntl(hub.fd(), F_ADD_SEALS, F_SEAL_GROW), -1);
-  Peer b(hub, 0);
-  EXPECT_NE(b.number(), 0u) << "it grows still";
+  EXPECT_EQ(fcntl(hub.AreaOf(a.number()), F_ADD_SEALS, F_SEAL_WRITE), -1);
+}
+
+TEST(DdsHub, EachProcessHasAFileOfItsOwn) {
+  Hub hub;
+  Peer a(hub, 0), b(hub, 0);
+  EXPECT_EQ(hub.AreaOf(0), -1);
+  EXPECT_EQ(hub.AreaOf(b.number() + 1), -1);
+  struct stat of_a {
+  }, of_b{};
+  ASSERT_EQ(fstat(hub.AreaOf(a.number()), &of_a), 0);
+  ASSERT_EQ(fstat(hub.AreaOf(b.number()), &of_b), 0);
+  EXPECT_NE(of_a.st_ino, of_b.st_ino);
+  EXPECT_EQ(of_a.st_size, static_cast<off_t>(shm::kDdsAreaSize));
+  hub.Leave(a.number(), 1);
+  EXPECT_EQ(hub.AreaOf(a.number()), -1);
 }
 
 TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
@@ -342,10 +355,14 @@ TEST(DdsHub, FillsAnInboxAsFarAsItReaches) {
 TEST(DdsHub, ALargeSampleComesAloneAndItsMemoryIsGivenBack) {
   Hub hub;
   Peer a(hub, 0), b(hub, 0);
-  const auto held = [&hub] {
-    struct stat status {};
-    fstat(hub.fd(), &status);
-    return static_cast<std::size_t>(status.st_blocks) * 512;
+  const auto held = [&] {
+    std::size_t bytes = 0;
+    for (const Peer* peer : {&a, &b}) {
+      struct stat status {};
+      fstat(hub.AreaOf(peer->number()), &status);
+      bytes += static_cast<std::size_t>(status.st_blocks) * 512;
+    }
+    return bytes;
   };
   DdsMessage large = Sized(Message(DdsKind::kSample, 1), shm::kDdsUsualSize * 3);
   EXPECT_EQ(a.Send(1, {Message(DdsKind::kSample, 1)}), "");

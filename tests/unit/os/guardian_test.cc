@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace tcs {
 namespace {
@@ -75,6 +80,126 @@ TEST(Guardian, OneThatDoesNotStopIsKilled) {
   const int status = StatusOf(guardian);
   EXPECT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGKILL);
+}
+
+TEST(Guardian, ACoordinatorThatIsStoppedGoesOn) {
+  const int status = StatusOf(Guard(
+      [] {
+        raise(SIGSTOP);
+        return 3;
+      },
+      {}));
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+}
+
+// What those processes tell that only they know.
+int g_told[2];
+
+void Tell(pid_t pid) { EXPECT_EQ(write(g_told[1], &pid, sizeof pid), ssize_t{sizeof pid}); }
+
+pid_t Told() {
+  pid_t pid = -1;
+  EXPECT_EQ(read(g_told[0], &pid, sizeof pid), ssize_t{sizeof pid});
+  return pid;
+}
+
+// Tells of itself, and of a child that has left it for good.
+int LiveOn() {
+  if (fork() == 0) {
+    setsid();
+    if (fork() != 0) _exit(0);
+    for (const int signal : {SIGTERM, SIGHUP, SIGINT}) ::signal(signal, SIG_IGN);
+    Tell(getpid());
+    for (;;) pause();
+  }
+  Tell(getpid());
+  for (;;) pause();
+  return 0;
+}
+
+bool EndsSoon(pid_t pid) {
+  for (int turn = 0; turn < 500; ++turn) {
+    if (kill(pid, 0) != 0) return true;
+    usleep(20'000);
+  }
+  return false;
+}
+
+pid_t ParentOf(pid_t pid) {
+  char path[64], text[512] = {};
+  snprintf(path, sizeof path, "/proc/%d/stat", pid);
+  FILE* file = fopen(path, "re");
+  if (file == nullptr) return -1;
+  const std::size_t n = fread(text, 1, sizeof text - 1, file);
+  fclose(file);
+  const char* end = n > 0 ? strrchr(text, ')') : nullptr;
+  return end == nullptr ? -1 : atoi(end + 4);
+}
+
+// Of the two that LiveOn tells of: the coordinator, whose parent is the keeper.
+class WhoeverIsKilled : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(pipe(g_told), 0);
+    guardian_ = fork();
+    if (guardian_ == 0) {
+      setpgid(0, 0);
+      close(STDERR_FILENO);
+      _exit(RunGuarded(LiveOn, {.look_every_s = 1, .stop_within_s = 1}));
+    }
+    const pid_t one = Told(), other = Told();
+    const bool first = ParentOf(ParentOf(one)) == guardian_ && getpgid(one) == guardian_;
+    coordinator_ = first ? one : other;
+    far_child_ = first ? other : one;
+    keeper_ = ParentOf(coordinator_);
+  }
+  void TearDown() override {
+    EXPECT_TRUE(EndsSoon(coordinator_)) << coordinator_;
+    EXPECT_TRUE(EndsSoon(far_child_)) << far_child_;
+    EXPECT_TRUE(EndsSoon(keeper_)) << keeper_;
+    close(g_told[0]);
+    close(g_told[1]);
+  }
+
+  pid_t guardian_ = -1, keeper_ = -1, coordinator_ = -1, far_child_ = -1;
+};
+
+TEST_F(WhoeverIsKilled, TheGuardian) {
+  kill(guardian_, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+TEST_F(WhoeverIsKilled, TheKeeper) {
+  kill(keeper_, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+TEST_F(WhoeverIsKilled, TheCoordinator) {
+  kill(coordinator_, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+TEST_F(WhoeverIsKilled, TheWholeJob) {
+  kill(-guardian_, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+TEST_F(WhoeverIsKilled, TheGuardianOfAStoppedCoordinator) {
+  kill(coordinator_, SIGSTOP);
+  kill(guardian_, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+TEST_F(WhoeverIsKilled, ACoordinatorThatATracerHolds) {
+  ASSERT_EQ(ptrace(PTRACE_SEIZE, coordinator_, nullptr, nullptr), 0);
+  ASSERT_EQ(ptrace(PTRACE_INTERRUPT, coordinator_, nullptr, nullptr), 0);
+  int status = 0;
+  EXPECT_EQ(waitpid(coordinator_, &status, __WALL), coordinator_);
+  // Its end is the tracer's to see first.
+  EXPECT_EQ(waitpid(coordinator_, &status, __WALL), coordinator_);
+  EXPECT_TRUE(WIFSIGNALED(status)) << status;
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
 }
 
 }  // namespace

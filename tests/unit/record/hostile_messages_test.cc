@@ -27,9 +27,8 @@ using shm::DdsMessage;
 class Program {
  public:
   Program(Hub& hub, std::int64_t now_ns) : hub_(hub), number_(hub.Join(now_ns)) {
-    area_ =
-        static_cast<char*>(mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED,
-                                hub.fd(), static_cast<off_t>((number_ - 1) * shm::kDdsAreaSize)));
+    area_ = static_cast<char*>(mmap(nullptr, shm::kDdsAreaSize, PROT_READ | PROT_WRITE, MAP_SHARED,
+                                    hub.AreaOf(number_), 0));
   }
   ~Program() { munmap(area_, shm::kDdsAreaSize); }
   Program(const Program&) = delete;

@@ -64,6 +64,16 @@ TEST(ClockPage, StolenTimeIsTakenOutAndCounted) {
   EXPECT_FALSE(IsCheckDue(page, ReadClockAt(page, 1'000)));
 }
 
+TEST(ClockPage, WhatNoClockTellsOfIsTakenOutOfBoth) {
+  Page page(0);
+  RemoveUntold(page, ReadClockAt(page, 1'000), 700);
+  EXPECT_EQ(ReadClockAt(page, 1'000).cpu_ns, 300);
+  EXPECT_EQ(page.stolen_ns, 700);
+  ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 1'500), 1'500));  // it is on the CPU clock
+  EXPECT_EQ(ReadClockAt(page, 1'500).cpu_ns, 800);
+  EXPECT_EQ(page.stolen_ns, 700);
+}
+
 TEST(ClockPage, WhatTheTscMissedIsAdded) {
   Page page(0);
   ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 1'000), 1'300));

@@ -11,12 +11,12 @@ namespace {
 
 TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
   EXPECT_EQ(kVersion, 11u);
-  EXPECT_EQ(sizeof(SegmentHeader), 128u);
+  EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1024u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
-  EXPECT_EQ(offsetof(SegmentHeader, accounting), 24u);
-  EXPECT_EQ(offsetof(SegmentHeader, shutdown), 28u);
-  EXPECT_EQ(offsetof(SegmentHeader, sync), 52u);
+  EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
+  EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
+  EXPECT_EQ(offsetof(RunHeader, sync), 52u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
@@ -25,16 +25,14 @@ TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
   EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
-  EXPECT_EQ(offsetof(ThreadSlot, receipts), 568u);
+  EXPECT_EQ(offsetof(ThreadSlot, ipc_notes), 568u);
+  EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
 }
 
-TEST(Layout, SlotsFollowTheHeaderWithoutAGap) {
-  alignas(64) static char segment[sizeof(SegmentHeader) + 2 * sizeof(ThreadSlot)];
-  auto* header = reinterpret_cast<SegmentHeader*>(segment);
-  EXPECT_EQ(reinterpret_cast<char*>(SlotAt(header, 0)), segment + 128);
-  EXPECT_EQ(reinterpret_cast<char*>(SlotAt(header, 1)), segment + 128 + 1024);
-  EXPECT_EQ(kIpcTimesAt, 128u + 4096u * 1024u);
-  EXPECT_EQ(kSegmentSize, 128u + 4096u * 1024u + 4096u * 32u);
+TEST(Layout, TheRunsMemoryIsTheHeaderAndTheTimesOfSystemVObjects) {
+  EXPECT_EQ(offsetof(RunMemory, ipc_times), 128u);
+  EXPECT_EQ(sizeof(RunMemory), 128u + 4096u * 32u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 1024u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {

@@ -1,0 +1,211 @@
+// Threads that register themselves (shm/attach_protocol.h). Whoever can connect can say anything:
+// what the kernel says of it is what counts.
+#include <errno.h>
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+namespace {
+
+// Who has connected says at once what it wants. Of those who do not the earliest are cut off.
+constexpr std::size_t kMostSilent = 256;
+
+shm::AttachReply NewReply() {
+  shm::AttachReply reply{};
+  reply.magic = shm::kMagic;
+  reply.version = shm::kVersion;
+  return reply;
+}
+
+// The connection never waits: a client that does not read has lost the answer.
+void Send(int connection, shm::AttachReply reply, std::span<const int> fds) {
+  iovec iov{&reply, sizeof reply};
+  alignas(cmsghdr) char control[CMSG_SPACE(shm::kMostAttachFds * sizeof(int))] = {};
+  msghdr message{};
+  message.msg_iov = &iov;
+  message.msg_iovlen = 1;
+  if (!fds.empty()) {
+    message.msg_control = control;
+    message.msg_controllen = CMSG_SPACE(fds.size_bytes());
+    cmsghdr* header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(fds.size_bytes());
+    memcpy(CMSG_DATA(header), fds.data(), fds.size_bytes());
+  }
+  sendmsg(connection, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void Refuse(int connection, const char* why) {
+  shm::AttachReply reply = NewReply();
+  reply.refused = 1;
+  strncpy(reply.text, why, sizeof reply.text - 1);
+  Send(connection, reply, {});
+}
+
+}  // namespace
+
+void Engine::Accept(const Listener& listener) {
+  const int connection = accept4(listener.fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (connection < 0) return;
+  if (connections_.size() == kMostSilent) {
+    close(connections_.front().fd);
+    connections_.pop_front();
+  }
+  connections_.push_back({connection, listener.client});
+  Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection));
+}
+
+// The thread that registers: known already (a client, an announced child), a further thread of a
+// known process, or a process that nobody announced. If whoever made it has ended, it is at least
+// known which client's descendant it is: by the socket that it has come to.
+Task* Engine::TaskFor(pid_t pid, pid_t tid, Process& client) {
+  if (Task* known = KnownTask(tid); known != nullptr) {
+    if (known->process->pid == pid) return known;
+    EndTask(*known);  // its number is another's now
+  }
+  if (Process* known = LivingProcess(pid); known != nullptr) return AddThread(*known, tid);
+  const pid_t parent_pid = ParentOf(pid);
+  const Process* parent = LivingProcess(parent_pid);
+  return NewChild(pid, parent_pid, parent != nullptr ? *parent : client);
+}
+
+// A thread that executes another program becomes its process's first one; all others have ended,
+// and nobody else says so. False where they have not: it has executed nothing.
+bool Engine::EndThreadsLostInExec(pid_t pid) {
+  Task* first = KnownTask(pid);
+  Process* of = LivingProcess(pid);
+  if (of == nullptr || of->threads == 1) return true;
+  const std::vector<Task*> threads = of->robot->tasks;
+  const bool lives_on = std::any_of(threads.begin(), threads.end(), [&](const Task* task) {
+    return task->process == of && task != first && IsThreadOf(pid, task->tid) &&
+           !IsDying(task->tid);
+  });
+  if (lives_on) return false;
+  const bool by_another = running_ != nullptr && running_ != first && running_->process == of;
+  if (by_another) {
+    Settle(*running_);
+    event_ns_ = running_->reached_ns;
+  }
+  for (Task* task : threads) {
+    if (task->process != of || task == first) continue;
+    EndTask(*task);
+    WakeThoseWaitingFor(*task);
+  }
+  of->has_strangers = false;
+  if (first == nullptr || !by_another) return true;
+  of->ended.NoteChangedClocks();
+  // The processor clock under its number is another thread's from now on.
+  if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
+  first->host_origin_ns =
+      HostClockOf(*first) -
+      static_cast<std::int64_t>(static_cast<double>(first->charged_ns) * of->robot->speed);
+  return true;
+}
+
+void Engine::GiveDdsArea(int connection, pid_t pid) {
+  const Process* process = LivingProcess(pid);
+  const int fd = process == nullptr ? -1 : hub_.AreaOf(process->dds_number);
+  if (fd < 0) return Refuse(connection, "it has not joined");
+  Send(connection, NewReply(), std::span(&fd, 1));
+}
+
+// True if the running thread has to be stopped.
+bool Engine::Attach(int connection, Process& client) {
+  shm::AttachHello hello{};
+  const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
+  if (n <= 0) return false;  // it has gone
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  if (n != sizeof hello || hello.magic != shm::kMagic || hello.version != shm::kVersion ||
+      hello.pid != peer.pid) {
+    Refuse(connection, "it comes from another version of tcs");
+    return false;
+  }
+  if (hello.wants == shm::AttachWants::kDdsArea) {
+    GiveDdsArea(connection, hello.pid);
+    return false;
+  }
+  const bool is_known = LivingProcess(hello.pid) != nullptr;
+  if (!IsThreadOf(hello.pid, hello.tid) || (!is_known && !DescendsFrom(hello.pid, getpid()))) {
+    Refuse(connection, "it was not started there");
+    return false;
+  }
+  const Task* stranger = KnownTask(hello.tid);
+  const bool is_anothers =
+      stranger != nullptr && stranger == running_ && stranger->process->pid != hello.pid;
+  if (is_anothers || (hello.tid == hello.pid && !EndThreadsLostInExec(hello.pid))) {
+    Refuse(connection, "it has a place there already");
+    return false;
+  }
+  Task& task = *TaskFor(hello.pid, hello.tid, client);
+  Process& process = *task.process;
+  const bool wants_all = hello.wants == shm::AttachWants::kAll;
+  if (process.expelled) return false;
+  if (process.link == nullptr && wants_all) {
+    process.link = ProcessLink::Make();
+    if (process.link != nullptr) {
+      Watch(process.link->incoming_fd(), EPOLLIN, Tag::kPipe, process.index);
+    }
+  }
+  if (process.link == nullptr ||
+      (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0)) {
+    Refuse(connection, "there is no room for more threads");
+    return true;
+  }
+  task.slot_memory = &process.link->SlotAt(task.slot);
+  if (&task != running_) {
+    SetLevel(task.tid, Level::kWaiting);
+    task.level = Level::kWaiting;
+  }
+  if (hello.tid == hello.pid) {  // a new process; or it has executed another program
+    DeletePosixTimers(process);
+    LeaveDds(process);
+  }
+  PlaceAtGate(task);
+  shm::AttachReply reply = NewReply();
+  reply.slot = static_cast<std::uint32_t>(task.slot);
+  const int fds[shm::kMostAttachFds] = {memfd_, process.link->memory_fd(),
+                                        process.link->notify_fd()};
+  Send(connection, reply, wants_all ? std::span<const int>(fds) : std::span<const int>());
+  return true;
+}
+
+// Ready for its first dispatch; or for the first of another program.
+void Engine::PlaceAtGate(Task& task) {
+  shm::ThreadSlot& slot = Slot(task);
+  slot.pid = task.process->pid;
+  slot.tid = task.tid;
+  slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
+  slot.seed = scenario_.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
+  slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
+  slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
+  slot.signals.store(0);
+  slot.receipts.count.store(0);
+  shm::NoteStarted(slot.receipts);
+  slot.gate.store(shm::kGateClosed);
+  LeaveWait(task);
+  task.early_trap.reset();
+  task.trap_id = 0;
+  task.notified_early = false;
+  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
+  SetState(task, TaskState::kReady);
+  task.parked = true;
+  task.reason = shm::WakeReason::kGo;
+  Refresh(*task.process->robot);
+}
+
+}  // namespace tcs

@@ -1,0 +1,68 @@
+// Threads on the run's CPU that tcs knows nothing of: made by a bare clone that nobody has
+// announced, or computing on after they have said that they end. They have the level of the thread
+// that made them. One that computes for ever there would keep the CPU from those that are
+// dispatched.
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/strays.h"
+
+namespace tcs {
+
+namespace {
+
+// Of processor time: for so long time waits for a thread that has no level any more.
+constexpr std::int64_t kCountsNs = 1'000'000'000;
+
+std::int64_t ClockOf(pid_t tid) {
+  const int clock = OpenThreadCpuClock(tid);
+  if (clock < 0) return -1;
+  const std::int64_t ns = ReadThreadCpuClock(clock);
+  close(clock);
+  return ns;
+}
+
+bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0; }
+
+}  // namespace
+
+// The dispatched thread has not had the CPU for a while.
+void Engine::LowerUnknownThreads() {
+  for (const pid_t tid : RealTimeThreadsOn(claim_.cpu, most_pids_)) {
+    if (KnownTask(tid) != nullptr || tid == detector_ || IsOwnThread(tid)) continue;
+    Lower(tid);
+  }
+}
+
+void Engine::Lower(pid_t tid) {
+  LeaveRealTime(tid);
+  lowered_[tid] = ClockOf(tid) + kCountsNs;
+  const Process* process = LivingProcess(ProcessOfThread(tid));
+  Warn((process == nullptr ? "a process that " + NameOfMakerOf(tid) + " has started"
+                           : "a thread of " + process->name) +
+       " computes on and on, and tcs was told nothing of it, or that it ends; it is not scheduled "
+       "any more, and gets what others leave");
+}
+
+// A thread of a process that has registered does so itself before it computes anything.
+bool Engine::NeverRegisters(Task& task) {
+  return task.process->link != nullptr && HostClockOf(task) > kCountsNs;
+}
+
+// It has had its time, and is not waited for any more.
+bool Engine::IsAstray(pid_t tid) const {
+  const auto found = lowered_.find(tid);
+  if (found == lowered_.end()) return false;
+  const std::int64_t used_ns = ClockOf(tid);
+  return used_ns < 0 || used_ns > found->second;
+}
+
+std::string Engine::NameOfMakerOf(pid_t tid) {
+  const Process* maker = LivingProcess(ParentOf(ProcessOfThread(tid)));
+  return maker == nullptr ? "a program of the run" : maker->name;
+}
+
+}  // namespace tcs

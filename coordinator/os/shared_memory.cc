@@ -1,0 +1,43 @@
+#include "coordinator/os/shared_memory.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace tcs {
+
+namespace {
+
+constexpr int kSealFutureWrite = 0x0010;  // F_SEAL_FUTURE_WRITE, of Linux 5.1
+
+// Sealed only once it is mapped, for then nobody else maps it for writing.
+SharedMemory Make(const char* name, std::size_t size, int seals) {
+  const int fd = memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  if (fd < 0) return {};
+  if (fchmod(fd, 0600) == 0 && ftruncate(fd, static_cast<off_t>(size)) == 0) {
+    void* at = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    if (at != MAP_FAILED) {
+      if (fcntl(fd, F_ADD_SEALS, seals) == 0) return {fd, at};
+      munmap(at, size);
+    }
+  }
+  const int error = errno;
+  close(fd);
+  errno = error;
+  return {};
+}
+
+}  // namespace
+
+SharedMemory MakeSharedMemory(const char* name, std::size_t size) {
+  return Make(name, size, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL);
+}
+
+SharedMemory MakePublishedMemory(const char* name, std::size_t size) {
+  return Make(name, size, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL | kSealFutureWrite);
+}
+
+}  // namespace tcs

@@ -1,0 +1,45 @@
+// Does the same work again and again, and prints what it was charged for one piece: the median and
+// the most, in µs.
+//
+//   steady_worker short COUNT  some 100 µs of it, then sleeps 0.1 ms
+//   steady_worker long COUNT   some ms of it, without looking at a clock
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace {
+
+double ChargedUs() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
+}
+
+void Work(int loops) {
+  volatile int sum = 0;
+  for (int i = 0; i < loops; ++i) sum = sum + i;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const bool is_short = strcmp(argv[1], "short") == 0;
+  fprintf(stderr, "%d\n", getpid());
+  std::vector<double> charged;
+  for (int i = atoi(argv[2]); i > 0; --i) {
+    const double before = ChargedUs();
+    Work(is_short ? 300'000 : 10'000'000);
+    charged.push_back(ChargedUs() - before);
+    if (is_short) usleep(100);
+  }
+  std::sort(charged.begin(), charged.end());
+  printf("%.0f %.0f\n", charged[charged.size() / 2], charged.back());
+  return 0;
+}

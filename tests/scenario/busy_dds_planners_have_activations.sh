@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# A planner whose next DDS sample is always there has an activation for each one that it takes, though
+# it never waits, however it takes them; one that only reads samples has none for that.
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+kinds=(taking waiting loaned reading draining)
+{
+  echo "duration: 3s"
+  echo "robots:"
+  for kind in source "${kinds[@]}"; do
+    echo "  $kind: {clients: {c: {command: ['$build/bin/dds_planner', $kind]}}}"
+  done
+} >"$out/scenario.yaml"
+timeout 80 "$tcsim" run "$out/scenario.yaml" --out "$out/out" >"$out/said" 2>"$out/stderr" ||
+  fail "$(cat "$out/stderr")"
+for kind in "${kinds[@]}"; do
+  grep -q done "$out/out/$kind-c.out.log" || fail "$kind: $(cat "$out/out/$kind-c".*.log)"
+done
+python3 - "$out/out" <<'PY' || fail "$(cat "$out/said")"
+import csv, sys
+COUNT = 30
+rows = {}
+for row in csv.DictReader(open(sys.argv[1] + "/activations.csv")):
+    # Of the programs' first threads, from the first sample on.
+    if row["thread"] == "0" and row["cause"] == "input" and int(row["start_ns"]) >= 500_000_000:
+        rows.setdefault(row["client"], []).append(row)
+print({client: len(of) for client, of in rows.items()})
+for kind in ("taking", "waiting", "loaned"):
+    got = rows[kind + "/c"]
+    assert COUNT - 1 <= len(got) <= COUNT + 1, (kind, len(got))
+    for row in got[1:-1]:
+        assert 14_000_000 < int(row["charged_ns"]) < 40_000_000, (kind, row)
+        assert int(row["release_ns"]) <= int(row["start_ns"]) < int(row["end_ns"]), (kind, row)
+# The one with its first wait's end, and then it computes on and on.
+assert len(rows["reading/c"]) <= 2, len(rows["reading/c"])
+assert COUNT - 1 <= len(rows["draining/c"]) <= COUNT + 1, len(rows["draining/c"])
+PY

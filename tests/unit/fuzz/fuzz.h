@@ -1,0 +1,24 @@
+// The kinds of input that are damaged.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace tcs::fuzz {
+
+// Numbers of what became of damaged inputs, and of those that it went wrong with.
+struct Tally {
+  int taken = 0, refused = 0, wrong = 0;
+};
+
+// Scenario files: loaded, but not run. A refusal begins with the file and the line.
+Tally FuzzScenarios(int count, std::uint64_t seed);
+
+// Result folders: made into a page. A refusal names the folder.
+Tally FuzzResults(int count, std::uint64_t seed);
+
+// Says on stderr what went wrong, and keeps the input as a file that it names.
+void SayWrong(const std::string& what, int number, const std::string& wrong,
+              const std::string& input);
+
+}  // namespace tcs::fuzz

@@ -1,0 +1,36 @@
+// tcs_fuzz scenarios|results COUNT SEED: 0 if all damaged inputs were taken or refused in order.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "tests/unit/fuzz/fuzz.h"
+
+namespace tcs::fuzz {
+
+void SayWrong(const std::string& what, int number, const std::string& wrong,
+              const std::string& input) {
+  const std::string path = "/tmp/tcs_fuzz_" + what + "_" + std::to_string(number);
+  std::ofstream(path, std::ios::binary) << input;
+  std::fprintf(stderr, "%s %d: %s; the input is in %s\n", what.c_str(), number, wrong.c_str(),
+               path.c_str());
+}
+
+}  // namespace tcs::fuzz
+
+int main(int argc, char** argv) {
+  using tcs::fuzz::Tally;
+  const bool scenarios = argc > 1 && strcmp(argv[1], "scenarios") == 0;
+  if (!scenarios && (argc < 2 || strcmp(argv[1], "results") != 0)) {
+    std::fprintf(stderr, "usage: tcs_fuzz scenarios|results COUNT SEED\n");
+    return 2;
+  }
+  const int count = argc > 2 ? atoi(argv[2]) : 300;
+  const std::uint64_t seed = argc > 3 ? strtoull(argv[3], nullptr, 10) : 1;
+  const Tally tally =
+      scenarios ? tcs::fuzz::FuzzScenarios(count, seed) : tcs::fuzz::FuzzResults(count, seed);
+  std::printf("%d taken, %d refused, %d wrong\n", tally.taken, tally.refused, tally.wrong);
+  // Damage that never, or always, is noticed would show that this does not do what it says.
+  return tally.wrong == 0 && tally.taken > 0 && tally.refused > 0 ? 0 : 1;
+}

@@ -1,0 +1,215 @@
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <system_error>
+#include <variant>
+#include <vector>
+
+#include "coordinator/os/visible.h"
+#include "coordinator/report/page.h"
+#include "coordinator/report/read_results.h"
+#include "coordinator/report/write.h"
+#include "tests/unit/fuzz/attempt.h"
+#include "tests/unit/fuzz/fuzz.h"
+#include "tests/unit/fuzz/mutate.h"
+
+namespace tcs::fuzz {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using Files = std::map<std::string, std::string>;
+
+constexpr char kSummary[] = R"({
+  "scenario": "chase", "seed": 1, "set": [], "accounting": "measured", "sync": "consistent",
+  "engine": "simbody", "interrupted": false, "duration_ns": 2000000000, "virtual_ns": 2000000000,
+  "real_ns": 4000000000, "drift_ns": 1000000, "drift_bound_ns": 1000000, "staleness_ns": 0,
+  "lateness_ns": 3000, "clients_ns": 3000000000, "dynamics_ns": 800000000,
+  "coordinating_ns": 100000000, "overhead_percent": 2.5, "dispatches": 7, "samples": 9,
+  "commands": 3, "warnings": ["a warning"], "robots": {"r": {"cores": 1, "speed": 1.0}},
+  "clients": {
+    "r/planner": {"robot": "r", "class": "best-effort", "priority": 1, "charged_ns": 1000000000,
+      "host_cpu_ns": 1, "stolen_ns": 5, "activations": 2, "overruns": 0, "ended_at_ns": -1,
+      "wait_status": 0},
+    "r/controller": {"robot": "r", "class": "periodic", "priority": 9, "charged_ns": 20000000,
+      "host_cpu_ns": 1, "stolen_ns": 5, "activations": 20, "overruns": 1, "ended_at_ns": -1,
+      "wait_status": 0}}
+})";
+
+std::string Bodies() {
+  std::string text = "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps\n";
+  for (int i = 0; i < 50; ++i) {
+    const std::string time = std::to_string(i * 0.01);
+    text += time + ",a,0,0,0,0,0,0,1,0\n" + time + ",b,0," + std::to_string(9.0 - i) +
+            ",0,0,0,0,1,0\n" + time + ",c,1,0,0,0,0,0,1,0\n";
+  }
+  return text;
+}
+
+Files RunFiles(const std::string& folder) {
+  std::string activations = "client,thread,cause,release_ns,start_ns,end_ns,charged_ns\n";
+  std::string dispatches = "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::string start = std::to_string(i * 1'000'000),
+                      end = std::to_string(i * 1'000'000 + 9);
+    activations += "r/planner,0,input," + start + "," + start + "," + end + ",400000\n" +
+                   "r/controller,0,time," + start + "," + end + "," + end + ",1000\n" +
+                   "r/planner,3,thread," + start + "," + start + "," + end + ",9\n";
+    dispatches += "r/planner #3," + start + "," + end + "," + start + "," + end + "\ndynamics," +
+                  start + "," + end + "," + start + "," + end + "\n";
+  }
+  return {{folder + "/summary.json", kSummary},
+          {folder + "/bodies.csv", Bodies()},
+          {folder + "/activations.csv", activations},
+          {folder + "/dispatches.csv", dispatches},
+          {folder + "/trace.json", "{\"traceEvents\":[]}"},
+          {folder + "/tcsim.log", "tcsim: warning: so what\ntcsim: it \x1b[31mwent wrong\n"}};
+}
+
+// Of three kinds: one run, one that was cut off, and trials.
+Files SoundFolder(std::size_t kind) {
+  if (kind < 2) {
+    Files files = RunFiles("run");
+    if (kind == 1) {
+      files["run/unfinished.json"] = files["run/summary.json"];
+      files.erase("run/summary.json");
+    }
+    return files;
+  }
+  Files files = RunFiles("run/2ms/seed-0001");
+  files.merge(RunFiles("run/2ms/seed-0002"));
+  files.merge(RunFiles("run/4ms/seed-0001"));
+  files["run/trials.json"] =
+      R"({"name": "tcs", "first_seed": 1, "trials": 2,
+          "vary": {"key": "drift", "values": ["2ms", "4ms"]}})";
+  return files;
+}
+
+std::vector<std::string> Tokens() {
+  return {",",
+          "\n",
+          "\"",
+          "{",
+          "}",
+          "[",
+          "]",
+          ":",
+          "null",
+          "true",
+          "-1",
+          "0",
+          "1e308",
+          "-1e308",
+          "nan",
+          "inf",
+          "1e-320",
+          "\xff",
+          "\x1b[2J",
+          "\r\n",
+          "9223372036854775807",
+          "-9223372036854775808",
+          "99999999999999999999",
+          "1.5",
+          "\"\"",
+          "r/planner",
+          "dynamics",
+          "</script>",
+          "<b>",
+          "&",
+          "seed-",
+          "../",
+          "\\u0000",
+          "{}",
+          "[]",
+          std::string(1, '\0'),
+          std::string(5'000, '9'),
+          std::string(3'000, '['),
+          std::string(10'000, 'x')};
+}
+
+// What is in a file's place where something went wrong that is no text.
+void PutOther(Mutator* mutator, const fs::path& path) {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+  switch (mutator->Below(5)) {
+    case 0:
+      break;  // nothing
+    case 1:
+      fs::create_directory(path, ignored);
+      break;
+    case 2:
+      mkfifo(path.c_str(), 0600);
+      break;
+    case 3:
+      fs::create_symlink(path, path, ignored);  // a loop
+      break;
+    case 4:
+      fs::create_symlink("/dev/zero", path, ignored);
+      break;
+  }
+}
+
+std::string Report(const std::string& folder, const std::string& page_path, bool* refused) {
+  const auto read = report::ReadResults({folder}, {});
+  if (const auto* error = std::get_if<LoadError>(&read)) {
+    *refused = true;
+    if (error->message.find(folder) != std::string::npos) return {};
+    return "a refusal does not name the folder: " + Visible(error->message);
+  }
+  const report::Page page = report::MakePage(std::get<report::Results>(read), {"", {1.0, 5.0}});
+  std::vector<std::string> written;
+  const std::string error = report::WritePage(page, page_path, report::FigureFiles::kSvg, &written);
+  return error.empty() ? "" : "the page was not written: " + error;
+}
+
+}  // namespace
+
+Tally FuzzResults(int count, std::uint64_t seed) {
+  std::string made = fs::temp_directory_path() / "tcs_fuzz.XXXXXX";
+  const fs::path root = mkdtemp(made.data());
+  Tally tally;
+  for (int number = 0; number < count; ++number) {
+    Mutator mutator(seed * 1'000'003 + static_cast<std::uint64_t>(number), Tokens());
+    Files files = SoundFolder(mutator.Below(3));
+    std::vector<std::string> texts;
+    for (const auto& [name, text] : files) texts.push_back(text);
+    std::string damaged;
+    for (std::size_t i = 1 + mutator.Below(3); i > 0; --i) {
+      const auto file = std::next(files.begin(), static_cast<int>(mutator.Below(files.size())));
+      file->second = mutator.Damage(file->second, texts);
+      damaged += "== " + file->first + "\n" + file->second;
+    }
+    for (const auto& [name, text] : files) {
+      fs::create_directories((root / name).parent_path());
+      std::ofstream(root / name, std::ios::binary) << text;
+    }
+    if (mutator.OneIn(6)) {
+      const auto file = std::next(files.begin(), static_cast<int>(mutator.Below(files.size())));
+      PutOther(&mutator, root / file->first);
+      damaged += "== " + file->first + " is something else";
+    }
+    constexpr char kRefused[] = "refused";
+    const std::string outcome = Outcome([&] {
+      bool refused = false;
+      const std::string wrong = Report(root / "run", root / "page.html", &refused);
+      return wrong.empty() && refused ? std::string(kRefused) : wrong;
+    });
+    if (outcome.empty()) {
+      ++tally.taken;
+    } else if (outcome == kRefused) {
+      ++tally.refused;
+    } else {
+      ++tally.wrong;
+      SayWrong("results", number, outcome, damaged);
+    }
+    fs::remove_all(root / "run");
+  }
+  fs::remove_all(root);
+  return tally;
+}
+
+}  // namespace tcs::fuzz
