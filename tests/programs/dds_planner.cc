@@ -13,6 +13,7 @@
 #include <string.h>
 #include <time.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

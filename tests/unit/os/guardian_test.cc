@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 namespace tcs {
 namespace {
@@ -118,23 +119,32 @@ int LiveOn() {
   return 0;
 }
 
-bool EndsSoon(pid_t pid) {
-  for (int turn = 0; turn < 500; ++turn) {
-    if (kill(pid, 0) != 0) return true;
-    usleep(20'000);
-  }
-  return false;
-}
-
-pid_t ParentOf(pid_t pid) {
+// What /proc/PID/stat has behind the name: the state, a space, and the parent; nothing if there is
+// no such process.
+std::string StateAndParentOf(pid_t pid) {
   char path[64], text[512] = {};
   snprintf(path, sizeof path, "/proc/%d/stat", pid);
   FILE* file = fopen(path, "re");
-  if (file == nullptr) return -1;
+  if (file == nullptr) return {};
   const std::size_t n = fread(text, 1, sizeof text - 1, file);
   fclose(file);
   const char* end = n > 0 ? strrchr(text, ')') : nullptr;
-  return end == nullptr ? -1 : atoi(end + 4);
+  return end == nullptr ? "" : end + 2;
+}
+
+pid_t ParentOf(pid_t pid) {
+  const std::string stat = StateAndParentOf(pid);
+  return stat.empty() ? -1 : atoi(stat.c_str() + 2);
+}
+
+// A container's first process need not reap those whose parent has ended.
+bool EndsSoon(pid_t pid) {
+  for (int turn = 0; turn < 500; ++turn) {
+    const std::string stat = StateAndParentOf(pid);
+    if (stat.empty() || stat[0] == 'Z' || stat[0] == 'X') return true;
+    usleep(20'000);
+  }
+  return false;
 }
 
 // Of the two that LiveOn tells of: the coordinator, whose parent is the keeper.
