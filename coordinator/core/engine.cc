@@ -27,7 +27,7 @@ constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
 constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
-constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr std::int64_t kLookEveryNs = 200'000'000;
 constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
@@ -545,12 +545,17 @@ std::int64_t Engine::FurthestNs() const {
   return furthest_ns;
 }
 
-void Engine::ShowProgress() {
-  if (IsInGrace() || __rdtsc() < next_progress_tsc_) return;
-  next_progress_tsc_ =
-      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kShowEveryNs) * ticks_per_ns_);
+// What need not be looked at in each step.
+void Engine::LookAround() {
+  if (IsInGrace() || __rdtsc() < next_look_tsc_) return;
+  next_look_tsc_ =
+      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   LookAtDetector();
-  if (!options_.on_progress) return;
+  if (options_.on_progress) ShowProgress();
+  if (options_.on_notice) LookForStandstill();
+}
+
+void Engine::ShowProgress() {
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
@@ -605,7 +610,6 @@ bool Engine::Step() {
   ended_links_.clear();
   if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
-  ShowProgress();
   LookAround();
   TakeOwnMessages();
   if (StepWorld()) return true;

@@ -113,10 +113,11 @@ class Engine {
   void WaitOutside();
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
+  void LookAround();
   void ShowProgress();
 
   // What a user is told who sees nothing happen (standstill.cc).
-  void LookAround();
+  void LookForStandstill();
   void NoteStandstill(std::int64_t now_ns);
   void NoteLeftBehind(std::int64_t now_ns);
   bool AwaitsTerminal() const;
@@ -388,7 +389,7 @@ class Engine {
   void NotificationArrived(Task& task);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
-  void DetectorEnded(int signal);
+  void DetectorEnded();
   void LookAtDetector();
   void RearmDetector();
   void Accept(const Listener& listener);
@@ -557,7 +558,6 @@ class Engine {
   std::int64_t most_frozen_ns_ = 0;
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
   std::uint64_t start_tsc_ = 0;
-  std::uint64_t next_progress_tsc_ = 0;
   int shows_ = 0;
 
   struct Standstill {

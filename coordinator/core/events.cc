@@ -12,6 +12,7 @@
 #include <x86intrin.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -86,20 +87,19 @@ void Engine::RearmDetector() {
 }
 
 // Without it the first thread that waits in the kernel would make everybody wait with it.
-void Engine::DetectorEnded(int signal) {
+void Engine::DetectorEnded() {
   epoll_ctl(epoll_, EPOLL_CTL_DEL, detector_pidfd_, nullptr);
   if (header_->shutdown.load() != 0) return;
+  const std::optional<int> status = WaitStatusOf(detector_);
   report_.error = fmt::format(
       "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
       "it; what it has written until then can be read",
-      detector_, signal);
+      detector_, status.has_value() ? WTERMSIG(*status) : SIGKILL);
 }
 
 // While programs compute all the time it does not even get the processor to die.
 void Engine::LookAtDetector() {
-  constexpr std::uint64_t kKilled = std::uint64_t{1} << (SIGKILL - 1);
-  const SignalSets sets = ReadSignalSets(detector_);
-  if (((sets.own_pending | sets.shared_pending) & kKilled) != 0) DetectorEnded(SIGKILL);
+  if (IsDying(detector_)) DetectorEnded();
 }
 
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
@@ -327,7 +327,7 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
         break;
       }
       case Tag::kDetectorEnd:
-        DetectorEnded(WTERMSIG(WaitStatusOf(detector_).value_or(0)));
+        DetectorEnded();
         stop = true;
         break;
     }

@@ -4,7 +4,6 @@
 #include <sys/epoll.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <x86intrin.h>
 
 #include <algorithm>
 #include <string>
@@ -12,26 +11,25 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kLookEveryNs = 200'000'000;
 // Shorter waits for what comes from outside are usual.
 constexpr std::int64_t kPatienceNs = 5'000'000'000;
 constexpr std::size_t kMostNamed = 3;
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-std::string ProgramNameOf(pid_t pid) {
+std::string NameOf(pid_t pid) {
   const std::string program = ProgramOf(pid);
-  return program.substr(program.rfind('/') + 1);
+  return fmt::format("{} (pid {})", program.substr(program.rfind('/') + 1), pid);
 }
 
 std::string NameOf(const Process& process) {
-  if (process.is_client) return process.name;
-  return fmt::format("{} (pid {})", ProgramNameOf(process.pid), process.pid);
+  return process.is_client ? process.name : NameOf(process.pid);
 }
 
 std::string KindOf(int fd) {
@@ -40,11 +38,11 @@ std::string KindOf(int fd) {
   if (S_ISFIFO(status.st_mode)) return "a pipe";
   if (S_ISSOCK(status.st_mode)) return "a socket";
   if (S_ISCHR(status.st_mode)) return isatty(fd) ? "a terminal" : "a device";
+  if (IsAnonymous(getpid(), fd, kEpollSet)) return "an epoll set";
   char target[64] = {};
   const ssize_t size =
       readlink(fmt::format("/proc/self/fd/{}", fd).c_str(), target, sizeof target - 1);
-  const std::string name(target, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  return name == "anon_inode:[eventpoll]" ? "an epoll set" : "a " + name;
+  return "a " + std::string(target, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
 }
 
 // The first few of them, and how many more there are.
@@ -126,8 +124,7 @@ std::vector<std::string> Engine::WhatIsAwaited() const {
     if (!first.second.empty()) awaited.push_back(NameOf(process) + ' ' + first.second);
   }
   for (const auto& [pid, child] : unknown_children_) {
-    awaited.push_back(
-        fmt::format("{} (pid {}), which tcs knows nothing of, goes on", ProgramNameOf(pid), pid));
+    awaited.push_back(NameOf(pid) + ", which tcs knows nothing of, goes on");
   }
   return awaited;
 }
@@ -150,7 +147,7 @@ std::vector<std::string> Engine::ComputingStrangers() const {
     }
   }
   for (const auto& [pid, child] : unknown_children_) {
-    strangers.push_back(fmt::format("{} (pid {})", ProgramNameOf(pid), pid));
+    strangers.push_back(NameOf(pid));
   }
   return strangers;
 }
@@ -184,7 +181,7 @@ void Engine::NoteLeftBehind(std::int64_t now_ns) {
     }
   }
   for (const auto& [pid, child] : unknown_children_) {
-    left.push_back(fmt::format("{} (pid {})", ProgramNameOf(pid), pid));
+    left.push_back(NameOf(pid));
   }
   if (ended.empty() || left.empty()) return;
   if (alone_since_ns_ < 0) alone_since_ns_ = now_ns;
@@ -196,10 +193,7 @@ void Engine::NoteLeftBehind(std::int64_t now_ns) {
                   Joined(ended), Joined(left)));
 }
 
-void Engine::LookAround() {
-  if (!options_.on_notice || __rdtsc() < next_look_tsc_ || IsInGrace()) return;
-  next_look_tsc_ =
-      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+void Engine::LookForStandstill() {
   const std::int64_t now_ns = HostClockNs(CLOCK_MONOTONIC);
   if (!has_said_left_behind_ && end_ns_ == shm::kNeverNs) NoteLeftBehind(now_ns);
   if (!has_said_standstill_) NoteStandstill(now_ns);

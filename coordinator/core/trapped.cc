@@ -1,8 +1,5 @@
 // System calls of clients that the kernel hands over.
 #include <sys/syscall.h>
-#include <unistd.h>
-
-#include <vector>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"

@@ -19,6 +19,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "coordinator/os/say.h"
@@ -175,6 +176,12 @@ const char* ReadStatus(pid_t tid, char (&text)[4096]) {
   return text;
 }
 
+std::optional<pid_t> PidIn(const char* status, const char* name) {
+  const char* found = status == nullptr ? nullptr : strstr(status, name);
+  if (found == nullptr) return std::nullopt;
+  return static_cast<pid_t>(strtol(found + strlen(name), nullptr, 10));
+}
+
 }  // namespace
 
 Credentials ReadCredentials(pid_t tid) {
@@ -250,11 +257,13 @@ std::vector<pid_t> ThreadsOf(pid_t pid) {
 }
 
 pid_t ProcessOfThread(pid_t tid) {
-  std::ifstream file("/proc/" + std::to_string(tid) + "/status");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("Tgid:", 0) == 0) return std::stoi(line.substr(5));
-  }
-  return -1;
+  char buffer[4096];
+  return PidIn(ReadStatus(tid, buffer), "\nTgid:").value_or(-1);
+}
+
+pid_t TracerOf(pid_t pid) {
+  char buffer[4096];
+  return PidIn(ReadStatus(pid, buffer), "\nTracerPid:").value_or(0);
 }
 
 bool IsThreadOf(pid_t pid, pid_t tid) {

@@ -98,6 +98,8 @@ std::string ProgramOf(pid_t pid);
 std::vector<pid_t> ThreadsOf(pid_t pid);
 // -1 if it has ended.
 pid_t ProcessOfThread(pid_t tid);
+// 0 if nobody traces it.
+pid_t TracerOf(pid_t pid);
 bool IsThreadOf(pid_t pid, pid_t tid);
 
 // Whether it is a child of that one, or a child of its children, and so on.

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <utility>
 
@@ -36,14 +35,6 @@ bool IsStopped(pid_t pid) {
   const SignalSets sets = ReadSignalSets(pid);
   const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & ~sets.ignored;
   return ThreadState(pid) == 'T' || (pending & kStops & ~sets.blocked) != 0;
-}
-
-pid_t TracerOf(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("TracerPid:", 0) == 0) return atoi(line.c_str() + 10);
-  }
-  return 0;
 }
 
 class Keeper {

@@ -1,22 +1,12 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname -- "${BASH_SOURCE[0]}")/planners_world.sh"
 # A planner whose next DDS sample is always there has an activation for each one that it takes, though
 # it never waits, however it takes them; one that only reads samples has none for that.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 kinds=(taking waiting loaned reading draining)
-{
-  echo "duration: 3s"
-  echo "robots:"
-  for kind in source "${kinds[@]}"; do
-    echo "  $kind: {clients: {c: {command: ['$build/bin/dds_planner', $kind]}}}"
-  done
-} >"$out/scenario.yaml"
-timeout 80 "$tcsim" run "$out/scenario.yaml" --out "$out/out" >"$out/said" 2>"$out/stderr" ||
-  fail "$(cat "$out/stderr")"
-for kind in "${kinds[@]}"; do
-  grep -q done "$out/out/$kind-c.out.log" || fail "$kind: $(cat "$out/out/$kind-c".*.log)"
-done
+fly_planners "['$build/bin/dds_planner', KIND]"
 python3 - "$out/out" <<'PY' || fail "$(cat "$out/said")"
 import csv, sys
 COUNT = 30

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname -- "${BASH_SOURCE[0]}")/planners_world.sh"
 # A planner whose next message is always there in a queue of the kernel's, System V's or POSIX's, has
 # an activation for each message that it takes, though it never waits. One that takes all there is at
 # each turn has one for the turn.
@@ -79,18 +80,7 @@ else:
 print("done", flush=True)
 PY
 kinds=(blocking polling waiting draining posix)
-{
-  echo "duration: 3s"
-  echo "robots:"
-  for kind in source "${kinds[@]}"; do
-    echo "  $kind: {clients: {c: {command: [$python, client.py, $kind, '$keys']}}}"
-  done
-} >"$out/scenario.yaml"
-timeout 80 "$tcsim" run "$out/scenario.yaml" --out "$out/out" >"$out/said" 2>"$out/stderr" ||
-  fail "$(cat "$out/stderr")"
-for kind in "${kinds[@]}"; do
-  grep -q done "$out/out/$kind-c.out.log" || fail "$kind: $(cat "$out/out/$kind-c".*.log)"
-done
+fly_planners "[$python, client.py, KIND, '$keys']"
 python3 - "$out/out" <<'PY' || fail "$(cat "$out/said")"
 import csv, sys
 COUNT = 30

@@ -30,7 +30,7 @@ SENTENCES = {
 }
 # A spinning child in a session of its own, forked twice, one that ignores signals, and threads.
 SCENARIO = """
-duration: 1h
+duration: 5min
 dynamics: {}
 bodies: {ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}}
 robots:

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace tcs::fuzz {
@@ -9,6 +11,10 @@ namespace tcs::fuzz {
 // Numbers of what became of damaged inputs, and of those that it went wrong with.
 struct Tally {
   int taken = 0, refused = 0, wrong = 0;
+
+  // Counts one attempt, in a process of its own (attempt.h): it says whether the input was refused,
+  // and returns what is wrong with how that went, or nothing. Returns what went wrong, if anything.
+  std::optional<std::string> Count(const std::function<std::string(bool* refused)>& attempt);
 };
 
 // Scenario files: loaded, but not run. A refusal begins with the file and the line.

@@ -5,9 +5,28 @@
 #include <fstream>
 #include <string>
 
+#include "tests/unit/fuzz/attempt.h"
 #include "tests/unit/fuzz/fuzz.h"
 
 namespace tcs::fuzz {
+
+std::optional<std::string> Tally::Count(const std::function<std::string(bool* refused)>& attempt) {
+  constexpr char kRefused[] = "refused";
+  const std::string outcome = Outcome([&] {
+    bool is_refused = false;
+    const std::string what = attempt(&is_refused);
+    return what.empty() && is_refused ? std::string(kRefused) : what;
+  });
+  if (outcome.empty()) {
+    ++taken;
+  } else if (outcome == kRefused) {
+    ++refused;
+  } else {
+    ++wrong;
+    return outcome;
+  }
+  return std::nullopt;
+}
 
 void SayWrong(const std::string& what, int number, const std::string& wrong,
               const std::string& input) {

@@ -12,7 +12,6 @@
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/write.h"
-#include "tests/unit/fuzz/attempt.h"
 #include "tests/unit/fuzz/fuzz.h"
 #include "tests/unit/fuzz/mutate.h"
 
@@ -192,20 +191,9 @@ Tally FuzzResults(int count, std::uint64_t seed) {
       PutOther(&mutator, root / file->first);
       damaged += "== " + file->first + " is something else";
     }
-    constexpr char kRefused[] = "refused";
-    const std::string outcome = Outcome([&] {
-      bool refused = false;
-      const std::string wrong = Report(root / "run", root / "page.html", &refused);
-      return wrong.empty() && refused ? std::string(kRefused) : wrong;
-    });
-    if (outcome.empty()) {
-      ++tally.taken;
-    } else if (outcome == kRefused) {
-      ++tally.refused;
-    } else {
-      ++tally.wrong;
-      SayWrong("results", number, outcome, damaged);
-    }
+    const auto wrong = tally.Count(
+        [&](bool* refused) { return Report(root / "run", root / "page.html", refused); });
+    if (wrong.has_value()) SayWrong("results", number, *wrong, damaged);
     fs::remove_all(root / "run");
   }
   fs::remove_all(root);

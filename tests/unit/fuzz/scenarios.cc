@@ -8,7 +8,6 @@
 
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
-#include "tests/unit/fuzz/attempt.h"
 #include "tests/unit/fuzz/fuzz.h"
 #include "tests/unit/fuzz/mutate.h"
 #include "tests/unit/scenario/scenario_folder.h"
@@ -153,19 +152,9 @@ Tally FuzzScenarios(int count, std::uint64_t seed) {
       set.push_back(mutator.Damage(keys[mutator.Below(keys.size())] + "1", keys));
     }
     const std::string path = folder.Write("damaged.yaml", text);
-    constexpr char kRefused[] = "refused";
-    const std::string outcome = Outcome([&] {
-      bool refused = false;
-      const std::string wrong = Load(path, set, &refused);
-      return wrong.empty() && refused ? std::string(kRefused) : wrong;
-    });
-    if (outcome.empty()) {
-      ++tally.taken;
-    } else if (outcome == kRefused) {
-      ++tally.refused;
-    } else {
-      ++tally.wrong;
-      SayWrong("scenarios", number, outcome + (set.empty() ? "" : " with --set " + Visible(set[0])),
+    const auto wrong = tally.Count([&](bool* refused) { return Load(path, set, refused); });
+    if (wrong.has_value()) {
+      SayWrong("scenarios", number, *wrong + (set.empty() ? "" : " with --set " + Visible(set[0])),
                text);
     }
   }
