@@ -52,7 +52,7 @@ Process& Engine::PlaceForProcess() {
   return process;
 }
 
-Task* Engine::AddTask(Process& process, pid_t tid) {
+Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   Task& task = PlaceForTask();
   ++living_;
   by_tid_[tid] = &task;
@@ -60,7 +60,7 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
   task.tid = tid;
   task.priority = process.priority;
   task.parked = false;
-  task.reached_ns = task.activation.release_ns = std::max(event_ns_, EarliestWake());
+  task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
   process.robot->tasks.push_back(&task);
   SetState(task, TaskState::kStarting);
   Refresh(*process.robot);
@@ -68,7 +68,7 @@ Task* Engine::AddTask(Process& process, pid_t tid) {
 }
 
 Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                      const Process* maker) {
+                      std::int64_t at_ns, const Process* maker) {
   Process& process = PlaceForProcess();
   process.pid = pid;
   process.parent = parent;
@@ -88,7 +88,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   if (process.pidfd >= 0) {
     Watch(process.pidfd, EPOLLIN, Tag::kProcess, process.index);
   }
-  Task* task = AddTask(process, pid);
+  Task* task = AddTask(process, pid, at_ns);
   // Children have no name of their own; their place in the order is the same in every run.
   const bool is_child = maker != nullptr || parent != getpid();
   task->is_further = is_child;
@@ -96,9 +96,9 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   return task;
 }
 
-Task* Engine::AddThread(Process& process, pid_t tid) {
+Task* Engine::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
   ++process.threads;
-  Task* task = AddTask(process, tid);
+  Task* task = AddTask(process, tid, at_ns);
   task->is_further = true;
   task->row = AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
   return task;
@@ -115,8 +115,8 @@ Task* Engine::KnownTask(pid_t tid) {
   return known == by_tid_.end() ? nullptr : known->second;
 }
 
-Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker) {
-  return NewTask(pid, parent, maker.robot, maker.name, maker.priority, &maker);
+Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns) {
+  return NewTask(pid, parent, maker.robot, maker.name, maker.priority, at_ns, &maker);
 }
 
 // Whatever the thread waits for, it waits no longer.
@@ -143,7 +143,7 @@ void Engine::LeaveWait(Task& task) {
 }
 
 // What the thread has had and done goes to its process.
-void Engine::EndTask(Task& task) {
+void Engine::EndTask(Task& task, Moment moment) {
   Process& process = *task.process;
   KeepUsageOf(task);
   if (task.cpu_clock_fd >= 0) close(task.cpu_clock_fd);
@@ -152,7 +152,7 @@ void Engine::EndTask(Task& task) {
     process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
-  PassOn(task);
+  PassOn(task, moment);
   LeaveWait(task);
   SetState(task, TaskState::kDead);
   --living_;
@@ -164,20 +164,20 @@ void Engine::EndTask(Task& task) {
   Refresh(*task.process->robot);
 }
 
-void Engine::ProcessEnded(std::size_t index) {
+void Engine::ProcessEnded(std::size_t index, Moment moment) {
   Process& process = processes_[index];
   if (process.dead) return;
   if (running_ != nullptr && running_->process == &process) {
     Settle(*running_);
-    event_ns_ = running_->reached_ns;
+    moment.ns = running_->reached_ns;
   }
   process.dead = true;
-  process.ended_at_ns = event_ns_;
+  process.ended_at_ns = moment.ns;
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;
-    EndTask(*task);
-    WakeThoseWaitingFor(*task);
+    EndTask(*task, moment);
+    WakeThoseWaitingFor(*task, moment);
   }
   KeepUsageOf(process);
   for (auto& [id, timer] : process.timers) {
@@ -195,13 +195,13 @@ void Engine::ProcessEnded(std::size_t index) {
   for (Task& task : tasks_) {
     if (task.waits_for_child && task.process->pid == process.parent &&
         (task.awaited_child <= 0 || task.awaited_child == process.pid)) {
-      MakeReady(task, shm::WakeReason::kGo);
+      MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
-  if (parent != nullptr) WakeForSignals(*parent);
+  if (parent != nullptr) WakeForSignals(*parent, moment);
   StartThoseAfter(process);
-  WakeEveryKey();
-  LeaveDds(process);
+  WakeEveryKey(moment);
+  LeaveDds(process, moment);
   if (!process.is_client) ended_processes_.push_back(&process);
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap

@@ -99,7 +99,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       JoinDds(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      SendDds(process, static_cast<std::size_t>(note.args[0]));
+      SendDds(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
@@ -123,12 +123,12 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
 }
 
 // What is wrong is said once of each process: it may send as often as it likes.
-void Engine::SendDds(Process& process, std::size_t bytes) {
-  const std::string wrong = hub_.Send(process.dds_number, bytes, event_ns_);
+void Engine::SendDds(Process& process, std::size_t bytes, std::int64_t at_ns) {
+  const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns);
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     Warn(fmt::format("{} {}", process.name, wrong));
   }
-  if (recording_.has_value()) recording_->ReadNewTopics(event_ns_);
+  if (recording_.has_value()) recording_->ReadNewTopics(at_ns);
   ShowDeliverersTheirDeadlines();
 }
 
@@ -164,24 +164,24 @@ void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
 
 void Engine::JoinDds(Task& task) {
   Process& process = *task.process;
-  LeaveDds(process);
-  process.dds_number = hub_.Join(event_ns_);
+  LeaveDds(process, {task.reached_ns});
+  process.dds_number = hub_.Join(task.reached_ns);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
   task.reply[1] = scenario_.drift_bound.ns();
   if (process.dds_number != 0) dds_processes_.push_back(&process);
 }
 
 // It has died, or executes another program.
-void Engine::LeaveDds(Process& process) {
+void Engine::LeaveDds(Process& process, Moment moment) {
   if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
     deliverer->is_deliverer = false;
-    ReleaseThoseAwaitingDeliverer(process);
+    ReleaseThoseAwaitingDeliverer(process, moment);
   }
   if (process.dds_number == 0) return;
   std::erase(dds_processes_, &process);
   const std::uint32_t number = std::exchange(process.dds_number, 0);
-  hub_.Leave(number, event_ns_);
-  ReleaseThoseAwaitingRoom(number);
+  hub_.Leave(number, moment.ns);
+  ReleaseThoseAwaitingRoom(number, moment);
   ShowDeliverersTheirDeadlines();
 }
 
@@ -193,11 +193,11 @@ void Engine::AwaitMessages(Task& task) {
     task.is_deliverer = true;
   }
   hub_.CameBack(process.dds_number);
-  ReleaseThoseAwaitingRoom(process.dds_number);
+  ReleaseThoseAwaitingRoom(process.dds_number, {task.reached_ns});
   task.waits_for_messages = true;
   task.deadline_ns = hub_.DueNs(process.dds_number);
   SetState(task, TaskState::kWaiting);
-  ReleaseThoseAwaitingDeliverer(process);
+  ReleaseThoseAwaitingDeliverer(process, {task.reached_ns});
 }
 
 // Whether what is due at `now_ns` is being handed over, or is about to be.
@@ -208,20 +208,22 @@ bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
   return IsRunnable(*deliverer);
 }
 
-void Engine::ReleaseThoseAwaitingDeliverer(const Process& process) {
+void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
   if (process.waiting_for_deliverer == 0) return;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || !task->waits_for_deliverer) continue;
-    if (!IsDelivering(process, task->reached_ns)) MakeReady(*task, shm::WakeReason::kGo);
+    if (!IsDelivering(process, task->reached_ns)) {
+      MakeReady(*task, shm::WakeReason::kGo, moment);
+    }
   }
 }
 
 // Those that sent to a process more than it can take at once.
-void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number) {
+void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
   if (waiting_for_room_ == 0 || hub_.IsFull(number)) return;
   for (Task& task : tasks_) {
     if (task.state == TaskState::kWaiting && task.waits_for_room == number) {
-      MakeReady(task, shm::WakeReason::kGo);
+      MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
 }

@@ -246,9 +246,8 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
 // The virtual time of what the running thread has just done to others: the time that its clock
 // showed when it held for the write.
 std::int64_t Engine::WrittenAt() const {
-  if (running_ == nullptr || running_->slot < 0) return event_ns_;
   const std::int64_t start = running_->cpu->progress_ns;
-  if (IsCallback()) return start;
+  if (running_->slot < 0 || IsCallback()) return start;
   const std::int64_t shown = Slot(*running_).clock.last_shown_ns.load();
   return std::clamp(shown, start, std::max(start, running_horizon_ns_));
 }
@@ -389,7 +388,7 @@ void Engine::AwaitStop(Task& task) {
     if (task.slot < 0) {
       if (NeverRegisters(task)) {
         Lower(task.tid);
-        EndTask(task);
+        EndTask(task, {task.reached_ns});
         return;
       }
       if (++starting_turns < kStartTurns) continue;
@@ -442,7 +441,9 @@ void Engine::StepAside(Task& task) {
 void Engine::WakeSpinners() {
   has_spinners_ = false;
   for (Task& task : tasks_) {
-    if (task.spins && task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kGo);
+    if (task.spins && task.state == TaskState::kWaiting) {
+      MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
+    }
   }
 }
 
@@ -482,7 +483,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
-  const std::int64_t call_ns = task.cpu->progress_ns;
+  const Moment call{task.cpu->progress_ns};
   Resume(task);
   ++report_.switches;
   StartClock(task);
@@ -494,19 +495,20 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   TakeLevelBack();
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
-  event_ns_ = task.cpu->progress_ns;
-  if (event_ns_ >= running_horizon_ns_) {
+  const Moment stop{task.cpu->progress_ns};
+  latest_ns_ = stop.ns;
+  if (stop.ns >= running_horizon_ns_) {
     ++task.used_up;
   } else if (notified_ || trapped_.has_value()) {
     task.used_up = 0;
   }
   ExpireCpuTimers(task);
-  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call_ns, looks_again);
-  if (task.process->has_resting_timers) EndRests(*task.process, event_ns_);
-  if (notified_ || trapped_.has_value()) PassOn(task);
+  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call, looks_again);
+  if (task.process->has_resting_timers) EndRests(*task.process, stop.ns);
+  if (notified_ || trapped_.has_value()) PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
-  if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0);
+  if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0, stop);
   if (task.process->expelled) {
     if (task.state != TaskState::kDead) AwaitDeath(task);
     return;

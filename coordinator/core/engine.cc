@@ -76,7 +76,8 @@ void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   Requeue(task, goes_first);
   // A deliverer that waits for something else must not be waited for: it may need what those hold.
   if (task.is_deliverer && !IsRunnable(task) && !task.waits_for_messages) {
-    ReleaseThoseAwaitingDeliverer(*task.process);
+    ReleaseThoseAwaitingDeliverer(*task.process,
+                                  {&task == running_ ? WrittenAt() : task.reached_ns});
   }
 }
 
@@ -167,22 +168,22 @@ void Engine::ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t shar
   ran.share.Spend(ns);
 }
 
-void Engine::MakeReady(Task& task, shm::WakeReason reason) {
+void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
   if (task.state == TaskState::kDead) return;
   const bool reads = task.state == TaskState::kWaiting &&
                      (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
                       task.awaited_signals != 0 || task.waits_for_messages);
-  const bool outside =
-      from_outside_ || (running_ != nullptr && running_->process->robot != task.process->robot);
+  const bool outside = moment.from_outside ||
+                       (running_ != nullptr && running_->process->robot != task.process->robot);
   const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
-  if (outside && reads && !task.waits_for_messages) NoteLateness(task, event_ns_, goes_first);
+  if (outside && reads && !task.waits_for_messages) NoteLateness(task, moment.ns, goes_first);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
-    NoteReleased(task, reason);
+    NoteReleased(task, reason, moment.ns);
     task.turn_ns = 0;
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
-  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
+  task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
   // Others may have come further: what is due later than its own time it gets then.
   if (task.waits_for_messages) {
     task.messages_until_ns =
@@ -454,7 +455,7 @@ bool Engine::StepWorld() {
   const std::int64_t now = world_.progress_ns();
   const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
   if (limit - now <= lag && world_.NextStopNs() > limit) return false;
-  event_ns_ = std::max(event_ns_, std::min(now, limit));
+  latest_ns_ = std::max(latest_ns_, std::min(now, limit));
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
@@ -463,12 +464,10 @@ bool Engine::StepWorld() {
   RecordSlice(world_row_, now, world_.progress_ns(), begun_tsc);
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
-    event_ns_ = world_.progress_ns();
-    trace_.Instant(world_row_, "sensors", event_ns_);
+    latest_ns_ = world_.progress_ns();
+    trace_.Instant(world_row_, "sensors", latest_ns_);
     ShowDeliverersTheirDeadlines();
-    from_outside_ = true;
-    PollEvents(0);
-    from_outside_ = false;
+    PollEvents(0, {.ns = latest_ns_, .from_outside = true});
   }
   return true;
 }
@@ -502,26 +501,26 @@ void Engine::PollUnseen() {
   if (unseen_ == 0) return;
   for (Task& task : tasks_) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
-    event_ns_ = std::max(event_ns_, task.reached_ns);
-    MakeReady(task, shm::WakeReason::kGo);
+    latest_ns_ = std::max(latest_ns_, task.reached_ns);
+    MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
     task.parked = false;
-    NoteWhetherStopped(*task.process);
+    NoteWhetherStopped(*task.process, latest_ns_);
   }
 }
 
 void Engine::WaitOutside() {
   Beat();
   const bool unseen = unseen_ > 0 || waiting_for_child_ > 0 || waiting_for_signals_ > 0;
-  PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs);
+  PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {latest_ns_});
 }
 
 // Before idle time is jumped over: is something from outside already there?
 bool Engine::HasJumpedOver() {
   external_event_ = false;
-  PollEvents(0);
+  PollEvents(0, {latest_ns_});
   PollUnseen();
   if (StrangersRun()) {
-    PollEvents(kUnseenPollNs);
+    PollEvents(kUnseenPollNs, {latest_ns_});
     return false;
   }
   return !external_event_;
@@ -578,7 +577,7 @@ bool Engine::AwaitDeaths() {
     const bool all_dead = std::all_of(processes_.begin(), processes_.end(),
                                       [](const Process& process) { return process.dead; });
     if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
-    PollEvents(kOutsidePollNs);
+    PollEvents(kOutsidePollNs, {latest_ns_});
   }
   return living_ > 0 || HasLaunchAhead();
 }
@@ -589,7 +588,7 @@ bool Engine::AwaitDeaths() {
 bool Engine::AwaitOutside() {
   if (end_ns_ != shm::kNeverNs) {
     external_event_ = false;
-    PollEvents(0);
+    PollEvents(0, {latest_ns_});
     PollUnseen();
     if (external_event_ || root_.Least() != shm::kNeverNs) return true;
     if (unseen_ == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun()) return false;

@@ -16,6 +16,7 @@
 
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/coordinator.h"
+#include "coordinator/core/moment.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -80,7 +81,7 @@ class Engine {
   };
   std::string PrepareFolders();
   std::string StartClients();
-  std::string Start(Launch& launch);
+  std::string Start(Launch& launch, std::int64_t at_ns);
   void StartDue(Robot& robot, std::int64_t now_ns);
   void FindNextLaunch(Robot& robot);
   bool HasLaunchAhead() const;
@@ -132,7 +133,7 @@ class Engine {
   void SetState(Task& task, TaskState state, bool goes_first = false);
   void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
-  void MakeReady(Task& task, shm::WakeReason reason);
+  void MakeReady(Task& task, shm::WakeReason reason, Moment moment);
   bool CanGoFirst(const Task& task) const;
   bool GoesFirst(const Task& task, std::int64_t after_ns) const;
   static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
@@ -174,9 +175,9 @@ class Engine {
   void WaitForChild(Task& task, pid_t which, bool stops);
 
   // Those who wait to take from the same descriptor (one_waiter.cc).
-  void WakeAwaiters(std::vector<Task*> awaiters);
+  void WakeAwaiters(std::vector<Task*> awaiters, Moment moment);
   void PassOver(Task& task, Task& first);
-  void PassOn(Task& first);
+  void PassOn(Task& first, Moment moment);
 
   void Yield(Task& task);
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
@@ -187,13 +188,13 @@ class Engine {
   void LetStop(const Process& process);
   static void RunInKernel(Task& task);
   static void LetGoOn(const Process& process);
-  void NoteStops(Process& process);
-  void TellParent(const Process& child);
-  void LookAtStops();
+  void NoteStops(Process& process, Moment moment);
+  void TellParent(const Process& child, Moment moment);
+  void LookAtStops(Moment moment);
 
   // Children that nobody announced (unknown_children.cc).
   void FindUnknownChildren(Process& parent);
-  void UnknownChildEnded(pid_t pid);
+  void UnknownChildEnded(pid_t pid, Moment moment);
   bool HasUnknownChild(const Process& parent) const;
   bool AwaitsUnknownChildren() const;
   bool UnknownChildrenRun() const;
@@ -220,11 +221,11 @@ class Engine {
 
   // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
   // errno.
-  void TrapArrived(int listener);
+  void TrapArrived(int listener, Moment moment);
   void ExitThread(Task& task, const TrappedCall& call);
   void HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
-  void HandleStranger(const TrappedCall& call);
+  void HandleStranger(const TrappedCall& call, Moment moment);
   void ReleaseTrapped();
 
   // Those that could be about tcsim's own processes (guarded_calls.cc).
@@ -263,7 +264,7 @@ class Engine {
 
   // Locks of files (keys.cc).
   void LockRaw(Task& task);
-  bool LookAtKernelWaits();
+  bool LookAtKernelWaits(Moment moment);
 
   // Timers (raw_timers.cc).
   struct FoundTimer {
@@ -282,17 +283,17 @@ class Engine {
   std::int64_t PosixTimerRaw(Task& task, const TrappedCall& call);
 
   // Others that they concern (follow_ups.cc).
-  void DoFollowUp(Task& task, std::int64_t call_ns, bool last);
+  void DoFollowUp(Task& task, Moment call, bool last);
 
   // Those that are (futex.cc).
   void HandleFutex(Task& task, const TrappedCall& call);
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);
-  std::int64_t CarryOutWake(const Process& process, const TrappedCall& call);
+  std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, Moment moment);
   std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command,
                              const timespec& timeout);
   static std::int64_t WrongFutexCall(const Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
-  std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits);
+  std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
   std::int64_t FutexRequeue(const Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWakeOp(const Task& task, const TrappedCall& call);
   bool IsEnding(const Task& joiner, pid_t tid) const;
@@ -311,42 +312,42 @@ class Engine {
   // Those that are locks with an owner (lock_futex.cc).
   std::int64_t FutexLock(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexUnlock(Task& task, const TrappedCall& call);
-  bool HandLockOn(const FutexKey& key, std::uint32_t flags);
-  void WakeThoseWaitingFor(Task& ended);
+  bool HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment);
+  void WakeThoseWaitingFor(Task& ended, Moment moment);
 
   // Kernel objects that cannot be polled (keys.cc).
   void WaitForKey(Task& task, const shm::Notification& note);
-  bool WakeKey(std::int64_t kind, std::int64_t id);
-  void WakeEveryKey();
+  bool WakeKey(std::int64_t kind, std::int64_t id, Moment moment);
+  void WakeEveryKey(Moment moment);
   void EndKeyWait(Task& task);
   void NoteTerminal(Task& task, int fd);
-  void FlushTerminals();
+  void FlushTerminals(Moment moment);
 
   // Programs that speak DDS (dds.cc).
   std::string OpenDds();
   std::string CloseDds();
   dds::Speaker WhoIs(dds::Hub::Number number) const;
   void WarnOfDrops();
-  void NoteWhetherStopped(const Process& process);
+  void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
   void TakeOwnMessages();
   void HandleDds(Task& task, const shm::Notification& note);
   void JoinDds(Task& task);
-  void SendDds(Process& process, std::size_t bytes);
+  void SendDds(Process& process, std::size_t bytes, std::int64_t at_ns);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
-  void LeaveDds(Process& process);
+  void LeaveDds(Process& process, Moment moment);
   void AwaitMessages(Task& task);
   bool IsDelivering(const Process& process, std::int64_t now_ns) const;
-  void ReleaseThoseAwaitingDeliverer(const Process& process);
-  void ReleaseThoseAwaitingRoom(std::uint32_t number);
+  void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
+  void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
   void ShowDeliverersTheirDeadlines();
   void HandMessagesOver(Task& task);
 
   // Signals that clients send, and waits for signals (signals.cc).
-  void WakeSignalled(pid_t receiver);
-  void WakeForSignals(Process& process);
+  void WakeSignalled(pid_t receiver, Moment moment);
+  void WakeForSignals(Process& process, Moment moment);
   void AnswerAhead(Task& task);
   void AwaitSignals(Task& task, std::uint64_t set);
-  bool EndAwait(Task& task, const SignalSets& sets);
+  bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
   bool PollSignals();
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
@@ -377,27 +378,27 @@ class Engine {
   // Their signals (timer_signals.cc).
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
   static Task* TakerOf(const Process& process, const TimerSignal& signal);
-  void RouteTimerSignals(Process& process);
+  void RouteTimerSignals(Process& process, Moment moment);
   void SendTimerSignalsTo(const Task& task);
   static void NoteAccepted(Process& process);
 
   // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
-  // negative: none.
-  bool TakeEvents(std::int64_t timeout_ns, bool* is_full);
-  bool PollEvents(std::int64_t timeout_ns);
-  void TakeNotifications(const Process& process);
-  void NotificationArrived(Task& task);
+  // negative: none. What is found happens at `moment`, or when the running thread has come to.
+  bool TakeEvents(std::int64_t timeout_ns, Moment moment, bool* is_full);
+  bool PollEvents(std::int64_t timeout_ns, Moment moment);
+  void TakeNotifications(const Process& process, Moment moment);
+  void NotificationArrived(Task& task, Moment moment);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
   void RearmDetector();
   void Accept(const Listener& listener);
-  bool Attach(int connection, Process& client);
+  bool Attach(int connection, Process& client, Moment moment);
   void GiveDdsArea(int connection, pid_t pid);
-  void PlaceAtGate(Task& task);
-  Task* TaskFor(pid_t pid, pid_t tid, Process& client);
-  void ProcessEnded(std::size_t index);
+  void PlaceAtGate(Task& task, std::int64_t at_ns);
+  Task* TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
+  void ProcessEnded(std::size_t index, Moment moment);
   void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index, std::uint32_t number = 0);
   // What epoll gives back: `number` tells an event of this wait from those of earlier ones, or
   // whose client's descendant a connection is of.
@@ -409,13 +410,13 @@ class Engine {
     return static_cast<std::uint32_t>(event_data >> 32) & 0xffffff;
   }
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                const Process* maker = nullptr);
-  Task* NewChild(pid_t pid, pid_t parent, const Process& maker);
+                std::int64_t at_ns, const Process* maker = nullptr);
+  Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
   Task& PlaceForTask();
   Process& PlaceForProcess();
-  Task* AddTask(Process& process, pid_t tid);
-  Task* AddThread(Process& process, pid_t tid);
-  bool EndThreadsLostInExec(pid_t pid);
+  Task* AddTask(Process& process, pid_t tid, std::int64_t at_ns);
+  Task* AddThread(Process& process, pid_t tid, std::int64_t at_ns);
+  bool EndThreadsLostInExec(pid_t pid, Moment moment);
   void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
@@ -424,14 +425,14 @@ class Engine {
   Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
   Task& TaskAt(int order) { return tasks_[static_cast<std::size_t>(order)]; }
-  void EndTask(Task& task);
+  void EndTask(Task& task, Moment moment);
 
   // What is written about the run (records.cc).
   std::string OpenRecords();
   void FlushRecords();
   std::string CloseRecords();
   int AddRow(const std::string& group, const std::string& name);
-  void NoteReleased(Task& task, shm::WakeReason reason);
+  void NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns);
   void NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns, bool of_timer);
   void TakeReceipts(Task& task, std::int64_t now_ns);
   void NoteReceivedRaw(Task& task, bool of_timer);
@@ -536,7 +537,8 @@ class Engine {
   bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;
-  std::int64_t event_ns_ = 0;  // virtual time of what is being handled
+  // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
+  std::int64_t latest_ns_ = 0;
   Task* running_ = nullptr;
   std::int64_t running_horizon_ns_ = 0;
   std::uint64_t stop_tsc_ = 0;      // when the running thread was last found stopped
@@ -548,9 +550,8 @@ class Engine {
   std::int64_t grace_began_ns_ = shm::kNeverNs;
   bool grace_ran_out_ = false;                             // of real time
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
-  bool from_outside_ = false;                  // time or the world wakes, not another thread
-  bool has_spinners_ = false;                  // threads that stepped aside
-  bool notified_ = false, preempted_ = false;  // why the running thread was stopped
+  bool has_spinners_ = false;                              // threads that stepped aside
+  bool notified_ = false, preempted_ = false;              // why the running thread was stopped
   bool external_event_ = false;
 
   RunReport report_;

@@ -45,15 +45,15 @@ void Engine::Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index,
   epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event);
 }
 
-void Engine::NotificationArrived(Task& task) {
+void Engine::NotificationArrived(Task& task, Moment moment) {
   if (&task == running_) {
     notified_ = true;
   } else if (task.state == TaskState::kWaiting &&
              Slot(task).note.kind == shm::NotificationKind::kInterrupted) {
-    MakeReady(task, shm::WakeReason::kSignal);
+    MakeReady(task, shm::WakeReason::kSignal, moment);
     task.reply[0] = 1;
   } else if (task.state == TaskState::kUnseen) {
-    MakeReady(task, shm::WakeReason::kGo);
+    MakeReady(task, shm::WakeReason::kGo, moment);
     task.parked = true;
     CheckCpuClock(task);
     const shm::Notification note = Slot(task).note;
@@ -61,14 +61,14 @@ void Engine::NotificationArrived(Task& task) {
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
-    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);
     task.trap_id = 0;
     task.notified_early = true;
   }
 }
 
 // Of one process, so many at a time: others have their turns, too.
-void Engine::TakeNotifications(const Process& process) {
+void Engine::TakeNotifications(const Process& process, Moment moment) {
   constexpr std::size_t kAtOnce = 64;
   if (process.link == nullptr) return;
   shm::PipeMessage messages[kAtOnce];
@@ -76,7 +76,9 @@ void Engine::TakeNotifications(const Process& process) {
   const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
-    if (task != nullptr && task->state != TaskState::kDead) NotificationArrived(*task);
+    if (task != nullptr && task->state != TaskState::kDead) {
+      NotificationArrived(*task, moment);
+    }
   }
 }
 
@@ -156,9 +158,8 @@ bool Engine::BlockedInKernel() {
   if ((state == 'Z' || state == 'X') && held_turns_ > kExitTurns && HasExited(*running_)) {
     Task& ended = *running_;
     Settle(ended);
-    event_ns_ = ended.reached_ns;
-    EndTask(ended);
-    WakeThoseWaitingFor(ended);
+    EndTask(ended, {ended.reached_ns});
+    WakeThoseWaitingFor(ended, {ended.reached_ns});
     return true;
   }
   if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
@@ -177,9 +178,9 @@ bool Engine::BlockedInKernel() {
   running_->parked = false;
   if (expected && !stopped) return true;
   if (stopped) {
-    event_ns_ = std::max(event_ns_, running_->reached_ns);
-    NoteStops(*running_->process);
-    NoteWhetherStopped(*running_->process);
+    const Moment moment{WrittenAt()};
+    NoteStops(*running_->process, moment);
+    NoteWhetherStopped(*running_->process, moment.ns);
     return true;
   }
   Warn(fmt::format(
@@ -208,16 +209,16 @@ bool Engine::CutsOff(Task& task) {
 }
 
 // All that there is at this instant: were the rest found later, it would have happened later.
-bool Engine::PollEvents(std::int64_t timeout_ns) {
+bool Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
   bool is_full = false;
-  bool stop = TakeEvents(timeout_ns, &is_full);
+  bool stop = TakeEvents(timeout_ns, moment, &is_full);
   for (int turn = 0; is_full && turn < kMostFullTurns; ++turn) {
-    stop |= TakeEvents(0, &is_full);
+    stop |= TakeEvents(0, moment, &is_full);
   }
   return stop;
 }
 
-bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
+bool Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool* is_full) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
   const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
@@ -241,15 +242,14 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
     return false;
   }
   bool stop = false, blocked = false;
-  if (running_ != nullptr) event_ns_ = WrittenAt();
-  const std::int64_t written_ns = event_ns_;
+  if (running_ != nullptr) moment = {WrittenAt()};
   std::vector<Task*> awaiters;
   for (int i = 0; i < n; ++i) {
     const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
     const auto index = static_cast<std::uint32_t>(events[i].data.u64);
     switch (tag) {
       case Tag::kPipe:
-        TakeNotifications(processes_[index]);
+        TakeNotifications(processes_[index], moment);
         stop = true;
         external_event_ = true;
         break;
@@ -263,14 +263,14 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
         if (found == connections_.end()) break;  // it was cut off
         const Connection connection = *found;
         connections_.erase(found);
-        const bool registers = Attach(fd, *connection.client);
+        const bool registers = Attach(fd, *connection.client, moment);
         close(fd);
         stop |= registers;
         external_event_ |= registers;
         break;
       }
       case Tag::kProcess:
-        ProcessEnded(index);
+        ProcessEnded(index, moment);
         stop = true;
         external_event_ = true;
         break;
@@ -284,7 +284,7 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
         }
         break;
       case Tag::kUnknownChild:
-        UnknownChildEnded(static_cast<pid_t>(index));
+        UnknownChildEnded(static_cast<pid_t>(index), moment);
         stop = true;
         external_event_ = true;
         break;
@@ -295,12 +295,12 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
           close(static_cast<int>(index));
           break;
         }
-        TrapArrived(static_cast<int>(index));
+        TrapArrived(static_cast<int>(index), moment);
         stop = true;
         external_event_ = true;
         break;
       case Tag::kCommand:
-        world_.ReceiveCommands(index, event_ns_);
+        world_.ReceiveCommands(index, moment.ns);
         break;
       case Tag::kSignal: {
         signalfd_siginfo info;
@@ -341,9 +341,7 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, bool* is_full) {
                         std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
                           return task->process->robot == running_->process->robot;
                         });
-    const std::int64_t now_ns = std::exchange(event_ns_, written_ns);
-    WakeAwaiters(std::move(awaiters));
-    event_ns_ = now_ns;
+    WakeAwaiters(std::move(awaiters), moment);
     if (beside) {
       GoOnBesideWoken();
     } else {

@@ -7,8 +7,8 @@
 
 namespace tcs {
 
-// The thread has run since the kernel got the call, which it made at `call_ns`.
-void Engine::DoFollowUp(Task& task, std::int64_t call_ns, bool last) {
+// The thread has run since the kernel got the call, which it made at `call`.
+void Engine::DoFollowUp(Task& task, Moment call, bool last) {
   // Something else may have stopped it before it has even come to the call: then once more. And
   // once more in any case, for how far it has come is not known.
   const FollowUp what = task.follow_up;
@@ -16,30 +16,28 @@ void Engine::DoFollowUp(Task& task, std::int64_t call_ns, bool last) {
     task.follow_up = FollowUp::kNone;
     task.brief_done = false;
   }
-  const std::int64_t now_ns = std::exchange(event_ns_, call_ns);
   switch (what) {
     case FollowUp::kNone:
       break;
     case FollowUp::kBacklogs:
-      WakeKey(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0);
-      PassOn(task);
+      WakeKey(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
+      PassOn(task, call);
       break;
     case FollowUp::kTaken:
-      PassOn(task);
+      PassOn(task, call);
       break;
     case FollowUp::kSignals:
-      WakeSignalled(0);
+      WakeSignalled(0, call);
       break;
     case FollowUp::kKernelWaits:
-      LookAtKernelWaits();
+      LookAtKernelWaits(call);
       break;
     case FollowUp::kContinued:
       if (Process* parent = LivingProcess(task.process->parent); parent != nullptr) {
-        WakeForSignals(*parent);
+        WakeForSignals(*parent, call);
       }
       break;
   }
-  event_ns_ = now_ns;
 }
 
 }  // namespace tcs

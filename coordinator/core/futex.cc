@@ -98,13 +98,14 @@ void Engine::StartFutexWait(Task& task) {
   SetState(task, TaskState::kWaiting);
 }
 
-std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits) {
+std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits,
+                               Moment moment) {
   std::int64_t woken = 0;
   for (; woken < most; ++woken) {
     Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
     best->woken_futex = futexes_.IndexOf(best->order, key);
-    MakeReady(*best, shm::WakeReason::kGo);
+    MakeReady(*best, shm::WakeReason::kGo, moment);
   }
   return woken;
 }
@@ -117,7 +118,7 @@ std::int64_t Engine::FutexRequeue(const Task& task, const TrappedCall& call, int
   }
   const FutexKey from = FutexKeyFor(task, call, call.args[0]),
                  to = FutexKeyFor(task, call, call.args[4]);
-  std::int64_t moved = FutexWake(from, static_cast<int>(call.args[2]), kAnyBit);
+  std::int64_t moved = FutexWake(from, static_cast<int>(call.args[2]), kAnyBit, {task.reached_ns});
   auto most = static_cast<int>(call.args[3]);
   for (const FutexTable::Thread waiter : futexes_.WaitersAt(from)) {
     if (most-- <= 0) break;
@@ -141,23 +142,24 @@ std::int64_t Engine::FutexWakeOp(const Task& task, const TrappedCall& call) {
                                              static_cast<std::uint32_t>(operand));
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
-  std::int64_t woken =
-      FutexWake(WokenKeyFor(*task.process, call, call.args[0]), AtLeastOne(call.args[2]), kAnyBit);
+  std::int64_t woken = FutexWake(WokenKeyFor(*task.process, call, call.args[0]),
+                                 AtLeastOne(call.args[2]), kAnyBit, {task.reached_ns});
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
     woken += FutexWake(WokenKeyFor(*task.process, call, call.args[4]), AtLeastOne(call.args[3]),
-                       kAnyBit);
+                       kAnyBit, {task.reached_ns});
   }
   return woken;
 }
 
 // FUTEX_WAKE and FUTEX_WAKE_BITSET: the threads woken; none for other commands.
-std::int64_t Engine::CarryOutWake(const Process& process, const TrappedCall& call) {
+std::int64_t Engine::CarryOutWake(const Process& process, const TrappedCall& call, Moment moment) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return 0;
   return FutexWake(WokenKeyFor(process, call, call.args[0]), AtLeastOne(call.args[2]),
-                   command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]));
+                   command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]),
+                   moment);
 }
 
 // The thread has said that it ends, but the kernel may not be through with it yet.
@@ -198,7 +200,7 @@ void Engine::HandleFutex(Task& task, const TrappedCall& call) {
       break;
     case FUTEX_WAKE:
     case FUTEX_WAKE_BITSET:
-      task.trap_result = CarryOutWake(*task.process, call);
+      task.trap_result = CarryOutWake(*task.process, call, {task.reached_ns});
       // Threads that tcs does not know wait in the kernel.
       task.trap_continues =
           task.process->has_strangers && task.trap_result < static_cast<int>(call.args[2]);

@@ -116,7 +116,7 @@ std::int64_t Engine::FutexRequeueToLock(Task& task, const TrappedCall& call) {
   }
   if (owner_tid == 0) {
     owner->handed_lock = owner->lock_address;
-    MakeReady(*owner, shm::WakeReason::kGo);
+    MakeReady(*owner, shm::WakeReason::kGo, {task.reached_ns});
   }
   return static_cast<std::int64_t>(count);
 }

@@ -75,7 +75,7 @@ void Engine::BeginGrace() {
     Refresh(robot);
   }
   LimitRealTime();
-  event_ns_ = grace_began_ns_;
+  latest_ns_ = grace_began_ns_;
   for (const Process& process : processes_) {
     if (process.dead) continue;
     kill(process.pid, StopSignalOf(process));
@@ -85,9 +85,7 @@ void Engine::BeginGrace() {
     const Process* parent = LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }
-  from_outside_ = true;
-  WakeSignalled(0);
-  from_outside_ = false;
+  WakeSignalled(0, {.ns = grace_began_ns_, .from_outside = true});
 }
 
 void Engine::LimitRealTime() {
@@ -112,14 +110,14 @@ std::int64_t Engine::KillTimeOf(const Process& process) const {
 }
 
 void Engine::KillOverdue() {
-  event_ns_ = end_ns_;
+  latest_ns_ = end_ns_;
   for (Process& process : processes_) {
     if (process.dead || process.killed || KillTimeOf(process) > end_ns_) continue;
     WarnOfKill(process, "its stop_grace");
     process.killed = true;
     kill(process.pid, SIGKILL);
   }
-  WakeSignalled(0);
+  WakeSignalled(0, {end_ns_});
 }
 
 void Engine::WarnOfKill(const Process& process, const std::string& within) {

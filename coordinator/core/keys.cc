@@ -27,12 +27,13 @@ void Engine::EndKeyWait(Task& task) {
   header_->key_waiters.store(--key_waiters_);
 }
 
-bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
+bool Engine::WakeKey(std::int64_t kind, std::int64_t id, Moment moment) {
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
-    FlushTerminals();
+    FlushTerminals(moment);
     return false;
   }
-  if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) return LookAtKernelWaits();
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits))
+    return LookAtKernelWaits(moment);
   std::vector<Task*> waiting;
   for (Task& task : tasks_) {
     if (task.waits_for_key && task.key_kind == kind && task.key_id == id) waiting.push_back(&task);
@@ -40,21 +41,19 @@ bool Engine::WakeKey(std::int64_t kind, std::int64_t id) {
   std::sort(waiting.begin(), waiting.end(),
             [](const Task* a, const Task* b) { return a->key_order < b->key_order; });
   // A nanosecond apart, so that they try in this order on whatever cores they are.
-  const std::int64_t now = event_ns_;
   for (Task* task : waiting) {
-    MakeReady(*task, shm::WakeReason::kGo);
-    ++event_ns_;
+    MakeReady(*task, shm::WakeReason::kGo, moment);
+    ++moment.ns;
   }
-  event_ns_ = now;
   return !waiting.empty();
 }
 
 // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are any.
-bool Engine::LookAtKernelWaits() {
+bool Engine::LookAtKernelWaits(Moment moment) {
   bool found = false;
   for (Task& task : tasks_) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
-    MakeReady(task, shm::WakeReason::kGo);
+    MakeReady(task, shm::WakeReason::kGo, moment);
     task.parked = false;
     found = true;
   }
@@ -81,7 +80,7 @@ void Engine::NoteTerminal(Task& task, int fd) {
 // What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
 // own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
 // another.
-void Engine::FlushTerminals() {
+void Engine::FlushTerminals(Moment moment) {
   for (int turn = 0; turn < 2; ++turn) {
     for (const Task& task : tasks_) {
       if (!task.watches_terminal) continue;
@@ -91,14 +90,14 @@ void Engine::FlushTerminals() {
       }
     }
   }
-  PollEvents(0);
+  PollEvents(0, moment);
 }
 
 // A process that ends may change any object: the kernel undoes what it did to semaphores.
-void Engine::WakeEveryKey() {
+void Engine::WakeEveryKey(Moment moment) {
   if (key_waiters_ == 0) return;
   for (const Task& task : tasks_) {
-    if (task.waits_for_key) WakeKey(task.key_kind, task.key_id);
+    if (task.waits_for_key) WakeKey(task.key_kind, task.key_id, moment);
   }
 }
 

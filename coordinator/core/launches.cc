@@ -85,7 +85,7 @@ void Engine::StartDue(Robot& robot, std::int64_t now_ns) {
   if (robot.next_launch_ns > now_ns) return;
   for (Launch& launch : launches_) {
     if (launch.robot != &robot || launch.process != nullptr || launch.start_ns > now_ns) continue;
-    if (std::string error = Start(launch); !error.empty() && report_.error.empty()) {
+    if (std::string error = Start(launch, now_ns); !error.empty() && report_.error.empty()) {
       report_.error = std::move(error);
       return;
     }
@@ -129,7 +129,7 @@ void Engine::WarnOfNeverStarted() {
   }
 }
 
-std::string Engine::Start(Launch& launch) {
+std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
   const ClientSpec& client = *launch.spec;
   SpawnRequest request;
   request.command = client.command;
@@ -159,7 +159,7 @@ std::string Engine::Start(Launch& launch) {
     Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
          "): threads wait for each other in real time");
   }
-  Task* task = NewTask(pid, getpid(), launch.robot, client.name, client.priority);
+  Task* task = NewTask(pid, getpid(), launch.robot, client.name, client.priority, at_ns);
   launch.process = task->process;
   launch.process->started_at_ns = task->reached_ns;
   launch.process->is_client = true;

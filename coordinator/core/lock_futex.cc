@@ -54,7 +54,7 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
 }
 
 // The lock goes to the most urgent waiter; `flags` goes with it.
-bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
+bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment) {
   Task* next = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY);
   if (next == nullptr) return false;
   Task* before = next->lock_owner;
@@ -68,7 +68,7 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags) {
   for (const FutexTable::Thread waiter : futexes_.WaitersAt(key)) {
     TaskAt(waiter).lock_owner = next;
   }
-  MakeReady(*next, shm::WakeReason::kGo);
+  MakeReady(*next, shm::WakeReason::kGo, moment);
   if (before != nullptr) FindPriority(*before);
   FindPriority(*next);
   return true;
@@ -79,20 +79,20 @@ std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
   task.handed_lock = 0;
   if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
   if (static_cast<pid_t>(value & kOwner) != task.tid) return -EPERM;
-  if (HandLockOn(FutexKeyFor(task, call, call.args[0]), 0)) return 0;
+  if (HandLockOn(FutexKeyFor(task, call, call.args[0]), 0, {task.reached_ns})) return 0;
   value = 0;
   return WriteMemory(task.process->pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
 }
 
 // Whoever waits for the thread to end, or for a lock that it held, goes on: the kernel's own wake
 // does not reach them.
-void Engine::WakeThoseWaitingFor(Task& ended) {
+void Engine::WakeThoseWaitingFor(Task& ended, Moment moment) {
   for (Task& task : tasks_) {
     if (task.trap_wait != TrapWait::kFutex) continue;
     if (task.lock_owner == &ended) {
-      HandLockOn(FutexKey(futexes_.WordOf(task.order)), kDied);
+      HandLockOn(FutexKey(futexes_.WordOf(task.order)), kDied, moment);
     } else if (task.names_tid == ended.tid) {
-      MakeReady(task, shm::WakeReason::kGo);
+      MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
 }

@@ -66,7 +66,7 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
     if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
     SetLevel(tid, Level::kWaiting);
-    Task& thread = *AddThread(*creator.process, tid);
+    Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
     InheritScheduling(thread, creator);
     if (note.args[1] >= 0) SetPriority(creator, thread, note.args[1], note.args[2]);
     if (note.args[3] != 0) SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
@@ -82,13 +82,13 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   SetLevel(pid, Level::kWaiting);
-  InheritScheduling(*NewChild(pid, of.pid, of), parent);
+  InheritScheduling(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
 void Engine::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
-  event_ns_ = task.reached_ns;
+  const Moment moment{task.reached_ns};
   if (task.process->expelled) return AwaitDeath(task);
   if (const char* what = WhatIsImpossible(note); what != nullptr) {
     return Expel(*task.process, what);
@@ -123,7 +123,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
       Refresh(robot);
       // What is there already ends the wait here and now.
-      PollEvents(0);
+      PollEvents(0, moment);
       break;
     case Kind::kWaitChild:
       WaitForChild(task, static_cast<pid_t>(note.args[0]), note.args[1] != 0);
@@ -132,7 +132,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
           task.process->children_changed) {
-        MakeReady(task, shm::WakeReason::kGo);
+        MakeReady(task, shm::WakeReason::kGo, moment);
       }
       break;
     case Kind::kTimerCreate:
@@ -161,7 +161,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       task.process->has_strangers = true;
       break;
     case Kind::kSignalled:
-      WakeSignalled(static_cast<pid_t>(note.args[0]));
+      WakeSignalled(static_cast<pid_t>(note.args[0]), moment);
       break;
     case Kind::kWaitKey:
       WaitForKey(task, note);
@@ -169,7 +169,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kWakeKey:
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (WakeKey(note.args[0], note.args[1]) && task.policy == SCHED_OTHER) {
+      if (WakeKey(note.args[0], note.args[1], moment) && task.policy == SCHED_OTHER) {
         task.process->robot->ready.Rotate(task.order);
       }
       break;

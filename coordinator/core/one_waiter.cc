@@ -66,7 +66,7 @@ bool OffersTheSameOnly(const Task& first, const Task& other) {
 }  // namespace
 
 // Those for whom an event has come, in one look at the kernel.
-void Engine::WakeAwaiters(std::vector<Task*> awaiters) {
+void Engine::WakeAwaiters(std::vector<Task*> awaiters, Moment moment) {
   std::sort(awaiters.begin(), awaiters.end(), GoesBefore);
   std::vector<Task*> woken;
   for (Task* task : awaiters) {
@@ -83,7 +83,7 @@ void Engine::WakeAwaiters(std::vector<Task*> awaiters) {
     }
   }
   for (Task* task : woken) {
-    if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kGo);
+    if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kGo, moment);
   }
 }
 
@@ -109,7 +109,7 @@ void Engine::PassOver(Task& task, Task& first) {
 }
 
 // The thread has tried what it was woken for: what it has left is for the next.
-void Engine::PassOn(Task& first) {
+void Engine::PassOn(Task& first, Moment moment) {
   if (!std::exchange(first.passes_on, false)) return;
   std::vector<Task*> others;
   for (Task& task : tasks_) {
@@ -124,7 +124,7 @@ void Engine::PassOn(Task& first) {
     next = task;
   }
   if (next == nullptr) return;
-  MakeReady(*next, shm::WakeReason::kGo);
+  MakeReady(*next, shm::WakeReason::kGo, moment);
   next->passes_on = next != others.back();
   next->reply[1] = next->passes_on ? 1 : 0;
 }

@@ -72,13 +72,13 @@ int Engine::AddRow(const std::string& group, const std::string& name) {
 }
 
 // It waits no longer. What was due before the robot could look at it was due then.
-void Engine::NoteReleased(Task& task, shm::WakeReason reason) {
+void Engine::NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns) {
   Process& process = *task.process;
   Activation& activation = task.activation;
   activation.cause = CauseOf(task, reason);
   const bool by_deadline = reason == shm::WakeReason::kDeadline;
   const std::int64_t due_ns = by_deadline ? task.deadline_ns : process.expired_ns;
-  activation.release_ns = std::min(event_ns_, due_ns);
+  activation.release_ns = std::min(at_ns, due_ns);
   // A program's clock does not go back to the world's.
   if (IsCallback()) activation.release_ns = std::max(activation.release_ns, process.shown_ns);
   activation.start_ns = -1;

@@ -71,20 +71,22 @@ void Engine::Accept(const Listener& listener) {
 // The thread that registers: known already (a client, an announced child), a further thread of a
 // known process, or a process that nobody announced. If whoever made it has ended, it is at least
 // known which client's descendant it is: by the socket that it has come to.
-Task* Engine::TaskFor(pid_t pid, pid_t tid, Process& client) {
+Task* Engine::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment) {
   if (Task* known = KnownTask(tid); known != nullptr) {
     if (known->process->pid == pid) return known;
-    EndTask(*known);  // its number is another's now
+    EndTask(*known, moment);  // its number is another's now
   }
-  if (Process* known = LivingProcess(pid); known != nullptr) return AddThread(*known, tid);
+  if (Process* known = LivingProcess(pid); known != nullptr) {
+    return AddThread(*known, tid, moment.ns);
+  }
   const pid_t parent_pid = ParentOf(pid);
   const Process* parent = LivingProcess(parent_pid);
-  return NewChild(pid, parent_pid, parent != nullptr ? *parent : client);
+  return NewChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.ns);
 }
 
 // A thread that executes another program becomes its process's first one; all others have ended,
 // and nobody else says so. False where they have not: it has executed nothing.
-bool Engine::EndThreadsLostInExec(pid_t pid) {
+bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
   Task* first = KnownTask(pid);
   Process* of = LivingProcess(pid);
   if (of == nullptr || of->threads == 1) return true;
@@ -97,12 +99,12 @@ bool Engine::EndThreadsLostInExec(pid_t pid) {
   const bool by_another = running_ != nullptr && running_ != first && running_->process == of;
   if (by_another) {
     Settle(*running_);
-    event_ns_ = running_->reached_ns;
+    moment.ns = running_->reached_ns;
   }
   for (Task* task : threads) {
     if (task->process != of || task == first) continue;
-    EndTask(*task);
-    WakeThoseWaitingFor(*task);
+    EndTask(*task, moment);
+    WakeThoseWaitingFor(*task, moment);
   }
   of->has_strangers = false;
   if (first == nullptr || !by_another) return true;
@@ -123,7 +125,7 @@ void Engine::GiveDdsArea(int connection, pid_t pid) {
 }
 
 // True if the running thread has to be stopped.
-bool Engine::Attach(int connection, Process& client) {
+bool Engine::Attach(int connection, Process& client, Moment moment) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
   if (n <= 0) return false;  // it has gone
@@ -147,11 +149,11 @@ bool Engine::Attach(int connection, Process& client) {
   const Task* stranger = KnownTask(hello.tid);
   const bool is_anothers =
       stranger != nullptr && stranger == running_ && stranger->process->pid != hello.pid;
-  if (is_anothers || (hello.tid == hello.pid && !EndThreadsLostInExec(hello.pid))) {
+  if (is_anothers || (hello.tid == hello.pid && !EndThreadsLostInExec(hello.pid, moment))) {
     Refuse(connection, "it has a place there already");
     return false;
   }
-  Task& task = *TaskFor(hello.pid, hello.tid, client);
+  Task& task = *TaskFor(hello.pid, hello.tid, client, moment);
   Process& process = *task.process;
   const bool wants_all = hello.wants == shm::AttachWants::kAll;
   if (process.expelled) return false;
@@ -173,9 +175,9 @@ bool Engine::Attach(int connection, Process& client) {
   }
   if (hello.tid == hello.pid) {  // a new process; or it has executed another program
     DeletePosixTimers(process);
-    LeaveDds(process);
+    LeaveDds(process, moment);
   }
-  PlaceAtGate(task);
+  PlaceAtGate(task, moment.ns);
   shm::AttachReply reply = NewReply();
   reply.slot = static_cast<std::uint32_t>(task.slot);
   const int fds[shm::kMostAttachFds] = {memfd_, process.link->memory_fd(),
@@ -185,7 +187,7 @@ bool Engine::Attach(int connection, Process& client) {
 }
 
 // Ready for its first dispatch; or for the first of another program.
-void Engine::PlaceAtGate(Task& task) {
+void Engine::PlaceAtGate(Task& task, std::int64_t at_ns) {
   shm::ThreadSlot& slot = Slot(task);
   slot.pid = task.process->pid;
   slot.tid = task.tid;
@@ -201,7 +203,7 @@ void Engine::PlaceAtGate(Task& task) {
   task.early_trap.reset();
   task.trap_id = 0;
   task.notified_early = false;
-  task.reached_ns = std::max({task.reached_ns, event_ns_, EarliestWake()});
+  task.reached_ns = std::max({task.reached_ns, at_ns, EarliestWake()});
   SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;

@@ -48,8 +48,8 @@ void Engine::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) 
     return;
   }
   const bool wrote = Expire(owner, now);
-  if (!owner.timer_signals.empty()) RouteTimerSignals(owner);
-  if (wrote) PollEvents(0);
+  if (!owner.timer_signals.empty()) RouteTimerSignals(owner, {now});
+  if (wrote) PollEvents(0, {now});
 }
 
 // How far a thread of the process may run before its resting timers are looked at again.

@@ -29,9 +29,9 @@ std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::ui
 }  // namespace
 
 // True if the thread waits for a signal that is pending: then it goes on.
-bool Engine::EndAwait(Task& task, const SignalSets& sets) {
+bool Engine::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
   if (((sets.own_pending | sets.shared_pending) & task.awaited_signals) == 0) return false;
-  MakeReady(task, shm::WakeReason::kGo);
+  MakeReady(task, shm::WakeReason::kGo, moment);
   return true;
 }
 
@@ -39,7 +39,7 @@ void Engine::AwaitSignals(Task& task, std::uint64_t set) {
   if (set == 0) return;
   task.awaited_signals = set;
   ++waiting_for_signals_;
-  EndAwait(task, ReadSignalSets(task.tid));
+  EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
 }
 
 // Nobody says that a signal has come from outside, so those who wait for one are looked at now and
@@ -50,34 +50,34 @@ bool Engine::PollSignals() {
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
-  const std::int64_t now_ns = running_ != nullptr ? WrittenAt() : event_ns_;
+  const std::int64_t now_ns = running_ != nullptr ? WrittenAt() : latest_ns_;
   for (Task& task : tasks_) {
     if (task.awaited_signals == 0) continue;
-    const std::int64_t before_ns = std::exchange(event_ns_, std::max(now_ns, task.reached_ns));
-    const bool its = EndAwait(task, ReadSignalSets(task.tid));
-    if (!its) event_ns_ = before_ns;
-    ended |= its;
+    const Moment moment{std::max(now_ns, task.reached_ns)};
+    if (!EndAwait(task, ReadSignalSets(task.tid), moment)) continue;
+    latest_ns_ = moment.ns;
+    ended = true;
   }
-  LookAtStops();
+  LookAtStops({latest_ns_});
   return ended;
 }
 
 // PollEvents for the running thread, in turns while somebody waits for signals.
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
   while (waiting_for_signals_ + waiting_for_stops_ > 0 && timeout_ns > kLookEveryNs) {
-    if (PollEvents(kLookEveryNs)) return true;
+    if (PollEvents(kLookEveryNs, {})) return true;
     if (!preempted_) return false;
     preempted_ = false;
     if (PollSignals()) return true;
     timeout_ns -= kLookEveryNs;
     ContinueClock(task);
   }
-  return PollEvents(timeout_ns);
+  return PollEvents(timeout_ns, {});
 }
 
 // What is for the whole process goes to the first of its threads that does not block it, as the
 // kernel has it.
-void Engine::WakeForSignals(Process& process) {
+void Engine::WakeForSignals(Process& process, Moment moment) {
   std::uint64_t taken = 0;
   for (Task& task : tasks_) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
@@ -88,13 +88,13 @@ void Engine::WakeForSignals(Process& process) {
       task.level = Level::kWaiting;
     }
     const SignalSets sets = ReadSignalSets(task.tid);
-    if (EndAwait(task, sets)) continue;
+    if (EndAwait(task, sets, moment)) continue;
     const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
     const std::uint64_t mine =
         Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, blocked);
     taken |= mine;
     if (mine == 0) continue;
-    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal);
+    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);
     AnswerAhead(task);
   }
 }
@@ -116,18 +116,18 @@ void Engine::AnswerAhead(Task& task) {
   task.parked = false;
 }
 
-void Engine::WakeSignalled(pid_t receiver) {
+void Engine::WakeSignalled(pid_t receiver, Moment moment) {
   for (Process& process : processes_) {
     if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
-    WakeForSignals(process);
-    NoteStops(process);
-    NoteWhetherStopped(process);
+    WakeForSignals(process, moment);
+    NoteStops(process, moment);
+    NoteWhetherStopped(process, moment.ns);
   }
 }
 
 // Others miss a stopped program that speaks DDS when its leases are over. It is stopped as a whole
 // from when a signal that does so is there, though its threads notice one after another.
-void Engine::NoteWhetherStopped(const Process& process) {
+void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
   for (const Task& task : tasks_) {
@@ -138,9 +138,9 @@ void Engine::NoteWhetherStopped(const Process& process) {
                ((sets.own_pending | sets.shared_pending) & kStops & ~ignored) != 0;
   }
   if (stopped) {
-    hub_.Stop(process.dds_number, event_ns_);
+    hub_.Stop(process.dds_number, at_ns);
   } else {
-    hub_.Continue(process.dds_number, event_ns_);
+    hub_.Continue(process.dds_number, at_ns);
   }
   ShowDeliverersTheirDeadlines();
 }

@@ -51,7 +51,7 @@ void Engine::RunInKernel(Task& task) {
 }
 
 // Has it stopped or gone on since the last look? Then its parent hears of it.
-void Engine::NoteStops(Process& process) {
+void Engine::NoteStops(Process& process, Moment moment) {
   if (process.dead) return;
   LetStop(process);
   const bool stopped = ThreadState(process.pid) == 'T';
@@ -59,7 +59,7 @@ void Engine::NoteStops(Process& process) {
   process.stopped = process.stop_is_news = stopped;
   process.continue_is_news = !stopped;
   if (!stopped) LetGoOn(process);
-  TellParent(process);
+  TellParent(process, moment);
 }
 
 // The kernel sends the parent its signal when one of the threads runs next: those that wait may do
@@ -76,21 +76,21 @@ void Engine::LetGoOn(const Process& process) {
 }
 
 // Those who wait for such a change of a child look at it, and its signal is there.
-void Engine::TellParent(const Process& child) {
+void Engine::TellParent(const Process& child, Moment moment) {
   Process* parent = LivingProcess(child.parent);
   if (parent == nullptr) return;
   ++parent->children_changed;
   for (Task& task : tasks_) {
     if (task.waits_for_child && task.awaits_stops && task.process == parent &&
         (task.awaited_child <= 0 || task.awaited_child == child.pid)) {
-      MakeReady(task, shm::WakeReason::kGo);
+      MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
-  WakeForSignals(*parent);
+  WakeForSignals(*parent, moment);
 }
 
 // Nobody says that a process has been stopped from outside.
-void Engine::LookAtStops() {
+void Engine::LookAtStops(Moment moment) {
   if (waiting_for_stops_ == 0) return;
   for (Process& process : processes_) {
     const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
@@ -98,7 +98,7 @@ void Engine::LookAtStops() {
     const bool awaited = std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
       return task.awaits_stops && task.process == parent;
     });
-    if (awaited) NoteStops(process);
+    if (awaited) NoteStops(process, moment);
   }
 }
 

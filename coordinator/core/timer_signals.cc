@@ -59,7 +59,7 @@ Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
   return nullptr;
 }
 
-void Engine::RouteTimerSignals(Process& process) {
+void Engine::RouteTimerSignals(Process& process, Moment moment) {
   std::vector<TimerSignal> later;
   for (TimerSignal& signal : process.timer_signals) {
     if (signal.taker == 0 || KnownTask(signal.taker) == nullptr) {
@@ -70,13 +70,15 @@ void Engine::RouteTimerSignals(Process& process) {
         continue;
       }
       signal.taker = taker->tid;
-      if (taker->state == TaskState::kWaiting) MakeReady(*taker, shm::WakeReason::kSignal);
+      if (taker->state == TaskState::kWaiting) {
+        MakeReady(*taker, shm::WakeReason::kSignal, moment);
+      }
     }
     later.push_back(signal);
   }
   const bool sent = later.size() < process.timer_signals.size();
   process.timer_signals = std::move(later);
-  if (sent) WakeForSignals(process);
+  if (sent) WakeForSignals(process, moment);
 }
 
 void Engine::SendTimerSignalsTo(const Task& task) {

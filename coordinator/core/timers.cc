@@ -237,24 +237,23 @@ void Engine::ExpireCpuTimers(const Task& ran) {
 }
 
 void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
-  event_ns_ = now_ns;
-  from_outside_ = true;
+  const Moment moment{.ns = now_ns, .from_outside = true};
+  latest_ns_ = now_ns;
   bool wrote = false;
   for (Task* task : robot.tasks) {
     if (task->state == TaskState::kWaiting && HasRunOut(*task, now_ns)) {
       Process& woken = *task->process;
       woken.shown_ns = std::max(woken.shown_ns, task->deadline_ns + task->frozen_ns);
-      MakeReady(*task, shm::WakeReason::kDeadline);
+      MakeReady(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;
     if (process.next_expiry_ns <= now_ns) {
       process.expired_ns = process.next_expiry_ns;
       wrote |= Expire(process, now_ns);
     }
-    if (!process.timer_signals.empty()) RouteTimerSignals(process);
+    if (!process.timer_signals.empty()) RouteTimerSignals(process, moment);
   }
-  if (wrote) PollEvents(0);
-  from_outside_ = false;
+  if (wrote) PollEvents(0, moment);
 }
 
 }  // namespace tcs

@@ -7,7 +7,6 @@
 namespace tcs {
 
 void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
-  event_ns_ = task.reached_ns;
   task.trap_id = call.id;
   task.trap_listener = call.listener;
   task.trap_result = 0;
@@ -23,26 +22,28 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   }
   Refresh(*task.process->robot);
   // What is there already ends the wait here and now.
-  if (task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer) PollEvents(0);
+  if (task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer) {
+    PollEvents(0, {task.reached_ns});
+  }
 }
 
 // A trapped call has arrived. That of the running thread stops it like a notification.
-void Engine::TrapArrived(int listener) {
+void Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return;
   Task* task = KnownTask(call->tid);
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call->number == SYS_futex);
-  if (!ours) return HandleStranger(*call);
+  if (!ours) return HandleStranger(*call, moment);
   if (task == running_) {
     trapped_ = *call;
     return;
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
-  if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo);
-  if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal);
+  if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo, moment);
+  if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal, moment);
   task->early_trap = *call;
   task->trap_id = 0;
 }
@@ -51,20 +52,20 @@ void Engine::TrapArrived(int listener) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  EndTask(task);
-  WakeThoseWaitingFor(task);
+  EndTask(task, {task.reached_ns});
+  WakeThoseWaitingFor(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
 // has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
 // here.
-void Engine::HandleStranger(const TrappedCall& call) {
+void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
   const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
   Process* process = LivingProcess(pid);
   if (process != nullptr && KnownTask(call.tid) == nullptr) {
     process->has_strangers = true;
-    CarryOutWake(*process, call);
+    CarryOutWake(*process, call, moment);
   }
   LetThrough(call);
 }

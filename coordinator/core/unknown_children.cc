@@ -33,7 +33,7 @@ void Engine::FindUnknownChildren(Process& parent) {
   }
 }
 
-void Engine::UnknownChildEnded(pid_t pid) {
+void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
   const auto found = unknown_children_.find(pid);
   if (found == unknown_children_.end()) return;
   const UnknownChild child = found->second;
@@ -48,10 +48,10 @@ void Engine::UnknownChildEnded(pid_t pid) {
   for (Task& task : tasks_) {
     if (task.waits_for_child && task.process == parent &&
         (task.awaited_child <= 0 || task.awaited_child == pid)) {
-      MakeReady(task, shm::WakeReason::kGo);
+      MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
-  WakeForSignals(*parent);
+  WakeForSignals(*parent, moment);
 }
 
 bool Engine::HasUnknownChild(const Process& parent) const {
@@ -66,7 +66,7 @@ void Engine::Yield(Task& task) {
   if (++task.yields < kYieldsBeforeLook) return;
   task.yields = 0;
   FindUnknownChildren(*task.process);
-  if (UnknownChildrenRun()) PollEvents(kStrangersTurnNs);
+  if (UnknownChildrenRun()) PollEvents(kStrangersTurnNs, {task.reached_ns});
 }
 
 bool Engine::AwaitsUnknownChildren() const {
