@@ -86,7 +86,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.shown_ns = maker->shown_ns;
   }
   if (process.pidfd >= 0) {
-    Watch(process.pidfd, EPOLLIN, Tag::kProcess, process.index);
+    reactor_.Add(process.pidfd, EPOLLIN, {Tag::kProcess, process.index});
   }
   Task* task = AddTask(process, pid, at_ns);
   // Children have no name of their own; their place in the order is the same in every run.
@@ -183,7 +183,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   for (auto& [id, timer] : process.timers) {
     if (timer.fd >= 0) close(std::exchange(timer.fd, -1));
   }
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, process.pidfd, nullptr);
+  reactor_.Remove(process.pidfd);
   close(process.pidfd);
   process.pidfd = -1;
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));

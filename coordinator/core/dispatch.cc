@@ -455,7 +455,8 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.reply[0] = task.reply[1] = 0;
     if (!TakeIpcNotes(task)) return Expel(*task.process, kWrongIpcNotes);
     const shm::Notification early = Slot(task).note;
-    Handle(task, early);
+    const Moment moment{task.reached_ns};
+    if (Handle(task, early)) PollEvents(0, moment);
     return;
   }
   if (task.early_trap.has_value()) {
@@ -463,7 +464,8 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.early_trap.reset();
     task.parked = true;
     SetState(task, TaskState::kReady);
-    HandleTrapped(task, early);
+    const Moment moment{task.reached_ns};
+    if (HandleTrapped(task, early)) PollEvents(0, moment);
     return;
   }
   Beat();
@@ -514,15 +516,19 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     return;
   }
   if (task.spins) StepAside(task);
+  bool finds_more = false;
+  const Moment moment{task.reached_ns};
   if (notified_ && task.state != TaskState::kDead) {
     task.parked = true;
     task.reply[0] = task.reply[1] = 0;
     const shm::Notification note = Slot(task).note;
-    Handle(task, note);
+    finds_more = Handle(task, note);
   } else if (trapped_.has_value() && task.state != TaskState::kDead) {
     task.parked = true;
-    HandleTrapped(task, *trapped_);
+    finds_more = HandleTrapped(task, *trapped_);
   }
+  // What is there already ends the wait here and now.
+  if (finds_more) PollEvents(0, moment);
 }
 
 }  // namespace tcs

@@ -46,7 +46,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, epoll_, signals_, claim_.fd, detector_pidfd_}) {
+  for (const int fd : {memfd_, signals_, claim_.fd, detector_pidfd_}) {
     if (fd >= 0) close(fd);
   }
   for (const Listener& listener : listeners_) close(listener.fd);
@@ -516,14 +516,13 @@ void Engine::WaitOutside() {
 
 // Before idle time is jumped over: is something from outside already there?
 bool Engine::HasJumpedOver() {
-  external_event_ = false;
-  PollEvents(0, {latest_ns_});
+  const Reactor::Found found = PollEvents(0, {latest_ns_});
   PollUnseen();
   if (StrangersRun()) {
     PollEvents(kUnseenPollNs, {latest_ns_});
     return false;
   }
-  return !external_event_;
+  return !found.wakes_others;
 }
 
 // Threads that never registered are at work: time waits for them.
@@ -587,10 +586,9 @@ bool Engine::AwaitDeaths() {
 // back: they get as much real time as there is virtual time left. False at the run's end.
 bool Engine::AwaitOutside() {
   if (end_ns_ != shm::kNeverNs) {
-    external_event_ = false;
-    PollEvents(0, {latest_ns_});
+    const Reactor::Found found = PollEvents(0, {latest_ns_});
     PollUnseen();
-    if (external_event_ || root_.Least() != shm::kNeverNs) return true;
+    if (found.wakes_others || root_.Least() != shm::kNeverNs) return true;
     if (unseen_ == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun()) return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;

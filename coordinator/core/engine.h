@@ -17,6 +17,7 @@
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/moment.h"
+#include "coordinator/core/reactor.h"
 #include "coordinator/core/task.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -40,21 +41,6 @@ class Engine {
   RunReport Run();
 
  private:
-  enum class Tag : std::uint32_t {
-    kPipe,
-    kListener,
-    kConnection,
-    kProcess,
-    kAwaited,
-    kUnknownChild,
-    kTrap,
-    kCommand,
-    kSignal,
-    kGraceRanOut,
-    kDetector,
-    kDetectorEnd
-  };
-
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
   std::string PrepareMemory();
@@ -169,8 +155,23 @@ class Engine {
   std::int64_t StalenessOf(const Task& task) const;
   bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
-  // Notifications (notifications.cc).
-  void Handle(Task& task, const shm::Notification& note);
+  // By the kind of descriptor (handlers.cc).
+  void RegisterHandlers();
+  Reactor::Found OnPipe(Subject process, std::uint32_t events, Moment moment);
+  Reactor::Found OnListener(Subject listener, std::uint32_t events, Moment moment);
+  Reactor::Found OnConnection(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnProcessEnd(Subject process, std::uint32_t events, Moment moment);
+  Reactor::Found OnAwaited(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
+  Reactor::Found OnTrap(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnCommand(Subject channel, std::uint32_t events, Moment moment);
+  Reactor::Found OnSignal(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnGraceRanOut(Subject timer, std::uint32_t events, Moment moment);
+  Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
+
+  // Notifications (notifications.cc). True: as TakeNotifications.
+  bool Handle(Task& task, const shm::Notification& note);
   void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
   void WaitForChild(Task& task, pid_t which, bool stops);
 
@@ -183,6 +184,7 @@ class Engine {
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
+  static Subject SubjectOfWait(const Task& task);
 
   // Children that are stopped and go on (stops.cc).
   void LetStop(const Process& process);
@@ -223,7 +225,7 @@ class Engine {
   // errno.
   void TrapArrived(int listener, Moment moment);
   void ExitThread(Task& task, const TrappedCall& call);
-  void HandleTrapped(Task& task, const TrappedCall& call);
+  bool HandleTrapped(Task& task, const TrappedCall& call);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call, Moment moment);
   void ReleaseTrapped();
@@ -321,7 +323,7 @@ class Engine {
   void WakeEveryKey(Moment moment);
   void EndKeyWait(Task& task);
   void NoteTerminal(Task& task, int fd);
-  void FlushTerminals(Moment moment);
+  void FlushTerminals();
 
   // Programs that speak DDS (dds.cc).
   std::string OpenDds();
@@ -382,12 +384,14 @@ class Engine {
   void SendTimerSignalsTo(const Task& task);
   static void NoteAccepted(Process& process);
 
-  // Events (events.cc). Returns true if the running thread has to be stopped. `timeout_ns` is real;
-  // negative: none. What is found happens at `moment`, or when the running thread has come to.
-  bool TakeEvents(std::int64_t timeout_ns, Moment moment, bool* is_full);
-  bool PollEvents(std::int64_t timeout_ns, Moment moment);
-  void TakeNotifications(const Process& process, Moment moment);
-  void NotificationArrived(Task& task, Moment moment);
+  // Events (events.cc). `timeout_ns` is real; negative: none. What is found happens at `moment`, or
+  // at the time that the running thread has come to.
+  Reactor::Found PollEvents(std::int64_t timeout_ns, Moment moment);
+  Reactor::Found TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest);
+  Reactor::Found WakeReadyAwaiters(Moment moment);
+  // True: what it waits for may be there already, and be found at this very moment.
+  bool TakeNotifications(const Process& process, Moment moment);
+  bool NotificationArrived(Task& task, Moment moment);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
   void DetectorEnded();
@@ -399,16 +403,6 @@ class Engine {
   void PlaceAtGate(Task& task, std::int64_t at_ns);
   Task* TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
   void ProcessEnded(std::size_t index, Moment moment);
-  void Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index, std::uint32_t number = 0);
-  // What epoll gives back: `number` tells an event of this wait from those of earlier ones, or
-  // whose client's descendant a connection is of.
-  static std::uint64_t EventData(Tag tag, std::uint32_t index, std::uint32_t number) {
-    return (static_cast<std::uint64_t>(tag) << 56) | (std::uint64_t{number & 0xffffff} << 32) |
-           index;
-  }
-  static std::uint32_t NumberOf(std::uint64_t event_data) {
-    return static_cast<std::uint32_t>(event_data >> 32) & 0xffffff;
-  }
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
                 std::int64_t at_ns, const Process* maker = nullptr);
   Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
@@ -510,9 +504,11 @@ class Engine {
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
+  Reactor reactor_;
+  std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
   shm::RunHeader* header_ = nullptr;  // in it
-  int memfd_ = -1, epoll_ = -1, signals_ = -1;
+  int memfd_ = -1, signals_ = -1;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
@@ -552,7 +548,6 @@ class Engine {
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
   bool notified_ = false, preempted_ = false;              // why the running thread was stopped
-  bool external_event_ = false;
 
   RunReport report_;
   std::int64_t client_host_ns_ = 0;

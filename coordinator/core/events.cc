@@ -25,7 +25,6 @@ namespace tcs {
 
 namespace {
 
-constexpr int kEventsAtOnce = 64;
 constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
@@ -37,15 +36,7 @@ constexpr int kExitTurns = 20;
 
 }  // namespace
 
-void Engine::Watch(int fd, std::uint32_t events, Tag tag, std::uint32_t index,
-                   std::uint32_t number) {
-  epoll_event event{};
-  event.events = events;
-  event.data.u64 = EventData(tag, index, number);
-  epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event);
-}
-
-void Engine::NotificationArrived(Task& task, Moment moment) {
+bool Engine::NotificationArrived(Task& task, Moment moment) {
   if (&task == running_) {
     notified_ = true;
   } else if (task.state == TaskState::kWaiting &&
@@ -57,7 +48,7 @@ void Engine::NotificationArrived(Task& task, Moment moment) {
     task.parked = true;
     CheckCpuClock(task);
     const shm::Notification note = Slot(task).note;
-    Handle(task, note);
+    return Handle(task, note);
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
@@ -65,21 +56,24 @@ void Engine::NotificationArrived(Task& task, Moment moment) {
     task.trap_id = 0;
     task.notified_early = true;
   }
+  return false;
 }
 
 // Of one process, so many at a time: others have their turns, too.
-void Engine::TakeNotifications(const Process& process, Moment moment) {
+bool Engine::TakeNotifications(const Process& process, Moment moment) {
   constexpr std::size_t kAtOnce = 64;
-  if (process.link == nullptr) return;
+  if (process.link == nullptr) return false;
   shm::PipeMessage messages[kAtOnce];
   const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
   const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
+  bool looks_again = false;
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task != nullptr && task->state != TaskState::kDead) {
-      NotificationArrived(*task, moment);
+      looks_again |= NotificationArrived(*task, moment);
     }
   }
+  return looks_again;
 }
 
 void Engine::RearmDetector() {
@@ -90,7 +84,7 @@ void Engine::RearmDetector() {
 
 // Without it the first thread that waits in the kernel would make everybody wait with it.
 void Engine::DetectorEnded() {
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, detector_pidfd_, nullptr);
+  reactor_.Remove(detector_pidfd_);
   if (header_->shutdown.load() != 0) return;
   const std::optional<int> status = WaitStatusOf(detector_);
   report_.error = fmt::format(
@@ -209,28 +203,25 @@ bool Engine::CutsOff(Task& task) {
 }
 
 // All that there is at this instant: were the rest found later, it would have happened later.
-bool Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
-  bool is_full = false;
-  bool stop = TakeEvents(timeout_ns, moment, &is_full);
-  for (int turn = 0; is_full && turn < kMostFullTurns; ++turn) {
-    stop |= TakeEvents(0, moment, &is_full);
+Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
+  Reactor::Found found = TakeEvents(timeout_ns, moment, false);
+  for (int turn = 0; turn < kMostFullTurns; ++turn) {
+    if (!std::exchange(found.looks_again, false) && !reactor_.IsFull()) break;
+    found |= TakeEvents(0, moment, true);
   }
-  return stop;
+  return found;
 }
 
-bool Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool* is_full) {
+// `is_rest`: a further look at an instant.
+Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
   const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
-  epoll_event events[kEventsAtOnce];
-  const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
   const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0 && !IsFixed();
   const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
-  const int n =
-      epoll_pwait2(epoll_, events, kEventsAtOnce, timeout_ns < 0 ? nullptr : &timeout, nullptr);
+  const std::size_t n = reactor_.Wait(timeout_ns);
   stop_tsc_ = __rdtsc();
-  const bool is_rest = std::exchange(*is_full, n == kEventsAtOnce);
-  if (n == 0 && is_rest) return false;
+  if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
     if (held) {
@@ -239,119 +230,32 @@ bool Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool* is_full) {
     } else {
       preempted_ = true;
     }
-    return false;
+    return {};
   }
-  bool stop = false, blocked = false;
   if (running_ != nullptr) moment = {WrittenAt()};
-  std::vector<Task*> awaiters;
-  for (int i = 0; i < n; ++i) {
-    const auto tag = static_cast<Tag>(events[i].data.u64 >> 56);
-    const auto index = static_cast<std::uint32_t>(events[i].data.u64);
-    switch (tag) {
-      case Tag::kPipe:
-        TakeNotifications(processes_[index], moment);
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kListener:
-        Accept(listeners_[index]);
-        break;
-      case Tag::kConnection: {
-        const auto fd = static_cast<int>(index);
-        const auto found = std::find_if(connections_.begin(), connections_.end(),
-                                        [fd](const Connection& one) { return one.fd == fd; });
-        if (found == connections_.end()) break;  // it was cut off
-        const Connection connection = *found;
-        connections_.erase(found);
-        const bool registers = Attach(fd, *connection.client, moment);
-        close(fd);
-        stop |= registers;
-        external_event_ |= registers;
-        break;
-      }
-      case Tag::kProcess:
-        ProcessEnded(index, moment);
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kAwaited:
-        if (Task& task = tasks_[index];
-            task.state == TaskState::kWaiting && task.waits_for_fds &&
-            EventData(tag, index, task.wait_number) == events[i].data.u64 &&
-            !std::exchange(task.skips_event, false)) {
-          awaiters.push_back(&task);
-          external_event_ = true;
-        }
-        break;
-      case Tag::kUnknownChild:
-        UnknownChildEnded(static_cast<pid_t>(index), moment);
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kTrap:
-        if ((events[i].events & EPOLLIN) == 0) {
-          // Nobody is left whose calls could arrive here.
-          epoll_ctl(epoll_, EPOLL_CTL_DEL, static_cast<int>(index), nullptr);
-          close(static_cast<int>(index));
-          break;
-        }
-        TrapArrived(static_cast<int>(index), moment);
-        stop = true;
-        external_event_ = true;
-        break;
-      case Tag::kCommand:
-        world_.ReceiveCommands(index, moment.ns);
-        break;
-      case Tag::kSignal: {
-        signalfd_siginfo info;
-        if (read(signals_, &info, sizeof info) != sizeof info) break;
-        // ^C is for the program that has the terminal.
-        if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
-            options_.output_directory.empty()) {
-          break;
-        }
-        stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
-        stop = true;
-        break;
-      }
-      case Tag::kGraceRanOut:
-        close(static_cast<int>(index));
-        grace_ran_out_ = stop = true;
-        break;
-      case Tag::kDetector: {
-        std::uint64_t count;
-        if (read(detector_fired_, &count, sizeof count) != sizeof count) break;
-        detector_armed_ = false;
-        TakeLevelBack();
-        blocked = true;
-        break;
-      }
-      case Tag::kDetectorEnd:
-        DetectorEnded();
-        stop = true;
-        break;
-    }
-  }
+  Reactor::Found found = reactor_.Handle(moment);
+  found |= WakeReadyAwaiters(moment);
+  if (running_ == nullptr || found.stops_running || !found.blocks_running) return found;
+  ++held_turns_;
+  found.stops_running = BlockedInKernel();
+  return found;
+}
+
+// Those whose descriptors have become ready, all at once: one event may be for one of them only.
+Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
+  std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
   // Something else may have ended the wait meanwhile.
   std::erase_if(awaiters, [](const Task* task) {
     return task->state != TaskState::kWaiting || !task->waits_for_fds;
   });
-  if (!awaiters.empty()) {
-    const bool beside = running_ != nullptr && running_->slot >= 0 &&
-                        std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-                          return task->process->robot == running_->process->robot;
-                        });
-    WakeAwaiters(std::move(awaiters), moment);
-    if (beside) {
-      GoOnBesideWoken();
-    } else {
-      stop = true;
-    }
-  }
-  if (running_ == nullptr) return true;
-  if (stop || !blocked) return stop;
-  ++held_turns_;
-  return BlockedInKernel();
+  if (awaiters.empty()) return {};
+  const bool beside = running_ != nullptr && running_->slot >= 0 &&
+                      std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+                        return task->process->robot == running_->process->robot;
+                      });
+  WakeAwaiters(std::move(awaiters), moment);
+  if (beside) GoOnBesideWoken();
+  return {.stops_running = !beside, .wakes_others = true};
 }
 
 }  // namespace tcs

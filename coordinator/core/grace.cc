@@ -66,7 +66,7 @@ void Engine::BeginGrace() {
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);
   recording_.reset();
-  for (const int fd : world_.command_fds()) epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+  for (const int fd : world_.command_fds()) reactor_.Remove(fd);
   for (VirtualCpu& cpu : cpus_) {
     if (reached_end_) cpu.progress_ns = std::max(cpu.progress_ns, grace_began_ns_);
   }
@@ -102,7 +102,7 @@ void Engine::LimitRealTime() {
   itimerspec when{};
   when.it_value = {limit_ns / 1'000'000'000, limit_ns % 1'000'000'000};
   timerfd_settime(timer, 0, &when, nullptr);
-  Watch(timer, EPOLLIN, Tag::kGraceRanOut, static_cast<std::uint32_t>(timer));
+  reactor_.Add(timer, EPOLLIN, {Tag::kGraceRanOut, static_cast<std::uint32_t>(timer)});
 }
 
 std::int64_t Engine::KillTimeOf(const Process& process) const {

@@ -29,7 +29,7 @@ void Engine::EndKeyWait(Task& task) {
 
 bool Engine::WakeKey(std::int64_t kind, std::int64_t id, Moment moment) {
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
-    FlushTerminals(moment);
+    FlushTerminals();
     return false;
   }
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits))
@@ -80,7 +80,7 @@ void Engine::NoteTerminal(Task& task, int fd) {
 // What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
 // own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
 // another.
-void Engine::FlushTerminals(Moment moment) {
+void Engine::FlushTerminals() {
   for (int turn = 0; turn < 2; ++turn) {
     for (const Task& task : tasks_) {
       if (!task.watches_terminal) continue;
@@ -90,7 +90,6 @@ void Engine::FlushTerminals(Moment moment) {
       }
     }
   }
-  PollEvents(0, moment);
 }
 
 // A process that ends may change any object: the kernel undoes what it did to semaphores.

@@ -154,7 +154,7 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
   const pid_t pid = spawned.pid;
   if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
   if (spawned.trap >= 0) {
-    Watch(spawned.trap, EPOLLIN, Tag::kTrap, static_cast<std::uint32_t>(spawned.trap));
+    reactor_.Add(spawned.trap, EPOLLIN, {Tag::kTrap, static_cast<std::uint32_t>(spawned.trap)});
   } else {
     Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
          "): threads wait for each other in real time");

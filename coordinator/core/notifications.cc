@@ -20,7 +20,7 @@ namespace tcs {
 void Engine::EndWatches(Task& task) {
   const bool forgets = task.watches_terminal || task.awaited_signals != 0;
   for (const int fd : task.watched) {
-    if (forgets || task.is_edge_armed) epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr);
+    if (forgets || task.is_edge_armed) reactor_.Remove(fd);
     close(fd);
   }
   task.watched.clear();
@@ -30,6 +30,11 @@ void Engine::EndWatches(Task& task) {
   task.watches_terminal = false;
 }
 
+Subject Engine::SubjectOfWait(const Task& task) {
+  return {Tag::kAwaited, static_cast<std::uint32_t>(task.order),
+          task.wait_number & Subject::kNumberMask};
+}
+
 void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   SetState(task, TaskState::kWaiting);
   task.waits_for_fds = true;
@@ -37,13 +42,10 @@ void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const int fd = DuplicateFd(task.process->pidfd, fds[i].fd);
     if (fd < 0) continue;
-    epoll_event event{};
-    event.events = fds[i].events | EPOLLONESHOT;
-    event.data.u64 =
-        EventData(Tag::kAwaited, static_cast<std::uint32_t>(task.order), task.wait_number);
-    if (epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event) == 0) {
+    const std::uint32_t events = fds[i].events | EPOLLONESHOT;
+    if (reactor_.Modify(fd, events, SubjectOfWait(task))) {
       task.watched.push_back(fd);
-    } else if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0) {
+    } else if (reactor_.Add(fd, events, SubjectOfWait(task))) {
       task.watched.push_back(fd);
       NoteTerminal(task, fd);  // never left in the set, so it always comes this way
     } else {
@@ -85,13 +87,18 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   InheritScheduling(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
-void Engine::Handle(Task& task, const shm::Notification& note) {
+bool Engine::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
   const Moment moment{task.reached_ns};
-  if (task.process->expelled) return AwaitDeath(task);
+  bool looks_again = false;
+  if (task.process->expelled) {
+    AwaitDeath(task);
+    return false;
+  }
   if (const char* what = WhatIsImpossible(note); what != nullptr) {
-    return Expel(*task.process, what);
+    Expel(*task.process, what);
+    return false;
   }
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
@@ -121,9 +128,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       if (task.takes) task.watched_events = note.fds[0].events;
       if (note.args[2] == 0) task.wait_order = ++wait_order_counter_;
       AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
-      Refresh(robot);
-      // What is there already ends the wait here and now.
-      PollEvents(0, moment);
+      looks_again = true;
       break;
     case Kind::kWaitChild:
       WaitForChild(task, static_cast<pid_t>(note.args[0]), note.args[1] != 0);
@@ -167,6 +172,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       WaitForKey(task, note);
       break;
     case Kind::kWakeKey:
+      looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
       if (WakeKey(note.args[0], note.args[1], moment) && task.policy == SCHED_OTHER) {
@@ -193,6 +199,7 @@ void Engine::Handle(Task& task, const shm::Notification& note) {
       break;
   }
   Refresh(robot);
+  return looks_again;
 }
 
 }  // namespace tcs

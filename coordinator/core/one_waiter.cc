@@ -98,13 +98,9 @@ void Engine::PassOver(Task& task, Task& first) {
       first.follow_up = FollowUp::kTaken;
     }
   }
-  epoll_event event{};
-  event.events = task.watched_events | EPOLLET;
-  event.data.u64 =
-      EventData(Tag::kAwaited, static_cast<std::uint32_t>(task.order), task.wait_number);
   // What is there already comes once more, at once, and is not for it.
   task.skips_event = IsReady(fd, task.watched_events);
-  epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event);
+  reactor_.Modify(fd, task.watched_events | EPOLLET, SubjectOfWait(task));
   task.is_edge_armed = true;
 }
 

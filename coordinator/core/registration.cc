@@ -65,7 +65,7 @@ void Engine::Accept(const Listener& listener) {
     connections_.pop_front();
   }
   connections_.push_back({connection, listener.client});
-  Watch(connection, EPOLLIN, Tag::kConnection, static_cast<std::uint32_t>(connection));
+  reactor_.Add(connection, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(connection)});
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
@@ -160,7 +160,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   if (process.link == nullptr && wants_all) {
     process.link = ProcessLink::Make();
     if (process.link != nullptr) {
-      Watch(process.link->incoming_fd(), EPOLLIN, Tag::kPipe, process.index);
+      reactor_.Add(process.link->incoming_fd(), EPOLLIN, {Tag::kPipe, process.index});
     }
   }
   if (process.link == nullptr ||

@@ -68,13 +68,13 @@ std::string Engine::Prepare() {
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
-  epoll_ = epoll_create1(EPOLL_CLOEXEC);
+  RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = OpenDds(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
-    Watch(world_.command_fds()[i], EPOLLIN, Tag::kCommand, static_cast<std::uint32_t>(i));
+    reactor_.Add(world_.command_fds()[i], EPOLLIN, {Tag::kCommand, static_cast<std::uint32_t>(i)});
   }
   return PrepareDetector();
 }
@@ -108,7 +108,7 @@ std::string Engine::PrepareListener() {
   signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
 
   socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
-  Watch(signals_, EPOLLIN, Tag::kSignal, 0);
+  reactor_.Add(signals_, EPOLLIN, {Tag::kSignal});
   return {};
 }
 
@@ -127,14 +127,14 @@ std::string Engine::OpenListener() {
       listen(listener, 256) != 0) {
     return {};
   }
-  Watch(listener, EPOLLIN, Tag::kListener, client);
+  reactor_.Add(listener, EPOLLIN, {Tag::kListener, client});
   return name;
 }
 
 std::string Engine::PrepareDetector() {
   detector_arm_ = eventfd(0, EFD_CLOEXEC);
   detector_fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  Watch(detector_fired_, EPOLLIN, Tag::kDetector, 0);
+  reactor_.Add(detector_fired_, EPOLLIN, {Tag::kDetector});
   const pid_t coordinator = getpid();
   const pid_t detector = fork();
   if (detector < 0) return "the block detector's process cannot be made";
@@ -144,7 +144,7 @@ std::string Engine::PrepareDetector() {
   }
   detector_ = detector;
   detector_pidfd_ = OpenPidfd(detector);
-  Watch(detector_pidfd_, EPOLLIN, Tag::kDetectorEnd, 0);
+  reactor_.Add(detector_pidfd_, EPOLLIN, {Tag::kDetectorEnd});
   guarded_ = GuardsOf(coordinator);
   guarded_.insert(guarded_.end(), {coordinator, detector});
   return {};

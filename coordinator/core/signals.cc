@@ -65,14 +65,14 @@ bool Engine::PollSignals() {
 // PollEvents for the running thread, in turns while somebody waits for signals.
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
   while (waiting_for_signals_ + waiting_for_stops_ > 0 && timeout_ns > kLookEveryNs) {
-    if (PollEvents(kLookEveryNs, {})) return true;
+    if (PollEvents(kLookEveryNs, {}).stops_running) return true;
     if (!preempted_) return false;
     preempted_ = false;
     if (PollSignals()) return true;
     timeout_ns -= kLookEveryNs;
     ContinueClock(task);
   }
-  return PollEvents(timeout_ns, {});
+  return PollEvents(timeout_ns, {}).stops_running;
 }
 
 // What is for the whole process goes to the first of its threads that does not block it, as the

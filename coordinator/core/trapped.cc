@@ -6,7 +6,7 @@
 
 namespace tcs {
 
-void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
+bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.trap_id = call.id;
   task.trap_listener = call.listener;
   task.trap_result = 0;
@@ -21,10 +21,7 @@ void Engine::HandleTrapped(Task& task, const TrappedCall& call) {
     HandleRawCall(task, call);
   }
   Refresh(*task.process->robot);
-  // What is there already ends the wait here and now.
-  if (task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer) {
-    PollEvents(0, {task.reached_ns});
-  }
+  return task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer;
 }
 
 // A trapped call has arrived. That of the running thread stops it like a notification.

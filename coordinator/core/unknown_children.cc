@@ -29,7 +29,7 @@ void Engine::FindUnknownChildren(Process& parent) {
     const int pidfd = OpenPidfd(pid);
     if (pidfd < 0) continue;
     unknown_children_[pid] = {parent.pid, pidfd};
-    Watch(pidfd, EPOLLIN, Tag::kUnknownChild, static_cast<std::uint32_t>(pid));
+    reactor_.Add(pidfd, EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
   }
 }
 
@@ -37,7 +37,7 @@ void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
   const auto found = unknown_children_.find(pid);
   if (found == unknown_children_.end()) return;
   const UnknownChild child = found->second;
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, child.pidfd, nullptr);
+  reactor_.Remove(child.pidfd);
   close(child.pidfd);
   unknown_children_.erase(found);
   // A parent that waits for children of another kind leaves it there.

@@ -1,0 +1,132 @@
+// What is done about what the kernel says, by the kind of descriptor that it says it at.
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+// Of what may concern anybody.
+constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
+
+}  // namespace
+
+void Engine::RegisterHandlers() {
+  const auto on = [this](Tag tag,
+                         Reactor::Found (Engine::*handler)(Subject, std::uint32_t, Moment)) {
+    reactor_.On(tag, [this, handler](const Subject& subject, std::uint32_t events, Moment moment) {
+      return (this->*handler)(subject, events, moment);
+    });
+  };
+  on(Tag::kPipe, &Engine::OnPipe);
+  on(Tag::kListener, &Engine::OnListener);
+  on(Tag::kConnection, &Engine::OnConnection);
+  on(Tag::kProcess, &Engine::OnProcessEnd);
+  on(Tag::kAwaited, &Engine::OnAwaited);
+  on(Tag::kUnknownChild, &Engine::OnUnknownChildEnd);
+  on(Tag::kTrap, &Engine::OnTrap);
+  on(Tag::kCommand, &Engine::OnCommand);
+  on(Tag::kSignal, &Engine::OnSignal);
+  on(Tag::kGraceRanOut, &Engine::OnGraceRanOut);
+  on(Tag::kDetector, &Engine::OnDetector);
+  on(Tag::kDetectorEnd, &Engine::OnDetectorEnd);
+}
+
+Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
+  Reactor::Found found = kConcernsAll;
+  found.looks_again = TakeNotifications(processes_[process.index], moment);
+  return found;
+}
+
+Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
+  Accept(listeners_[listener.index]);
+  return {};
+}
+
+Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment moment) {
+  const auto fd = static_cast<int>(subject.index);
+  const auto found = std::find_if(connections_.begin(), connections_.end(),
+                                  [fd](const Connection& one) { return one.fd == fd; });
+  if (found == connections_.end()) return {};  // it was cut off
+  const Connection connection = *found;
+  connections_.erase(found);
+  const bool registers = Attach(fd, *connection.client, moment);
+  close(fd);
+  return registers ? kConcernsAll : Reactor::Found{};
+}
+
+Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
+  ProcessEnded(process.index, moment);
+  return kConcernsAll;
+}
+
+Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
+  Task& task = tasks_[subject.index];
+  const bool is_its_wait =
+      task.state == TaskState::kWaiting && task.waits_for_fds && subject == SubjectOfWait(task);
+  if (!is_its_wait || std::exchange(task.skips_event, false)) return {};
+  ready_awaiters_.push_back(&task);
+  return {.wakes_others = true};
+}
+
+Reactor::Found Engine::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
+  UnknownChildEnded(static_cast<pid_t>(child.index), moment);
+  return kConcernsAll;
+}
+
+Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment moment) {
+  const auto listener = static_cast<int>(subject.index);
+  if ((events & EPOLLIN) == 0) {
+    // Nobody is left whose calls could arrive here.
+    reactor_.Remove(listener);
+    close(listener);
+    return {};
+  }
+  TrapArrived(listener, moment);
+  return kConcernsAll;
+}
+
+Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
+  world_.ReceiveCommands(channel.index, moment.ns);
+  return {};
+}
+
+Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
+  signalfd_siginfo info;
+  if (read(signals_, &info, sizeof info) != sizeof info) return {};
+  // ^C is for the program that has the terminal.
+  if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL && options_.output_directory.empty()) {
+    return {};
+  }
+  stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+  return {.stops_running = true};
+}
+
+Reactor::Found Engine::OnGraceRanOut(Subject timer, std::uint32_t, Moment) {
+  close(static_cast<int>(timer.index));
+  grace_ran_out_ = true;
+  return {.stops_running = true};
+}
+
+Reactor::Found Engine::OnDetector(Subject, std::uint32_t, Moment) {
+  std::uint64_t count;
+  if (read(detector_fired_, &count, sizeof count) != sizeof count) return {};
+  detector_armed_ = false;
+  TakeLevelBack();
+  return {.blocks_running = true};
+}
+
+Reactor::Found Engine::OnDetectorEnd(Subject, std::uint32_t, Moment) {
+  DetectorEnded();
+  return {.stops_running = true};
+}
+
+}  // namespace tcs
