@@ -180,9 +180,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
     WakeThoseWaitingFor(*task, moment);
   }
   KeepUsageOf(process);
-  for (auto& [id, timer] : process.timers) {
-    if (timer.fd >= 0) close(std::exchange(timer.fd, -1));
-  }
+  process.timer_fds.clear();
   reactor_.Remove(process.pidfd);
   close(process.pidfd);
   process.pidfd = -1;

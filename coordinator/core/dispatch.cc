@@ -506,7 +506,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   ExpireCpuTimers(task);
   if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call, looks_again);
-  if (task.process->has_resting_timers) EndRests(*task.process, stop.ns);
+  task.process->timers.EndRests(stop.ns);
   if (notified_ || trapped_.has_value()) PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.

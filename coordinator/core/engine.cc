@@ -123,9 +123,7 @@ void Engine::Refresh(Robot& robot) {
                                 ? std::max(idle->progress_ns, task->reached_ns)
                                 : task->deadline_ns);
       }
-      if (task->process->next_expiry_ns != shm::kNeverNs) {
-        due = std::min(due, task->process->next_expiry_ns);
-      }
+      due = std::min(due, task->process->timers.NextExpiry());
     }
     due = std::min(due, robot.next_launch_ns);
     if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
@@ -286,17 +284,19 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
         {furthest, HorizonWhileWorldStands(task), cpu.progress_ns + LeftToHoldNs(task)});
   }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
-  if (const std::int64_t left = CpuTimeToExpiry(task); left != shm::kNeverNs) {
-    limit = std::min(limit, cpu.progress_ns + left);
+  if (task.process->timers.HasCpuTimers()) {
+    const std::int64_t left = task.process->timers.CpuTimeToExpiry(CpuUsedBy(task));
+    if (left != shm::kNeverNs) limit = std::min(limit, cpu.progress_ns + left);
   }
   limit = std::min(limit, std::max(robot.next_launch_ns, cpu.progress_ns));
-  limit = std::min(limit, std::max(NextLook(*task.process), cpu.progress_ns + kLeastLookNs));
+  limit =
+      std::min(limit, std::max(task.process->timers.NextLook(), cpu.progress_ns + kLeastLookNs));
   std::int64_t idle = limit;
   const std::int64_t turn_end =
       task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
   const bool task_yields = robot.ready.YieldsTo(cpu.core, task.priority);
   for (const Task* other : robot.tasks) {
-    const std::int64_t expiry = other->process->next_expiry_ns;
+    const std::int64_t expiry = other->process->timers.NextExpiry();
     if (other->process == task.process || other->priority > task.priority) {
       limit = std::min(limit, expiry);
     }

@@ -180,7 +180,7 @@ class Engine {
   void PassOver(Task& task, Task& first);
   void PassOn(Task& first, Moment moment);
 
-  void Yield(Task& task);
+  bool Yield(Task& task);  // as Handle
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
   void EndWatches(Task& task);
@@ -239,7 +239,7 @@ class Engine {
   void ContinueTrap(const Task& task) const;
 
   // Those other than futex (raw_calls.cc).
-  void HandleRawCall(Task& task, const TrappedCall& call);
+  bool HandleRawCall(Task& task, const TrappedCall& call);
   std::int64_t ReadRawClock(const Task& task, const TrappedCall& call);
   std::int64_t SleepRaw(Task& task, const TrappedCall& call);
   void SignalRaw(Task& task);
@@ -277,7 +277,7 @@ class Engine {
   std::int64_t CreateTimerRaw(Task& task, const TrappedCall& call);
   FoundTimer FindTimerFd(const Task& task, int number);
   static FoundTimer AdoptTimerFd(const Task& task, int number);
-  std::int64_t TimerNow(const Task& task, const Process& owner, const Timer& timer) const;
+  std::int64_t TimerNow(const Task& task, const Process& owner, const shm::TimerKind& kind) const;
   itimerspec ExchangeTimer(Task& task, const FoundTimer& found, bool sets, std::int64_t first_ns,
                            std::int64_t interval_ns);
   std::int64_t SetTimerRaw(Task& task, const FoundTimer& found, const TrappedCall& call);
@@ -353,29 +353,19 @@ class Engine {
   bool PollSignals();
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
-  // Timers (timers.cc).
-  void SetTimer(Task& task, const shm::Notification& note);
-  void SetTimerOf(Process& process, Task& task, const shm::Notification& note);
-  static void EnsureItimer(Process& process, std::int64_t id);
+  // Timers (timers.cc); the rules are ProcessTimers'.
+  // True: it has written to a timer descriptor.
+  bool SetTimer(Task& task, const shm::Notification& note);
+  bool SetTimerOf(Process& process, Task& task, const shm::Notification& note);
   void FireDue(Robot& robot, std::int64_t now_ns);
   bool Expire(Process& process, std::int64_t now_ns);
-  static bool IsFull(const Process& process);  // of timers
-  static int TimerDescriptorOf(const Process& process, int number);
-  void CreateTimer(Task& task, const shm::Notification& note);
+  bool BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
+  void ExpireCpuTimers(const Task& ran);
+  ProcessTimers::CpuUsed CpuUsedBy(const Task& task) const;
+  static UniqueFd TimerDescriptorOf(const Process& process, int number);
+  static void CreateTimer(Task& task, const shm::Notification& note);
   static void DeleteTimer(Process& process, std::int64_t id);
   static void DeletePosixTimers(Process& process);
-  void SignalExpiry(Process& process, std::int64_t id, Timer& timer, std::int64_t count);
-  void ExpireCpuTimers(const Task& ran);
-  std::int64_t CpuTimeToExpiry(const Task& task) const;
-  static void FindNextExpiry(Process& process);
-
-  // Those of short intervals (short_timers.cc).
-  static bool IsShort(const Timer& timer);
-  static void Rest(Process& process, Timer& timer, std::int64_t now_ns);
-  static void EndRests(Process& process, std::int64_t now_ns);
-  void BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
-  static std::int64_t NextLook(const Process& process);
-  static std::int64_t CpuTimeLeft(const Timer& timer, std::int64_t used_ns);
 
   // Their signals (timer_signals.cc).
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);

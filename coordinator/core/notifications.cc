@@ -145,7 +145,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kTimerGet:
     case Kind::kTimerDelete:
     case Kind::kTimerOverrun:
-      SetTimer(task, note);
+      looks_again = SetTimer(task, note);
       break;
     case Kind::kSpawned:
       if (note.args[0] == 0) {
@@ -155,7 +155,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       }
       break;
     case Kind::kYield:
-      Yield(task);
+      looks_again = Yield(task);
       break;
     case Kind::kPriority:
     case Kind::kPriorityGet:

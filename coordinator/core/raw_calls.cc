@@ -308,7 +308,8 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   WaitForChild(task, which, stops);
 }
 
-void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
+// True: as Handle.
+bool Engine::HandleRawCall(Task& task, const TrappedCall& call) {
   task.trapped_call = call;
   switch (call.number) {
     case SYS_clock_gettime:
@@ -357,8 +358,7 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
       SignalRaw(task);
       break;
     case SYS_sched_yield:
-      Yield(task);
-      break;
+      return Yield(task);
     case SYS_exit:
       ExitThread(task, call);
       break;
@@ -385,7 +385,7 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_getitimer:
     case SYS_alarm:
       HandleRawTimer(task, call);
-      break;
+      return true;  // it may have written to its descriptor
     case SYS_flock:
     case SYS_fcntl:
       if (IsOfOwner(call)) {
@@ -406,6 +406,7 @@ void Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     default:  // SYS_io_uring_setup
       task.trap_result = -ENOSYS;
   }
+  return task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer;
 }
 
 // A trapped call that waited goes on, for `reason`.

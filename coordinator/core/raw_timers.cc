@@ -70,14 +70,14 @@ std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
   Process& process = *task.process;
   sigevent event{};
   event.sigev_signo = SIGALRM;
-  event.sigev_value.sival_int = static_cast<int>(process.next_timer_id);
+  const int id = static_cast<int>(process.timers.next_id());
+  event.sigev_value.sival_int = id;
   if (call.args[1] != 0 && !Read(task, call.args[1], &event)) return -EFAULT;
   const auto kind = PosixKind(task, static_cast<int>(call.args[0]), event);
   if (!kind.has_value()) return -EINVAL;
-  if (IsFull(process)) return -EAGAIN;
-  const int id = static_cast<int>(process.next_timer_id);
+  if (process.timers.IsFull()) return -EAGAIN;
   if (!Write(task, call.args[2], id)) return -EFAULT;
-  process.timers[process.next_timer_id++].kind = *kind;
+  process.timers.Create(*kind);
   return 0;
 }
 
@@ -87,8 +87,8 @@ Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
   if (fd.fd() < 0) return {};
   for (Process& process : processes_) {
     if (process.dead) continue;
-    for (auto& [id, timer] : process.timers) {
-      if (timer.fd >= 0 && IsSameFile(timer.fd, fd.fd())) return {&process, id};
+    for (const auto& [id, timer_fd] : process.timer_fds) {
+      if (IsSameFile(timer_fd.get(), fd.fd())) return {&process, id};
     }
   }
   return {};
@@ -97,23 +97,20 @@ Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
 // One that was made by the call itself, which the kernel carries out, or that comes from elsewhere.
 Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
   Process& process = *task.process;
-  Timer timer;
-  timer.fd = TimerDescriptorOf(process, number);
-  if (timer.fd < 0) return {};
-  if (IsFull(process)) {
-    close(timer.fd);
-    return {};
-  }
-  timer.kind.clock_tid = IsOfRealtime(timer.fd) ? 1 : 0;
-  const std::int64_t id = process.next_timer_id++;
-  process.timers[id] = timer;
+  UniqueFd fd = TimerDescriptorOf(process, number);
+  if (!fd || process.timers.IsFull()) return {};
+  shm::TimerKind kind;
+  kind.clock_tid = IsOfRealtime(fd.get()) ? 1 : 0;
+  const ProcessTimers::Id id = process.timers.Create(kind);
+  process.timer_fds[id] = std::move(fd);
   return {&process, id};
 }
 
-std::int64_t Engine::TimerNow(const Task& task, const Process& owner, const Timer& timer) const {
-  if (timer.kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
-  if (timer.kind.clock == shm::TimerClock::kTime) return task.reached_ns + owner.frozen_ns;
-  const auto known = by_tid_.find(timer.kind.clock_tid);
+std::int64_t Engine::TimerNow(const Task& task, const Process& owner,
+                              const shm::TimerKind& kind) const {
+  if (kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
+  if (kind.clock == shm::TimerClock::kTime) return task.reached_ns + owner.frozen_ns;
+  const auto known = by_tid_.find(kind.clock_tid);
   return known == by_tid_.end() ? 0 : known->second->charged_ns;
 }
 
@@ -121,7 +118,7 @@ std::int64_t Engine::TimerNow(const Task& task, const Process& owner, const Time
 // interval.
 itimerspec Engine::ExchangeTimer(Task& task, const FoundTimer& found, bool sets,
                                  std::int64_t first_ns, std::int64_t interval_ns) {
-  const std::int64_t now = TimerNow(task, *found.owner, found.owner->timers[found.id]);
+  const std::int64_t now = TimerNow(task, *found.owner, *found.owner->timers.KindOf(found.id));
   shm::Notification note{};
   note.kind = sets ? shm::NotificationKind::kTimerSet : shm::NotificationKind::kTimerGet;
   note.args[0] = found.id;
@@ -137,14 +134,14 @@ std::int64_t Engine::SetTimerRaw(Task& task, const FoundTimer& found, const Trap
   itimerspec given{};
   if (!Read(task, call.args[2], &given)) return -EFAULT;
   if (!IsValid(given.it_value) || !IsValid(given.it_interval)) return -EINVAL;
-  const Timer& timer = found.owner->timers[found.id];
+  const shm::TimerKind kind = *found.owner->timers.KindOf(found.id);
   std::int64_t first = ToNs(given.it_value);
   if (first != 0) {
-    std::int64_t offset = -TimerNow(task, *found.owner, timer);
+    std::int64_t offset = -TimerNow(task, *found.owner, kind);
     if ((call.args[1] & kAbsolute) != 0) {
-      offset = timer.kind.clock != shm::TimerClock::kTime ? 0
-               : timer.kind.clock_tid != 0                ? header_->realtime_offset_ns
-                                                          : header_->monotonic_offset_ns;
+      offset = kind.clock != shm::TimerClock::kTime ? 0
+               : kind.clock_tid != 0                ? header_->realtime_offset_ns
+                                                    : header_->monotonic_offset_ns;
     }
     first = std::max<std::int64_t>(1, first - offset);  // long past, but armed
   }
@@ -166,10 +163,9 @@ std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
       interval{given.it_interval.tv_sec, given.it_interval.tv_usec * 1000};
   if (!IsValid(value) || !IsValid(interval)) return -EINVAL;
   const bool sets = call.number != SYS_getitimer;
-  EnsureItimer(*task.process, which);
   const std::int64_t delay = ToNs(value);
   const std::int64_t first =
-      delay == 0 ? 0 : TimerNow(task, *task.process, task.process->timers[which]) + delay;
+      delay == 0 ? 0 : TimerNow(task, *task.process, *task.process->timers.KindOf(which)) + delay;
   const itimerspec before = ExchangeTimer(task, found, sets, first, ToNs(interval));
   const itimerval old{RoundUp(ToNs(before.it_interval)), RoundUp(ToNs(before.it_value))};
   if (call.number == SYS_alarm) {
@@ -186,8 +182,9 @@ std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
 // Calls that name a timer of timer_create.
 std::int64_t Engine::PosixTimerRaw(Task& task, const TrappedCall& call) {
   const FoundTimer found{task.process, static_cast<int>(call.args[0])};
-  const auto timer = task.process->timers.find(found.id);
-  if (timer == task.process->timers.end() || timer->second.kind.is_posix == 0) return -EINVAL;
+  ProcessTimers& timers = task.process->timers;
+  const auto kind = timers.KindOf(found.id);
+  if (!kind.has_value() || kind->is_posix == 0) return -EINVAL;
   switch (call.number) {
     case SYS_timer_settime:
       return SetTimerRaw(task, found, call);
@@ -195,7 +192,7 @@ std::int64_t Engine::PosixTimerRaw(Task& task, const TrappedCall& call) {
       return Write(task, call.args[1], ExchangeTimer(task, found, false, 0, 0)) ? 0 : -EFAULT;
     case SYS_timer_getoverrun:
       NoteAccepted(*task.process);
-      return timer->second.last_overruns;
+      return timers.Overruns(found.id);
     default:  // SYS_timer_delete
       DeleteTimer(*task.process, found.id);
       return 0;

@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
+#include "coordinator/os/unique_fd.h"
 #include "coordinator/policy/fixed_priority.h"
 #include "coordinator/policy/share.h"
 #include "coordinator/policy/temporal_consistency.h"
@@ -156,32 +158,6 @@ struct Task {
   int row = 0;              // in the schedule trace and the log of dispatches
 };
 
-// Times are those of the process's clock, or charged processor time, as its kind says.
-struct Timer {
-  std::int64_t next_ns = 0, interval_ns = 0;  // next 0: not armed
-  std::int64_t frozen_ns = 0;                 // its process's when it was armed
-  int fd = -1;                                // of a timerfd; -1: none
-  shm::TimerKind kind;
-  // Of timer_create: one signal is on its way at a time, further expirations are counted.
-  bool queued = false;             // it was not seen accepted yet
-  std::int64_t overruns = 0;       // of that signal
-  std::int64_t last_overruns = 0;  // of the one accepted before
-  pid_t sent_to = 0;               // 0: the process
-  // Of a short interval: it has run out since its process last ran, and is not looked at meanwhile.
-  bool rests = false;
-  std::int64_t seen_ns = 0;  // when it was last looked at, on its clock
-  void Accept();
-};
-
-// A timer's signal on its way.
-struct TimerSignal {
-  int number = 0;
-  pid_t tid = 0;              // 0: to the process
-  std::int64_t timer_id = 0;  // 0: setitimer's
-  std::int64_t value = 0, overruns = 0;
-  pid_t taker = 0;  // the thread that will run its handler: sent at its next dispatch
-};
-
 struct Process {
   std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
   std::uint32_t index = 0;            // its place in the engine's list
@@ -198,15 +174,12 @@ struct Process {
   // world stood still. While it waits the world catches up, but its clock never goes back, nor
   // behind the end of a wait that is over by time.
   std::int64_t frozen_ns = 0;
-  std::int64_t shown_ns = 0;                    // the furthest that its clock has come
-  std::int64_t held_at_ns = -1, held_ns = 0;    // where and for how long it last held the world up
-  std::map<std::int64_t, Timer> timers;         // by id
-  std::int64_t next_expiry_ns = shm::kNeverNs;  // of those on its clock, as the virtual CPU's time
-  std::int64_t expired_ns = shm::kNeverNs;      // the last one, while nobody has come to wait since
-  bool has_cpu_timers = false;                  // some run on processor time
-  bool has_resting_timers = false;              // of a short interval
-  std::int64_t next_timer_id = shm::kFirstTimerId;
-  std::vector<TimerSignal> timer_signals;
+  std::int64_t shown_ns = 0;                  // the furthest that its clock has come
+  std::int64_t held_at_ns = -1, held_ns = 0;  // where and for how long it last held the world up
+  ProcessTimers timers;
+  std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
+  // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
+  std::int64_t expired_ns = shm::kNeverNs;
   EndedThreads ended;  // and how many periodic expiries found nobody waiting
   Usage descendants;   // of processes that have ended and descended from this client
   std::int64_t children_cpu_ns = 0;

@@ -3,8 +3,6 @@
 // work.
 #include <signal.h>
 
-#include <algorithm>
-
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
@@ -23,7 +21,7 @@ bool Handles(const Task& task, int signal) {
 
 void Send(Process& process, const TimerSignal& signal, pid_t tid) {
   if (signal.timer_id != 0) {
-    process.timers[signal.timer_id].sent_to = tid;
+    process.timers.NoteSent(signal, tid);
     SendTimerSignal({.pid = process.pid,
                      .tid = tid,
                      .number = signal.number,
@@ -60,13 +58,14 @@ Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
 }
 
 void Engine::RouteTimerSignals(Process& process, Moment moment) {
-  std::vector<TimerSignal> later;
-  for (TimerSignal& signal : process.timer_signals) {
+  bool sent = false;
+  for (TimerSignal& signal : process.timers.TakeSignals()) {
     if (signal.taker == 0 || KnownTask(signal.taker) == nullptr) {
       const pid_t accepter = AccepterOf(process, signal);
       Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
       if (taker == nullptr) {
         Send(process, signal, accepter != 0 ? accepter : signal.tid);
+        sent = true;
         continue;
       }
       signal.taker = taker->tid;
@@ -74,38 +73,30 @@ void Engine::RouteTimerSignals(Process& process, Moment moment) {
         MakeReady(*taker, shm::WakeReason::kSignal, moment);
       }
     }
-    later.push_back(signal);
+    process.timers.GiveBack(signal);
   }
-  const bool sent = later.size() < process.timer_signals.size();
-  process.timer_signals = std::move(later);
   if (sent) WakeForSignals(process, moment);
 }
 
 void Engine::SendTimerSignalsTo(const Task& task) {
-  std::erase_if(task.process->timer_signals, [&](const TimerSignal& signal) {
-    if (signal.taker != 0 && signal.taker != task.tid) return false;
-    Send(*task.process, signal, signal.taker);
-    return true;
-  });
-}
-
-void Timer::Accept() {
-  queued = false;
-  last_overruns = overruns;
-  overruns = 0;
+  Process& process = *task.process;
+  if (!process.timers.HasSignals()) return;
+  for (const TimerSignal& signal : process.timers.TakeSignals()) {
+    if (signal.taker != 0 && signal.taker != task.tid) {
+      process.timers.GiveBack(signal);
+    } else {
+      Send(process, signal, signal.taker);
+    }
+  }
 }
 
 // Finds out which timers' signals have been accepted. While one of a signal's number is pending
 // where it was sent to it counts as not: whose it is cannot be seen.
 void Engine::NoteAccepted(Process& process) {
-  for (auto& [id, timer] : process.timers) {
-    if (!timer.queued) continue;
-    const bool unsent = std::any_of(process.timer_signals.begin(), process.timer_signals.end(),
-                                    [id = id](const TimerSignal& s) { return s.timer_id == id; });
-    if (unsent) continue;
-    const SignalSets sets = ReadSignalSets(timer.sent_to != 0 ? timer.sent_to : process.pid);
-    const std::uint64_t pending = timer.sent_to != 0 ? sets.own_pending : sets.shared_pending;
-    if ((pending & Bit(timer.kind.signal)) == 0) timer.Accept();
+  for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
+    const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
+    const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
+    if ((pending & Bit(sent.number)) == 0) process.timers.Accept(sent.timer_id);
   }
 }
 

@@ -15,13 +15,14 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.brief_done = false;
   task.expects_kernel = false;
   task.deadline_ns = shm::kNeverNs;
+  bool looks_again = false;
   if (call.number == SYS_futex) {
     HandleFutex(task, call);
   } else {
-    HandleRawCall(task, call);
+    looks_again = HandleRawCall(task, call);
   }
   Refresh(*task.process->robot);
-  return task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer;
+  return looks_again;
 }
 
 // A trapped call has arrived. That of the running thread stops it like a notification.

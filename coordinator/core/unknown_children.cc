@@ -14,7 +14,7 @@ namespace tcs {
 namespace {
 
 constexpr int kYieldsBeforeLook = 100;
-constexpr std::int64_t kStrangersTurnNs = 1'000'000;
+constexpr useconds_t kStrangersTurnUs = 1'000;
 
 }  // namespace
 
@@ -61,12 +61,14 @@ bool Engine::HasUnknownChild(const Process& parent) const {
 
 // Equals have their turn. Whoever yields again and again may wait for a process that shares its
 // memory and never registers (a sanitizer's that looks for leaks): it gets real time to run in.
-void Engine::Yield(Task& task) {
+bool Engine::Yield(Task& task) {
   task.process->robot->ready.Rotate(task.order);
-  if (++task.yields < kYieldsBeforeLook) return;
+  if (++task.yields < kYieldsBeforeLook) return false;
   task.yields = 0;
   FindUnknownChildren(*task.process);
-  if (UnknownChildrenRun()) PollEvents(kStrangersTurnNs, {task.reached_ns});
+  if (!UnknownChildrenRun()) return false;
+  usleep(kStrangersTurnUs);
+  return true;
 }
 
 bool Engine::AwaitsUnknownChildren() const {

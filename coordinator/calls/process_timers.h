@@ -1,0 +1,157 @@
+// The timers of one process: setitimer's three, timer descriptors, and those of timer_create.
+//
+// A timer runs on the clock of its process, or on processor time, of the process or of one thread.
+// What is set and read are times of that clock. The instants of Expire, EndRests, NextExpiry and
+// NextLook are the virtual CPU's; the process's clock is ahead of it by what it was ahead
+// (`frozen_ns`, --sync callback) when the timer was set.
+//
+// - All that has run out by an instant runs out at once: a timer without interval is not armed any
+//   more, any other is set ahead to its first time after the instant. The end of all time
+//   (shm::kNeverNs) never comes.
+// - Of a timer of timer_create one signal is on its way at a time; what runs out before it is
+//   accepted is its overruns, INT_MAX at most. Of setitimer's timers one signal of each number is.
+// - A short interval (shm::kShortIntervalNs) is not lived through expiration by expiration. Whoever
+//   waits for such a timer is woken at its instant. But what runs out before the process has run
+//   again changes nothing that anybody could see but a count: until then the timer rests, and the
+//   count is made up at once. While the process runs it is looked at now and then, for the sake of
+//   its signal.
+//
+// Pure: makes no system call. What has run out, and which signals are to be sent, it returns;
+// whether a signal was accepted it is told. Not thread-safe.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "shm/layout.h"
+
+namespace tcs {
+
+// A timer's signal on its way.
+struct TimerSignal {
+  int number = 0;
+  pid_t tid = 0;              // 0: to the process
+  std::int64_t timer_id = 0;  // 0: setitimer's
+  std::int64_t value = 0, overruns = 0;
+  pid_t taker = 0;  // the thread that will run its handler: sent at its next dispatch
+};
+
+class ProcessTimers {
+ public:
+  using Id = std::int64_t;
+  // Beside setitimer's. Natively its limits (RLIMIT_SIGPENDING, RLIMIT_NOFILE) are about the same.
+  static constexpr std::size_t kMost = 16'384;
+
+  struct Setting {
+    std::int64_t next_ns = 0;  // 0: not armed
+    std::int64_t interval_ns = 0;
+  };
+  struct RanOut {
+    Id id;
+    std::int64_t count;
+    std::int64_t clock_ns;  // what its clock has come to
+    bool is_periodic;
+  };
+  // Processor time used, by the process and one of its threads.
+  struct CpuUsed {
+    std::int64_t process_ns;
+    pid_t tid;
+    std::int64_t thread_ns;
+  };
+  struct SentSignal {
+    Id timer_id;
+    int number;
+    pid_t to;  // 0: the process
+  };
+
+  // setitimer's are there without being created, and are not deleted.
+  bool IsFull() const;
+  Id next_id() const { return next_id_; }
+  // Must not be full.
+  Id Create(const shm::TimerKind& kind);
+  // With its signal, unless that was sent.
+  void Delete(Id id);
+  // Those of timer_create, which end when the process executes another program.
+  void DeletePosix();
+
+  // None: there is no such timer. The same in all that follow: 0, or nothing happens.
+  std::optional<shm::TimerKind> KindOf(Id id) const;
+  Setting Get(Id id) const;
+  // What it was set to, and its signal's overruns, are forgotten; a signal on its way is not.
+  void Set(Id id, Setting setting, std::int64_t frozen_ns);
+
+  // On the process's clock: when the next one runs out, shm::kNeverNs for never.
+  std::int64_t NextExpiry() const { return next_expiry_ns_; }
+  std::vector<RanOut> Expire(std::int64_t now_ns);
+  // Whether it is of a short interval and has run out by then: whoever is to see it calls Expire.
+  bool IsBehind(Id id, std::int64_t now_ns) const;
+
+  // On processor time: what may still be used before the next one runs out, at least 1 us, as what
+  // has run out already is found when the thread has run; shm::kNeverNs for any amount.
+  bool HasCpuTimers() const { return has_cpu_timers_; }
+  std::int64_t CpuTimeToExpiry(const CpuUsed& used) const;
+  std::vector<RanOut> ExpireCpu(const CpuUsed& used);
+
+  // A thread of the process has run until then: it may have read a timer, or handled its signal.
+  void EndRests(std::int64_t now_ns);
+  // How far a thread of the process may run before those that rest are looked at again.
+  std::int64_t NextLook() const;
+
+  // Signals that are to be sent, in the order in which they came about: takes them all. Each is
+  // either sent or given back.
+  bool HasSignals() const { return !signals_.empty(); }
+  std::vector<TimerSignal> TakeSignals();
+  void GiveBack(const TimerSignal& signal) { signals_.push_back(signal); }
+  void NoteSent(const TimerSignal& signal, pid_t to);
+  // Of timer_create's timers: those that were sent and not seen accepted yet.
+  std::vector<SentSignal> SentSignals() const;
+  void Accept(Id id);
+  // The same by who has just accepted it: what has run out by now is the accepted signal's.
+  void AcceptAt(Id id, std::int64_t now_ns);
+  // Of the signal accepted last.
+  std::int64_t Overruns(Id id) const;
+
+ private:
+  struct Timer {
+    shm::TimerKind kind;
+    Setting setting;
+    std::int64_t frozen_ns = 0;
+    bool is_signal_underway = false;  // it was not seen accepted yet
+    std::int64_t overruns = 0;        // of that signal
+    std::int64_t accepted_overruns = 0;
+    pid_t sent_to = 0;
+    bool rests = false;
+    std::int64_t seen_ns = 0;  // when it was last looked at, on its clock
+
+    bool IsArmed() const { return setting.next_ns != 0; }
+    bool IsOnCpuTime() const { return kind.clock != shm::TimerClock::kTime; }
+    bool IsShort() const;
+    std::int64_t NextOnVirtualCpu() const;
+    std::int64_t TakeExpirations(std::int64_t clock_ns);
+    std::int64_t CpuTimeLeft(std::int64_t used_ns) const;
+    void AddOverruns(std::int64_t count);
+    void Accept();
+  };
+
+  // What its clock shows, none if that is another thread's.
+  static std::optional<std::int64_t> CpuClockOf(const Timer& timer, const CpuUsed& used);
+  const Timer* Find(Id id) const;
+  Timer* Find(Id id);
+  bool IsUnsent(Id id) const;
+  void Signal(Id id, Timer& timer, std::int64_t count);
+  void FindNext();
+
+  std::map<Id, Timer> timers_;
+  Id next_id_ = shm::kFirstTimerId;
+  std::vector<TimerSignal> signals_;
+  std::int64_t next_expiry_ns_ = shm::kNeverNs;
+  bool has_cpu_timers_ = false;
+  bool has_resting_timers_ = false;
+};
+
+}  // namespace tcs
