@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/host/settlement.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/policy/stolen_time.h"
@@ -19,28 +20,10 @@ namespace tcs {
 
 namespace {
 
-// A thread stopped this close before its horizon has reached it: the rest is credit.
-constexpr std::int64_t kCreditNs = 20'000;
-constexpr std::int64_t kCheckAfterNs = 100'000;
-// Shown too early by what was stolen unnoticed, and stopped early: no more than both.
-constexpr std::int64_t kMostCreditNs = kCheckAfterNs + kCreditNs;
-constexpr double kMostSwitchNs = 20'000.0;
-constexpr std::int64_t kLeastSliceNs = 2'000;
 // Enough for the kernel to carry out a call that does not wait.
 constexpr std::int64_t kBriefNs = 20'000;
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 100;
-// A timer due before the kernel's next tick is programmed into the hardware when it is set and
-// again when it is not needed any more: on a virtual machine that is as much as the context switch.
-// So who has stopped by itself long before its horizon of late gets one that comes after the tick
-// (250 Hz). Should it compute on this once, it is as with any late timer: its clock stops at the
-// horizon, and the rest is a debt.
-constexpr std::int64_t kLaxTimerNs = 4'100'000;
-// Nobody computes for longer than this without the coordinator's looking: what is stolen and no
-// clock tells of, it finds by its timer.
-constexpr std::int64_t kLongestTimerNs = kLaxTimerNs;
-constexpr std::int64_t kOftenShorter = 4;
-constexpr std::int64_t kForgetRuns = 16;
 // Where no clock tells when to look again.
 constexpr std::int64_t kLookTurnNs = 50'000'000;
 constexpr int kStartTurns = 600;
@@ -109,11 +92,10 @@ void Engine::StartClock(Task& task) {
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
   page.base_tsc = task.grant.base_tsc =
-      stop_tsc_ + static_cast<std::uint64_t>(switch_ns_[from_gate_] * ticks_per_ns_);
+      stop_tsc_ + static_cast<std::uint64_t>(switch_costs_.Ns(from_gate_) * ticks_per_ns_);
   task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
   page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
-  ++task.unchecked_slices;
-  task.unchecked_from_gate += from_gate_;
+  task.unchecked_runs.Add(from_gate_);
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -184,9 +166,7 @@ std::int64_t Engine::HostNsToHorizon(const Task& task) {
   const std::int64_t now =
       shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
   const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
-  const auto asked = static_cast<std::int64_t>(std::min(left, 1e9) - lateness_ns_);
-  if (task.recent_run_ns < asked / kOftenShorter) return kLaxTimerNs;
-  return std::clamp(asked, kLeastSliceNs, kLongestTimerNs);
+  return preemption_timer_.NsToSleep(left, task.recent_run_ns);
 }
 
 void Engine::CheckCpuClock(Task& task) {
@@ -195,20 +175,14 @@ void Engine::CheckCpuClock(Task& task) {
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t cpu = HostClockOf(task);
   if (cpu < 0) return;
-  // What is stolen at every dispatch is the context switch itself. Only slices that the thread has
-  // not checked in between say something about it.
+  // Only runs that the thread has not checked in between say something about switches.
   const std::uint64_t checked = page.last_check_tsc.load(std::memory_order_relaxed);
-  if (task.unchecked_slices > 0 && checked == task.checked_tsc) {
+  if (checked == task.checked_tsc) {
     const auto stolen = static_cast<double>(reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu)) *
                         task.process->robot->speed;
-    const double more = std::clamp(stolen / task.unchecked_slices, -kMostSwitchNs, kMostSwitchNs);
-    const bool all_from_gate = task.unchecked_from_gate == task.unchecked_slices;
-    if (all_from_gate || task.unchecked_from_gate == 0) {
-      double& known = switch_ns_[all_from_gate];
-      known = std::clamp(known + more / 16, 0.0, kMostSwitchNs);
-    }
+    switch_costs_.Learn(task.unchecked_runs, stolen);
   }
-  task.unchecked_slices = task.unchecked_from_gate = 0;
+  task.unchecked_runs = {};
   shm::RemoveStolen(page, reading, cpu);
 }
 
@@ -256,7 +230,7 @@ bool Engine::ReachedHorizon(Task& task) {
   const shm::ClockPage& page = Slot(task).clock;
   if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
   const std::int64_t now = shm::ReadClockAt(page, stop_tsc_).time_ns;
-  return now - task.process->frozen_ns >= running_horizon_ns_ - kCreditNs;
+  return IsAtHorizon(now - task.process->frozen_ns, running_horizon_ns_);
 }
 
 void Engine::Settle(Task& task) {
@@ -289,33 +263,24 @@ void Engine::Settle(Task& task) {
   if (!IsCallback()) {
     running_horizon_ns_ = std::min(running_horizon_ns_, root_.Horizon(task.cpu->leaf));
   }
-  std::int64_t reached = reading.time_ns - frozen;
-  std::int64_t charged = reading.cpu_ns;
-  // What the notification itself takes is ours, not the client's: neither its clock nor its charge
-  // shows it. But a yield is a system call natively, too, and who spins on it must get on.
-  const std::int64_t noted = slot.note.time_ns - frozen;
-  if (notified_ && noted < running_horizon_ns_ && slot.note.kind != shm::NotificationKind::kYield) {
-    const std::int64_t ours = std::max<std::int64_t>(0, reached - std::max(noted, start));
-    reached -= ours;
-    charged -= ours;
-    task.host_origin_ns +=
-        static_cast<std::int64_t>(static_cast<double>(ours) * task.process->robot->speed);
+  StoppedRun run{.start_ns = start,
+                 .horizon_ns = running_horizon_ns_,
+                 .reached_ns = reading.time_ns - frozen,
+                 .shown_ns = page.last_shown_ns.load() - frozen,
+                 .is_preempted = preempted_ && !notified_};
+  if (notified_ && slot.note.kind != shm::NotificationKind::kYield) {
+    run.noted_ns = slot.note.time_ns - frozen;
   }
+  const auto [progress, debt, ours] = SettleRun(run);
+  const double speed = task.process->robot->speed;
+  task.host_origin_ns += static_cast<std::int64_t>(static_cast<double>(ours) * speed);
+  const std::int64_t charged = reading.cpu_ns - ours;
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
-  const auto host_ns =
-      static_cast<std::int64_t>(static_cast<double>(executed) * task.process->robot->speed);
+  const auto host_ns = static_cast<std::int64_t>(static_cast<double>(executed) * speed);
   client_host_ns_ += host_ns;
-  task.recent_run_ns = std::max(host_ns, task.recent_run_ns - task.recent_run_ns / kForgetRuns);
+  task.recent_run_ns = PreemptionTimer::LongestOfLate(task.recent_run_ns, host_ns);
   task.charged_ns = charged;
-  // What the clock has shown has happened, even where stolen time was found in it afterwards.
-  const std::int64_t shown = page.last_shown_ns.load() - frozen;
-  std::int64_t progress =
-      std::clamp(std::max(reached, shown), start, std::max(start, running_horizon_ns_));
-  if (preempted_ && !notified_ && running_horizon_ns_ - progress <= kCreditNs) {
-    progress = std::max(progress, running_horizon_ns_);
-  }
-  task.debt_ns = reached - progress;
-  if (task.debt_ns < -kMostCreditNs) task.debt_ns = 0;
+  task.debt_ns = debt;
   TakeReceipts(task, progress + frozen);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
@@ -411,8 +376,7 @@ void Engine::AwaitStop(Task& task) {
       return;
     }
     const double took_ns = static_cast<double>(stop_tsc_ - asked_tsc) / ticks_per_ns_;
-    const double late_ns = std::clamp(took_ns - static_cast<double>(asked_ns), 0.0, 50'000.0);
-    lateness_ns_ += (late_ns - lateness_ns_) / 16;
+    preemption_timer_.Expired(asked_ns, took_ns);
     if (ReachedHorizon(task)) {
       preempted_ = true;
       return;

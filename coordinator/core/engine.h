@@ -23,6 +23,8 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
+#include "coordinator/host/preemption_timer.h"
+#include "coordinator/host/switch_costs.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/os/strays.h"
@@ -516,10 +518,8 @@ class Engine {
   std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
-  double lateness_ns_ = 5'000;  // of a one-shot timer against a busy thread, as measured
-  // From the coordinator's last word to the thread's first, and back: of a thread that was
-  // preempted, and of one at its gate, which has more of the kernel to run through.
-  double switch_ns_[2] = {0, 0};
+  PreemptionTimer preemption_timer_;
+  SwitchCosts switch_costs_;
   bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;

@@ -15,6 +15,7 @@
 #include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
+#include "coordinator/host/switch_costs.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
@@ -134,8 +135,7 @@ struct Task {
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
   std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
-  int unchecked_slices = 0;                 // by the coordinator
-  int unchecked_from_gate = 0;              // of them
+  UncheckedRuns unchecked_runs;             // by the coordinator
   std::int64_t turn_ns = 0;                 // had since its equals last had a turn
   Share share;                              // of what it and its equals have had
   std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
