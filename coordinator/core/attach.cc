@@ -60,6 +60,7 @@ Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   task.tid = tid;
   task.priority = process.priority;
   task.parked = false;
+  task.metered.speed = process.robot->speed;
   task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
   process.robot->tasks.push_back(&task);
   SetState(task, TaskState::kStarting);

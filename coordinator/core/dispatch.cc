@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
-#include "coordinator/policy/stolen_time.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -24,14 +24,11 @@ namespace {
 constexpr std::int64_t kBriefNs = 20'000;
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 100;
-// Where no clock tells when to look again.
+// How often a thread is looked at that has no clock yet.
 constexpr std::int64_t kLookTurnNs = 50'000'000;
 constexpr int kStartTurns = 600;
-// Under set costs, a thread that computes for so many turns without a call is taken to spin.
-constexpr int kSilentTurns = 100;
 // A thread that has not had the CPU for so long: others have it. The next look takes twice as long.
 constexpr std::int64_t kStarvedNs = 20'000'000;
-constexpr std::int64_t kSpinTurnNs = 1'000'000;
 
 }  // namespace
 
@@ -47,9 +44,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
   const std::int64_t frozen = task.process->frozen_ns;
-  if (task.host_origin_ns < 0) {
-    task.host_origin_ns = HostClockOf(task);
-  }
+  MeteredThread& metered = task.metered;
+  if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
   ClockGrant& grant = task.grant;
   grant.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
   grant.base_cpu_ns = task.charged_ns;
@@ -57,19 +53,13 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / cpu.robot->speed);
-  grant.ns_per_tick_q32 =
-      IsFixed()
-          ? 0
-          : static_cast<std::uint64_t>(static_cast<double>(ns_per_tick_q32_) / cpu.robot->speed);
-  grant.check_after_ticks =
-      IsFixed() ? ~std::uint64_t{0}
-                : static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * ticks_per_ns_);
-  grant.call_cost_ns = IsFixed() ? task.process->call_cost_ns : 0;
-  grant.allocation_cost_ns = IsFixed() ? task.process->allocation_cost_ns : 0;
+  meter_->SetRates(
+      metered,
+      {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
+      grant);
   grant.NoteLimits();
   grant.WriteTo(page);
-  page.host_cpu_origin_ns = task.page_origin_ns = task.host_origin_ns;
+  page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
@@ -92,10 +82,7 @@ void Engine::StartClock(Task& task) {
   if (task.slot < 0) return;
   shm::ClockPage& page = Slot(task).clock;
   page.base_tsc = task.grant.base_tsc =
-      stop_tsc_ + static_cast<std::uint64_t>(switch_costs_.Ns(from_gate_) * ticks_per_ns_);
-  task.checked_tsc = stop_tsc_ - task.unchecked_ticks;
-  page.last_check_tsc.store(task.checked_tsc, std::memory_order_relaxed);
-  task.unchecked_runs.Add(from_gate_);
+      meter_->Begin(task.metered, stop_tsc_, from_gate_, task.spins);
 }
 
 // Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
@@ -160,30 +147,10 @@ void Engine::ContinueClock(Task& task) {
   page.waited_adjust.store(shm::PackAdjust(number, shm::AdjustValue(page.waited_adjust.load())));
 }
 
-// Real time until the running thread has to be preempted, less what timers are late.
-std::int64_t Engine::HostNsToHorizon(const Task& task) {
-  if (task.slot < 0 || IsFixed()) return task.spins ? kSpinTurnNs : kLookTurnNs;
-  const std::int64_t now =
-      shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns - task.process->frozen_ns;
-  const double left = static_cast<double>(running_horizon_ns_ - now) * task.process->robot->speed;
-  return preemption_timer_.NsToSleep(left, task.recent_run_ns);
-}
-
-void Engine::CheckCpuClock(Task& task) {
-  if (IsFixed()) return;
-  shm::ClockPage& page = Slot(task).clock;
-  const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
-  const std::int64_t cpu = HostClockOf(task);
-  if (cpu < 0) return;
-  // Only runs that the thread has not checked in between say something about switches.
-  const std::uint64_t checked = page.last_check_tsc.load(std::memory_order_relaxed);
-  if (checked == task.checked_tsc) {
-    const auto stolen = static_cast<double>(reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu)) *
-                        task.process->robot->speed;
-    switch_costs_.Learn(task.unchecked_runs, stolen);
-  }
-  task.unchecked_runs = {};
-  shm::RemoveStolen(page, reading, cpu);
+// Real time until the running thread has to be looked at.
+std::int64_t Engine::HostNsToHorizon(Task& task) {
+  if (task.slot < 0) return kLookTurnNs;
+  return meter_->NsToLook(task.metered, stop_tsc_, running_horizon_ns_ + task.process->frozen_ns);
 }
 
 shm::ClockReading Engine::ClockWhenStopped(const Task& task) const {
@@ -191,28 +158,12 @@ shm::ClockReading Engine::ClockWhenStopped(const Task& task) const {
 }
 
 // The coordinator has waited for the running thread, since its clock was at `before`, with a timer
-// of `asked_ns`. Had that come in time, a look at the TSC is all there is to do.
+// of `asked_ns`.
 void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
-  const auto most_ticks = static_cast<std::uint64_t>(
-      static_cast<double>(asked_ns + kMostTimerLatenessNs) * ticks_per_ns_);
-  if (stop_tsc_ - before.tsc <= most_ticks || !IsOwnDispatch(task)) return;
-  CheckCpuClock(task);  // which tells of most thieves
-  shm::ClockPage& page = Slot(task).clock;
-  const shm::ClockReading now = ClockWhenStopped(task);
-  const double speed = task.process->robot->speed;
-  const auto host = [speed](std::int64_t ns) {
-    return static_cast<std::int64_t>(static_cast<double>(ns) * speed);
-  };
-  const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
-  const std::int64_t stolen_ns = StolenUntold({.counted_ns = host(now.cpu_ns - before.cpu_ns),
-                                               .asked_ns = asked_ns,
-                                               .usual_ns = task.recent_run_ns,
-                                               .shown_ns = host(shown_ns - before.time_ns)});
+  if (!meter_->HasOverslept(before.tsc, stop_tsc_, asked_ns) || !IsOwnDispatch(task)) return;
+  const std::int64_t stolen_ns =
+      meter_->TakeOutUntold(task.metered, before, stop_tsc_, asked_ns, CpuClockOf(task));
   if (stolen_ns <= 0) return;
-  shm::RemoveUntold(page, now, stolen_ns);
-  // The coordinator has moved its origin, not the thread.
-  task.page_origin_ns += stolen_ns;
-  task.host_origin_ns += stolen_ns;
   report_.untold_ns += stolen_ns;
   ++report_.untold;
 }
@@ -226,13 +177,6 @@ std::int64_t Engine::WrittenAt() const {
   return std::clamp(shown, start, std::max(start, running_horizon_ns_));
 }
 
-bool Engine::ReachedHorizon(Task& task) {
-  const shm::ClockPage& page = Slot(task).clock;
-  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
-  const std::int64_t now = shm::ReadClockAt(page, stop_tsc_).time_ns;
-  return IsAtHorizon(now - task.process->frozen_ns, running_horizon_ns_);
-}
-
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   if (const char* what = WhatIsImpossible(task); what != nullptr) {
@@ -242,18 +186,14 @@ void Engine::Settle(Task& task) {
   }
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
+  MeteredThread& metered = task.metered;
   // What the thread has taken out; its origin may have become another one meanwhile.
-  const std::int64_t moved = page.host_cpu_origin_ns - task.page_origin_ns;
-  task.page_origin_ns += moved;
-  task.host_origin_ns += moved;
-  if (shm::IsCheckDue(page, shm::ReadClockAt(page, stop_tsc_))) CheckCpuClock(task);
-  task.unchecked_ticks = stop_tsc_ - page.last_check_tsc.load(std::memory_order_relaxed);
-  if (trapped_.has_value() && trapped_->number != SYS_exit && IsFixed() &&
-      slot.signals.load() == 0) {
-    // The shim charges the calls that it sees, whatever the C library calls for it.
-    const std::uint64_t word = page.executed_adjust.load();
-    page.executed_adjust.store(
-        shm::PackAdjust(word, shm::AdjustValue(word) + task.process->call_cost_ns));
+  const std::int64_t moved = page.host_cpu_origin_ns - metered.page_origin_ns;
+  metered.page_origin_ns += moved;
+  metered.host_origin_ns += moved;
+  meter_->End(metered, stop_tsc_, CpuClockOf(task));
+  if (trapped_.has_value() && trapped_->number != SYS_exit && slot.signals.load() == 0) {
+    meter_->ChargeCall(metered, task.process->call_cost_ns);
   }
   const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
   const std::int64_t frozen = task.process->frozen_ns;
@@ -272,13 +212,12 @@ void Engine::Settle(Task& task) {
     run.noted_ns = slot.note.time_ns - frozen;
   }
   const auto [progress, debt, ours] = SettleRun(run);
-  const double speed = task.process->robot->speed;
-  task.host_origin_ns += static_cast<std::int64_t>(static_cast<double>(ours) * speed);
+  metered.host_origin_ns += metered.HostNs(ours);
   const std::int64_t charged = reading.cpu_ns - ours;
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
-  const auto host_ns = static_cast<std::int64_t>(static_cast<double>(executed) * speed);
+  const std::int64_t host_ns = metered.HostNs(executed);
   client_host_ns_ += host_ns;
-  task.recent_run_ns = PreemptionTimer::LongestOfLate(task.recent_run_ns, host_ns);
+  metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
   TakeReceipts(task, progress + frozen);
@@ -310,9 +249,7 @@ void Engine::Settle(Task& task) {
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
-  int starting_turns = 0, silent_turns = 0, brief_turns = 0;
-  std::int64_t silent_at_ns =
-      task.slot < 0 ? -1 : shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
+  int starting_turns = 0, brief_turns = 0;
   std::uint64_t looked_tsc = stop_tsc_;
   double starved_ticks = kStarvedNs * ticks_per_ns_;
   std::int64_t looked_at_ns = -1;
@@ -322,7 +259,6 @@ void Engine::AwaitStop(Task& task) {
     if (!first && task.slot >= 0 && !IsOwnDispatch(task)) return;
     if (!first) ContinueClock(task);
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
-    const std::uint64_t asked_tsc = stop_tsc_;
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
@@ -363,21 +299,10 @@ void Engine::AwaitStop(Task& task) {
           ProgramOf(task.process->pid), task.process->name);
       return;
     }
-    if (IsFixed()) {
-      // Calls and allocations move its clock, whether it comes to its horizon by them or not.
-      const std::int64_t now = shm::ReadClockAt(Slot(task).clock, stop_tsc_).time_ns;
-      if (std::exchange(silent_at_ns, now) != now) {
-        task.spins = false;
-        silent_turns = 0;
-        continue;
-      }
-      if (!task.spins && ++silent_turns < kSilentTurns) continue;
-      task.spins = preempted_ = true;
-      return;
-    }
-    const double took_ns = static_cast<double>(stop_tsc_ - asked_tsc) / ticks_per_ns_;
-    preemption_timer_.Expired(asked_ns, took_ns);
-    if (ReachedHorizon(task)) {
+    const Meter::Found found = meter_->Look(
+        task.metered, stop_tsc_, running_horizon_ns_ + task.process->frozen_ns, CpuClockOf(task));
+    task.spins = found == Meter::Found::kIsSilent;
+    if (found != Meter::Found::kGoesOn) {
       preempted_ = true;
       return;
     }

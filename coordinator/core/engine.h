@@ -23,8 +23,7 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
-#include "coordinator/host/preemption_timer.h"
-#include "coordinator/host/switch_costs.h"
+#include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/os/strays.h"
@@ -135,15 +134,16 @@ class Engine {
   void ContinueClock(Task& task);
   void GoOnBesideWoken();
   void AwaitStop(Task& task);
-  std::int64_t HostNsToHorizon(const Task& task);
-  bool ReachedHorizon(Task& task);
+  std::int64_t HostNsToHorizon(Task& task);
   void Settle(Task& task);
-  void CheckCpuClock(Task& task);
   shm::ClockReading ClockWhenStopped(const Task& task) const;
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
   static std::int64_t HostClockOf(Task& task);
+  static Meter::CpuClock CpuClockOf(Task& task) {
+    return [&task] { return HostClockOf(task); };
+  }
   std::int64_t WrittenAt() const;
 
   // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
@@ -518,8 +518,7 @@ class Engine {
   std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
-  PreemptionTimer preemption_timer_;
-  SwitchCosts switch_costs_;
+  std::unique_ptr<Meter> meter_;
   bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;

@@ -46,7 +46,7 @@ bool Engine::NotificationArrived(Task& task, Moment moment) {
   } else if (task.state == TaskState::kUnseen) {
     MakeReady(task, shm::WakeReason::kGo, moment);
     task.parked = true;
-    CheckCpuClock(task);
+    meter_->Check(task.metered, stop_tsc_, CpuClockOf(task));
     const shm::Notification note = Slot(task).note;
     return Handle(task, note);
   } else if (!task.parked || task.trap_id != 0) {
@@ -217,7 +217,7 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
   const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
-  const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0 && !IsFixed();
+  const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
   const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
   stop_tsc_ = __rdtsc();

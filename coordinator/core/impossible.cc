@@ -26,34 +26,6 @@ constexpr int kDeathMs = 1000;
 
 }  // namespace
 
-void ClockGrant::WriteTo(shm::ClockPage& page) const {
-  page.base_time_ns = base_time_ns;
-  page.base_cpu_ns = base_cpu_ns;
-  page.horizon_ns = horizon_ns;
-  page.idle_until_ns = idle_until_ns;
-  page.read_safe_ns = read_safe_ns;
-  page.write_safe_ns = write_safe_ns;
-  page.ns_per_host_ns_q32 = ns_per_host_ns_q32;
-  page.ns_per_tick_q32 = ns_per_tick_q32;
-  page.check_after_ticks = check_after_ticks;
-  page.call_cost_ns = call_cost_ns;
-  page.allocation_cost_ns = allocation_cost_ns;
-}
-
-bool ClockGrant::StandsIn(const shm::ClockPage& page) const {
-  return page.base_time_ns == base_time_ns && page.base_cpu_ns == base_cpu_ns &&
-         page.base_tsc == base_tsc && page.horizon_ns == horizon_ns &&
-         page.idle_until_ns == idle_until_ns && page.read_safe_ns == read_safe_ns &&
-         page.write_safe_ns == write_safe_ns && page.ns_per_host_ns_q32 == ns_per_host_ns_q32 &&
-         page.ns_per_tick_q32 == ns_per_tick_q32 && page.check_after_ticks == check_after_ticks &&
-         page.call_cost_ns == call_cost_ns && page.allocation_cost_ns == allocation_cost_ns;
-}
-
-void ClockGrant::NoteLimits() {
-  most_shown_ns = std::max(most_shown_ns, horizon_ns);
-  most_stale_ns = std::max(most_stale_ns, horizon_ns - read_safe_ns);
-}
-
 // Its clock is the one that it was given, with what it has added in this dispatch.
 bool Engine::IsOwnDispatch(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;
@@ -67,7 +39,7 @@ const char* Engine::WhatIsImpossible(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;
   if (!IsOwnDispatch(task)) return "the clock that it was given";
   const ClockGrant& grant = task.grant;
-  const std::int64_t moved = page.host_cpu_origin_ns - task.page_origin_ns;
+  const std::int64_t moved = page.host_cpu_origin_ns - task.metered.page_origin_ns;
   if (moved < 0 || moved > kLargeSlackNs) return "its processor clock";
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());

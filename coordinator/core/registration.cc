@@ -111,9 +111,7 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
   of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.
   if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
-  first->host_origin_ns =
-      HostClockOf(*first) -
-      static_cast<std::int64_t>(static_cast<double>(first->charged_ns) * of->robot->speed);
+  first->metered.host_origin_ns = HostClockOf(*first) - first->metered.HostNs(first->charged_ns);
   return true;
 }
 
@@ -169,6 +167,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
     return true;
   }
   task.slot_memory = &process.link->SlotAt(task.slot);
+  task.metered.page = &task.slot_memory->clock;
   if (&task != running_) {
     SetLevel(task.tid, Level::kWaiting);
     task.level = Level::kWaiting;

@@ -14,9 +14,12 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <memory>
 #include <new>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/host/fixed_meter.h"
+#include "coordinator/host/measured_meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
@@ -67,6 +70,12 @@ std::string Engine::Prepare() {
   }
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
+  const TscRate rate{.ns_per_tick_q32 = ns_per_tick_q32_, .ticks_per_ns = ticks_per_ns_};
+  if (IsFixed()) {
+    meter_ = std::make_unique<FixedMeter>();
+  } else {
+    meter_ = std::make_unique<MeasuredMeter>(rate);
+  }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;

@@ -15,7 +15,8 @@
 #include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
-#include "coordinator/host/switch_costs.h"
+#include "coordinator/host/clock_grant.h"
+#include "coordinator/host/meter.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
@@ -47,25 +48,6 @@ struct ClientSpec;
 struct Process;
 struct Robot;
 struct VirtualCpu;
-
-// What a thread's clock page was given, and how far the thread can come by itself.
-struct ClockGrant {
-  std::int64_t base_time_ns = 0, base_cpu_ns = 0;
-  std::uint64_t base_tsc = 0, ns_per_tick_q32 = 0;
-  std::int64_t horizon_ns = 0, idle_until_ns = 0, read_safe_ns = 0, write_safe_ns = 0;
-  std::uint64_t ns_per_host_ns_q32 = 0, check_after_ticks = 0;
-  std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
-  std::int64_t most_idle_ns = 0;   // of this dispatch
-  std::int64_t most_shown_ns = 0;  // of all dispatches
-  std::int64_t most_stale_ns = 0;  // of all
-
-  // Copies the fields that are the coordinator's.
-  void WriteTo(shm::ClockPage& page) const;
-  // False if one of them is another by now.
-  bool StandsIn(const shm::ClockPage& page) const;
-  // May be called again with others in the same dispatch.
-  void NoteLimits();
-};
 
 struct Task {
   Process* process = nullptr;
@@ -133,16 +115,11 @@ struct Task {
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
-  std::uint64_t unchecked_ticks = 0;        // of TSC run since its CPU clock was last asked
-  std::uint64_t checked_tsc = 0;            // what its page said of that at its dispatch
-  UncheckedRuns unchecked_runs;             // by the coordinator
-  std::int64_t turn_ns = 0;                 // had since its equals last had a turn
-  Share share;                              // of what it and its equals have had
-  std::int64_t recent_run_ns = 10'000'000;  // real time, the longest dispatch of late
-  int used_up = 0;  // dispatches in a row that ended at their horizon: it is computing
+  std::int64_t turn_ns = 0;  // had since its equals last had a turn
+  Share share;               // of what it and its equals have had
+  int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
-  std::int64_t host_origin_ns = -1;
-  std::int64_t page_origin_ns = 0;  // what its page says of that
+  MeteredThread metered;
   ClockGrant grant;
   bool is_cut_off = false;  // it has been told that its connection is not there any more
   int cpu_clock_fd = -1;    // where its CPU clock is read, if it is not its process's

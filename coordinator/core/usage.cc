@@ -27,9 +27,9 @@ std::int64_t Engine::ChargedToAllOf(const Process& client) const {
 // What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
 // no longer be asked.
 std::int64_t Engine::HostCpuOf(Task& task) {
-  if (task.host_origin_ns < 0) return 0;
+  if (task.metered.host_origin_ns < 0) return 0;
   const std::int64_t now = HostClockOf(task);
-  return now < 0 ? 0 : now - task.host_origin_ns;
+  return now < 0 ? 0 : now - task.metered.host_origin_ns;
 }
 
 Usage Engine::UsageOf(const Process& process) {
@@ -61,13 +61,13 @@ void Engine::KeepUsageOf(Task& ended) {
       .stolen_ns = ended.slot < 0 ? 0 : StolenOf(ended),
       .activations = ended.activations,
   };
-  if (ended.host_origin_ns < 0) {  // it never ran under its clock
+  if (ended.metered.host_origin_ns < 0) {  // it never ran under its clock
     process.ended.Add(usage, 0, 0, 0);
     return;
   }
   const auto fallback_ns =
       static_cast<std::int64_t>(static_cast<double>(ended.charged_ns) * process.robot->speed);
-  process.ended.Add(usage, HostClockOf(ended), ended.host_origin_ns, fallback_ns);
+  process.ended.Add(usage, HostClockOf(ended), ended.metered.host_origin_ns, fallback_ns);
 }
 
 // Its threads' has been kept.

@@ -1,0 +1,47 @@
+#include "coordinator/host/fixed_meter.h"
+
+#include <utility>
+
+namespace tcs {
+
+void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
+                          ClockGrant& grant) const {
+  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / thread.speed);
+  grant.ns_per_tick_q32 = 0;
+  grant.check_after_ticks = ~std::uint64_t{0};
+  grant.call_cost_ns = costs.call_ns;
+  grant.allocation_cost_ns = costs.allocation_ns;
+}
+
+std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
+  thread.silent_at_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
+  thread.silent_looks = 0;
+  thread.is_silent = is_silent;
+  return tsc;
+}
+
+std::int64_t FixedMeter::NsToLook(MeteredThread& thread, std::uint64_t, std::int64_t) {
+  return thread.is_silent ? kLookAtSilentNs : kLookNs;
+}
+
+// Calls and allocations move its clock, whether it comes to its horizon by them or not.
+Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t,
+                              const CpuClock&) {
+  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
+  if (std::exchange(thread.silent_at_ns, now_ns) != now_ns) {
+    thread.is_silent = false;
+    thread.silent_looks = 0;
+    return Found::kGoesOn;
+  }
+  if (!thread.is_silent && ++thread.silent_looks < kSilentLooks) return Found::kGoesOn;
+  thread.is_silent = true;
+  return Found::kIsSilent;
+}
+
+// The shim charges the calls that it sees, whatever the C library calls for it.
+void FixedMeter::ChargeCall(MeteredThread& thread, std::int64_t cost_ns) {
+  const std::uint64_t word = thread.page->executed_adjust.load();
+  thread.page->executed_adjust.store(shm::PackAdjust(word, shm::AdjustValue(word) + cost_ns));
+}
+
+}  // namespace tcs

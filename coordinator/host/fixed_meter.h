@@ -1,0 +1,34 @@
+// Charges a thread set costs for its calls and allocations, which its shim adds to its clock, and
+// nothing for what it computes between them. So no clock of the host matters, and a thread never
+// comes to its horizon by computing: one that spins on what others write to memory would spin for
+// ever. It is looked at now and then, and found silent when it has made no call for long.
+#pragma once
+
+#include "coordinator/host/meter.h"
+
+namespace tcs {
+
+class FixedMeter final : public Meter {
+ public:
+  static constexpr std::int64_t kLookNs = 50'000'000;
+  static constexpr int kSilentLooks = 100;                    // until it is taken to spin
+  static constexpr std::int64_t kLookAtSilentNs = 1'000'000;  // from then on
+
+  void SetRates(const MeteredThread& thread, const SetCosts& costs,
+                ClockGrant& grant) const override;
+  std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
+                      bool is_silent) override;
+  std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns) override;
+  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+             const CpuClock& clock) override;
+  bool HasOverslept(std::uint64_t, std::uint64_t, std::int64_t) const override { return false; }
+  std::int64_t TakeOutUntold(MeteredThread&, const shm::ClockReading&, std::uint64_t, std::int64_t,
+                             const CpuClock&) override {
+    return 0;
+  }
+  void Check(MeteredThread&, std::uint64_t, const CpuClock&) override {}
+  void End(MeteredThread&, std::uint64_t, const CpuClock&) override {}
+  void ChargeCall(MeteredThread& thread, std::int64_t cost_ns) override;
+};
+
+}  // namespace tcs

@@ -1,0 +1,96 @@
+#include "coordinator/host/measured_meter.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "coordinator/host/settlement.h"
+#include "coordinator/policy/stolen_time.h"
+
+namespace tcs {
+
+void MeasuredMeter::SetRates(const MeteredThread& thread, const SetCosts&,
+                             ClockGrant& grant) const {
+  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / thread.speed);
+  grant.ns_per_tick_q32 =
+      static_cast<std::uint64_t>(static_cast<double>(rate_.ns_per_tick_q32) / thread.speed);
+  grant.check_after_ticks =
+      static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * rate_.ticks_per_ns);
+  grant.call_cost_ns = grant.allocation_cost_ns = 0;
+}
+
+std::uint64_t MeasuredMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate, bool) {
+  thread.checked_tsc = tsc - thread.unchecked_ticks;
+  thread.page->last_check_tsc.store(thread.checked_tsc, std::memory_order_relaxed);
+  thread.unchecked_runs.Add(from_gate);
+  return tsc + static_cast<std::uint64_t>(switch_costs_.Ns(from_gate) * rate_.ticks_per_ns);
+}
+
+std::int64_t MeasuredMeter::NsToLook(MeteredThread& thread, std::uint64_t tsc,
+                                     std::int64_t horizon_ns) {
+  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
+  const double left_ns = static_cast<double>(horizon_ns - now_ns) * thread.speed;
+  thread.asked_tsc = tsc;
+  thread.asked_ns = timer_.NsToSleep(left_ns, thread.longest_run_ns);
+  return thread.asked_ns;
+}
+
+Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+                                 const CpuClock& clock) {
+  timer_.Expired(thread.asked_ns, static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
+  CheckIfDue(thread, tsc, clock);
+  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
+  return IsAtHorizon(now_ns, horizon_ns) ? Found::kAtHorizon : Found::kGoesOn;
+}
+
+// Had the timer come in time, a look at the TSC is all there is to do.
+bool MeasuredMeter::HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
+                                 std::int64_t asked_ns) const {
+  const double most_ns = static_cast<double>(asked_ns + kMostTimerLatenessNs);
+  return tsc - since_tsc > static_cast<std::uint64_t>(most_ns * rate_.ticks_per_ns);
+}
+
+std::int64_t MeasuredMeter::TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                                          std::uint64_t tsc, std::int64_t asked_ns,
+                                          const CpuClock& clock) {
+  Check(thread, tsc, clock);  // which tells of most thieves
+  shm::ClockPage& page = *thread.page;
+  const shm::ClockReading now = shm::ReadClockAt(page, tsc);
+  const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
+  const std::int64_t stolen_ns =
+      StolenUntold({.counted_ns = thread.HostNs(now.cpu_ns - before.cpu_ns),
+                    .asked_ns = asked_ns,
+                    .usual_ns = thread.longest_run_ns,
+                    .shown_ns = thread.HostNs(shown_ns - before.time_ns)});
+  if (stolen_ns <= 0) return 0;
+  shm::RemoveUntold(page, now, stolen_ns);
+  // The origin has been moved here, not by the thread.
+  thread.page_origin_ns += stolen_ns;
+  thread.host_origin_ns += stolen_ns;
+  return stolen_ns;
+}
+
+void MeasuredMeter::Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
+  shm::ClockPage& page = *thread.page;
+  const shm::ClockReading reading = shm::ReadClockAt(page, tsc);
+  const std::int64_t cpu_ns = clock();
+  if (cpu_ns < 0) return;
+  // Only runs that the thread has not checked in between say something about switches.
+  if (page.last_check_tsc.load(std::memory_order_relaxed) == thread.checked_tsc) {
+    const std::int64_t stolen_ns = reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu_ns);
+    switch_costs_.Learn(thread.unchecked_runs, static_cast<double>(stolen_ns) * thread.speed);
+  }
+  thread.unchecked_runs = {};
+  shm::RemoveStolen(page, reading, cpu_ns);
+}
+
+void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
+  const shm::ClockPage& page = *thread.page;
+  if (shm::IsCheckDue(page, shm::ReadClockAt(page, tsc))) Check(thread, tsc, clock);
+}
+
+void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
+  CheckIfDue(thread, tsc, clock);
+  thread.unchecked_ticks = tsc - thread.page->last_check_tsc.load(std::memory_order_relaxed);
+}
+
+}  // namespace tcs

@@ -1,0 +1,42 @@
+// Charges a thread the time for which it has run: what the TSC counts, less what was stolen.
+//
+// The TSC also counts what others took. So whenever much of it has passed unchecked the thread's
+// own CPU clock is asked, and the difference taken out. What is on both clocks and yet was not the
+// thread's tells by the coordinator's timer (policy/stolen_time.h).
+#pragma once
+
+#include "coordinator/host/meter.h"
+#include "coordinator/host/preemption_timer.h"
+#include "coordinator/host/switch_costs.h"
+
+namespace tcs {
+
+class MeasuredMeter final : public Meter {
+ public:
+  explicit MeasuredMeter(const TscRate& rate) : rate_(rate) {}
+
+  void SetRates(const MeteredThread& thread, const SetCosts& costs,
+                ClockGrant& grant) const override;
+  std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
+                      bool is_silent) override;
+  std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns) override;
+  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+             const CpuClock& clock) override;
+  bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
+                    std::int64_t asked_ns) const override;
+  std::int64_t TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                             std::uint64_t tsc, std::int64_t asked_ns,
+                             const CpuClock& clock) override;
+  void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
+  void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
+  void ChargeCall(MeteredThread&, std::int64_t) override {}  // its time is on the clock
+
+ private:
+  void CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock);
+
+  const TscRate rate_;
+  PreemptionTimer timer_;
+  SwitchCosts switch_costs_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,105 @@
+// A meter says what a thread's runs are charged: the time that they take (measured_meter.h), or set
+// costs (fixed_meter.h). With that it knows for how long a thread may run before the coordinator
+// looks at it again.
+//
+// The charge is on the thread's clock page, which the thread reads and moves, too
+// (shm/clock_page.h); a meter touches it only while the thread is stopped. Times on the page are
+// virtual and of the thread's process; horizons here are, too. A meter makes no system call: what
+// the TSC and the thread's CPU clock say are arguments. It learns what switches and timers take on
+// one processor of the host, so that each processor has a meter of its own. Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "coordinator/host/clock_grant.h"
+#include "coordinator/host/switch_costs.h"
+#include "shm/clock_page.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+// Of the TSC, which all processors of the host share.
+struct TscRate {
+  std::uint64_t ns_per_tick_q32 = std::uint64_t{1} << 32;
+  double ticks_per_ns = 1.0;
+};
+
+// What a meter knows of one thread.
+struct MeteredThread {
+  shm::ClockPage* page = nullptr;
+  double speed = 1.0;  // the host's nanoseconds per virtual one
+  // What the thread's CPU clock said when its charge was 0, moved by what is not charged; -1: not
+  // known yet.
+  std::int64_t host_origin_ns = -1;
+  std::int64_t page_origin_ns = 0;           // what its page says of that
+  std::int64_t longest_run_ns = 10'000'000;  // the host's, of late
+  std::uint64_t unchecked_ticks = 0;         // of TSC run since its CPU clock was last asked
+  std::uint64_t checked_tsc = 0;             // what its page said of that at its dispatch
+  UncheckedRuns unchecked_runs;              // by the coordinator
+  std::uint64_t asked_tsc = 0;               // when it was last said how long it may run,
+  std::int64_t asked_ns = 0;                 // and how long
+  std::int64_t silent_at_ns = 0;             // its clock when it was last looked at
+  int silent_looks = 0;                      // in a row that have found it there
+  bool is_silent = false;                    // it computes without a call
+
+  std::int64_t HostNs(std::int64_t virtual_ns) const {
+    return static_cast<std::int64_t>(static_cast<double>(virtual_ns) * speed);
+  }
+};
+
+class Meter {
+ public:
+  // The thread's own CPU clock, in nanoseconds, by a system call; -1 if it cannot be read any more.
+  using CpuClock = std::function<std::int64_t()>;
+
+  // What the scenario says that calls and allocations cost.
+  struct SetCosts {
+    std::int64_t call_ns = 0, allocation_ns = 0;
+  };
+
+  enum class Found {
+    kGoesOn,     // it may run on
+    kAtHorizon,  // it has to stop
+    kIsSilent,   // it computes on and on without a call, where computing takes no time: also this
+  };
+
+  virtual ~Meter() = default;
+
+  // By what the thread's clock runs in its next dispatch: sets those fields of the grant.
+  virtual void SetRates(const MeteredThread& thread, const SetCosts& costs,
+                        ClockGrant& grant) const = 0;
+
+  // The thread is dispatched at `tsc`. `is_silent`: that is how it was found when it last ran.
+  // Returns the TSC at which its clock begins.
+  virtual std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
+                              bool is_silent) = 0;
+
+  // For how much real time from `tsc` on the thread need not be looked at.
+  virtual std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc,
+                                std::int64_t horizon_ns) = 0;
+  // That is over.
+  virtual Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+                     const CpuClock& clock) = 0;
+
+  // True if the coordinator has slept for so much longer than `asked_ns` that what was stolen
+  // meanwhile may be on all of the thread's clocks.
+  virtual bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
+                            std::int64_t asked_ns) const = 0;
+  // Then takes it out. The thread's clock was at `before` when the sleep began. Returns the host's
+  // nanoseconds.
+  virtual std::int64_t TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                                     std::uint64_t tsc, std::int64_t asked_ns,
+                                     const CpuClock& clock) = 0;
+
+  // Takes out of the thread's clock what was stolen until `tsc`, as its CPU clock tells.
+  virtual void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;
+
+  // The thread has stopped at `tsc`. After that its page says what its run has come to.
+  virtual void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;
+
+  // The thread has made a system call that its shim knows nothing of.
+  virtual void ChargeCall(MeteredThread& thread, std::int64_t cost_ns) = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,94 @@
+#include "coordinator/host/fixed_meter.h"
+
+#include <gtest/gtest.h>
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kStart = 50 * kMs;
+constexpr std::int64_t kFar = kStart + 1000 * kMs;
+
+class FixedMeterTest : public testing::Test {
+ protected:
+  FixedMeterTest() {
+    thread_.page = &page_;
+    grant_.base_time_ns = kStart;
+    meter_.SetRates(thread_, {.call_ns = 1000, .allocation_ns = 100}, grant_);
+    grant_.WriteTo(page_);
+    page_.base_tsc = meter_.Begin(thread_, 0, true, false);
+  }
+  ~FixedMeterTest() override { EXPECT_EQ(asked_, 0) << "a clock of the host has been asked"; }
+
+  // The timer has come so often, and nobody has made a call.
+  Meter::Found LookTimes(int times) {
+    Meter::Found found = Meter::Found::kGoesOn;
+    for (int i = 0; i < times && found == Meter::Found::kGoesOn; ++i) {
+      tsc_ += 1'000'000;
+      meter_.NsToLook(thread_, tsc_, kFar);
+      found = meter_.Look(thread_, tsc_, kFar, clock_);
+    }
+    return found;
+  }
+  std::int64_t Clock() { return ReadClockAt(page_, tsc_).time_ns; }
+
+  shm::ClockPage page_{};
+  MeteredThread thread_;
+  ClockGrant grant_;
+  FixedMeter meter_;
+  std::uint64_t tsc_ = 0;
+  int asked_ = 0;
+  Meter::CpuClock clock_ = [this] {
+    ++asked_;
+    return std::int64_t{0};
+  };
+};
+
+TEST_F(FixedMeterTest, ComputingTakesNoTime) {
+  tsc_ = 1'000'000'000'000;
+  EXPECT_EQ(Clock(), kStart);
+  meter_.Check(thread_, tsc_, clock_);
+  meter_.End(thread_, tsc_, clock_);
+  EXPECT_EQ(Clock(), kStart);
+}
+
+TEST_F(FixedMeterTest, TheShimChargesCallsAndAllocations) {
+  EXPECT_EQ(page_.call_cost_ns, 1000);
+  EXPECT_EQ(page_.allocation_cost_ns, 100);
+}
+
+TEST_F(FixedMeterTest, ACallThatTheShimDoesNotSeeCostsTheSame) {
+  page_.executed_adjust = shm::PackAdjust(std::uint64_t{7} << shm::kAdjustBits, 300);
+  meter_.ChargeCall(thread_, 1000);
+  EXPECT_EQ(Clock(), kStart + 1300);
+  EXPECT_EQ(shm::DispatchNumber(page_.executed_adjust.load()), 7);
+}
+
+TEST_F(FixedMeterTest, NoSleepOfTheCoordinatorsIsTooLong) {
+  EXPECT_FALSE(meter_.HasOverslept(0, ~std::uint64_t{0}, 1));
+  EXPECT_EQ(meter_.TakeOutUntold(thread_, {}, tsc_, 1, clock_), 0);
+}
+
+TEST_F(FixedMeterTest, WhoComputesForLongWithoutACallIsSilent) {
+  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks - 1), Meter::Found::kGoesOn);
+  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+}
+
+TEST_F(FixedMeterTest, AnyCallBreaksTheSilence) {
+  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks - 1), Meter::Found::kGoesOn);
+  page_.executed_adjust += 1000;
+  EXPECT_EQ(LookTimes(FixedMeter::kSilentLooks), Meter::Found::kGoesOn);
+  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+}
+
+TEST_F(FixedMeterTest, WhoWasSilentIsLookedAtSoonAndOftenUntilItMakesACall) {
+  meter_.Begin(thread_, tsc_, false, true);
+  EXPECT_EQ(meter_.NsToLook(thread_, tsc_, kFar), FixedMeter::kLookAtSilentNs);
+  EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
+  page_.executed_adjust += 1000;
+  EXPECT_EQ(LookTimes(1), Meter::Found::kGoesOn);
+  EXPECT_EQ(meter_.NsToLook(thread_, tsc_, kFar), FixedMeter::kLookNs);
+}
+
+}  // namespace
+}  // namespace tcs
