@@ -113,7 +113,7 @@ void Engine::Resume(Task& task) {
     }
   }
   task.parked = false;
-  RearmDetector();
+  detector_.Arm();
 }
 
 // The running thread has woken one of another computer, which does not need its core. It goes on,

@@ -46,7 +46,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() {
-  for (const int fd : {memfd_, signals_, claim_.fd, detector_pidfd_}) {
+  for (const int fd : {memfd_, signals_, claim_.fd}) {
     if (fd >= 0) close(fd);
   }
   for (const Listener& listener : listeners_) close(listener.fd);

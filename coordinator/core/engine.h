@@ -23,6 +23,7 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
+#include "coordinator/host/block_detector.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
@@ -388,7 +389,6 @@ class Engine {
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
-  void RearmDetector();
   void Accept(const Listener& listener);
   bool Attach(int connection, Process& client, Moment moment);
   void GiveDdsArea(int connection, pid_t pid);
@@ -506,13 +506,11 @@ class Engine {
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
-  int detector_arm_ = -1, detector_fired_ = -1, detector_pidfd_ = -1;
-  pid_t detector_ = -1;
+  BlockDetector detector_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
   std::map<pid_t, std::int64_t> lowered_;
   int most_pids_ = MostPids();
-  bool detector_armed_ = false;
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;
   std::string socket_name_;  // of the first; the others' have their numbers in them

@@ -12,7 +12,6 @@
 #include <x86intrin.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -76,26 +75,14 @@ bool Engine::TakeNotifications(const Process& process, Moment moment) {
   return looks_again;
 }
 
-void Engine::RearmDetector() {
-  if (detector_armed_) return;
-  const std::uint64_t one = 1;
-  detector_armed_ = write(detector_arm_, &one, sizeof one) == sizeof one;
-}
-
 // Without it the first thread that waits in the kernel would make everybody wait with it.
 void Engine::DetectorEnded() {
-  reactor_.Remove(detector_pidfd_);
-  if (header_->shutdown.load() != 0) return;
-  const std::optional<int> status = WaitStatusOf(detector_);
-  report_.error = fmt::format(
-      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
-      "it; what it has written until then can be read",
-      detector_, status.has_value() ? WTERMSIG(*status) : SIGKILL);
+  reactor_.Remove(detector_.end_fd());
+  if (header_->shutdown.load() == 0) report_.error = detector_.HowItEnded();
 }
 
-// While programs compute all the time it does not even get the processor to die.
 void Engine::LookAtDetector() {
-  if (IsDying(detector_)) DetectorEnded();
+  if (detector_.IsDying()) DetectorEnded();
 }
 
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
@@ -198,7 +185,7 @@ bool Engine::CutsOff(Task& task) {
   slot.gate.store(shm::kGateOpen);
   syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
   held_turns_ = 0;
-  RearmDetector();
+  detector_.Arm();
   return true;
 }
 
@@ -214,7 +201,7 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 
 // `is_rest`: a further look at an instant.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
-  const bool held = held_turns_ > 0 && running_ != nullptr && !detector_armed_;
+  const bool held = held_turns_ > 0 && running_ != nullptr && !detector_.is_armed();
   const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
@@ -226,7 +213,7 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   if (n == 0 && running_ != nullptr) {
     if (held) {
       TakeLevelBack();
-      RearmDetector();
+      detector_.Arm();
     } else {
       preempted_ = true;
     }

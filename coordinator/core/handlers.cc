@@ -117,9 +117,7 @@ Reactor::Found Engine::OnGraceRanOut(Subject timer, std::uint32_t, Moment) {
 }
 
 Reactor::Found Engine::OnDetector(Subject, std::uint32_t, Moment) {
-  std::uint64_t count;
-  if (read(detector_fired_, &count, sizeof count) != sizeof count) return {};
-  detector_armed_ = false;
+  if (!detector_.TakeFired()) return {};
   TakeLevelBack();
   return {.blocks_running = true};
 }

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/epoll.h>
-#include <sys/eventfd.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
 #include <sys/socket.h>
@@ -32,24 +31,6 @@ namespace {
 
 // Deterministic runs begin on 2024-01-01T00:00:00Z.
 constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
-
-// Runs exactly when armed and neither the coordinator nor the active thread wants the CPU. A
-// process of its own and not a thread: a killed coordinator must not have to wait for somebody who
-// may never get the processor again before its death is known.
-[[noreturn]] void Detect(int arm, int fired) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  SetLevel(0, Level::kDetector);
-  constexpr int kArm = 0, kFired = 1;
-  if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
-    close_range(2, ~0u, 0);
-    std::uint64_t count = 0;
-    const std::uint64_t one = 1;
-    while (read(kArm, &count, sizeof count) == sizeof count) {
-      if (write(kFired, &one, sizeof one) != sizeof one) break;
-    }
-  }
-  _exit(0);
-}
 
 }  // namespace
 
@@ -141,21 +122,11 @@ std::string Engine::OpenListener() {
 }
 
 std::string Engine::PrepareDetector() {
-  detector_arm_ = eventfd(0, EFD_CLOEXEC);
-  detector_fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  reactor_.Add(detector_fired_, EPOLLIN, {Tag::kDetector});
-  const pid_t coordinator = getpid();
-  const pid_t detector = fork();
-  if (detector < 0) return "the block detector's process cannot be made";
-  if (detector == 0) {
-    if (getppid() != coordinator) _exit(0);
-    Detect(detector_arm_, detector_fired_);
-  }
-  detector_ = detector;
-  detector_pidfd_ = OpenPidfd(detector);
-  reactor_.Add(detector_pidfd_, EPOLLIN, {Tag::kDetectorEnd});
-  guarded_ = GuardsOf(coordinator);
-  guarded_.insert(guarded_.end(), {coordinator, detector});
+  if (std::string error = detector_.Start(); !error.empty()) return error;
+  reactor_.Add(detector_.fired_fd(), EPOLLIN, {Tag::kDetector});
+  reactor_.Add(detector_.end_fd(), EPOLLIN, {Tag::kDetectorEnd});
+  guarded_ = GuardsOf(getpid());
+  guarded_.insert(guarded_.end(), {getpid(), detector_.pid()});
   return {};
 }
 

@@ -1,0 +1,89 @@
+#include "coordinator/host/block_detector.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+// A process of its own and not a thread: a killed coordinator must not have to wait for somebody
+// who may never get the processor again before its death is known.
+[[noreturn]] void Detect(int arm, int fired) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  SetLevel(0, Level::kDetector);
+  constexpr int kArm = 0, kFired = 1;
+  if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
+    close_range(2, ~0u, 0);
+    std::uint64_t count = 0;
+    const std::uint64_t one = 1;
+    while (read(kArm, &count, sizeof count) == sizeof count) {
+      if (write(kFired, &one, sizeof one) != sizeof one) break;
+    }
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+BlockDetector::~BlockDetector() {
+  if (pidfd_ >= 0) {
+    // By this and not by its number, which may be another's by now.
+    syscall(SYS_pidfd_send_signal, pidfd_, SIGKILL, nullptr, 0);
+    siginfo_t info;
+    waitid(P_PIDFD, static_cast<id_t>(pidfd_), &info, WEXITED);
+  }
+  for (const int fd : {pidfd_, arm_, fired_}) {
+    if (fd >= 0) close(fd);
+  }
+}
+
+std::string BlockDetector::Start() {
+  arm_ = eventfd(0, EFD_CLOEXEC);
+  fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  const pid_t coordinator = getpid();
+  const pid_t detector = fork();
+  if (detector < 0) return "the block detector's process cannot be made";
+  if (detector == 0) {
+    if (getppid() != coordinator) _exit(0);
+    Detect(arm_, fired_);
+  }
+  pid_ = detector;
+  pidfd_ = OpenPidfd(detector);
+  return {};
+}
+
+void BlockDetector::Arm() {
+  if (armed_) return;
+  const std::uint64_t one = 1;
+  armed_ = write(arm_, &one, sizeof one) == sizeof one;
+}
+
+bool BlockDetector::TakeFired() {
+  std::uint64_t count;
+  if (read(fired_, &count, sizeof count) != sizeof count) return false;
+  armed_ = false;
+  return true;
+}
+
+bool BlockDetector::IsDying() const { return tcs::IsDying(pid_); }
+
+std::string BlockDetector::HowItEnded() const {
+  const std::optional<int> status = WaitStatusOf(pid_);
+  return fmt::format(
+      "the block detector (process {}) was killed by signal {}, and the run cannot go on without "
+      "it; what it has written until then can be read",
+      pid_, status.has_value() ? WTERMSIG(*status) : SIGKILL);
+}
+
+}  // namespace tcs

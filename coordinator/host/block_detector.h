@@ -1,0 +1,48 @@
+// Tells when the active thread of a processor has blocked in the kernel: a process at a level
+// between the active thread's and the others'. Armed, it runs exactly when neither the coordinator
+// nor the active thread wants the processor, and says that it has.
+//
+// Owns the process, and ends it with itself. For the coordinator's thread only.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace tcs {
+
+class BlockDetector {
+ public:
+  BlockDetector() = default;
+  ~BlockDetector();
+  BlockDetector(const BlockDetector&) = delete;
+  BlockDetector& operator=(const BlockDetector&) = delete;
+
+  // Makes the process, once, on the processor that the calling thread is bound to. Empty on
+  // success, else one sentence.
+  [[nodiscard]] std::string Start();
+
+  // It fires once from now on. Nothing changes if it is armed already.
+  void Arm();
+  bool is_armed() const { return armed_; }
+  // Readable once it has fired.
+  int fired_fd() const { return fired_; }
+  // False if it has not fired since. Otherwise it is not armed any more.
+  bool TakeFired();
+
+  pid_t pid() const { return pid_; }
+  // Readable once its process has ended. While programs compute all the time it does not even get
+  // the processor to die, so that it may be worth while to look.
+  int end_fd() const { return pidfd_; }
+  bool IsDying() const;
+  // Of a process that has ended or is dying: one sentence.
+  std::string HowItEnded() const;
+
+ private:
+  pid_t pid_ = -1;
+  int pidfd_ = -1;
+  int arm_ = -1, fired_ = -1;  // eventfds
+  bool armed_ = false;
+};
+
+}  // namespace tcs
