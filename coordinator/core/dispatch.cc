@@ -85,18 +85,10 @@ void Engine::StartClock(Task& task) {
       meter_->Begin(task.metered, stop_tsc_, from_gate_, task.spins);
 }
 
-// Two priorities swapped and a gate opened: with the coordinator blocking next, this is the context
-// switch.
+// What may run is changed and a gate opened: with the coordinator blocking next, this is the
+// context switch.
 void Engine::Resume(Task& task) {
-  if (last_ != nullptr && last_ != &task && !last_->parked && last_->level != Level::kWaiting) {
-    SetLevel(last_->tid, Level::kWaiting);
-    last_->level = Level::kWaiting;
-  }
-  if (task.level != Level::kActive) {
-    SetLevel(task.tid, Level::kActive);
-    task.level = Level::kActive;
-  }
-  last_ = &task;
+  active_.Dispatch(task);
   from_gate_ = task.parked;
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
@@ -383,7 +375,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
     task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
   }
   AwaitStop(task);
-  TakeLevelBack();
+  active_.TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   const Moment stop{task.cpu->progress_ns};

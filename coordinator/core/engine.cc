@@ -373,10 +373,7 @@ void Engine::LetWorldGoOnWithout(Task& task) {
                   "{:.3f} s on it goes on without that program",
                   task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
                   static_cast<double>(task.cpu->progress_ns) * 1e-9));
-  if (task.level != Level::kWaiting) {
-    SetLevel(task.tid, Level::kWaiting);
-    task.level = Level::kWaiting;
-  }
+  active_.Hold(task);
   SetState(task, TaskState::kWaiting);
   task.deadline_ns = shm::kNeverNs;
   Refresh(*task.process->robot);

@@ -23,7 +23,9 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
+#include "coordinator/host/active_threads.h"
 #include "coordinator/host/block_detector.h"
+#include "coordinator/host/fifo_executor.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
@@ -191,8 +193,7 @@ class Engine {
 
   // Children that are stopped and go on (stops.cc).
   void LetStop(const Process& process);
-  static void RunInKernel(Task& task);
-  static void LetGoOn(const Process& process);
+  void LetGoOn(const Process& process);
   void NoteStops(Process& process, Moment moment);
   void TellParent(const Process& child, Moment moment);
   void LookAtStops(Moment moment);
@@ -407,7 +408,6 @@ class Engine {
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
   void LendLevel();
-  void TakeLevelBack();
   Process* LivingProcess(pid_t pid);
   Task* KnownTask(pid_t tid);
   Task& TaskAt(int order) { return tasks_[static_cast<std::size_t>(order)]; }
@@ -506,6 +506,8 @@ class Engine {
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
+  FifoExecutor executor_;
+  ActiveThreads active_{executor_};
   BlockDetector detector_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
@@ -526,8 +528,6 @@ class Engine {
   std::int64_t running_horizon_ns_ = 0;
   std::uint64_t stop_tsc_ = 0;      // when the running thread was last found stopped
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
-  Task* last_ = nullptr;            // dispatched last; keeps its level until another one is
-  Task* lent_ = nullptr;            // has the active level beside the running thread
   StopRequest stop_;
   bool reached_end_ = false;
   std::int64_t grace_began_ns_ = shm::kNeverNs;

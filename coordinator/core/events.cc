@@ -99,9 +99,8 @@ bool Engine::HasExited(const Task& task) const {
 // priority for ever.
 void Engine::LetDie(const Process& process) {
   for (Task* task : process.robot->tasks) {
-    if (task->process != &process || task->level == Level::kActive || !IsDying(task->tid)) continue;
-    SetLevel(task->tid, Level::kActive);
-    task->level = Level::kActive;
+    if (task->process != &process || task->may_run || !IsDying(task->tid)) continue;
+    active_.LetRun(*task);
   }
 }
 
@@ -113,22 +112,13 @@ void Engine::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : tasks_) {
     if (&task == running_ || task.parked || task.state == TaskState::kDead) continue;
-    if (task.level != Level::kWaiting || ThreadState(task.tid) != 'R') continue;
+    if (task.may_run || ThreadState(task.tid) != 'R') continue;
     if (IsInUserMode(task.tid)) continue;
     (task.process == running_->process ? own : others).push_back(&task);
   }
   const std::vector<Task*>& able = own.empty() ? others : own;
   if (able.empty()) return;
-  lent_ = able[static_cast<std::size_t>(held_turns_) % able.size()];
-  SetLevel(lent_->tid, Level::kActive);
-  lent_->level = Level::kActive;
-}
-
-void Engine::TakeLevelBack() {
-  Task* task = std::exchange(lent_, nullptr);
-  if (task == nullptr || task->state == TaskState::kDead) return;
-  SetLevel(task->tid, Level::kWaiting);
-  task->level = Level::kWaiting;
+  active_.Lend(*able[static_cast<std::size_t>(held_turns_) % able.size()]);
 }
 
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
@@ -202,7 +192,7 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 // `is_rest`: a further look at an instant.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !detector_.is_armed();
-  const std::int64_t turn_ns = lent_ != nullptr ? kLentTurnNs : kHeldTurnNs;
+  const std::int64_t turn_ns = active_.is_lent() ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
   const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
@@ -212,7 +202,7 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
     if (held) {
-      TakeLevelBack();
+      active_.TakeBack();
       detector_.Arm();
     } else {
       preempted_ = true;

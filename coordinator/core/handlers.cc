@@ -118,7 +118,7 @@ Reactor::Found Engine::OnGraceRanOut(Subject timer, std::uint32_t, Moment) {
 
 Reactor::Found Engine::OnDetector(Subject, std::uint32_t, Moment) {
   if (!detector_.TakeFired()) return {};
-  TakeLevelBack();
+  active_.TakeBack();
   return {.blocks_running = true};
 }
 

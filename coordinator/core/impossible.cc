@@ -99,8 +99,7 @@ void Engine::Expel(Process& process, const char* what) {
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;
-    SetLevel(task->tid, Level::kActive);
-    task->level = Level::kActive;
+    active_.LetRun(*task);
     if (task != running_) AwaitDeath(*task);
   }
   pollfd end{process.pidfd, POLLIN, 0};

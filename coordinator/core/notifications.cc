@@ -67,7 +67,7 @@ void Engine::WaitForChild(Task& task, pid_t which, bool stops) {
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
     if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
-    SetLevel(tid, Level::kWaiting);
+    executor_.Hold(tid);
     Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
     InheritScheduling(thread, creator);
     if (note.args[1] >= 0) SetPriority(creator, thread, note.args[1], note.args[2]);
@@ -83,7 +83,7 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
-  SetLevel(pid, Level::kWaiting);
+  executor_.Hold(pid);
   InheritScheduling(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 

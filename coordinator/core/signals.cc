@@ -83,10 +83,7 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
-    if (&task != last_ && task.level == Level::kActive) {
-      SetLevel(task.tid, Level::kWaiting);
-      task.level = Level::kWaiting;
-    }
+    if (!active_.IsLast(task)) active_.Hold(task);
     const SignalSets sets = ReadSignalSets(task.tid);
     if (EndAwait(task, sets, moment)) continue;
     const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
@@ -107,10 +104,7 @@ void Engine::AnswerAhead(Task& task) {
       task.state != TaskState::kReady) {
     return;
   }
-  if (task.level == Level::kActive) {
-    SetLevel(task.tid, Level::kWaiting);
-    task.level = Level::kWaiting;
-  }
+  active_.Hold(task);
   if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) task.handed_lock = 0;
   task.trap_id = 0;
   task.parked = false;

@@ -37,17 +37,10 @@ void Engine::LetStop(const Process& process) {
   for (Task* task : threads) {
     const bool waits = task->state == TaskState::kWaiting;
     if (task != running_ && ThreadState(task->tid) != 'T' && (certain || waits)) {
-      RunInKernel(*task);
+      active_.LetKernelFinish(*task);
     }
     certain |= ThreadState(task->tid) == 'T';
   }
-}
-
-// The thread stops, or is back in its wait, when this returns.
-void Engine::RunInKernel(Task& task) {
-  SetLevel(task.tid, Level::kKernelOnly);
-  SetLevel(task.tid, Level::kWaiting);
-  task.level = Level::kWaiting;
 }
 
 // Has it stopped or gone on since the last look? Then its parent hears of it.
@@ -71,7 +64,7 @@ void Engine::LetGoOn(const Process& process) {
       task->follow_up = FollowUp::kContinued;
       continue;
     }
-    RunInKernel(*task);
+    active_.LetKernelFinish(*task);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
 #include "coordinator/host/clock_grant.h"
+#include "coordinator/host/host_thread.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
@@ -49,10 +50,9 @@ struct Process;
 struct Robot;
 struct VirtualCpu;
 
-struct Task {
+struct Task : HostThread {
   Process* process = nullptr;
-  VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
-  pid_t tid = 0;
+  VirtualCpu* cpu = nullptr;               // dispatched on last; null before the first time
   int slot = -1;                           // -1: it has not registered yet
   shm::ThreadSlot* slot_memory = nullptr;  // of that; readable until the engine's next step
   int order = 0;                           // of registration; its number in the scheduling policies
@@ -126,9 +126,7 @@ struct Task {
   std::uint64_t dispatches = 0;
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
-  bool parked = true;           // at its gate, rather than stopped by priority
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
-  Level level = Level::kWaiting;
   std::int64_t activations = 0;
   Activation activation;    // this one, while it does not wait
   bool is_further = false;  // not the first thread of a client

@@ -1,0 +1,21 @@
+// By real-time priorities, as the paper does it: all of a run share one processor under SCHED_FIFO,
+// and whoever may run has the level above the others' (os/host.h).
+#pragma once
+
+#include "coordinator/host/executor.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+class FifoExecutor final : public Executor {
+ public:
+  void LetRun(pid_t tid) override { SetLevel(tid, Level::kActive); }
+  void Hold(pid_t tid) override { SetLevel(tid, Level::kWaiting); }
+  // Above the coordinator, so that nobody runs meanwhile who is not to.
+  void LetKernelFinish(pid_t tid) override {
+    SetLevel(tid, Level::kKernelOnly);
+    SetLevel(tid, Level::kWaiting);
+  }
+};
+
+}  // namespace tcs

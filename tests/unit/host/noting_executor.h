@@ -1,0 +1,29 @@
+// An executor that only notes what it is told.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/host/executor.h"
+
+namespace tcs {
+
+class NotingExecutor final : public Executor {
+ public:
+  void LetRun(pid_t tid) override { Note("run", tid); }
+  void Hold(pid_t tid) override { Note("hold", tid); }
+  void LetKernelFinish(pid_t tid) override { Note("finish", tid); }
+
+  // Since it was last asked.
+  std::vector<std::string> Told() { return std::exchange(told_, {}); }
+
+ private:
+  void Note(const char* what, pid_t tid) {
+    told_.push_back(std::string(what) + " " + std::to_string(tid));
+  }
+
+  std::vector<std::string> told_;
+};
+
+}  // namespace tcs
