@@ -159,7 +159,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   --living_;
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);
-  active_.Ended(task);
+  host_cpu_.active().Ended(task);
   by_tid_.erase(task.tid);
   ended_tasks_.push_back(&task);
   Refresh(*task.process->robot);

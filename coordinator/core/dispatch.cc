@@ -1,10 +1,8 @@
 // Running one thread up to its horizon, and charging it for what it did.
 #include <fmt/format.h>
-#include <linux/futex.h>
 #include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include <x86intrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -53,7 +51,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  meter_->SetRates(
+  host_cpu_.meter().SetRates(
       metered,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
@@ -70,26 +68,15 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);
   ++task.dispatches;
-  const std::uint64_t number = task.dispatches << shm::kAdjustBits;
-  page.executed_adjust.store(number);
-  page.waited_adjust.store(number);
+  page.executed_adjust.store(task.DispatchWord());
+  page.waited_adjust.store(task.DispatchWord());
 }
 
-// From here on the TSC is the thread's. The last thing before the coordinator blocks, which is when
-// the thread starts: they share one CPU.
-void Engine::StartClock(Task& task) {
-  stop_tsc_ = __rdtsc();
-  if (task.slot < 0) return;
-  shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = task.grant.base_tsc =
-      meter_->Begin(task.metered, stop_tsc_, from_gate_, task.spins);
-}
-
-// What may run is changed and a gate opened: with the coordinator blocking next, this is the
-// context switch.
+// Who may run is changed and a gate opened: with the coordinator blocking next, which is when the
+// thread starts, this is the context switch.
 void Engine::Resume(Task& task) {
-  active_.Dispatch(task);
-  from_gate_ = task.parked;
+  const bool is_at_gate = task.parked;
+  host_cpu_.Dispatch(task);
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
@@ -98,14 +85,11 @@ void Engine::Resume(Task& task) {
       task.handed_lock = 0;
     }
     task.trap_id = 0;
-  } else if (task.slot >= 0 && task.parked) {
-    std::atomic<std::uint32_t>& gate = Slot(task).gate;
-    if (gate.exchange(shm::kGateOpen) == shm::kGateWaiting) {
-      syscall(SYS_futex, &gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
-    }
+  } else if (task.slot >= 0 && is_at_gate) {
+    HostCpu::OpenGate(Slot(task));
   }
-  task.parked = false;
-  detector_.Arm();
+  ++report_.switches;
+  host_cpu_.Start(task, task.spins);
 }
 
 // The running thread has woken one of another computer, which does not need its core. It goes on,
@@ -125,36 +109,14 @@ void Engine::GoOnBesideWoken() {
   grant.WriteTo(page);
 }
 
-// What the coordinator did while the thread was only interrupted is not the thread's.
-void Engine::ContinueClock(Task& task) {
-  const std::uint64_t stopped_tsc = stop_tsc_;
-  stop_tsc_ = __rdtsc();
-  if (task.slot < 0) return;
-  shm::ClockPage& page = Slot(task).clock;
-  page.base_tsc = task.grant.base_tsc += stop_tsc_ - stopped_tsc;
-  // A new number, so that the thread repeats a reading that it was interrupted in.
-  const std::uint64_t number = ++task.dispatches << shm::kAdjustBits;
-  page.executed_adjust.store(
-      shm::PackAdjust(number, shm::AdjustValue(page.executed_adjust.load())));
-  page.waited_adjust.store(shm::PackAdjust(number, shm::AdjustValue(page.waited_adjust.load())));
-}
-
 // Real time until the running thread has to be looked at.
-std::int64_t Engine::HostNsToHorizon(Task& task) {
+std::int64_t Engine::NsToLook(Task& task) {
   if (task.slot < 0) return kLookTurnNs;
-  return meter_->NsToLook(task.metered, stop_tsc_, running_horizon_ns_ + task.process->frozen_ns);
+  return host_cpu_.NsToLook(task, running_horizon_ns_ + task.process->frozen_ns);
 }
 
-shm::ClockReading Engine::ClockWhenStopped(const Task& task) const {
-  return shm::ReadClockAt(Slot(task).clock, stop_tsc_);
-}
-
-// The coordinator has waited for the running thread, since its clock was at `before`, with a timer
-// of `asked_ns`.
 void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
-  if (!meter_->HasOverslept(before.tsc, stop_tsc_, asked_ns) || !IsOwnDispatch(task)) return;
-  const std::int64_t stolen_ns =
-      meter_->TakeOutUntold(task.metered, before, stop_tsc_, asked_ns, CpuClockOf(task));
+  const std::int64_t stolen_ns = host_cpu_.TakeOutUntold(task, before, asked_ns, CpuClockOf(task));
   if (stolen_ns <= 0) return;
   report_.untold_ns += stolen_ns;
   ++report_.untold;
@@ -169,6 +131,12 @@ std::int64_t Engine::WrittenAt() const {
   return std::clamp(shown, start, std::max(start, running_horizon_ns_));
 }
 
+// It may be settled again in the same dispatch.
+void Engine::RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end_ns) {
+  const std::uint64_t until_tsc = host_cpu_.stop_tsc();
+  RecordSlice(task.row, start_ns, end_ns, std::exchange(recorded_tsc_, until_tsc), until_tsc);
+}
+
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   if (const char* what = WhatIsImpossible(task); what != nullptr) {
@@ -179,15 +147,11 @@ void Engine::Settle(Task& task) {
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   MeteredThread& metered = task.metered;
-  // What the thread has taken out; its origin may have become another one meanwhile.
-  const std::int64_t moved = page.host_cpu_origin_ns - metered.page_origin_ns;
-  metered.page_origin_ns += moved;
-  metered.host_origin_ns += moved;
-  meter_->End(metered, stop_tsc_, CpuClockOf(task));
+  host_cpu_.End(task, CpuClockOf(task));
   if (trapped_.has_value() && trapped_->number != SYS_exit && slot.signals.load() == 0) {
-    meter_->ChargeCall(metered, task.process->call_cost_ns);
+    host_cpu_.ChargeCall(task, task.process->call_cost_ns);
   }
-  const shm::ClockReading reading = shm::ReadClockAt(page, stop_tsc_);
+  const shm::ClockReading reading = host_cpu_.ClockOf(task);
   const std::int64_t frozen = task.process->frozen_ns;
   const std::int64_t start = task.cpu->progress_ns;
   // Whom it has woken, however long ago it sent what did, it must not have left behind further than
@@ -221,7 +185,7 @@ void Engine::Settle(Task& task) {
     task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
     most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
     trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
-    RecordSlice(task.row, start, start, recorded_tsc_);
+    RecordRun(task, start, start);
     if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
@@ -236,31 +200,31 @@ void Engine::Settle(Task& task) {
   if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
   trace_.Slice(task.row, start, busy_until);
-  RecordSlice(task.row, start, busy_until, recorded_tsc_);
+  RecordRun(task, start, busy_until);
 }
 
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0;
-  std::uint64_t looked_tsc = stop_tsc_;
+  std::uint64_t looked_tsc = host_cpu_.stop_tsc();
   double starved_ticks = kStarvedNs * ticks_per_ns_;
   std::int64_t looked_at_ns = -1;
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
-    if (!first && task.slot >= 0 && !IsOwnDispatch(task)) return;
-    if (!first) ContinueClock(task);
-    const std::int64_t asked_ns = task.is_brief ? kBriefNs : HostNsToHorizon(task);
+    if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
+    if (!first) host_cpu_.Continue(task);
+    const std::int64_t asked_ns = task.is_brief ? kBriefNs : NsToLook(task);
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
-    if (static_cast<double>(stop_tsc_ - looked_tsc) > starved_ticks) {
+    if (static_cast<double>(host_cpu_.stop_tsc() - looked_tsc) > starved_ticks) {
       const std::int64_t had_ns = HostClockOf(task);
       if (had_ns >= 0 && had_ns == std::exchange(looked_at_ns, had_ns)) {
         LowerUnknownThreads();
         starved_ticks *= 2;
       }
-      looked_tsc = stop_tsc_;
+      looked_tsc = host_cpu_.stop_tsc();
     }
     if (task.is_brief) {
       // A turn of its own for the call, from when the thread was there to make it.
@@ -291,8 +255,8 @@ void Engine::AwaitStop(Task& task) {
           ProgramOf(task.process->pid), task.process->name);
       return;
     }
-    const Meter::Found found = meter_->Look(
-        task.metered, stop_tsc_, running_horizon_ns_ + task.process->frozen_ns, CpuClockOf(task));
+    const Meter::Found found =
+        host_cpu_.Look(task, running_horizon_ns_ + task.process->frozen_ns, CpuClockOf(task));
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
       preempted_ = true;
@@ -368,14 +332,12 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
   const Moment call{task.cpu->progress_ns};
   Resume(task);
-  ++report_.switches;
-  StartClock(task);
-  recorded_tsc_ = stop_tsc_;
+  recorded_tsc_ = host_cpu_.stop_tsc();
   if (task.activation.start_ns < 0) {
     task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
   }
   AwaitStop(task);
-  active_.TakeBack();
+  host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
   running_ = nullptr;
   const Moment stop{task.cpu->progress_ns};

@@ -373,7 +373,7 @@ void Engine::LetWorldGoOnWithout(Task& task) {
                   "{:.3f} s on it goes on without that program",
                   task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
                   static_cast<double>(task.cpu->progress_ns) * 1e-9));
-  active_.Hold(task);
+  host_cpu_.active().Hold(task);
   SetState(task, TaskState::kWaiting);
   task.deadline_ns = shm::kNeverNs;
   Refresh(*task.process->robot);
@@ -456,9 +456,9 @@ bool Engine::StepWorld() {
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
-  stop_tsc_ = __rdtsc();
+  const std::uint64_t ended_tsc = __rdtsc();
   trace_.Slice(world_row_, now, world_.progress_ns());
-  RecordSlice(world_row_, now, world_.progress_ns(), begun_tsc);
+  RecordSlice(world_row_, now, world_.progress_ns(), begun_tsc, ended_tsc);
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
     latest_ns_ = world_.progress_ns();
@@ -484,9 +484,9 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     const std::int64_t to = computes ? now + bound : now;
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));
-    stop_tsc_ = __rdtsc();
+    const std::uint64_t ended_tsc = __rdtsc();
     trace_.Slice(world_row_, world, world_.progress_ns());
-    RecordSlice(world_row_, world, world_.progress_ns(), begun_tsc);
+    RecordSlice(world_row_, world, world_.progress_ns(), begun_tsc, ended_tsc);
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   return std::min(horizon_ns, root_.DynamicsHorizon());

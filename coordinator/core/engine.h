@@ -23,9 +23,8 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
-#include "coordinator/host/active_threads.h"
-#include "coordinator/host/block_detector.h"
 #include "coordinator/host/fifo_executor.h"
+#include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
@@ -60,7 +59,7 @@ class Engine {
     Process* client;  // that its listener is for
   };
   std::string OpenListener();
-  std::string PrepareDetector();
+  std::string PrepareHostCpu();
 
   // When the clients start (launches.cc).
   struct Launch {
@@ -133,13 +132,10 @@ class Engine {
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
-  void StartClock(Task& task);
-  void ContinueClock(Task& task);
   void GoOnBesideWoken();
   void AwaitStop(Task& task);
-  std::int64_t HostNsToHorizon(Task& task);
+  std::int64_t NsToLook(Task& task);
   void Settle(Task& task);
-  shm::ClockReading ClockWhenStopped(const Task& task) const;
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
@@ -151,7 +147,6 @@ class Engine {
 
   // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
   static constexpr const char* kWrongIpcNotes = "times of System V objects";
-  bool IsOwnDispatch(const Task& task) const;
   const char* WhatIsImpossible(const Task& task) const;
   static const char* WhatIsImpossible(const shm::Notification& note);
   void Expel(Process& process, const char* what);
@@ -423,7 +418,9 @@ class Engine {
   void TakeReceipts(Task& task, std::int64_t now_ns);
   void NoteReceivedRaw(Task& task, bool of_timer);
   void NoteIdle(Task& task);
-  void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc);
+  void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc,
+                   std::uint64_t until_tsc);
+  void RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end_ns);
 
   // What clients have used (usage.cc).
   std::int64_t ChargedTo(const Process& process) const;
@@ -507,8 +504,7 @@ class Engine {
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
   FifoExecutor executor_;
-  ActiveThreads active_{executor_};
-  BlockDetector detector_;
+  HostCpu host_cpu_{executor_};
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
   std::map<pid_t, std::int64_t> lowered_;
@@ -518,15 +514,12 @@ class Engine {
   std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
-  std::unique_ptr<Meter> meter_;
-  bool from_gate_ = false;  // the running thread
 
   std::int64_t end_ns_ = 0;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   std::int64_t latest_ns_ = 0;
   Task* running_ = nullptr;
   std::int64_t running_horizon_ns_ = 0;
-  std::uint64_t stop_tsc_ = 0;      // when the running thread was last found stopped
   std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   StopRequest stop_;
   bool reached_end_ = false;

@@ -1,15 +1,12 @@
 // What the kernel says: notifications in the pipe, descriptors that clients wait for, commands,
 // blocked threads, births and deaths.
 #include <fmt/format.h>
-#include <linux/futex.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <x86intrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -45,7 +42,7 @@ bool Engine::NotificationArrived(Task& task, Moment moment) {
   } else if (task.state == TaskState::kUnseen) {
     MakeReady(task, shm::WakeReason::kGo, moment);
     task.parked = true;
-    meter_->Check(task.metered, stop_tsc_, CpuClockOf(task));
+    host_cpu_.Check(task, CpuClockOf(task));
     const shm::Notification note = Slot(task).note;
     return Handle(task, note);
   } else if (!task.parked || task.trap_id != 0) {
@@ -77,12 +74,12 @@ bool Engine::TakeNotifications(const Process& process, Moment moment) {
 
 // Without it the first thread that waits in the kernel would make everybody wait with it.
 void Engine::DetectorEnded() {
-  reactor_.Remove(detector_.end_fd());
-  if (header_->shutdown.load() == 0) report_.error = detector_.HowItEnded();
+  reactor_.Remove(host_cpu_.detector().end_fd());
+  if (header_->shutdown.load() == 0) report_.error = host_cpu_.detector().HowItEnded();
 }
 
 void Engine::LookAtDetector() {
-  if (detector_.IsDying()) DetectorEnded();
+  if (host_cpu_.detector().IsDying()) DetectorEnded();
 }
 
 // The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
@@ -100,7 +97,7 @@ bool Engine::HasExited(const Task& task) const {
 void Engine::LetDie(const Process& process) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->may_run || !IsDying(task->tid)) continue;
-    active_.LetRun(*task);
+    host_cpu_.active().LetRun(*task);
   }
 }
 
@@ -118,7 +115,7 @@ void Engine::LendLevel() {
   }
   const std::vector<Task*>& able = own.empty() ? others : own;
   if (able.empty()) return;
-  active_.Lend(*able[static_cast<std::size_t>(held_turns_) % able.size()]);
+  host_cpu_.active().Lend(*able[static_cast<std::size_t>(held_turns_) % able.size()]);
 }
 
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
@@ -172,10 +169,9 @@ bool Engine::CutsOff(Task& task) {
   }
   shm::ThreadSlot& slot = Slot(task);
   slot.wake_reason.store(shm::WakeReason::kCutOff);
-  slot.gate.store(shm::kGateOpen);
-  syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  HostCpu::OpenGate(slot);
   held_turns_ = 0;
-  detector_.Arm();
+  host_cpu_.detector().Arm();
   return true;
 }
 
@@ -191,19 +187,19 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 
 // `is_rest`: a further look at an instant.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
-  const bool held = held_turns_ > 0 && running_ != nullptr && !detector_.is_armed();
-  const std::int64_t turn_ns = active_.is_lent() ? kLentTurnNs : kHeldTurnNs;
+  const bool held = held_turns_ > 0 && running_ != nullptr && !host_cpu_.detector().is_armed();
+  const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
   const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
-  const shm::ClockReading before = counts ? ClockWhenStopped(*running_) : shm::ClockReading{};
+  const shm::ClockReading before = counts ? host_cpu_.ClockOf(*running_) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
-  stop_tsc_ = __rdtsc();
+  host_cpu_.Woke();
   if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
     if (held) {
-      active_.TakeBack();
-      detector_.Arm();
+      host_cpu_.active().TakeBack();
+      host_cpu_.detector().Arm();
     } else {
       preempted_ = true;
     }

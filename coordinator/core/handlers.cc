@@ -117,8 +117,8 @@ Reactor::Found Engine::OnGraceRanOut(Subject timer, std::uint32_t, Moment) {
 }
 
 Reactor::Found Engine::OnDetector(Subject, std::uint32_t, Moment) {
-  if (!detector_.TakeFired()) return {};
-  active_.TakeBack();
+  if (!host_cpu_.detector().TakeFired()) return {};
+  host_cpu_.active().TakeBack();
   return {.blocks_running = true};
 }
 

@@ -26,25 +26,17 @@ constexpr int kDeathMs = 1000;
 
 }  // namespace
 
-// Its clock is the one that it was given, with what it has added in this dispatch.
-bool Engine::IsOwnDispatch(const Task& task) const {
-  const shm::ClockPage& page = Slot(task).clock;
-  const std::uint64_t number = shm::DispatchNumber(task.dispatches << shm::kAdjustBits);
-  return task.grant.StandsIn(page) && shm::DispatchNumber(page.executed_adjust.load()) == number &&
-         shm::DispatchNumber(page.waited_adjust.load()) == number;
-}
-
 // Of the clock of a thread that has just been stopped; null if all is well.
 const char* Engine::WhatIsImpossible(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;
-  if (!IsOwnDispatch(task)) return "the clock that it was given";
+  if (!task.HasOwnClock()) return "the clock that it was given";
   const ClockGrant& grant = task.grant;
   const std::int64_t moved = page.host_cpu_origin_ns - task.metered.page_origin_ns;
   if (moved < 0 || moved > kLargeSlackNs) return "its processor clock";
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());
-  const std::int64_t ran =
-      shm::MulQ32(static_cast<std::int64_t>(stop_tsc_ - grant.base_tsc), grant.ns_per_tick_q32);
+  const std::int64_t ran = shm::MulQ32(
+      static_cast<std::int64_t>(host_cpu_.stop_tsc() - grant.base_tsc), grant.ns_per_tick_q32);
   if (added < -kSlackNs - std::max<std::int64_t>(0, ran)) return "a clock that went back";
   if (!IsFixed() && added > kLargeSlackNs) return "a clock that went ahead";
   const std::int64_t idle = std::max<std::int64_t>(0, grant.most_idle_ns - grant.base_time_ns);
@@ -77,7 +69,7 @@ const char* Engine::WhatIsImpossible(const shm::Notification& note) {
 std::int64_t Engine::StolenOf(const Task& task) const {
   const std::int64_t stolen = Slot(task).clock.stolen_ns.load();
   const auto since_start =
-      shm::MulQ32(static_cast<std::int64_t>(stop_tsc_ - start_tsc_), ns_per_tick_q32_);
+      shm::MulQ32(static_cast<std::int64_t>(host_cpu_.stop_tsc() - start_tsc_), ns_per_tick_q32_);
   const double most = static_cast<double>(since_start + kLargeSlackNs) / task.process->robot->speed;
   return stolen >= 0 && static_cast<double>(stolen) <= most ? stolen : 0;
 }
@@ -99,7 +91,7 @@ void Engine::Expel(Process& process, const char* what) {
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;
-    active_.LetRun(*task);
+    host_cpu_.active().LetRun(*task);
     if (task != running_) AwaitDeath(*task);
   }
   pollfd end{process.pidfd, POLLIN, 0};

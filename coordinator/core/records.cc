@@ -130,15 +130,13 @@ void Engine::NoteIdle(Task& task) {
   task.activation.charged_ns = charged;
 }
 
-// `row` was busy up to where the running thread was last found stopped.
 void Engine::RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns,
-                         std::uint64_t since_tsc) {
+                         std::uint64_t since_tsc, std::uint64_t until_tsc) {
   if (!dispatch_log_.is_open()) return;
   const auto real = [this](std::uint64_t tsc) {
     return static_cast<std::int64_t>(static_cast<double>(tsc - start_tsc_) / ticks_per_ns_);
   };
-  dispatch_log_.Slice(row, {start_ns, end_ns}, {real(since_tsc), real(stop_tsc_)});
-  recorded_tsc_ = stop_tsc_;
+  dispatch_log_.Slice(row, {start_ns, end_ns}, {real(since_tsc), real(until_tsc)});
 }
 
 }  // namespace tcs

@@ -168,7 +168,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   }
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
-  if (&task != running_) active_.HoldUnknown(task);
+  if (&task != running_) host_cpu_.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {  // a new process; or it has executed another program
     DeletePosixTimers(process);
     LeaveDds(process, moment);

@@ -1,5 +1,5 @@
 // What a run needs before its first step: the run's memory, the sockets that clients find us by,
-// the block detector.
+// the processor that they run on.
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "coordinator/core/engine.h"
 #include "coordinator/host/fixed_meter.h"
@@ -51,12 +52,6 @@ std::string Engine::Prepare() {
   }
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
-  const TscRate rate{.ns_per_tick_q32 = ns_per_tick_q32_, .ticks_per_ns = ticks_per_ns_};
-  if (IsFixed()) {
-    meter_ = std::make_unique<FixedMeter>();
-  } else {
-    meter_ = std::make_unique<MeasuredMeter>(rate);
-  }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
@@ -66,7 +61,7 @@ std::string Engine::Prepare() {
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
     reactor_.Add(world_.command_fds()[i], EPOLLIN, {Tag::kCommand, static_cast<std::uint32_t>(i)});
   }
-  return PrepareDetector();
+  return PrepareHostCpu();
 }
 
 std::string Engine::PrepareMemory() {
@@ -121,12 +116,19 @@ std::string Engine::OpenListener() {
   return name;
 }
 
-std::string Engine::PrepareDetector() {
-  if (std::string error = detector_.Start(); !error.empty()) return error;
-  reactor_.Add(detector_.fired_fd(), EPOLLIN, {Tag::kDetector});
-  reactor_.Add(detector_.end_fd(), EPOLLIN, {Tag::kDetectorEnd});
+std::string Engine::PrepareHostCpu() {
+  const TscRate rate{.ns_per_tick_q32 = ns_per_tick_q32_, .ticks_per_ns = ticks_per_ns_};
+  std::unique_ptr<Meter> meter;
+  if (IsFixed()) {
+    meter = std::make_unique<FixedMeter>();
+  } else {
+    meter = std::make_unique<MeasuredMeter>(rate);
+  }
+  if (std::string error = host_cpu_.Open(std::move(meter)); !error.empty()) return error;
+  reactor_.Add(host_cpu_.detector().fired_fd(), EPOLLIN, {Tag::kDetector});
+  reactor_.Add(host_cpu_.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
   guarded_ = GuardsOf(getpid());
-  guarded_.insert(guarded_.end(), {getpid(), detector_.pid()});
+  guarded_.insert(guarded_.end(), {getpid(), host_cpu_.detector().pid()});
   return {};
 }
 

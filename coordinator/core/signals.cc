@@ -70,7 +70,7 @@ bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
     preempted_ = false;
     if (PollSignals()) return true;
     timeout_ns -= kLookEveryNs;
-    ContinueClock(task);
+    host_cpu_.Continue(task);
   }
   return PollEvents(timeout_ns, {}).stops_running;
 }
@@ -83,7 +83,7 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
-    if (!active_.IsLast(task)) active_.Hold(task);
+    if (!host_cpu_.active().IsLast(task)) host_cpu_.active().Hold(task);
     const SignalSets sets = ReadSignalSets(task.tid);
     if (EndAwait(task, sets, moment)) continue;
     const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
@@ -104,7 +104,7 @@ void Engine::AnswerAhead(Task& task) {
       task.state != TaskState::kReady) {
     return;
   }
-  active_.Hold(task);
+  host_cpu_.active().Hold(task);
   if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) task.handed_lock = 0;
   task.trap_id = 0;
   task.parked = false;

@@ -37,7 +37,7 @@ void Engine::LetStop(const Process& process) {
   for (Task* task : threads) {
     const bool waits = task->state == TaskState::kWaiting;
     if (task != running_ && ThreadState(task->tid) != 'T' && (certain || waits)) {
-      active_.LetKernelFinish(*task);
+      host_cpu_.active().LetKernelFinish(*task);
     }
     certain |= ThreadState(task->tid) == 'T';
   }
@@ -64,7 +64,7 @@ void Engine::LetGoOn(const Process& process) {
       task->follow_up = FollowUp::kContinued;
       continue;
     }
-    active_.LetKernelFinish(*task);
+    host_cpu_.active().LetKernelFinish(*task);
   }
 }
 

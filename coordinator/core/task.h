@@ -15,9 +15,7 @@
 #include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
 #include "coordinator/core/usage.h"
-#include "coordinator/host/clock_grant.h"
 #include "coordinator/host/host_thread.h"
-#include "coordinator/host/meter.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
@@ -52,12 +50,11 @@ struct VirtualCpu;
 
 struct Task : HostThread {
   Process* process = nullptr;
-  VirtualCpu* cpu = nullptr;               // dispatched on last; null before the first time
-  int slot = -1;                           // -1: it has not registered yet
-  shm::ThreadSlot* slot_memory = nullptr;  // of that; readable until the engine's next step
-  int order = 0;                           // of registration; its number in the scheduling policies
-  int priority = 0;                        // on its robot; higher is more urgent
-  int policy = 0;                          // POSIX: SCHED_OTHER …
+  VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
+  int slot = -1;              // -1: it has not registered yet
+  int order = 0;              // of registration; its number in the scheduling policies
+  int priority = 0;           // on its robot; higher is more urgent
+  int policy = 0;             // POSIX: SCHED_OTHER …
   int posix_priority = 0;
   bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: whom it makes is an ordinary thread
   std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
@@ -119,11 +116,8 @@ struct Task : HostThread {
   Share share;               // of what it and its equals have had
   int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
-  MeteredThread metered;
-  ClockGrant grant;
-  bool is_cut_off = false;  // it has been told that its connection is not there any more
-  int cpu_clock_fd = -1;    // where its CPU clock is read, if it is not its process's
-  std::uint64_t dispatches = 0;
+  bool is_cut_off = false;      // it has been told that its connection is not there any more
+  int cpu_clock_fd = -1;        // where its CPU clock is read, if it is not its process's
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch

@@ -32,7 +32,8 @@ bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0;
 // The dispatched thread has not had the CPU for a while.
 void Engine::LowerUnknownThreads() {
   for (const pid_t tid : RealTimeThreadsOn(claim_.cpu, most_pids_)) {
-    if (KnownTask(tid) != nullptr || tid == detector_.pid() || IsOwnThread(tid)) continue;
+    if (KnownTask(tid) != nullptr || tid == host_cpu_.detector().pid() || IsOwnThread(tid))
+      continue;
     Lower(tid);
   }
 }

@@ -3,12 +3,28 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
+
+#include "coordinator/host/clock_grant.h"
+#include "coordinator/host/meter.h"
+#include "shm/layout.h"
+
 namespace tcs {
 
 struct HostThread {
   pid_t tid = 0;
+  // Shared with it; null before it registers, and readable until the engine's next step.
+  shm::ThreadSlot* slot_memory = nullptr;
   bool may_run = false;  // while the coordinator sleeps (active_threads.h)
   bool parked = true;    // at its gate, rather than stopped by priority
+  ClockGrant grant;      // of its last dispatch
+  std::uint64_t dispatches = 0;
+  MeteredThread metered;
+
+  // The word for the clock page that an adjustment of nothing in its last dispatch has.
+  std::uint64_t DispatchWord() const { return dispatches << shm::kAdjustBits; }
+  // Its clock is the one that it was given, with what it has added in its last dispatch.
+  bool HasOwnClock() const;
 };
 
 }  // namespace tcs

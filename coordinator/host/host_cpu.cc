@@ -1,0 +1,90 @@
+#include "coordinator/host/host_cpu.h"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#include <x86intrin.h>
+
+#include <utility>
+
+namespace tcs {
+
+std::string HostCpu::Open(std::unique_ptr<Meter> meter) {
+  meter_ = std::move(meter);
+  return detector_.Start();
+}
+
+void HostCpu::Dispatch(HostThread& thread) {
+  active_.Dispatch(thread);
+  from_gate_ = std::exchange(thread.parked, false);
+  detector_.Arm();
+}
+
+void HostCpu::OpenGate(shm::ThreadSlot& slot) {
+  if (slot.gate.exchange(shm::kGateOpen) == shm::kGateWaiting) {
+    syscall(SYS_futex, &slot.gate, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  }
+}
+
+// From here on the TSC is the thread's.
+void HostCpu::Start(HostThread& thread, bool is_silent) {
+  Woke();
+  if (thread.slot_memory == nullptr) return;
+  thread.slot_memory->clock.base_tsc = thread.grant.base_tsc =
+      meter_->Begin(thread.metered, stop_tsc_, from_gate_, is_silent);
+}
+
+void HostCpu::Woke() { stop_tsc_ = __rdtsc(); }
+
+// What the coordinator did meanwhile is not the thread's.
+void HostCpu::Continue(HostThread& thread) {
+  const std::uint64_t stopped_tsc = stop_tsc_;
+  Woke();
+  if (thread.slot_memory == nullptr) return;
+  shm::ClockPage& page = thread.slot_memory->clock;
+  page.base_tsc = thread.grant.base_tsc += stop_tsc_ - stopped_tsc;
+  // A new number, so that the thread repeats a reading that it was interrupted in.
+  ++thread.dispatches;
+  const std::uint64_t word = thread.DispatchWord();
+  page.executed_adjust.store(shm::PackAdjust(word, shm::AdjustValue(page.executed_adjust.load())));
+  page.waited_adjust.store(shm::PackAdjust(word, shm::AdjustValue(page.waited_adjust.load())));
+}
+
+// What the thread has taken out itself moved its origin; and it may have become another one
+// meanwhile.
+void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock) {
+  MeteredThread& metered = thread.metered;
+  const std::int64_t moved_ns = metered.page->host_cpu_origin_ns - metered.page_origin_ns;
+  metered.page_origin_ns += moved_ns;
+  metered.host_origin_ns += moved_ns;
+  meter_->End(metered, stop_tsc_, clock);
+}
+
+shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {
+  return shm::ReadClockAt(thread.slot_memory->clock, stop_tsc_);
+}
+
+std::int64_t HostCpu::NsToLook(HostThread& thread, std::int64_t horizon_ns) {
+  return meter_->NsToLook(thread.metered, stop_tsc_, horizon_ns);
+}
+
+Meter::Found HostCpu::Look(HostThread& thread, std::int64_t horizon_ns,
+                           const Meter::CpuClock& clock) {
+  return meter_->Look(thread.metered, stop_tsc_, horizon_ns, clock);
+}
+
+std::int64_t HostCpu::TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
+                                    std::int64_t asked_ns, const Meter::CpuClock& clock) {
+  if (!meter_->HasOverslept(before.tsc, stop_tsc_, asked_ns) || !thread.HasOwnClock()) return 0;
+  return meter_->TakeOutUntold(thread.metered, before, stop_tsc_, asked_ns, clock);
+}
+
+void HostCpu::Check(HostThread& thread, const Meter::CpuClock& clock) {
+  meter_->Check(thread.metered, stop_tsc_, clock);
+}
+
+void HostCpu::ChargeCall(HostThread& thread, std::int64_t cost_ns) {
+  meter_->ChargeCall(thread.metered, cost_ns);
+}
+
+}  // namespace tcs

@@ -1,0 +1,80 @@
+// One processor of the host, on which the threads of a run take turns: how one of them is made to
+// run and to stop there, and what its clock shows meanwhile. Which one, and how far, the scheduler
+// decides.
+//
+// The coordinator is on the same processor and goes before all of them. So a thread runs while the
+// coordinator sleeps, and stops when it wakes:
+//
+//   Dispatch(thread)        it may run, and the one before it is held; the detector is armed
+//   OpenGate(slot)          where it waits there
+//   Start(thread)           its clock runs: the coordinator sleeps next
+//   loop
+//     Woke()                the coordinator is back, the thread stopped
+//     Continue(thread)      or only interrupted: its clock goes on, and the coordinator sleeps
+//   End(thread)             its clock page says what its run has come to
+//
+// Several of these know nothing of each other. For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "coordinator/host/active_threads.h"
+#include "coordinator/host/block_detector.h"
+#include "coordinator/host/executor.h"
+#include "coordinator/host/host_thread.h"
+#include "coordinator/host/meter.h"
+#include "shm/clock_page.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class HostCpu {
+ public:
+  explicit HostCpu(Executor& executor) : active_(executor) {}
+
+  // Before all else. Makes the detector's process.
+  [[nodiscard]] std::string Open(std::unique_ptr<Meter> meter);
+
+  // Who else may run, and who has ended.
+  ActiveThreads& active() { return active_; }
+  BlockDetector& detector() { return detector_; }
+  const Meter& meter() const { return *meter_; }
+
+  void Dispatch(HostThread& thread);
+  static void OpenGate(shm::ThreadSlot& slot);
+  // `is_silent`: so it was found when it last ran (meter.h).
+  void Start(HostThread& thread, bool is_silent);
+  void Woke();
+  void Continue(HostThread& thread);
+  void End(HostThread& thread, const Meter::CpuClock& clock);
+
+  // The TSC when the coordinator last woke, or let a thread run.
+  std::uint64_t stop_tsc() const { return stop_tsc_; }
+  // The clock of a thread that has registered, as it was then.
+  shm::ClockReading ClockOf(const HostThread& thread) const;
+
+  // For how much real time the coordinator may sleep until it has to look at the thread, whose
+  // clock's horizon that is; and what it finds when it has slept for as long.
+  std::int64_t NsToLook(HostThread& thread, std::int64_t horizon_ns);
+  Meter::Found Look(HostThread& thread, std::int64_t horizon_ns, const Meter::CpuClock& clock);
+
+  // The coordinator was to sleep for `asked_ns`, from when the thread's clock was at `before` on.
+  // What was stolen meanwhile, and no clock tells of, is taken out. Returns it.
+  std::int64_t TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
+                             std::int64_t asked_ns, const Meter::CpuClock& clock);
+  // Of a thread that ran on though another one was dispatched.
+  void Check(HostThread& thread, const Meter::CpuClock& clock);
+  // Of a thread that has stopped in a system call that its shim knows nothing of.
+  void ChargeCall(HostThread& thread, std::int64_t cost_ns);
+
+ private:
+  ActiveThreads active_;
+  BlockDetector detector_;
+  std::unique_ptr<Meter> meter_;
+  bool from_gate_ = false;  // the thread that was dispatched last
+  std::uint64_t stop_tsc_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,136 @@
+#include "coordinator/host/host_cpu.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/host/fixed_meter.h"
+#include "coordinator/host/measured_meter.h"
+#include "tests/unit/host/noting_executor.h"
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+// Threads that are numbers and pages; nobody runs.
+class HostCpuTest : public testing::Test {
+ protected:
+  HostCpuTest() {
+    thread_.slot_memory = &slot_;
+    thread_.metered.page = &slot_.clock;
+    EXPECT_EQ(cpu_.Open(std::make_unique<MeasuredMeter>(TscRate{})), "");
+  }
+
+  void WritePage() {
+    ClockGrant& grant = thread_.grant;
+    grant.base_time_ns = 50 * kMs;
+    grant.horizon_ns = 60 * kMs;
+    cpu_.meter().SetRates(thread_.metered, {}, grant);
+    grant.WriteTo(slot_.clock);
+    ++thread_.dispatches;
+    slot_.clock.executed_adjust = slot_.clock.waited_adjust = thread_.DispatchWord();
+  }
+
+  NotingExecutor executor_;
+  HostCpu cpu_{executor_};
+  shm::ThreadSlot slot_{};
+  HostThread thread_{.tid = 1}, other_{.tid = 2};
+  Meter::CpuClock clock_ = [] { return std::int64_t{0}; };
+};
+
+TEST_F(HostCpuTest, TheDispatchedThreadMayRunAndTheDetectorWatches) {
+  cpu_.Dispatch(thread_);
+  EXPECT_THAT(executor_.Told(), ElementsAre("run 1"));
+  EXPECT_FALSE(thread_.parked);
+  EXPECT_TRUE(cpu_.detector().is_armed());
+  cpu_.Dispatch(other_);
+  EXPECT_THAT(executor_.Told(), ElementsAre("hold 1", "run 2"));
+}
+
+TEST_F(HostCpuTest, AGateIsOpenedWhetherTheThreadWaitsThereOrNot) {
+  for (const std::uint32_t gate : {shm::kGateClosed, shm::kGateWaiting}) {
+    slot_.gate = gate;
+    HostCpu::OpenGate(slot_);
+    EXPECT_EQ(slot_.gate.load(), shm::kGateOpen);
+  }
+}
+
+TEST_F(HostCpuTest, ItsClockBeginsWhenItStarts) {
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  EXPECT_TRUE(thread_.HasOwnClock());
+  EXPECT_EQ(cpu_.ClockOf(thread_).time_ns, 50 * kMs);
+  cpu_.Woke();
+  EXPECT_GT(cpu_.ClockOf(thread_).time_ns, 50 * kMs);
+}
+
+TEST_F(HostCpuTest, WhatTheCoordinatorDoesInBetweenIsNotTheThreads) {
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  cpu_.Woke();
+  const std::int64_t stopped_ns = cpu_.ClockOf(thread_).time_ns;
+  poll(nullptr, 0, 5);
+  cpu_.Continue(thread_);
+  EXPECT_EQ(cpu_.ClockOf(thread_).time_ns, stopped_ns);
+  EXPECT_TRUE(thread_.HasOwnClock());
+}
+
+TEST_F(HostCpuTest, AReadingThatWasInterruptedIsRepeatedAndLosesNothing) {
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  slot_.clock.executed_adjust += 300;
+  slot_.clock.waited_adjust += 2000;
+  const std::uint64_t before = slot_.clock.executed_adjust.load();
+  cpu_.Continue(thread_);
+  const std::uint64_t after = slot_.clock.executed_adjust.load();
+  EXPECT_NE(shm::DispatchNumber(after), shm::DispatchNumber(before));
+  EXPECT_EQ(shm::AdjustValue(after), 300);
+  EXPECT_EQ(shm::AdjustValue(slot_.clock.waited_adjust.load()), 2000);
+}
+
+TEST_F(HostCpuTest, AThreadThatHasNotRegisteredHasNoClock) {
+  cpu_.Dispatch(other_);
+  cpu_.Start(other_, false);
+  cpu_.Woke();
+  cpu_.Continue(other_);
+  EXPECT_EQ(other_.dispatches, 0u);
+}
+
+TEST_F(HostCpuTest, WhatItsShimHasTakenOutStaysOut) {
+  WritePage();
+  thread_.metered.host_origin_ns = slot_.clock.host_cpu_origin_ns = 700;
+  thread_.metered.page_origin_ns = 700;
+  cpu_.Start(thread_, false);
+  slot_.clock.host_cpu_origin_ns += 40;  // the way out of its gate
+  thread_.metered.host_origin_ns += 5;   // an exec has changed it meanwhile
+  cpu_.End(thread_, clock_);
+  EXPECT_EQ(thread_.metered.host_origin_ns, 745);
+  EXPECT_EQ(thread_.metered.page_origin_ns, 740);
+}
+
+TEST_F(HostCpuTest, AClockThatItsProcessHasOverwrittenIsNotReckonedWith) {
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  shm::ClockReading long_ago = cpu_.ClockOf(thread_);
+  long_ago.tsc -= 1'000'000'000'000;
+  slot_.clock.horizon_ns = 1;
+  EXPECT_FALSE(thread_.HasOwnClock());
+  const std::uint64_t word = slot_.clock.executed_adjust.load();
+  EXPECT_EQ(cpu_.TakeOutUntold(thread_, long_ago, kMs, clock_), 0);
+  EXPECT_EQ(slot_.clock.executed_adjust.load(), word);
+}
+
+}  // namespace
+}  // namespace tcs
