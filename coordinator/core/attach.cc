@@ -58,11 +58,11 @@ Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   by_tid_[tid] = &task;
   task.process = &process;
   task.tid = tid;
-  task.priority = process.priority;
   task.parked = false;
   task.metered.speed = process.robot->speed;
   task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
   process.robot->tasks.push_back(&task);
+  SchedulerOf(task).Add(task.order, process.priority);
   SetState(task, TaskState::kStarting);
   Refresh(*process.robot);
   return &task;
@@ -134,7 +134,6 @@ void Engine::LeaveWait(Task& task) {
   task.waits_for_room = 0;
   if (std::exchange(task.waits_for_deliverer, false)) {
     --task.process->waiting_for_deliverer;
-    if (task.process->deliverer != nullptr) FindPriority(*task.process->deliverer);
   }
   task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
   task.trap_wait = TrapWait::kNone;
@@ -156,6 +155,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   PassOn(task, moment);
   LeaveWait(task);
   SetState(task, TaskState::kDead);
+  SchedulerOf(task).Remove(task.order);
   --living_;
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);

@@ -118,6 +118,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
       task.waits_for_deliverer = true;
       ++process.waiting_for_deliverer;
       SetState(task, TaskState::kWaiting);
+      SchedulerOf(task).SetBlockedOn(task.order, process.deliverer->order);
       FindPriority(*process.deliverer);
   }
 }
@@ -235,7 +236,9 @@ void Engine::ShowDeliverersTheirDeadlines() {
     const std::int64_t due = hub_.DueNs(process->dds_number);
     if (std::exchange(deliverer->deadline_ns, due) == due) continue;
     const bool inside = running_ != nullptr && running_->process->robot == process->robot;
-    if (due != shm::kNeverNs && !inside) NoteLateness(*deliverer, due, GoesFirst(*deliverer, 0));
+    if (due != shm::kNeverNs && !inside) {
+      NoteLateness(*deliverer, due, SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
+    }
     Refresh(*process->robot);
   }
 }

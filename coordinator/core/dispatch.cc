@@ -189,7 +189,7 @@ void Engine::Settle(Task& task) {
     if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
-  task.cpu->progress_ns = progress;
+  task.cpu->ComeTo(progress);
   task.reached_ns = progress;
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
@@ -197,7 +197,7 @@ void Engine::Settle(Task& task) {
   if (IsRunnable(task)) Requeue(task);
   if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
-  if (slept) task.turn_ns = start - progress;  // its turn is over: it counts from here on
+  if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
   trace_.Slice(task.row, start, busy_until);
   RecordRun(task, start, busy_until);

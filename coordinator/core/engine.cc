@@ -19,10 +19,6 @@ namespace tcs {
 
 namespace {
 
-// How far a virtual CPU may run past what others could send to a more urgent thread on it.
-constexpr std::int64_t kGrainNs = 100'000;
-// Of equals on one virtual CPU; Linux's for SCHED_RR. SCHED_FIFO has none.
-constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
@@ -31,11 +27,6 @@ constexpr std::int64_t kLookEveryNs = 200'000'000;
 constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
-
-std::int64_t QuantumOf(const Task& task) {
-  if (task.policy == SCHED_FIFO) return shm::kNeverNs;
-  return task.policy == SCHED_RR ? kRoundRobinQuantumNs : kQuantumNs;
-}
 
 }  // namespace
 
@@ -82,11 +73,10 @@ void Engine::SetState(Task& task, TaskState state, bool goes_first) {
 }
 
 void Engine::Requeue(Task& task, bool goes_first) {
-  FixedPriority& ready = task.process->robot->ready;
   if (IsRunnable(task)) {
-    ready.Add({task.order, task.priority, task.reached_ns, task.allowed_cores, goes_first});
+    SchedulerOf(task).Enqueue(task.order, task.reached_ns, goes_first);
   } else {
-    ready.Remove(task.order);
+    SchedulerOf(task).Dequeue(task.order);
   }
 }
 
@@ -97,73 +87,28 @@ bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
   return IsCallback() && task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
 }
 
-// A core without a turn, or before its turn begins, acts when somebody's wait ends by itself. One
-// core is enough for that: the least advanced, so that no end of a wait comes into sight only once
-// another core has a turn.
+RobotScheduler::Wait Engine::WaitOf(const Task& task) const {
+  const Process& process = *task.process;
+  RobotScheduler::Wait wait{.process = process.index,
+                            .next_expiry_ns = process.timers.NextExpiry()};
+  wait.waits = task.state == TaskState::kWaiting && !task.spins;
+  if (!wait.waits) return wait;
+  wait.for_input = AwaitsInput(task);
+  wait.for_thread = task.trap_wait == TrapWait::kFutex;
+  wait.from_ns = task.reached_ns;
+  wait.until_ns = task.deadline_ns;
+  if (IsCallback() && task.deadline_ns != shm::kNeverNs) {
+    wait.is_over = HasRunOut(task, 0);
+    wait.own_until_ns = task.deadline_ns + task.frozen_ns - process.frozen_ns;
+  }
+  return wait;
+}
+
 void Engine::Refresh(Robot& robot) {
-  progress_.clear();
-  for (const VirtualCpu* cpu : robot.cpus) progress_.push_back(cpu->progress_ns);
-  robot.ready.Assign(progress_);
-  const auto turn_of = [&robot](const VirtualCpu& cpu) {
-    return robot.ready.Next(cpu.core).start_ns;
-  };
-  const auto rank = [&turn_of](const VirtualCpu& cpu) {
-    return std::pair(cpu.progress_ns, turn_of(cpu) != shm::kNeverNs);
-  };
-  const VirtualCpu* idle = nullptr;
+  robot.scheduler.Assign(robot.next_launch_ns);
   for (const VirtualCpu* cpu : robot.cpus) {
-    if (turn_of(*cpu) <= cpu->progress_ns) continue;
-    if (idle == nullptr || rank(*cpu) < rank(*idle)) idle = cpu;
+    root_.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core));
   }
-  std::int64_t due = shm::kNeverNs;
-  if (idle != nullptr) {
-    for (const Task* task : robot.tasks) {
-      if (task->state == TaskState::kWaiting) {
-        due = std::min(due, HasRunOut(*task, idle->progress_ns)
-                                ? std::max(idle->progress_ns, task->reached_ns)
-                                : task->deadline_ns);
-      }
-      due = std::min(due, task->process->timers.NextExpiry());
-    }
-    due = std::min(due, robot.next_launch_ns);
-    if (due != shm::kNeverNs) due = std::max(due, idle->progress_ns);
-  }
-  for (const VirtualCpu* cpu : robot.cpus) {
-    const std::int64_t turn = turn_of(*cpu);
-    root_.Update(cpu->leaf, cpu->progress_ns, cpu == idle ? std::min(due, turn) : turn);
-  }
-}
-
-// As on Linux: whom time or input wakes goes before its equals, if it has used less than its share
-// of late. `after_ns`: of theirs, from now on. Who is woken by its own robot's threads waits
-// behind.
-bool Engine::GoesFirst(const Task& task, std::int64_t after_ns) const {
-  return CanGoFirst(task) &&
-         task.share.GoesFirst(after_ns, task.process->robot->ready.CountOf(task.priority));
-}
-
-bool Engine::CanGoFirst(const Task& task) const {
-  return task.policy == SCHED_OTHER && !IsCallback();
-}
-
-// Whether the core has to stop at `due_ns` for a thread that goes first then: of the cores that
-// would, the one that comes there last. The others need not.
-bool Engine::MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns) {
-  const auto may_take = [&woken](const VirtualCpu& core) {
-    return (woken.allowed_cores >> (core.core & 63) & 1) != 0 &&
-           core.robot->ready.YieldsTo(core.core, woken.priority);
-  };
-  return may_take(cpu) &&
-         std::none_of(cpu.robot->cpus.begin(), cpu.robot->cpus.end(), [&](const VirtualCpu* other) {
-           return other != &cpu && other->progress_ns <= due_ns && may_take(*other);
-         });
-}
-
-void Engine::ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing) {
-  for (Task* task : ran.process->robot->tasks) {
-    if (task->priority == priority) task->share.Earn(ns, sharing);
-  }
-  ran.share.Spend(ns);
 }
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
@@ -173,12 +118,13 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
                       task.awaited_signals != 0 || task.waits_for_messages);
   const bool outside = moment.from_outside ||
                        (running_ != nullptr && running_->process->robot != task.process->robot);
-  const bool goes_first = outside && task.state == TaskState::kWaiting && GoesFirst(task, 0);
+  const bool goes_first = outside && task.state == TaskState::kWaiting &&
+                          SchedulerOf(task).PreemptsOnWakeup(task.order);
   if (outside && reads && !task.waits_for_messages) NoteLateness(task, moment.ns, goes_first);
   if (task.state == TaskState::kWaiting) {
     ++task.activations;
     NoteReleased(task, reason, moment.ns);
-    task.turn_ns = 0;
+    SchedulerOf(task).StartTurn(task.order);
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
@@ -210,22 +156,9 @@ std::int64_t Engine::EarliestWake() const {
 void Engine::NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first) {
   if (IsCallback()) return;
   sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
-  const Robot& robot = *woken.process->robot;
-  const VirtualCpu* best = nullptr;
-  std::int64_t start = shm::kNeverNs;
-  for (const VirtualCpu* cpu : robot.cpus) {
-    if ((AllowedCores(woken) >> (cpu->core & 63) & 1) == 0) continue;
-    if (!robot.ready.YieldsTo(cpu->core, woken.priority, goes_first)) continue;
-    const std::int64_t its = std::max({cpu->progress_ns, sent_ns, EarliestWake()});
-    if (its < start) best = cpu;
-    start = std::min(start, its);
-  }
-  if (best == nullptr) return;
-  // One that goes first only since its equals have run on had its turn to wait for.
-  const std::int64_t late_ns = start - sent_ns;
-  if (robot.ready.YieldsTo(best->core, woken.priority, false) || GoesFirst(woken, -late_ns)) {
-    report_.lateness_ns = std::max(report_.lateness_ns, late_ns);
-  }
+  const std::int64_t late_ns =
+      SchedulerOf(woken).LatenessOf(woken.order, sent_ns, EarliestWake(), goes_first);
+  report_.lateness_ns = std::max(report_.lateness_ns, late_ns);
 }
 
 bool Engine::IsSafe(const Task& task) const {
@@ -241,38 +174,6 @@ bool Engine::AwaitsInput(const Task& task) {
          task.waits_for_messages || task.waits_for_room != 0;
 }
 
-// How far a core may run if what others do at `input_ns` could interrupt it. A program acts some
-// time after it is woken, so the core goes on until then: each would stop the other otherwise. With
-// set costs it does not, and at one and the same instant it gives way.
-std::int64_t Engine::PastInput(const VirtualCpu& cpu, std::int64_t input_ns) const {
-  if (input_ns == shm::kNeverNs) return input_ns;
-  if (!IsFixed()) return std::max(input_ns, cpu.progress_ns) + kGrainNs;
-  if (input_ns > cpu.progress_ns) return input_ns;
-  return root_.HasGivenWay(cpu.leaf) ? cpu.progress_ns + kGrainNs : cpu.progress_ns;
-}
-
-// The task's horizon, because input may have `other` run instead at once: being more urgent, or as
-// an equal that goes first. What programs of other computers and the world do can; on a robot of
-// several cores also what happens on the others.
-std::int64_t Engine::HorizonForInput(const Task& task, const Task& other) const {
-  const VirtualCpu& cpu = *task.cpu;
-  const FixedPriority& ready = cpu.robot->ready;
-  const bool by_others = other.trap_wait == TrapWait::kFutex && cpu.robot->cpus.size() > 1;
-  if (other.priority > task.priority) {
-    if (!by_others && !AwaitsInput(other)) return shm::kNeverNs;
-    return std::min(PastInput(cpu, root_.NextInput(cpu.leaf)), root_.NextOutput());
-  }
-  if (other.priority < task.priority || task.policy == SCHED_FIFO || !AwaitsInput(other) ||
-      !CanGoFirst(other) || !ready.YieldsTo(cpu.core, other.priority)) {
-    return shm::kNeverNs;
-  }
-  const std::int64_t from =
-      cpu.progress_ns + other.share.NsUntilFirst(ready.CountOf(other.priority));
-  const std::int64_t sent = std::max(from, root_.NextInputFromOutside(cpu.leaf));
-  const std::int64_t at = std::min(PastInput(cpu, sent), std::max(from, root_.NextOutput()));
-  return MakesRoom(cpu, other, at) ? at : shm::kNeverNs;
-}
-
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
 std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const VirtualCpu& cpu = *task.cpu;
@@ -280,8 +181,8 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
   if (IsCallback()) {
-    return std::min(
-        {furthest, HorizonWhileWorldStands(task), cpu.progress_ns + LeftToHoldNs(task)});
+    return std::min({furthest, robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),
+                     cpu.progress_ns + LeftToHoldNs(task)});
   }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (task.process->timers.HasCpuTimers()) {
@@ -291,56 +192,15 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   limit = std::min(limit, std::max(robot.next_launch_ns, cpu.progress_ns));
   limit =
       std::min(limit, std::max(task.process->timers.NextLook(), cpu.progress_ns + kLeastLookNs));
-  std::int64_t idle = limit;
-  const std::int64_t turn_end =
-      task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
-  const bool task_yields = robot.ready.YieldsTo(cpu.core, task.priority);
-  for (const Task* other : robot.tasks) {
-    const std::int64_t expiry = other->process->timers.NextExpiry();
-    if (other->process == task.process || other->priority > task.priority) {
-      limit = std::min(limit, expiry);
-    }
-    idle = std::min(idle, expiry);
-    if (other == &task) continue;
-    if (other->state != TaskState::kWaiting || other->spins) {
-      idle = 0;
-      continue;
-    }
-    idle = std::min(idle, other->deadline_ns);
-    if (other->priority == task.priority && task.policy != SCHED_FIFO) {
-      const std::int64_t due = std::min(other->deadline_ns, expiry);
-      if (due != shm::kNeverNs && task_yields && GoesFirst(*other, due - cpu.progress_ns)) {
-        if (MakesRoom(cpu, *other, due)) limit = std::min(limit, std::max(due, cpu.progress_ns));
-      } else {
-        // Its turn comes when this one's is over.
-        limit = std::min(limit, std::max(due, turn_end));
-      }
-    }
-    if (AwaitsInput(*other)) {
-      idle = std::min({idle, PastInput(cpu, root_.NextInput(cpu.leaf)), root_.NextOutput()});
-    }
-    if (other->priority > task.priority) limit = std::min(limit, other->deadline_ns);
-    limit = std::min(limit, HorizonForInput(task, *other));
-  }
-  limit = std::min(limit, robot.ready.NextToPrecede(cpu.core));
-  if (robot.ready.HasWaitingEqual(cpu.core)) limit = std::min(limit, turn_end);
-  *idle_until = std::min(idle, limit);
-  return limit;
-}
-
-// Only those who share the running thread's clock can become due.
-std::int64_t Engine::HorizonWhileWorldStands(const Task& task) const {
-  const VirtualCpu& cpu = *task.cpu;
-  const std::int64_t turn_end =
-      task.policy == SCHED_FIFO ? shm::kNeverNs : cpu.progress_ns + QuantumOf(task) - task.turn_ns;
-  std::int64_t limit = cpu.robot->ready.HasWaitingEqual(cpu.core) ? turn_end : shm::kNeverNs;
-  for (const Task* other : cpu.robot->tasks) {
-    if (other->process != task.process || other->state != TaskState::kWaiting) continue;
-    if (other->deadline_ns == shm::kNeverNs || other->priority < task.priority) continue;
-    const std::int64_t due = other->deadline_ns + other->frozen_ns - task.process->frozen_ns;
-    limit = std::min(limit, other->priority > task.priority ? due : std::max(due, turn_end));
-  }
-  return limit;
+  const RobotScheduler::Horizon horizon =
+      robot.scheduler.HorizonOf(cpu.core, task.order, limit,
+                                {.input_ns = root_.NextInput(cpu.leaf),
+                                 .outside_input_ns = root_.NextInputFromOutside(cpu.leaf),
+                                 .output_ns = root_.NextOutput(),
+                                 .acts_at_once = IsFixed(),
+                                 .has_given_way = root_.HasGivenWay(cpu.leaf)});
+  *idle_until = horizon.idle_ns;
+  return horizon.run_ns;
 }
 
 // A program's clock stands while it waits, for as long as it is ahead of the world's.
@@ -388,19 +248,18 @@ void Engine::PayDebt(Task& task, std::int64_t ns) {
     process.shown_ns = std::max(process.shown_ns, task.cpu->progress_ns + process.frozen_ns);
     return;
   }
-  task.cpu->progress_ns += std::max<std::int64_t>(0, ns);
+  task.cpu->ComeTo(task.cpu->progress_ns + std::max<std::int64_t>(0, ns));
   task.reached_ns = task.cpu->progress_ns;
 }
 
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
-  cpu.progress_ns = std::max(cpu.progress_ns, root_.Least());
+  cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
   FireDue(robot, cpu.progress_ns);
   StartDue(robot, cpu.progress_ns);
-  // Who is due by now did not wait for another turn of the last one.
-  robot.ready.Rotate(std::exchange(cpu.turn_over, FixedPriority::kNobody));
+  robot.scheduler.EndTurn(cpu.core);
   Refresh(robot);
-  const FixedPriority::Turn turn = robot.ready.Next(cpu.core);
+  const RobotScheduler::Turn turn = robot.scheduler.Next(cpu.core);
   // What was due may have woken somebody who acts on another virtual CPU first; and more may be due
   // here before the turn begins.
   if (turn.start_ns > cpu.progress_ns || root_.First() != cpu.leaf) return;
@@ -422,9 +281,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     return;
   }
   root_.FirstActs();
-  robot.ready.Ran(cpu.core, task.order);
-  const int priority = task.priority;
-  const std::size_t sharing = robot.ready.CountOf(priority);
+  robot.scheduler.Dispatch(cpu.core, task.order);
   horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
@@ -433,12 +290,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     Dispatch(task, horizon, idle_until);
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
-  ShareOut(task, cpu.progress_ns - start, priority, sharing);
-  task.turn_ns += cpu.progress_ns - start + task.process->frozen_ns - frozen;
-  if (task.turn_ns >= QuantumOf(task)) {
-    task.turn_ns = 0;
-    if (IsRunnable(task)) cpu.turn_over = task.order;
-  }
+  const std::int64_t advanced = cpu.progress_ns - start;
+  robot.scheduler.Stop(cpu.core, advanced, advanced + task.process->frozen_ns - frozen);
   Requeue(task);
   Refresh(robot);
   TCS_CHECK(IsCallback() || root_.drift_ns() <= scenario_.drift_bound.ns());
@@ -614,7 +467,7 @@ bool Engine::Step() {
     return false;
   }
   VirtualCpu& cpu = cpus_[static_cast<std::size_t>(root_.First())];
-  const bool idle = cpu.robot->ready.Next(cpu.core).thread == FixedPriority::kNobody;
+  const bool idle = cpu.robot->scheduler.Next(cpu.core).thread == RobotScheduler::kNobody;
   if (idle && !HasJumpedOver()) return true;
   // What was there may have made another one the least.
   if (root_.First() == cpu.leaf) StepCpu(cpu);

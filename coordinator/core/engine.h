@@ -85,15 +85,12 @@ class Engine {
   std::int64_t LeftToHoldNs(const Task& task) const;
   static void NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns);
   void LetWorldGoOnWithout(Task& task);
-  std::int64_t HorizonWhileWorldStands(const Task& task) const;
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
-  std::int64_t HorizonForInput(const Task& task, const Task& other) const;
-  std::int64_t PastInput(const VirtualCpu& cpu, std::int64_t input_ns) const;
   static bool AwaitsInput(const Task& task);
   std::int64_t EarliestWake() const;
   void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
@@ -119,14 +116,11 @@ class Engine {
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   bool HasRunOut(const Task& task, std::int64_t now_ns) const;
+  RobotScheduler::Wait WaitOf(const Task& task) const;
   void SetState(Task& task, TaskState state, bool goes_first = false);
   void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason, Moment moment);
-  bool CanGoFirst(const Task& task) const;
-  bool GoesFirst(const Task& task, std::int64_t after_ns) const;
-  static bool MakesRoom(const VirtualCpu& cpu, const Task& woken, std::int64_t due_ns);
-  static void ShareOut(Task& ran, std::int64_t ns, int priority, std::size_t sharing);
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -209,15 +203,19 @@ class Engine {
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
-  static int PolicyOf(const Task& task);
+  static RobotScheduler& SchedulerOf(const Task& task) { return task.process->robot->scheduler; }
+  static const SchedulingParameters& ParametersOf(const Task& task) {
+    return SchedulerOf(task).ParametersOf(task.order);
+  }
+  static int PriorityOf(const Task& task) { return SchedulerOf(task).PriorityOf(task.order); }
   static std::int64_t MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
                                     std::int64_t priority);
   std::int64_t SetPriority(const Task& asking, Task& task, std::int64_t policy,
                            std::int64_t priority);
   std::int64_t SetAffinity(const Task& asking, Task& task, std::uint64_t cores);
-  static std::uint64_t AllowedCores(const Task& task);
   void InheritScheduling(Task& task, const Task& creator);
   void FindPriority(Task& task);
+  static void BlockOn(Task& task, Task* owner);
   void LeaveLock(Task& task);
 
   // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
@@ -469,8 +467,7 @@ class Engine {
   std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
   std::deque<Process> processes_;
   std::deque<Task> tasks_;
-  FutexTable futexes_{[this](int order) { return TaskAt(order).priority; }};
-  std::vector<std::int64_t> progress_;                       // Refresh's own
+  FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
   std::unordered_map<pid_t, Task*> by_tid_;                  // the living
   std::map<std::pair<std::string, std::string>, int> rows_;  // by group and name
   std::deque<Task*> ended_tasks_;  // whose places can be had again, the earliest first

@@ -79,7 +79,7 @@ std::int64_t Engine::FutexWaitForLock(Task& task, const TrappedCall& call) {
 void Engine::RequeueToLock(Task& waiter, const FutexKey& lock, Task& owner) {
   futexes_.Move(waiter.order, FutexKey(futexes_.WordOf(waiter.order)), lock);
   waiter.was_requeued = true;
-  waiter.lock_owner = &owner;
+  BlockOn(waiter, &owner);
   FindPriority(owner);
 }
 

@@ -68,7 +68,7 @@ void Engine::BeginGrace() {
   recording_.reset();
   for (const int fd : world_.command_fds()) reactor_.Remove(fd);
   for (VirtualCpu& cpu : cpus_) {
-    if (reached_end_) cpu.progress_ns = std::max(cpu.progress_ns, grace_began_ns_);
+    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
   }
   for (Robot& robot : robots_) {
     robot.next_launch_ns = shm::kNeverNs;

@@ -62,7 +62,9 @@ std::string Engine::PrepareFolders() {
 std::string Engine::StartClients() {
   for (const RobotSpec& robot : scenario_.robots) {
     const auto cores = static_cast<std::uint32_t>(robot.cores);
-    Robot& computer = robots_.emplace_back(robot.name, cores, robot.speed);
+    Robot& computer = robots_.emplace_back(
+        robot.name, robot.speed,
+        RobotScheduler(cores, !IsCallback(), [this](int order) { return WaitOf(TaskAt(order)); }));
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = cpus_.emplace_back();
       cpu.robot = &computer;

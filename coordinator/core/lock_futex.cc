@@ -45,7 +45,7 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   }
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
-  task.lock_owner = owner;
+  BlockOn(task, owner);
   task.lock_address = call.args[0];
   futexes_.Wait(task.order, key, FUTEX_BITSET_MATCH_ANY);
   StartFutexWait(task);
@@ -58,7 +58,7 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment)
   Task* next = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY);
   if (next == nullptr) return false;
   Task* before = next->lock_owner;
-  next->lock_owner = nullptr;
+  BlockOn(*next, nullptr);
   next->handed_lock = next->lock_address;
   futexes_.Leave(next->order);
   const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
@@ -66,7 +66,7 @@ bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment)
       static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
   WriteMemory(next->process->pid, next->lock_address, &value, sizeof value);
   for (const FutexTable::Thread waiter : futexes_.WaitersAt(key)) {
-    TaskAt(waiter).lock_owner = next;
+    BlockOn(TaskAt(waiter), next);
   }
   MakeReady(*next, shm::WakeReason::kGo, moment);
   if (before != nullptr) FindPriority(*before);

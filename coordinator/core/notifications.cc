@@ -175,8 +175,8 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (WakeKey(note.args[0], note.args[1], moment) && task.policy == SCHED_OTHER) {
-        task.process->robot->ready.Rotate(task.order);
+      if (WakeKey(note.args[0], note.args[1], moment) && ParametersOf(task).policy == SCHED_OTHER) {
+        SchedulerOf(task).Yield(task.order);
       }
       break;
     case Kind::kDdsJoin:

@@ -51,7 +51,7 @@ std::int64_t Engine::SetAttributesRaw(Task& task, Task& of, const TrappedCall& c
   if ((attributes.flags & SCHED_FLAG_RESET_ON_FORK) != 0) policy |= SCHED_RESET_ON_FORK;
   if ((attributes.flags & SCHED_FLAG_KEEP_POLICY) != 0) policy = shm::kKeepPolicy;
   std::int64_t priority = attributes.priority;
-  if ((attributes.flags & SCHED_FLAG_KEEP_PARAMS) != 0) priority = of.posix_priority;
+  if ((attributes.flags & SCHED_FLAG_KEEP_PARAMS) != 0) priority = ParametersOf(of).priority;
   // SCHED_DEADLINE, which robots have not got here, is refused like on a kernel without it.
   return SetPriority(task, of, policy, priority);
 }
@@ -66,29 +66,32 @@ std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedC
   static_assert(sizeof answer == kWholeAttributes);
   const std::uint32_t size = std::min(room, kWholeAttributes);
   answer.first.size = size;
-  answer.first.policy = static_cast<std::uint32_t>(of.policy);
-  answer.first.flags = of.resets_on_fork ? SCHED_FLAG_RESET_ON_FORK : 0;
-  answer.first.priority = static_cast<std::uint32_t>(of.posix_priority);
+  const SchedulingParameters& parameters = ParametersOf(of);
+  answer.first.policy = static_cast<std::uint32_t>(parameters.policy);
+  answer.first.flags = parameters.resets_on_fork ? SCHED_FLAG_RESET_ON_FORK : 0;
+  answer.first.priority = static_cast<std::uint32_t>(parameters.priority);
   return WriteMemory(task.process->pid, call.args[1], &answer, size) ? 0 : -EFAULT;
 }
 
 std::int64_t Engine::GetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
   switch (call.number) {
     case SYS_sched_getscheduler:
-      return PolicyOf(of);
+      return ParametersOf(of).PolicyAndFlag();
     case SYS_sched_getparam:
-      return Write(task, call.args[1], sched_param{of.posix_priority}) ? 0 : -EFAULT;
+      return Write(task, call.args[1], sched_param{ParametersOf(of).priority}) ? 0 : -EFAULT;
     case SYS_sched_rr_get_interval: {
       constexpr timespec kRoundRobin{0, 100'000'000};
-      return Write(task, call.args[1], of.policy == SCHED_RR ? kRoundRobin : timespec{}) ? 0
-                                                                                         : -EFAULT;
+      return Write(task, call.args[1],
+                   ParametersOf(of).policy == SCHED_RR ? kRoundRobin : timespec{})
+                 ? 0
+                 : -EFAULT;
     }
     case SYS_sched_getattr:
       return GetAttributesRaw(task, of, call);
     default: {  // SYS_sched_getaffinity
       const auto size = static_cast<std::uint32_t>(call.args[1]);
       if (size < sizeof(std::uint64_t) || size % sizeof(std::uint64_t) != 0) return -EINVAL;
-      const std::uint64_t cores = AllowedCores(of);
+      const std::uint64_t cores = SchedulerOf(of).CoresOf(of.order);
       return Write(task, call.args[2], cores) ? std::int64_t{sizeof cores} : -EFAULT;
     }
   }

@@ -10,8 +10,6 @@ namespace tcs {
 
 namespace {
 
-bool IsRealTime(int policy) { return policy == SCHED_FIFO || policy == SCHED_RR; }
-
 bool IsPrivileged(const Credentials& credentials) {
   return (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
 }

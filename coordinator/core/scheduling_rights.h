@@ -5,14 +5,9 @@
 
 #include <sys/types.h>
 
-#include <cstdint>
+#include "coordinator/policy/scheduling_parameters.h"
 
 namespace tcs {
-
-struct SchedulingParameters {
-  int policy = 0, priority = 0;  // POSIX
-  bool resets_on_fork = false;
-};
 
 // Threads by their kernel numbers. True for who has CAP_SYS_NICE.
 bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,

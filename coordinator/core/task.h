@@ -19,8 +19,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
-#include "coordinator/policy/fixed_priority.h"
-#include "coordinator/policy/share.h"
+#include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/layout.h"
@@ -53,11 +52,6 @@ struct Task : HostThread {
   VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
   int slot = -1;              // -1: it has not registered yet
   int order = 0;              // of registration; its number in the scheduling policies
-  int priority = 0;           // on its robot; higher is more urgent
-  int policy = 0;             // POSIX: SCHED_OTHER …
-  int posix_priority = 0;
-  bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: whom it makes is an ordinary thread
-  std::uint64_t allowed_cores = FixedPriority::kEveryCore;  // bit 0 is core 0
   TaskState state = TaskState::kStarting;
   // The virtual time that it has come to: of its last stop, or of what has made it ready since.
   std::int64_t reached_ns = 0;
@@ -112,8 +106,6 @@ struct Task : HostThread {
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
-  std::int64_t turn_ns = 0;  // had since its equals last had a turn
-  Share share;               // of what it and its equals have had
   int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   bool is_cut_off = false;      // it has been told that its connection is not there any more
@@ -180,21 +172,27 @@ struct UnknownChild {
 struct VirtualCpu {
   Robot* robot = nullptr;
   std::uint32_t core = 0;
-  std::int64_t progress_ns = 0;
+  std::int64_t progress_ns = 0;  // changed by ComeTo only
   TemporalConsistency::Leaf leaf = -1;
-  FixedPriority::Thread turn_over = FixedPriority::kNobody;  // goes behind its equals
+
+  void ComeTo(std::int64_t ns);
 };
 
 struct Robot {
-  Robot(std::string its_name, std::size_t cores, double its_speed)
-      : name(std::move(its_name)), speed(its_speed), ready(cores) {}
+  Robot(std::string its_name, double its_speed, RobotScheduler its_scheduler)
+      : name(std::move(its_name)), speed(its_speed), scheduler(std::move(its_scheduler)) {}
 
   std::string name;
   double speed;
-  FixedPriority ready;
+  RobotScheduler scheduler;
   std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                // by core
   std::vector<Task*> tasks;                     // the living
 };
+
+inline void VirtualCpu::ComeTo(std::int64_t ns) {
+  progress_ns = ns;
+  robot->scheduler.SetProgress(core, ns);
+}
 
 }  // namespace tcs

@@ -62,7 +62,7 @@ bool Engine::HasUnknownChild(const Process& parent) const {
 // Equals have their turn. Whoever yields again and again may wait for a process that shares its
 // memory and never registers (a sanitizer's that looks for leaks): it gets real time to run in.
 bool Engine::Yield(Task& task) {
-  task.process->robot->ready.Rotate(task.order);
+  SchedulerOf(task).Yield(task.order);
   if (++task.yields < kYieldsBeforeLook) return false;
   task.yields = 0;
   FindUnknownChildren(*task.process);

@@ -55,6 +55,12 @@ void FixedPriority::SetPriority(Thread thread, int priority) {
   Add(moved);
 }
 
+void FixedPriority::SetAllowed(Thread thread, std::uint64_t allowed) {
+  if (const auto found = Find(thread); found != ready_.end()) {
+    ready_[static_cast<std::size_t>(found - ready_.begin())].allowed = allowed;
+  }
+}
+
 bool FixedPriority::HasTurn(Thread thread) const {
   return std::any_of(turns_.begin(), turns_.end(),
                      [thread](const Turn& turn) { return turn.thread == thread; });

@@ -44,6 +44,8 @@ class FixedPriority {
   void Rotate(Thread thread);
   // A ready thread moves behind its new equals; for one that is not ready nothing happens.
   void SetPriority(Thread thread, int priority);
+  // The same of the cores that it may run on; it keeps its place.
+  void SetAllowed(Thread thread, std::uint64_t allowed);
   // The thread has had a turn on the core, and stays there.
   void Ran(std::size_t core, Thread thread) { on_[core] = thread; }
 

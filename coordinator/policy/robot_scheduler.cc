@@ -1,0 +1,326 @@
+#include "coordinator/policy/robot_scheduler.h"
+
+#include <algorithm>
+
+#include "shm/check.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr int kRealTimeBand = 1'000'000, kIdleBand = -1'000'000;
+constexpr int kMostOwners = 64;  // in a chain of who is blocked on whom; a circle ends there
+constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
+// How far a core may run past what others could send to a more urgent thread on it.
+constexpr std::int64_t kGrainNs = 100'000;
+
+std::int64_t QuantumOf(const SchedulingParameters& parameters) {
+  if (parameters.policy == SCHED_FIFO) return RobotScheduler::kNever;
+  return parameters.policy == SCHED_RR ? kRoundRobinQuantumNs : kQuantumNs;
+}
+
+int OwnPriority(const SchedulingParameters& parameters, int client_priority) {
+  if (IsRealTime(parameters.policy)) return kRealTimeBand + parameters.priority;
+  return client_priority + (parameters.policy == SCHED_IDLE ? kIdleBand : 0);
+}
+
+bool Allows(std::uint64_t cores, std::size_t core) { return (cores >> (core & 63) & 1) != 0; }
+
+}  // namespace
+
+const RobotScheduler::Entity* RobotScheduler::Find(Thread thread) const {
+  const auto number = static_cast<std::size_t>(thread);
+  if (thread < 0 || number >= places_.size() || places_[number] < 0) return nullptr;
+  return &entities_[static_cast<std::size_t>(places_[number])];
+}
+
+const RobotScheduler::Entity& RobotScheduler::At(Thread thread) const {
+  const Entity* entity = Find(thread);
+  TCS_CHECK(entity != nullptr);
+  return *entity;
+}
+
+std::uint64_t RobotScheduler::EveryCore() const {
+  return cores_.size() >= 64 ? kEveryCore : (std::uint64_t{1} << cores_.size()) - 1;
+}
+
+void RobotScheduler::Add(Thread thread, int client_priority) {
+  TCS_CHECK(thread >= 0 && Find(thread) == nullptr);
+  const auto number = static_cast<std::size_t>(thread);
+  if (number >= places_.size()) places_.resize(number + 1, -1);
+  places_[number] = static_cast<int>(entities_.size());
+  Entity& entity = entities_.emplace_back();
+  entity.thread = thread;
+  entity.client_priority = entity.priority = client_priority;
+  entity.allowed = EveryCore();
+}
+
+void RobotScheduler::Remove(Thread thread) {
+  queue_.Remove(thread);
+  const auto place = static_cast<std::size_t>(&At(thread) - entities_.data());
+  places_[static_cast<std::size_t>(thread)] = -1;
+  if (place + 1 != entities_.size()) {
+    entities_[place] = entities_.back();
+    places_[static_cast<std::size_t>(entities_[place].thread)] = static_cast<int>(place);
+  }
+  entities_.pop_back();
+  for (Entity& entity : entities_) {
+    if (entity.blocked_on == thread) entity.blocked_on = kNobody;
+  }
+}
+
+void RobotScheduler::SetParameters(Thread thread, const SchedulingParameters& parameters) {
+  At(thread).parameters = parameters;
+}
+
+bool RobotScheduler::SetCores(Thread thread, std::uint64_t allowed) {
+  if ((allowed & EveryCore()) == 0) return false;
+  At(thread).allowed = allowed & EveryCore();
+  queue_.SetAllowed(thread, allowed & EveryCore());
+  return true;
+}
+
+void RobotScheduler::Inherit(Thread child, Thread creator) {
+  const Entity& from = At(creator);
+  const bool starts_anew = from.parameters.resets_on_fork && IsRealTime(from.parameters.policy);
+  At(child).parameters = starts_anew ? SchedulingParameters{} : from.parameters;
+  At(child).parameters.resets_on_fork = false;
+  SetCores(child, from.allowed);
+}
+
+void RobotScheduler::SetBlockedOn(Thread thread, Thread owner) { At(thread).blocked_on = owner; }
+
+bool RobotScheduler::FindEffectivePriority(Thread thread) {
+  bool changed = false;
+  Entity* next = Find(thread);
+  for (int i = 0; next != nullptr && i < kMostOwners; ++i) {
+    int priority = OwnPriority(next->parameters, next->client_priority);
+    for (const Entity& waiter : entities_) {
+      if (waiter.blocked_on == next->thread) priority = std::max(priority, waiter.priority);
+    }
+    if (priority != next->priority) {
+      next->priority = priority;
+      queue_.SetPriority(next->thread, priority);
+      changed = true;
+    }
+    next = Find(next->blocked_on);
+  }
+  return changed;
+}
+
+void RobotScheduler::Enqueue(Thread thread, std::int64_t from_ns, bool goes_first) {
+  const Entity& entity = At(thread);
+  queue_.Add({thread, entity.priority, from_ns, entity.allowed, goes_first});
+}
+
+// A core without a turn, or before its turn begins, acts when somebody's wait ends by itself. One
+// core is enough for that: the least advanced, so that no end of a wait comes into sight only once
+// another core has a turn.
+void RobotScheduler::Assign(std::int64_t own_due_ns) {
+  queue_.Assign(progress_);
+  const auto rank = [this](std::size_t core) {
+    return std::pair(progress_[core], Next(core).start_ns != kNever);
+  };
+  std::size_t idle = cores_.size();
+  for (std::size_t core = 0; core < cores_.size(); ++core) {
+    cores_[core].next_action_ns = Next(core).start_ns;
+    if (Next(core).start_ns <= progress_[core]) continue;
+    if (idle == cores_.size() || rank(core) < rank(idle)) idle = core;
+  }
+  if (idle == cores_.size()) return;
+  std::int64_t due = std::min(DueAt(progress_[idle]), own_due_ns);
+  if (due != kNever) due = std::max(due, progress_[idle]);
+  cores_[idle].next_action_ns = std::min(cores_[idle].next_action_ns, due);
+}
+
+// When the next wait ends by itself, or the next timer expires, for a core that has come so far.
+std::int64_t RobotScheduler::DueAt(std::int64_t progress_ns) const {
+  std::int64_t due = kNever;
+  for (const Entity& entity : entities_) {
+    const Wait wait = wait_of_(entity.thread);
+    if (wait.waits) {
+      const bool over = wait.is_over || wait.until_ns <= progress_ns;
+      due = std::min(due, over ? std::max(progress_ns, wait.from_ns) : wait.until_ns);
+    }
+    due = std::min(due, wait.next_expiry_ns);
+  }
+  return due;
+}
+
+void RobotScheduler::Dispatch(std::size_t core, Thread thread) {
+  const Entity& entity = At(thread);
+  TCS_CHECK(Allows(entity.allowed, core));
+  queue_.Ran(core, thread);
+  cores_[core].running = thread;
+  cores_[core].priority = entity.priority;
+  cores_[core].sharing = queue_.CountOf(entity.priority);
+}
+
+void RobotScheduler::Stop(std::size_t core, std::int64_t advanced_ns, std::int64_t used_ns) {
+  Core& its = cores_[core];
+  TCS_CHECK(its.running != kNobody && advanced_ns >= 0);
+  ShareOut(its, advanced_ns);
+  Entity* ran = Find(std::exchange(its.running, kNobody));
+  if (ran == nullptr) return;  // it has ended
+  ran->turn_ns += used_ns;
+  if (ran->turn_ns < QuantumOf(ran->parameters)) return;
+  ran->turn_ns = 0;
+  if (queue_.IsReady(ran->thread)) its.turn_over = ran->thread;
+}
+
+void RobotScheduler::SleptSince(Thread thread, std::int64_t ran_ns) {
+  if (Entity* entity = Find(thread); entity != nullptr) entity->turn_ns = -ran_ns;
+}
+
+void RobotScheduler::EndTurn(std::size_t core) {
+  queue_.Rotate(std::exchange(cores_[core].turn_over, kNobody));
+}
+
+void RobotScheduler::ShareOut(const Core& core, std::int64_t ns) {
+  for (Entity& entity : entities_) {
+    if (entity.priority == core.priority) entity.share.Earn(ns, core.sharing);
+    if (entity.thread == core.running) entity.share.Spend(ns);
+  }
+}
+
+bool RobotScheduler::CanPreemptOnWakeup(const Entity& entity) const {
+  return preempts_on_wakeup_ && entity.parameters.policy == SCHED_OTHER;
+}
+
+bool RobotScheduler::PreemptsOnWakeup(const Entity& entity, std::int64_t after_ns) const {
+  return CanPreemptOnWakeup(entity) &&
+         entity.share.GoesFirst(after_ns, queue_.CountOf(entity.priority));
+}
+
+bool RobotScheduler::PreemptsOnWakeup(Thread thread, std::int64_t after_ns) const {
+  return PreemptsOnWakeup(At(thread), after_ns);
+}
+
+// Whether the core has to stop at `due_ns` for a thread that goes first then: of the cores that
+// would, the one that comes there last. The others need not.
+bool RobotScheduler::MakesRoom(std::size_t core, const Entity& woken, std::int64_t due_ns) const {
+  const auto may_take = [&](std::size_t which) {
+    return Allows(woken.allowed, which) && queue_.YieldsTo(which, woken.priority);
+  };
+  if (!may_take(core)) return false;
+  for (std::size_t other = 0; other < cores_.size(); ++other) {
+    if (other != core && progress_[other] <= due_ns && may_take(other)) return false;
+  }
+  return true;
+}
+
+std::int64_t RobotScheduler::LatenessOf(Thread woken, std::int64_t sent_ns,
+                                        std::int64_t earliest_ns, bool goes_first) const {
+  const Entity& entity = At(woken);
+  std::size_t best = cores_.size();
+  std::int64_t start = kNever;
+  for (std::size_t core = 0; core < cores_.size(); ++core) {
+    if (!Allows(entity.allowed, core)) continue;
+    if (!queue_.YieldsTo(core, entity.priority, goes_first)) continue;
+    const std::int64_t its = std::max({progress_[core], sent_ns, earliest_ns});
+    if (its < start) best = core;
+    start = std::min(start, its);
+  }
+  if (best == cores_.size()) return 0;
+  // One that goes first only since its equals have run on had its turn to wait for.
+  const std::int64_t late_ns = start - sent_ns;
+  const bool counts =
+      queue_.YieldsTo(best, entity.priority, false) || PreemptsOnWakeup(entity, -late_ns);
+  return counts ? late_ns : 0;
+}
+
+std::int64_t RobotScheduler::TurnEnd(std::size_t core, const Entity& running) const {
+  const std::int64_t quantum = QuantumOf(running.parameters);
+  return quantum == kNever ? kNever : progress_[core] + quantum - running.turn_ns;
+}
+
+// How far a core may run if what others do at `input_ns` could interrupt it. A program acts some
+// time after it is woken, so the core goes on until then: each would stop the other otherwise. With
+// set costs it does not, and at one and the same instant it gives way.
+std::int64_t RobotScheduler::PastInput(std::size_t core, std::int64_t input_ns,
+                                       const Outlook& outlook) const {
+  const std::int64_t now = progress_[core];
+  if (input_ns == kNever) return input_ns;
+  if (!outlook.acts_at_once) return std::max(input_ns, now) + kGrainNs;
+  if (input_ns > now) return input_ns;
+  return outlook.has_given_way ? now + kGrainNs : now;
+}
+
+// Because input may have `other` run instead at once: being more urgent, or as an equal that goes
+// first. What programs of other robots and the world do can be input; on a robot of several cores
+// also what happens on the others.
+std::int64_t RobotScheduler::HorizonForInput(std::size_t core, const Entity& running,
+                                             const Entity& other, const Wait& wait,
+                                             const Outlook& outlook) const {
+  if (other.priority > running.priority) {
+    if (!wait.for_input && !(wait.for_thread && cores_.size() > 1)) return kNever;
+    return std::min(PastInput(core, outlook.input_ns, outlook), outlook.output_ns);
+  }
+  if (other.priority < running.priority || running.parameters.policy == SCHED_FIFO ||
+      !wait.for_input || !CanPreemptOnWakeup(other) || !queue_.YieldsTo(core, other.priority)) {
+    return kNever;
+  }
+  const std::int64_t from =
+      progress_[core] + other.share.NsUntilFirst(queue_.CountOf(other.priority));
+  const std::int64_t sent = std::max(from, outlook.outside_input_ns);
+  const std::int64_t at =
+      std::min(PastInput(core, sent, outlook), std::max(from, outlook.output_ns));
+  return MakesRoom(core, other, at) ? at : kNever;
+}
+
+RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread thread,
+                                                  std::int64_t limit_ns,
+                                                  const Outlook& outlook) const {
+  const Entity& running = At(thread);
+  const std::uint32_t process = wait_of_(thread).process;
+  const std::int64_t now = progress_[core];
+  const bool is_fifo = running.parameters.policy == SCHED_FIFO;
+  const std::int64_t turn_end = TurnEnd(core, running);
+  const bool yields = queue_.YieldsTo(core, running.priority);
+  std::int64_t limit = limit_ns, idle = limit_ns;
+  for (const Entity& other : entities_) {
+    const Wait wait = wait_of_(other.thread);
+    const bool precedes = other.priority > running.priority;
+    if (wait.process == process || precedes) limit = std::min(limit, wait.next_expiry_ns);
+    idle = std::min(idle, wait.next_expiry_ns);
+    if (&other == &running) continue;
+    if (!wait.waits) {
+      idle = 0;
+      continue;
+    }
+    idle = std::min(idle, wait.until_ns);
+    if (other.priority == running.priority && !is_fifo) {
+      const std::int64_t due = std::min(wait.until_ns, wait.next_expiry_ns);
+      if (due != kNever && yields && PreemptsOnWakeup(other, due - now)) {
+        if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(due, now));
+      } else {
+        limit = std::min(limit, std::max(due, turn_end));  // it has the next turn
+      }
+    }
+    if (wait.for_input) {
+      idle = std::min({idle, PastInput(core, outlook.input_ns, outlook), outlook.output_ns});
+    }
+    if (precedes) limit = std::min(limit, wait.until_ns);
+    limit = std::min(limit, HorizonForInput(core, running, other, wait, outlook));
+  }
+  limit = std::min(limit, queue_.NextToPrecede(core));
+  if (queue_.HasWaitingEqual(core)) limit = std::min(limit, turn_end);
+  return {.run_ns = limit, .idle_ns = std::min(idle, limit)};
+}
+
+std::int64_t RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread thread) const {
+  const Entity& running = At(thread);
+  const std::uint32_t process = wait_of_(thread).process;
+  const std::int64_t turn_end = TurnEnd(core, running);
+  std::int64_t limit = queue_.HasWaitingEqual(core) ? turn_end : kNever;
+  for (const Entity& other : entities_) {
+    const Wait wait = wait_of_(other.thread);
+    if (wait.process != process || !wait.waits || wait.own_until_ns == kNever) continue;
+    if (other.priority < running.priority) continue;
+    const std::int64_t due = wait.own_until_ns;
+    limit = std::min(limit, other.priority > running.priority ? due : std::max(due, turn_end));
+  }
+  return limit;
+}
+
+}  // namespace tcs

@@ -1,0 +1,179 @@
+// What the operating system of one robot decides: which thread has a core next, how far it may run
+// (its horizon), whether a thread that wakes preempts one that runs, when a turn is over, and which
+// priority a thread has in effect.
+//
+// Priority. SCHED_FIFO and SCHED_RR precede all others by their POSIX priorities; SCHED_OTHER and
+// SCHED_BATCH have their client's; SCHED_IDLE follows them all. The effective priority is the
+// greatest of a thread's own and of those that are blocked on it (priority inheritance).
+// Quantum. Equals take turns: of 1 ms, of 100 ms under SCHED_RR, without end under SCHED_FIFO.
+// Wake-up preemption. As on Linux, a thread of SCHED_OTHER that time or input wakes goes before its
+// equals if it has used less than its fair share of late (share.h). A thread that its own robot's
+// threads wake waits for its turn.
+// Horizon. A core runs on until the first instant at which another thread of the robot could take
+// it over: as far as that is known, which is when waits end by themselves and when the rest of the
+// scheduler tree could send input.
+//
+// Pure: knows threads by number, makes no system call, reads no clock. All times are virtual
+// nanoseconds; INT64_MAX is never.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/scheduling_parameters.h"
+#include "coordinator/policy/share.h"
+
+namespace tcs {
+
+class RobotScheduler {
+ public:
+  using Thread = FixedPriority::Thread;
+  using Turn = FixedPriority::Turn;
+  static constexpr Thread kNobody = FixedPriority::kNobody;
+  static constexpr std::uint64_t kEveryCore = FixedPriority::kEveryCore;
+  static constexpr std::int64_t kNever = INT64_MAX;
+
+  // What a thread does while it has no core, as whoever keeps its waits knows it.
+  struct Wait {
+    std::uint32_t process = 0;
+    bool waits = false;                    // else it is ready, or nobody knows what it waits for
+    bool for_input = false;                // what ends its wait may come from elsewhere,
+    bool for_thread = false;               // or from a thread of its own robot
+    bool is_over = false;                  // by time, whatever the time on its robot's cores
+    std::int64_t until_ns = kNever;        // the wait ends by itself
+    std::int64_t own_until_ns = kNever;    // the same, as its process's own clock tells it
+    std::int64_t from_ns = 0;              // once its wait is over, it runs no earlier
+    std::int64_t next_expiry_ns = kNever;  // of its process's timers
+  };
+  using WaitOf = std::function<Wait(Thread)>;
+
+  // What the rest of the scheduler tree can still do to a core's threads.
+  struct Outlook {
+    std::int64_t input_ns = kNever;          // another core wakes one of them, at the earliest
+    std::int64_t outside_input_ns = kNever;  // one of another robot does
+    std::int64_t output_ns = kNever;         // the dynamics do
+    // Under set costs a program acts in the instant in which it is woken.
+    bool acts_at_once = false;
+    bool has_given_way = false;  // the core, to all that can act at the same instant
+  };
+
+  struct Horizon {
+    std::int64_t run_ns = kNever;
+    std::int64_t idle_ns = 0;  // the thread may sleep that far without asking: nothing else happens
+  };
+
+  // `wait_of` is asked for threads that were added and not removed. Where the world stands still
+  // while threads compute, nothing preempts on wake-up.
+  RobotScheduler(std::size_t cores, bool preempts_on_wakeup, WaitOf wait_of)
+      : preempts_on_wakeup_(preempts_on_wakeup),
+        wait_of_(std::move(wait_of)),
+        queue_(cores),
+        cores_(cores),
+        progress_(cores, 0) {}
+
+  // A new thread of a client with that priority, not ready yet.
+  void Add(Thread thread, int client_priority);
+  void Remove(Thread thread);
+
+  // What threads ask for. Whoever changes parameters or who is blocked on whom has the effective
+  // priorities found anew.
+  const SchedulingParameters& ParametersOf(Thread thread) const { return At(thread).parameters; }
+  void SetParameters(Thread thread, const SchedulingParameters& parameters);
+  std::uint64_t CoresOf(Thread thread) const { return At(thread).allowed; }  // of those there are
+  // False, and nothing has changed, if the robot has none of these cores.
+  bool SetCores(Thread thread, std::uint64_t allowed);
+  // The child gets what its creator has.
+  void Inherit(Thread child, Thread creator);
+  void SetBlockedOn(Thread thread, Thread owner);  // kNobody: it waits for nobody any more
+  Thread BlockedOn(Thread thread) const { return At(thread).blocked_on; }
+  // Of the thread, and of those that it is blocked on, one after the other. True if one is another.
+  bool FindEffectivePriority(Thread thread);
+  int PriorityOf(Thread thread) const { return At(thread).priority; }
+
+  // The thread is ready, from then on, and keeps its place if it was; it is not any more.
+  void Enqueue(Thread thread, std::int64_t from_ns, bool goes_first);
+  void Dequeue(Thread thread) { queue_.Remove(thread); }
+  // Its wait is over: it has a whole turn before it.
+  void StartTurn(Thread thread) { At(thread).turn_ns = 0; }
+  void Yield(Thread thread) { queue_.Rotate(thread); }
+  // It has slept after it ran for so long, so that what it still runs begins another turn.
+  void SleptSince(Thread thread, std::int64_t ran_ns);
+
+  void SetProgress(std::size_t core, std::int64_t ns) { progress_[core] = ns; }
+  // Gives each core its next turn, and finds when each acts next; needed after every change.
+  // `own_due_ns`: when the robot itself has something to do.
+  void Assign(std::int64_t own_due_ns);
+  const Turn& Next(std::size_t core) const { return queue_.Next(core); }
+  std::int64_t NextActionOf(std::size_t core) const { return cores_[core].next_action_ns; }
+
+  // A core's thread is about to run; it has stopped after its core has come so far, and it has used
+  // so much of its turn. Its equals get their turn by EndTurn, so that those that are due by then
+  // have not waited for another turn of the last one.
+  void Dispatch(std::size_t core, Thread thread);
+  void Stop(std::size_t core, std::int64_t advanced_ns, std::int64_t used_ns);
+  void EndTurn(std::size_t core);
+
+  // How far the thread may run on the core, which is no further than `limit_ns`.
+  Horizon HorizonOf(std::size_t core, Thread thread, std::int64_t limit_ns,
+                    const Outlook& outlook) const;
+  // The same where the world stands still while it computes, so that only those that share its
+  // process's clock can become due.
+  std::int64_t HorizonWhileWorldStands(std::size_t core, Thread thread) const;
+
+  // Whether the thread, woken from elsewhere, goes before its equals after another `after_ns` of
+  // theirs.
+  bool PreemptsOnWakeup(Thread thread, std::int64_t after_ns = 0) const;
+  // How long after `sent_ns` the thread gets a core if what was sent then wakes it, not before
+  // `earliest_ns`: the core may have come further. 0 where it waits for its turn, too.
+  std::int64_t LatenessOf(Thread woken, std::int64_t sent_ns, std::int64_t earliest_ns,
+                          bool goes_first) const;
+
+ private:
+  struct Entity {
+    Thread thread = kNobody;
+    int client_priority = 0;
+    SchedulingParameters parameters;
+    std::uint64_t allowed = kEveryCore;
+    int priority = 0;  // effective
+    Thread blocked_on = kNobody;
+    std::int64_t turn_ns = 0;  // had since its equals last had a turn
+    Share share;               // of what it and its equals have had
+  };
+  struct Core {
+    Thread running = kNobody;
+    int priority = 0;            // of the running one when it began,
+    std::size_t sharing = 0;     // and how many were ready at that
+    Thread turn_over = kNobody;  // goes behind its equals
+    std::int64_t next_action_ns = kNever;
+  };
+
+  const Entity* Find(Thread thread) const;
+  Entity* Find(Thread thread) { return const_cast<Entity*>(std::as_const(*this).Find(thread)); }
+  const Entity& At(Thread thread) const;
+  Entity& At(Thread thread) { return const_cast<Entity&>(std::as_const(*this).At(thread)); }
+  std::uint64_t EveryCore() const;
+
+  std::int64_t DueAt(std::int64_t progress_ns) const;
+  std::int64_t TurnEnd(std::size_t core, const Entity& running) const;
+  std::int64_t PastInput(std::size_t core, std::int64_t input_ns, const Outlook& outlook) const;
+  std::int64_t HorizonForInput(std::size_t core, const Entity& running, const Entity& other,
+                               const Wait& wait, const Outlook& outlook) const;
+  bool CanPreemptOnWakeup(const Entity& entity) const;
+  bool PreemptsOnWakeup(const Entity& entity, std::int64_t after_ns) const;
+  bool MakesRoom(std::size_t core, const Entity& woken, std::int64_t due_ns) const;
+  void ShareOut(const Core& core, std::int64_t ns);
+
+  bool preempts_on_wakeup_;
+  WaitOf wait_of_;
+  FixedPriority queue_;
+  std::vector<Core> cores_;
+  std::vector<std::int64_t> progress_;  // of the cores
+  std::vector<Entity> entities_;
+  std::vector<int> places_;  // in entities_, by thread; -1: not here
+};
+
+}  // namespace tcs
