@@ -1,0 +1,195 @@
+// How far a thread may run because of one other thread of its robot: a table, one case a line.
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "tests/unit/policy/simulated_robot.h"
+
+namespace tcs {
+namespace {
+
+constexpr int kRunning = 0, kOther = 1;
+constexpr SchedulingParameters kOrdinary{}, kBatch{.policy = SCHED_BATCH},
+    kIdle{.policy = SCHED_IDLE}, kFifo50{.policy = SCHED_FIFO, .priority = 50},
+    kFifo60{.policy = SCHED_FIFO, .priority = 60}, kRoundRobin{.policy = SCHED_RR, .priority = 50};
+using Wait = RobotScheduler::Wait;
+using Outlook = RobotScheduler::Outlook;
+
+// The running thread has come to 10 ms, and has had 0.3 ms of its turn.
+constexpr std::int64_t kNow = 10 * kMilli, kHad = 300 * kMicro;
+constexpr std::int64_t kTurnEnd = kNow + kMilli - kHad, kGrain = 100 * kMicro;
+constexpr std::int64_t kSoon = kNow + 50 * kMicro, kLater = kNow + 5 * kMilli;
+constexpr Outlook kNothing{};
+constexpr Outlook kMeasuredInput{.input_ns = kSoon, .outside_input_ns = kSoon};
+constexpr Outlook kFixedInput{.input_ns = kSoon, .outside_input_ns = kSoon, .acts_at_once = true};
+constexpr Outlook kInputNow{.input_ns = kNow, .outside_input_ns = kNow, .acts_at_once = true};
+constexpr Outlook kGivenWay{
+    .input_ns = kNow, .outside_input_ns = kNow, .acts_at_once = true, .has_given_way = true};
+constexpr Outlook kOwnRobotsInput{.input_ns = kSoon, .acts_at_once = true};
+constexpr Outlook kSensor{.output_ns = kSoon};
+
+struct Case {
+  const char* name;
+  SchedulingParameters running, other;
+  Wait wait;
+  Outlook outlook;
+  std::int64_t horizon_ns;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& test) { return out << test.name; }
+
+class Horizon : public testing::TestWithParam<Case> {};
+
+TEST_P(Horizon, IsTheFirstInstantAtWhichTheOtherCouldTakeTheCore) {
+  const Case& test = GetParam();
+  SimulatedRobot robot;
+  robot.ComeTo(0, kNow - kHad);
+  robot.Add(kOther, test.other);
+  robot.Sleep(kOther, {});
+  robot.AddReady(kRunning, test.running);
+  robot.Run(kHad);
+  robot.Sleep(kOther, test.wait);
+  ASSERT_EQ(robot.Next(), kRunning);
+  EXPECT_EQ(robot.Horizon(test.outlook), test.horizon_ns);
+}
+
+constexpr Wait kSleepsShort{.until_ns = kSoon}, kSleepsLong{.until_ns = kLater},
+    kForever{.until_ns = kNever}, kTimer{.next_expiry_ns = kSoon}, kReads{.for_input = true},
+    kFutex{.for_thread = true};
+
+const Case kCases[] = {
+    // Somebody who is more urgent.
+    {"UrgentSleeperWakes", kOrdinary, kFifo50, kSleepsShort, kNothing, kSoon},
+    {"UrgentTimerExpires", kOrdinary, kFifo50, kTimer, kNothing, kSoon},
+    {"UrgentSleeperBeforeFifo", kFifo50, kFifo60, kSleepsShort, kNothing, kSoon},
+    {"UrgentReaderOfASensor", kOrdinary, kFifo50, kReads, kSensor, kSoon},
+    {"UrgentReaderMeasured", kOrdinary, kFifo50, kReads, kMeasuredInput, kSoon + kGrain},
+    {"UrgentReaderFixed", kOrdinary, kFifo50, kReads, kFixedInput, kSoon},
+    {"UrgentReaderAtThisInstant", kOrdinary, kFifo50, kReads, kInputNow, kNow},
+    {"UrgentReaderOnceWayWasGiven", kOrdinary, kFifo50, kReads, kGivenWay, kNow + kGrain},
+    {"UrgentReaderOfItsOwnRobot", kOrdinary, kFifo50, kReads, kOwnRobotsInput, kSoon},
+    {"UrgentInAFutexOnOneCore", kOrdinary, kFifo50, kFutex, kFixedInput, kNever},
+    // Somebody who is less urgent.
+    {"LessUrgentSleeper", kFifo50, kOrdinary, kSleepsShort, kNothing, kNever},
+    {"LessUrgentReader", kFifo50, kOrdinary, kReads, kFixedInput, kNever},
+    {"LessUrgentTimer", kFifo60, kFifo50, kTimer, kNothing, kNever},
+    {"IdleSleeper", kOrdinary, kIdle, kSleepsShort, kNothing, kNever},
+    // Equals: with less than its share it preempts on wake-up, else it has the next turn.
+    {"EqualSleeperPreempts", kOrdinary, kOrdinary, kSleepsShort, kNothing, kSoon},
+    {"EqualSleepsBeyondTheTurn", kOrdinary, kOrdinary, kSleepsLong, kNothing, kLater},
+    {"EqualThatSleepsForEver", kOrdinary, kOrdinary, kForever, kNothing, kNever},
+    {"BatchHasTheNextTurn", kOrdinary, kBatch, kSleepsShort, kNothing, kTurnEnd},
+    {"BatchIsPreempted", kBatch, kOrdinary, kSleepsShort, kNothing, kSoon},
+    {"EqualReaderFixed", kOrdinary, kOrdinary, kReads, kFixedInput, kSoon},
+    {"EqualReaderMeasured", kOrdinary, kOrdinary, kReads, kMeasuredInput, kSoon + kGrain},
+    {"EqualReaderOfASensor", kOrdinary, kOrdinary, kReads, kSensor, kSoon},
+    {"EqualReaderOfItsOwnRobot", kOrdinary, kOrdinary, kReads, kOwnRobotsInput, kNever},
+    {"EqualBatchReader", kOrdinary, kBatch, kReads, kFixedInput, kNever},
+    // Quanta.
+    {"FifoHasNoTurnEnd", kFifo50, kFifo50, kSleepsShort, kNothing, kNever},
+    {"FifoKeepsRoundRobinWaiting", kFifo50, kRoundRobin, kSleepsShort, kNothing, kNever},
+    {"RoundRobinTurn", kRoundRobin, kRoundRobin, kSleepsShort, kNothing,
+     kNow + 100 * kMilli - kHad},
+};
+
+INSTANTIATE_TEST_SUITE_P(BecauseOf, Horizon, testing::ValuesIn(kCases),
+                         testing::PrintToStringParamName());
+
+TEST(HorizonOf, IsNeverBeyondItsLimit) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  EXPECT_EQ(robot.Horizon({}, 0, 7 * kMilli), 7 * kMilli);
+}
+
+TEST(HorizonOf, AReadyEqualEndsTheTurn) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  robot.AddReady(kOther);
+  EXPECT_EQ(robot.Horizon(), kMilli);
+}
+
+TEST(HorizonOf, ItsOwnProcessesTimerIsLookedAtInTime) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  robot.waits[kRunning].next_expiry_ns = kSoon;
+  EXPECT_EQ(robot.Horizon(), kSoon);
+}
+
+TEST(HorizonOf, AnUrgentThreadThatIsReadyLaterTakesTheCoreThen) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  robot.Add(kOther, kFifo50);
+  robot.Wake(kOther, 3 * kMilli, false);
+  EXPECT_EQ(robot.Next(), kRunning);
+  EXPECT_EQ(robot.Horizon(), 3 * kMilli);
+}
+
+TEST(HorizonOf, OnSeveralCoresTheOthersMayWakeAnUrgentThread) {
+  SimulatedRobot robot(2);
+  robot.AddReady(kRunning);
+  robot.Add(kOther, kFifo50);
+  robot.Sleep(kOther, kFutex);
+  EXPECT_EQ(robot.Horizon({.input_ns = kSoon, .acts_at_once = true}), kSoon);
+}
+
+TEST(HorizonOf, ASleeperMayNotTakeACoreThatItIsNotAllowedOn) {
+  SimulatedRobot robot(2);
+  robot.AddReady(kRunning);
+  robot.AddReady(2);
+  robot.Add(kOther);
+  ASSERT_TRUE(robot.scheduler.SetCores(kOther, 2));
+  robot.Run(300 * kMicro, 0);
+  robot.Run(300 * kMicro, 1);
+  robot.Sleep(kOther, {.until_ns = 900 * kMicro});
+  EXPECT_EQ(robot.Horizon({}, 0), kNever);
+  EXPECT_EQ(robot.Horizon({}, 1), 900 * kMicro);
+}
+
+TEST(HorizonOf, OfSeveralCoresTheOneThatIsThereLastMakesRoom) {
+  SimulatedRobot robot(2);
+  robot.AddReady(kRunning);
+  robot.AddReady(2);
+  robot.Add(kOther);
+  robot.Run(100 * kMicro, 0);
+  robot.Run(100 * kMicro, 1);
+  robot.Sleep(kOther, {.until_ns = 200 * kMicro});
+  EXPECT_EQ(robot.Horizon({}, 0), kNever) << "the other core can";
+  robot.Run(200 * kMicro, 0);
+  EXPECT_EQ(robot.Horizon({}, 1), 200 * kMicro);
+}
+
+TEST(HorizonOf, AThreadThatIsAloneMaySleepUntilSomethingHappens) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, kLater);
+  robot.Add(kOther, kIdle);
+  robot.Sleep(kOther, kSleepsShort);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).run_ns, kLater);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, kSoon);
+  robot.Wake(kOther, 0, false);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, 0);
+}
+
+TEST(HorizonWhileWorldStands, OnlyThreadsOfTheSameProcessBecomeDue) {
+  SimulatedRobot robot(1, false);
+  robot.AddReady(kRunning);
+  robot.Add(kOther, kFifo50);
+  robot.Sleep(kOther, {.own_until_ns = kSoon});
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kNever);
+  robot.waits[kOther].process = robot.waits[kRunning].process;
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kSoon);
+}
+
+TEST(HorizonWhileWorldStands, AnEqualHasTheNextTurn) {
+  SimulatedRobot robot(1, false);
+  robot.AddReady(kRunning);
+  robot.Add(kOther);
+  robot.Sleep(kOther, {.own_until_ns = kSoon});
+  robot.waits[kOther].process = robot.waits[kRunning].process;
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kSoon);
+  robot.waits[kOther].own_until_ns = 200 * kMicro;
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kMilli);
+}
+
+}  // namespace
+}  // namespace tcs

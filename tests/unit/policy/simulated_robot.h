@@ -1,0 +1,81 @@
+// A robot of a few threads, as tests of its scheduler need it: what each waits for is a table.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "coordinator/policy/robot_scheduler.h"
+
+namespace tcs {
+
+constexpr std::int64_t kMicro = 1'000, kMilli = 1'000'000;
+constexpr std::int64_t kNever = RobotScheduler::kNever;
+
+class SimulatedRobot {
+ public:
+  using Thread = RobotScheduler::Thread;
+  using Wait = RobotScheduler::Wait;
+
+  explicit SimulatedRobot(std::size_t cores = 1, bool preempts_on_wakeup = true)
+      : scheduler(cores, preempts_on_wakeup, [this](Thread thread) { return waits[thread]; }),
+        progress_(cores, 0) {}
+  SimulatedRobot(const SimulatedRobot&) = delete;
+  SimulatedRobot& operator=(const SimulatedRobot&) = delete;
+
+  // Each thread is a process of its own, which waits for nothing.
+  void Add(Thread thread, SchedulingParameters parameters = {}, int client_priority = 0) {
+    scheduler.Add(thread, client_priority);
+    waits[thread].process = static_cast<std::uint32_t>(thread);
+    scheduler.SetParameters(thread, parameters);
+    scheduler.FindEffectivePriority(thread);
+  }
+  void AddReady(Thread thread, SchedulingParameters parameters = {}, int client_priority = 0) {
+    Add(thread, parameters, client_priority);
+    scheduler.Enqueue(thread, 0, false);
+    scheduler.Assign(kNever);
+  }
+  void Sleep(Thread thread, Wait wait) {
+    wait.process = waits[thread].process;
+    wait.waits = true;
+    waits[thread] = wait;
+    scheduler.Dequeue(thread);
+    scheduler.Assign(kNever);
+  }
+  void Wake(Thread thread, std::int64_t at_ns, bool goes_first) {
+    waits[thread] = {.process = waits[thread].process};
+    scheduler.StartTurn(thread);
+    scheduler.Enqueue(thread, at_ns, goes_first);
+    scheduler.Assign(kNever);
+  }
+  Thread Next(std::size_t core = 0) const { return scheduler.Next(core).thread; }
+  std::int64_t Progress(std::size_t core = 0) const { return progress_[core]; }
+  void ComeTo(std::size_t core, std::int64_t ns) {
+    progress_[core] = ns;
+    scheduler.SetProgress(core, ns);
+    scheduler.Assign(kNever);
+  }
+  // The core's thread runs for so long, and its equals have the next turn if its own is over.
+  void Run(std::int64_t ns, std::size_t core = 0) {
+    const Thread thread = Next(core);
+    scheduler.Dispatch(core, thread);
+    ComeTo(core, progress_[core] + ns);
+    scheduler.Enqueue(thread, progress_[core], false);
+    scheduler.Stop(core, ns, ns);
+    scheduler.EndTurn(core);
+    scheduler.Assign(kNever);
+  }
+  std::int64_t Horizon(const RobotScheduler::Outlook& outlook = {}, std::size_t core = 0,
+                       std::int64_t limit_ns = kNever) const {
+    return scheduler.HorizonOf(core, Next(core), limit_ns, outlook).run_ns;
+  }
+
+  std::map<Thread, Wait> waits;
+  RobotScheduler scheduler;
+
+ private:
+  std::vector<std::int64_t> progress_;
+};
+
+}  // namespace tcs
