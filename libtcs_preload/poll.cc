@@ -20,6 +20,7 @@
 #include "libtcs_preload/virtual_clock.h"
 
 using namespace tcs::preload;
+using tcs::shm::MillisecondsToNs;
 
 namespace {
 
@@ -118,8 +119,6 @@ int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t
   PassOn(t);
   return found;
 }
-
-std::int64_t MillisecondsToNs(int ms) { return ms < 0 ? -1 : std::int64_t{ms} * 1'000'000; }
 
 // Null means for ever.
 bool TimeoutToNs(const timespec* timeout, std::int64_t* ns) {

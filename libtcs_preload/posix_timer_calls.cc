@@ -16,55 +16,37 @@
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/clock_ids.h"
 
 using namespace tcs::preload;
+using tcs::shm::ClockKind;
+using tcs::shm::ClockOfId;
+using tcs::shm::FirstExpiry;
 using tcs::shm::NotificationKind;
+using tcs::shm::TimeLeft;
 using tcs::shm::TimerClock;
 using tcs::shm::TimerKind;
 
 namespace {
-
-// The kernel's ids of other clocks on processor time (posix-timers.h).
-constexpr clockid_t kPerThreadBit = 4;
-constexpr clockid_t kClockFdBits = 3;
 
 bool IsThread(GuestThread& t, int tid) {
   return tid > 0 && RawSyscall(SYS_tgkill, t.slot->pid, tid, 0) == 0;
 }
 
 // 0, or the error of timer_create.
-int KindOfClock(GuestThread& t, clockid_t clock, TimerKind* kind) {
-  switch (clock) {
-    case CLOCK_REALTIME:
-    case CLOCK_MONOTONIC:
-    case CLOCK_BOOTTIME:
-    case CLOCK_TAI:
-      return 0;
-    case CLOCK_REALTIME_ALARM:
-    case CLOCK_BOOTTIME_ALARM:
-    case CLOCK_MONOTONIC_RAW:
-    case CLOCK_REALTIME_COARSE:
-    case CLOCK_MONOTONIC_COARSE:
-      return EOPNOTSUPP;
-    case CLOCK_PROCESS_CPUTIME_ID:
-      kind->clock = TimerClock::kProcessCpu;
-      return 0;
-    case CLOCK_THREAD_CPUTIME_ID:
-      kind->clock = TimerClock::kThreadCpu;
-      kind->clock_tid = t.slot->tid;
-      return 0;
-    default:
-      break;
-  }
-  if (clock >= 0 || (clock & kClockFdBits) == kClockFdBits) return EINVAL;
-  const int owner = static_cast<int>(~(clock >> 3));
-  if ((clock & kPerThreadBit) == 0) {
+int KindOfClock(GuestThread& t, clockid_t id, TimerKind* kind) {
+  const ClockOfId clock = tcs::shm::ClockOf(id);
+  if (const int error = ErrorOfTimerOn(clock); error != 0) return error;
+  if (clock.kind == ClockKind::kProcessCpu) {
     kind->clock = TimerClock::kProcessCpu;
-    return owner == 0 || owner == t.slot->pid ? 0 : EINVAL;
+    return clock.owner == 0 || clock.owner == t.slot->pid ? 0 : EINVAL;
   }
-  kind->clock = TimerClock::kThreadCpu;
-  kind->clock_tid = owner == 0 ? t.slot->tid : owner;
-  return IsThread(t, kind->clock_tid) ? 0 : EINVAL;
+  if (clock.kind == ClockKind::kThreadCpu) {
+    kind->clock = TimerClock::kThreadCpu;
+    kind->clock_tid = clock.owner == 0 ? t.slot->tid : clock.owner;
+    return clock.owner == 0 || IsThread(t, clock.owner) ? 0 : EINVAL;
+  }
+  return 0;
 }
 
 int KindOfEvent(GuestThread& t, const sigevent& event, TimerKind* kind) {
@@ -133,16 +115,14 @@ std::int64_t NowOn(GuestThread& t, const PosixTimer& timer) {
   return ToNs(now);
 }
 
-std::int64_t OffsetOf(clockid_t clock) {
-  if (clock == CLOCK_REALTIME || clock == CLOCK_TAI) return OffsetNs(Clock::kRealtime);
-  if (clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME) return OffsetNs(Clock::kMonotonic);
-  return 0;
+std::int64_t OffsetOf(clockid_t id) {
+  const ClockOfId clock = tcs::shm::ClockOf(id);
+  if (!clock.IsOfTime()) return 0;
+  return OffsetNs(clock.kind == ClockKind::kRealtime ? Clock::kRealtime : Clock::kMonotonic);
 }
 
 itimerspec ToSpec(const Reply& reply, std::int64_t now) {
-  const std::int64_t next = reply.values[0];
-  const std::int64_t left = next == 0 ? 0 : next > now ? next - now : 1;
-  return itimerspec{ToTimespec(reply.values[1]), ToTimespec(left)};
+  return itimerspec{ToTimespec(reply.values[1]), ToTimespec(TimeLeft(reply.values[0], now))};
 }
 
 }  // namespace
@@ -198,16 +178,11 @@ TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restri
   if (given == nullptr) return Fail(EINVAL);
   itimerspec value;
   if (!CopyIn(&value, given)) return Fail(EFAULT);
-  if (!IsValid(value.it_value) || !IsValid(value.it_interval)) return Fail(EINVAL);
+  if (!IsValid(value)) return Fail(EINVAL);
   if (timer == nullptr) return Fail(EINVAL);
   const std::int64_t now = NowOn(*t, *timer);
-  const std::int64_t wanted = ToNs(value.it_value);
-  std::int64_t first = 0;
-  if (wanted != 0) {
-    first =
-        (flags & TIMER_ABSTIME) != 0 ? wanted - OffsetOf(timer->clock) : AddSaturated(now, wanted);
-    if (first <= 0) first = 1;  // long past, but armed
-  }
+  const std::int64_t first =
+      FirstExpiry(ToNs(value.it_value), (flags & TIMER_ABSTIME) != 0, now, OffsetOf(timer->clock));
   const Reply before = Exchange(*t, Request{.kind = NotificationKind::kTimerSet,
                                             .args = {timer->id, first, ToNs(value.it_interval)}});
   return old == nullptr || CopyOut(old, ToSpec(before, now)) ? 0 : Fail(EFAULT);

@@ -8,16 +8,15 @@
 #include <cstddef>
 
 #include "libtcs_preload/real.h"
+#include "shm/clock_ids.h"
 
 namespace tcs::preload {
 
-// -1 if the thread has ended. The C library tells the number only as part of the clock's: the
-// kernel's encoding of a thread's CPU clock (posix-timers.h) holds the inverted number above 3
-// bits.
+// -1 if the thread has ended. The C library tells the number only as part of the clock's.
 inline pid_t TidOf(pthread_t thread) {
   clockid_t clock;
   if (TCS_REAL(pthread_getcpuclockid)(thread, &clock) != 0) return -1;
-  return static_cast<pid_t>(~(clock >> 3));
+  return shm::ClockOf(clock).owner;
 }
 
 // The first 64 cores of a set; bit 0 is core 0.

@@ -10,8 +10,10 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/clock_ids.h"
 
 using namespace tcs::preload;
+using tcs::shm::ClockKind;
 
 namespace {
 
@@ -26,38 +28,14 @@ int SleepFor(GuestThread& t, std::int64_t duration_ns, std::int64_t* remaining_n
   return EINTR;
 }
 
-// Of a process or a thread, by its number: a thread cannot sleep until it has computed.
-int ErrorOfCpuClock(const GuestThread& t, clockid_t id) {
-  constexpr clockid_t kPerThreadBit = 4;
-  if (id >= 0 || RawSyscall(SYS_clock_getres, id, 0) != 0) return EINVAL;
-  const auto owner = static_cast<int>(~(id >> 3));
-  const bool is_own = (id & kPerThreadBit) != 0 && (owner == 0 || owner == t.slot->tid);
-  return is_own ? EINVAL : ENOTSUP;
-}
-
-int ClockFor(const GuestThread& t, clockid_t id, Clock* clock) {
-  switch (id) {
-    case CLOCK_REALTIME:
-    case CLOCK_TAI:
-    case CLOCK_REALTIME_ALARM:
-      *clock = Clock::kRealtime;
-      return 0;
-    case CLOCK_MONOTONIC:
-    case CLOCK_BOOTTIME:
-    case CLOCK_BOOTTIME_ALARM:
-      *clock = Clock::kMonotonic;
-      return 0;
-    case CLOCK_PROCESS_CPUTIME_ID:
-    case CLOCK_MONOTONIC_RAW:
-    case CLOCK_MONOTONIC_COARSE:
-    case CLOCK_REALTIME_COARSE:
-      return ENOTSUP;
-    case CLOCK_THREAD_CPUTIME_ID:
-      return EINVAL;
-    default:
-      break;
-  }
-  return ErrorOfCpuClock(t, id);
+// 0, or why nobody can sleep on that clock. Of those that are made while a program runs only the
+// kernel knows which there are.
+int ErrorOfClock(const GuestThread& t, clockid_t id) {
+  if (id == CLOCK_THREAD_CPUTIME_ID) return EINVAL;  // the C library's own word
+  if (id >= 0) return tcs::shm::ErrorOfSleepOn(id, t.slot->tid);
+  if (RawSyscall(SYS_clock_getres, id, 0) != 0) return EINVAL;
+  const bool is_device = tcs::shm::ClockOf(id).kind == ClockKind::kNone;
+  return is_device ? ENOTSUP : tcs::shm::ErrorOfSleepOn(id, t.slot->tid);
 }
 
 // As POSIX has it: returns the error number.
@@ -66,14 +44,15 @@ int ClockNanosleep(clockid_t id, int flags, const timespec* given, timespec* rem
   if (t == nullptr) {
     return static_cast<int>(-RawSyscall(SYS_clock_nanosleep, id, flags, Arg(given), Arg(remain)));
   }
-  Clock clock;
-  if (const int error = ClockFor(*t, id, &clock); error != 0) return error;
+  if (const int error = ErrorOfClock(*t, id); error != 0) return error;
   timespec request;
   if (!CopyIn(&request, given)) return EFAULT;
   if (!IsValid(request)) return EINVAL;
   const std::int64_t request_ns = ToNs(request);
   if ((flags & TIMER_ABSTIME) != 0) {
-    return SleepUntil(*t, request_ns - OffsetNs(clock)) ? 0 : EINTR;
+    const bool is_real = tcs::shm::ClockOf(id).kind == ClockKind::kRealtime;
+    const std::int64_t offset_ns = OffsetNs(is_real ? Clock::kRealtime : Clock::kMonotonic);
+    return SleepUntil(*t, request_ns - offset_ns) ? 0 : EINTR;
   }
   std::int64_t remaining = 0;
   const int error = SleepFor(*t, request_ns, &remaining);

@@ -14,51 +14,28 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/clock_ids.h"
 
 using namespace tcs::preload;
+using tcs::shm::ClockKind;
+using tcs::shm::ClockOfId;
 
 namespace {
 
-// Bits of the kernel's dynamic clock ids (posix-timers.h): ~pid in the upper bits, then whose and
-// which clock.
-constexpr clockid_t kPerThreadBit = 4;
-constexpr clockid_t kClockFdBits = 3;
-
-bool IsCpuClockId(clockid_t id) { return id < 0 && (id & kClockFdBits) != kClockFdBits; }
-bool IsProcessorClock(clockid_t id) {
-  return id < 0 || id == CLOCK_PROCESS_CPUTIME_ID || id == CLOCK_THREAD_CPUTIME_ID;
-}
-int CpuClockOwner(clockid_t id) { return static_cast<int>(~(id >> 3)); }
-
-// Virtual ns of the clock, or -1 for an id that the kernel has to judge.
-std::int64_t ReadClockId(GuestThread& t, clockid_t id) {
-  switch (id) {
-    case CLOCK_REALTIME:
-    case CLOCK_REALTIME_COARSE:
-    case CLOCK_REALTIME_ALARM:
-    case CLOCK_TAI:
+// Virtual ns, or -1 for a clock that the kernel has to judge.
+std::int64_t ReadClock(GuestThread& t, const ClockOfId& clock) {
+  switch (clock.kind) {
+    case ClockKind::kRealtime:
       return NowNs(t) + OffsetNs(Clock::kRealtime);
-    case CLOCK_MONOTONIC:
-    case CLOCK_MONOTONIC_RAW:
-    case CLOCK_MONOTONIC_COARSE:
-    case CLOCK_BOOTTIME:
-    case CLOCK_BOOTTIME_ALARM:
+    case ClockKind::kMonotonic:
       return NowNs(t) + OffsetNs(Clock::kMonotonic);
-    case CLOCK_PROCESS_CPUTIME_ID:
-      return ProcessCpuNs(t);
-    case CLOCK_THREAD_CPUTIME_ID:
-      return ThreadCpuNs(t);
+    case ClockKind::kProcessCpu:
+      return clock.owner == 0 || clock.owner == t.slot->pid ? ProcessCpuNs(t) : -1;
+    case ClockKind::kThreadCpu:
+      return clock.owner == 0 || clock.owner == t.slot->tid ? ThreadCpuNs(t) : -1;
     default:
-      break;
+      return -1;
   }
-  if (!IsCpuClockId(id)) return -1;
-  const int owner = CpuClockOwner(id);
-  if ((id & kPerThreadBit) != 0) {
-    if (owner == 0 || owner == t.slot->tid) return ThreadCpuNs(t);
-  } else if (owner == 0 || owner == t.slot->pid) {
-    return ProcessCpuNs(t);
-  }
-  return -1;
 }
 
 rusage* ChargeInsteadOfMeasure(rusage* usage, std::int64_t charged_ns) {
@@ -81,10 +58,11 @@ namespace tcs::preload {
 long ClockGettime(clockid_t id, timespec* ts) {
   GuestThread* t = Enter();
   if (t != nullptr) {
-    const std::int64_t ns = ReadClockId(*t, id);
+    const ClockOfId clock = tcs::shm::ClockOf(id);
+    const std::int64_t ns = ReadClock(*t, clock);
     if (ns >= 0) {
       // The other clocks are read without the kernel natively, too.
-      if (IsProcessorClock(id)) return CopyOut(ts, ToTimespec(ns)) ? 0 : -EFAULT;
+      if (clock.IsOfCpu()) return CopyOut(ts, ToTimespec(ns)) ? 0 : -EFAULT;
       *ts = ToTimespec(ns);
       return 0;
     }
@@ -108,11 +86,12 @@ time_t Time(time_t* out) {
 }
 
 long ClockGetres(clockid_t id, timespec* resolution) {
-  if (IsCpuClockId(id)) {
+  const ClockOfId clock = tcs::shm::ClockOf(id);
+  if (id < 0 && clock.IsOfCpu()) {
     // Whether there is such a process or thread the kernel knows.
     if (const long error = RawSyscall(SYS_clock_getres, id, 0); error != 0) return error;
   }
-  if (Enter() != nullptr && (IsCpuClockId(id) || (id >= 0 && id <= CLOCK_TAI && id != 10))) {
+  if (Enter() != nullptr && clock.kind != ClockKind::kNone) {
     if (resolution != nullptr) *resolution = timespec{0, 1};
     return 0;
   }
@@ -196,8 +175,7 @@ TCS_EXPORT int clock_settime(clockid_t id, const timespec* ts) {
 
 TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
   GuestThread* t = Enter();
-  if (t != nullptr && tv != nullptr &&
-      (zone != nullptr || tv->tv_sec < 0 || tv->tv_usec < 0 || tv->tv_usec >= 1'000'000)) {
+  if (t != nullptr && tv != nullptr && (zone != nullptr || !IsValid(*tv))) {
     return Fail(EINVAL);
   }
   if (SetClockRefused(t) != 0) return -1;

@@ -14,9 +14,13 @@
 #include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
+#include "shm/clock_ids.h"
 
 using namespace tcs::preload;
+using tcs::shm::FirstExpiry;
 using tcs::shm::NotificationKind;
+using tcs::shm::RoundUpToTimeval;
+using tcs::shm::TimeLeft;
 
 namespace {
 
@@ -37,15 +41,7 @@ TimerValue Ask(GuestThread& t, NotificationKind kind, std::int64_t id, std::int6
 // `now` is the clock that the timer runs on: virtual time, or charged processor time.
 template <class Spec, class ToUnit>
 Spec ToSpec(const TimerValue& value, std::int64_t now, ToUnit to_unit) {
-  std::int64_t left = 0;
-  if (value.next_ns != 0) left = value.next_ns > now ? value.next_ns - now : 1;
-  return Spec{to_unit(value.interval_ns), to_unit(left)};
-}
-
-timeval RoundUpToTimeval(std::int64_t ns) { return ToTimeval(ns + 999); }
-
-bool IsValidInterval(const timeval& t) {
-  return t.tv_sec >= 0 && t.tv_usec >= 0 && t.tv_usec < 1'000'000;
+  return Spec{to_unit(value.interval_ns), to_unit(TimeLeft(value.next_ns, now))};
 }
 
 std::int64_t ItimerNow(GuestThread& t, int which) {
@@ -56,11 +52,11 @@ int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old)
   itimerval given{};
   if (value != nullptr && !CopyIn(&given, value)) return Fail(EFAULT);
   if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
-  if (!IsValidInterval(given.it_value) || !IsValidInterval(given.it_interval)) return Fail(EINVAL);
+  if (!IsValid(given)) return Fail(EINVAL);
   const std::int64_t now = ItimerNow(t, which);
-  const std::int64_t delay = ToNs(given.it_value);
-  const TimerValue before = Ask(t, NotificationKind::kTimerSet, which,
-                                delay == 0 ? 0 : AddSaturated(now, delay), ToNs(given.it_interval));
+  const std::int64_t first = FirstExpiry(ToNs(given.it_value), false, now, 0);
+  const TimerValue before =
+      Ask(t, NotificationKind::kTimerSet, which, first, ToNs(given.it_interval));
   if (old == nullptr) return 0;
   return CopyOut(old, ToSpec<itimerval>(before, now, RoundUpToTimeval)) ? 0 : Fail(EFAULT);
 }
@@ -87,10 +83,7 @@ TCS_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
 TCS_EXPORT unsigned alarm(unsigned seconds) {
   itimerval value{{0, 0}, {seconds, 0}}, old{};
   setitimer(ITIMER_REAL, &value, &old);
-  // As the kernel rounds it: never 0 while it was armed.
-  const bool round_up =
-      old.it_value.tv_usec >= 500'000 || (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
-  return static_cast<unsigned>(old.it_value.tv_sec + (round_up ? 1 : 0));
+  return static_cast<unsigned>(tcs::shm::AlarmSeconds(old.it_value));
 }
 
 TCS_EXPORT useconds_t ualarm(useconds_t first, useconds_t interval) {
@@ -107,18 +100,14 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_create, clock, flags)));
   }
   if ((flags & ~(TFD_CLOEXEC | TFD_NONBLOCK)) != 0) return Fail(EINVAL);
-  Clock base;
-  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM) {
-    base = Clock::kRealtime;
-  } else if (clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME || clock == CLOCK_BOOTTIME_ALARM) {
-    base = Clock::kMonotonic;
-  } else {
-    return Fail(EINVAL);
-  }
+  const tcs::shm::ClockOfId known = tcs::shm::ClockOf(clock);
+  if (!known.IsOfTime() || known.is_read_only || clock == CLOCK_TAI) return Fail(EINVAL);
+  const bool is_real = known.kind == tcs::shm::ClockKind::kRealtime;
+  const Clock base = is_real ? Clock::kRealtime : Clock::kMonotonic;
   const long fd = RawSyscall(SYS_timerfd_create, clock, flags);
   if (fd < 0) return static_cast<int>(ToErrno(fd));
   tcs::shm::TimerKind kind;
-  kind.clock_tid = base == Clock::kRealtime ? 1 : 0;
+  kind.clock_tid = is_real ? 1 : 0;
   Request request{.kind = NotificationKind::kTimerCreate, .args = {fd}};
   __builtin_memcpy(&request.args[1], &kind, sizeof kind);
   const TimerValue made{Exchange(*t, request).values[0], 0};
@@ -140,15 +129,10 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itime
   itimerspec value;
   if (!CopyIn(&value, given)) return Fail(EFAULT);
   if ((flags & ~(TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET)) != 0) return Fail(EINVAL);
-  if (!IsValid(value.it_value) || !IsValid(value.it_interval)) return Fail(EINVAL);
+  if (!IsValid(value)) return Fail(EINVAL);
   const std::int64_t now = NowNs(*t);
-  const std::int64_t wanted = ToNs(value.it_value);
-  std::int64_t first = 0;
-  if (wanted != 0) {
-    first = (flags & TFD_TIMER_ABSTIME) != 0 ? wanted - OffsetNs(timer->clock)
-                                             : AddSaturated(now, wanted);
-    if (first <= 0) first = 1;  // long past, but armed
-  }
+  const std::int64_t first = FirstExpiry(ToNs(value.it_value), (flags & TFD_TIMER_ABSTIME) != 0,
+                                         now, OffsetNs(timer->clock));
   const std::int64_t interval = ToNs(value.it_interval);
   NoteShortTimer(timer->id, interval > 0 && interval < tcs::shm::kShortIntervalNs);
   const TimerValue before = Ask(*t, NotificationKind::kTimerSet, timer->id, first, interval);

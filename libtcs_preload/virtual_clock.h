@@ -8,6 +8,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "shm/clock_page.h"
+#include "shm/time_values.h"
 
 namespace tcs::preload {
 
@@ -70,34 +71,11 @@ void HoldForRead(GuestThread& thread);
 // Returns once nobody can read any more what is from before the thread's time.
 void HoldForWrite(GuestThread& thread);
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-
-// Saturates instead of overflowing.
-inline std::int64_t ToNs(const timespec& t) {
-  if (t.tv_sec > shm::kNeverNs / kNsPerSecond - 1) return shm::kNeverNs;
-  if (t.tv_sec < -(shm::kNeverNs / kNsPerSecond) + 1) return -shm::kNeverNs;
-  return t.tv_sec * kNsPerSecond + t.tv_nsec;
-}
-inline timespec ToTimespec(std::int64_t ns) {
-  timespec t{ns / kNsPerSecond, ns % kNsPerSecond};
-  if (t.tv_nsec < 0) {
-    t.tv_nsec += kNsPerSecond;
-    --t.tv_sec;
-  }
-  return t;
-}
-inline timeval ToTimeval(std::int64_t ns) {
-  const timespec t = ToTimespec(ns);
-  return timeval{t.tv_sec, t.tv_nsec / 1000};
-}
-inline std::int64_t ToNs(const timeval& t) { return ToNs(timespec{t.tv_sec, t.tv_usec * 1000}); }
-inline bool IsValid(const timespec& t) {
-  return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
-}
-inline std::int64_t AddSaturated(std::int64_t a, std::int64_t b) {
-  std::int64_t sum;
-  if (__builtin_add_overflow(a, b, &sum)) return b > 0 ? shm::kNeverNs : -shm::kNeverNs;
-  return sum;
-}
+using shm::AddSaturated;
+using shm::IsValid;
+using shm::kNsPerSecond;
+using shm::ToNs;
+using shm::ToTimespec;
+using shm::ToTimeval;
 
 }  // namespace tcs::preload

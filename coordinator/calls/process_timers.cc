@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "shm/check.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -41,8 +42,7 @@ std::int64_t ProcessTimers::Timer::TakeExpirations(std::int64_t clock_ns) {
   }
   const std::int64_t count = 1 + (clock_ns - next_ns) / interval_ns;
   const std::int64_t last_ns = next_ns + (count - 1) * interval_ns;
-  const bool ends = last_ns > shm::kNeverNs - interval_ns;  // after the end of all time
-  next_ns = ends ? shm::kNeverNs : last_ns + interval_ns;
+  next_ns = shm::AddSaturated(last_ns, interval_ns);
   return count;
 }
 

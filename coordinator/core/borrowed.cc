@@ -12,6 +12,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -57,7 +58,7 @@ std::int64_t Borrowed::SocketTimeout(int option) const {
   timeval timeout{};
   socklen_t size = sizeof timeout;
   if (getsockopt(fd_, SOL_SOCKET, option, &timeout, &size) != 0) return shm::kNeverNs;
-  const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_usec * 1'000;
+  const std::int64_t ns = shm::ToNs(timeout);
   return ns == 0 ? shm::kNeverNs : ns;
 }
 

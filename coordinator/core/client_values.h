@@ -1,4 +1,4 @@
-// Values in a client's memory, and the C library's forms of time in them.
+// Values in a client's memory, and times in them.
 #pragma once
 
 #include <time.h>
@@ -8,10 +8,13 @@
 
 #include "coordinator/core/task.h"
 #include "coordinator/os/trap.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
-inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+using shm::IsValid;
+using shm::ToNs;
+using shm::ToTimespec;
 
 // False where the client has no such memory.
 template <class T>
@@ -24,16 +27,7 @@ bool Write(const Task& task, std::uint64_t address, const T& value) {
   return WriteMemory(task.process->pid, address, &value, sizeof value);
 }
 
-// What is too far off is taken for less, but for more than any run lasts.
-inline std::int64_t ToNs(const timespec& t) {
-  constexpr std::int64_t kMostSeconds = shm::kNeverNs / kNsPerSecond / 4;
-  return std::min<std::int64_t>(t.tv_sec, kMostSeconds) * kNsPerSecond + t.tv_nsec;
-}
-
-inline timespec ToTimespec(std::int64_t ns) { return {ns / kNsPerSecond, ns % kNsPerSecond}; }
-
-inline bool IsValid(const timespec& t) {
-  return t.tv_sec >= 0 && t.tv_nsec >= 0 && t.tv_nsec < kNsPerSecond;
-}
+// As a timeout: what is too far off is for less than ever, but for more than any run lasts.
+inline std::int64_t ToTimeoutNs(const timespec& t) { return std::min(ToNs(t), shm::kFarNs); }
 
 }  // namespace tcs

@@ -11,6 +11,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -43,10 +44,9 @@ std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int comm
                                    const timespec& timeout) {
   task.deadline_ns = shm::kNeverNs;
   if (call.args[3] == 0) return 0;
-  if (timeout.tv_sec < 0 || timeout.tv_nsec < 0 || timeout.tv_nsec >= 1'000'000'000) return -EINVAL;
-  constexpr std::int64_t kMostSeconds = shm::kNeverNs / 1'000'000'000 / 4;
-  if (timeout.tv_sec > kMostSeconds) return 0;
-  const std::int64_t ns = timeout.tv_sec * 1'000'000'000 + timeout.tv_nsec;
+  if (!shm::IsValid(timeout)) return -EINVAL;
+  const std::int64_t ns = shm::ToNs(timeout);
+  if (ns > shm::kFarNs) return 0;
   const std::int64_t now = task.reached_ns;
   if (command == FUTEX_WAIT) {
     task.deadline_ns = now + ns;

@@ -4,6 +4,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/trap.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -36,9 +37,7 @@ std::int64_t Engine::WrongFutexCall(const Task& task, const TrappedCall& call, i
   if (HasTimeout(command) && call.args[3] != 0) {
     timespec timeout{};
     if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
-    if (timeout.tv_sec < 0 || timeout.tv_nsec < 0 || timeout.tv_nsec >= 1'000'000'000) {
-      return -EINVAL;
-    }
+    if (!shm::IsValid(timeout)) return -EINVAL;
   }
   if ((call.args[1] & FUTEX_CLOCK_REALTIME) != 0 && command != FUTEX_WAIT_BITSET &&
       command != FUTEX_WAIT_REQUEUE_PI && command != FUTEX_LOCK_PI2) {

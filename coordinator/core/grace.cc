@@ -13,6 +13,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -100,13 +101,13 @@ void Engine::LimitRealTime() {
   if (stop_.asked()) limit_ns = std::min(limit_ns, kMostRealIfAskedNs);
   const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
   itimerspec when{};
-  when.it_value = {limit_ns / 1'000'000'000, limit_ns % 1'000'000'000};
+  when.it_value = shm::ToTimespec(limit_ns);
   timerfd_settime(timer, 0, &when, nullptr);
   reactor_.Add(timer, EPOLLIN, {Tag::kGraceRanOut, static_cast<std::uint32_t>(timer)});
 }
 
 std::int64_t Engine::KillTimeOf(const Process& process) const {
-  return std::min(grace_began_ns_, shm::kNeverNs - GraceOf(process)) + GraceOf(process);
+  return shm::AddSaturated(grace_began_ns_, GraceOf(process));
 }
 
 void Engine::KillOverdue() {

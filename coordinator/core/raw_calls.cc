@@ -24,6 +24,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "shm/clock_ids.h"
 
 namespace tcs {
 
@@ -32,10 +33,6 @@ namespace {
 constexpr std::size_t kMostPolled = 65'536, kSets = 3;
 constexpr int kTimerAbsolute = 1;          // TIMER_ABSTIME
 constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
-
-bool IsRealtime(std::uint64_t clock) {
-  return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_TAI;
-}
 
 // What goes with a mask, if there is one.
 bool IsSoundMask(std::uint64_t mask, std::uint64_t size) { return mask == 0 || size == 8; }
@@ -107,29 +104,33 @@ std::int64_t Engine::ReadRawClock(const Task& task, const TrappedCall& call) {
   const std::int64_t now = task.reached_ns + task.process->frozen_ns;
   const std::int64_t real = now + header_->realtime_offset_ns;
   if (call.number == SYS_gettimeofday) {
-    const timeval t{real / kNsPerSecond, real % kNsPerSecond / 1000};
-    return call.args[0] == 0 || Write(task, call.args[0], t) ? 0 : -EFAULT;
+    return call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real)) ? 0 : -EFAULT;
   }
   if (call.number == SYS_time) {
-    const time_t seconds = real / kNsPerSecond;
+    const time_t seconds = real / shm::kNsPerSecond;
     return call.args[0] == 0 || Write(task, call.args[0], seconds) ? seconds : -EFAULT;
   }
-  const std::int64_t shown = IsRealtime(call.args[0]) ? real : now + header_->monotonic_offset_ns;
-  const timespec t{shown / kNsPerSecond, shown % kNsPerSecond};
-  return Write(task, call.args[1], t) ? 0 : -EFAULT;
+  const shm::ClockOfId clock = shm::ClockOf(static_cast<clockid_t>(call.args[0]));
+  if (!clock.IsOfTime()) return -EINVAL;
+  const bool is_real = clock.kind == shm::ClockKind::kRealtime;
+  const std::int64_t shown = is_real ? real : now + header_->monotonic_offset_ns;
+  return Write(task, call.args[1], ToTimespec(shown)) ? 0 : -EFAULT;
 }
 
 std::int64_t Engine::SleepRaw(Task& task, const TrappedCall& call) {
   const bool plain = call.number == SYS_nanosleep;
+  const clockid_t clock = plain ? CLOCK_MONOTONIC : static_cast<clockid_t>(call.args[0]);
+  if (const int error = shm::ErrorOfSleepOn(clock, task.tid); error != 0) return -error;
   timespec request{};
   if (!Read(task, call.args[plain ? 0 : 2], &request)) return -EFAULT;
   if (!IsValid(request)) return -EINVAL;
   const bool absolute = !plain && (call.args[1] & kTimerAbsolute) != 0;
-  std::int64_t until = task.reached_ns + ToNs(request);
+  std::int64_t until = task.reached_ns + ToTimeoutNs(request);
   if (absolute) {
+    const bool is_real = shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
     const std::int64_t offset =
-        IsRealtime(call.args[0]) ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
-    until = ToNs(request) - offset - task.process->frozen_ns;
+        is_real ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
+    until = ToTimeoutNs(request) - offset - task.process->frozen_ns;
   }
   task.trap_wait = TrapWait::kSleep;
   task.deadline_ns = std::max(until, task.reached_ns);
@@ -155,9 +156,8 @@ void Engine::HoldRaw(Task& task, shm::NotificationKind kind) {
 
 // The timeout of a call that waits for descriptors: false if it is not there, or not valid.
 bool Engine::RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns) {
-  const auto in_ms = [](std::uint64_t argument) -> std::int64_t {
-    const auto ms = static_cast<int>(argument);
-    return ms < 0 ? -1 : std::int64_t{ms} * 1'000'000;
+  const auto in_ms = [](std::uint64_t argument) {
+    return shm::MillisecondsToNs(static_cast<int>(argument));
   };
   *ns = -1;
   timespec t{};
@@ -185,7 +185,7 @@ bool Engine::RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns) {
     }
   }
   if (!IsValid(t)) return false;
-  *ns = ToNs(t);
+  *ns = ToTimeoutNs(t);
   return true;
 }
 
@@ -426,7 +426,7 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
     if (futexes_.WaitsForAny(task.order)) task.trap_result = -kRestart;
     if (wait == TrapWait::kSleep && task.remaining_address != 0) {
       const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
-      Write(task, task.remaining_address, timespec{left / kNsPerSecond, left % kNsPerSecond});
+      Write(task, task.remaining_address, ToTimespec(left));
     }
     return;
   }

@@ -8,8 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "coordinator/core/borrowed.h"
 #include "coordinator/core/client_values.h"
@@ -17,6 +16,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
+#include "shm/clock_ids.h"
 
 namespace tcs {
 
@@ -24,44 +24,31 @@ namespace {
 
 constexpr std::uint64_t kAbsolute = 1;  // TIMER_ABSTIME, TFD_TIMER_ABSTIME
 
-timeval RoundUp(std::int64_t ns) {
-  const std::int64_t us = (ns + 999) / 1000;
-  return {us / 1'000'000, us % 1'000'000};
-}
-
-bool IsRealtime(std::int64_t clock) {
-  return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM || clock == CLOCK_TAI;
-}
-
-bool IsMonotonic(std::int64_t clock) {
-  return clock == CLOCK_MONOTONIC || clock == CLOCK_BOOTTIME || clock == CLOCK_BOOTTIME_ALARM;
-}
-
-// What timer_create is asked for; none if the kernel has no such timer.
-std::optional<shm::TimerKind> PosixKind(const Task& task, int clock, const sigevent& event) {
-  shm::TimerKind kind;
-  kind.is_posix = 1;
-  if (clock == CLOCK_PROCESS_CPUTIME_ID) {
-    kind.clock = shm::TimerClock::kProcessCpu;
-  } else if (clock == CLOCK_THREAD_CPUTIME_ID) {
-    kind.clock = shm::TimerClock::kThreadCpu;
-    kind.clock_tid = task.tid;
-  } else if (IsRealtime(clock)) {
-    kind.clock_tid = 1;
-  } else if (!IsMonotonic(clock)) {
-    return std::nullopt;
+// What timer_create is asked for. 0, or its error.
+int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerKind* kind) {
+  const shm::ClockOfId clock = shm::ClockOf(id);
+  if (const int error = shm::ErrorOfTimerOn(clock); error != 0) return error;
+  kind->is_posix = 1;
+  if (clock.kind == shm::ClockKind::kProcessCpu) {
+    if (clock.owner != 0 && clock.owner != task.process->pid) return EINVAL;
+    kind->clock = shm::TimerClock::kProcessCpu;
+  } else if (clock.kind == shm::ClockKind::kThreadCpu) {
+    kind->clock = shm::TimerClock::kThreadCpu;
+    kind->clock_tid = clock.owner != 0 ? clock.owner : task.tid;
+    if (ProcessOfThread(kind->clock_tid) != task.process->pid) return EINVAL;
+  } else {
+    kind->clock_tid = clock.kind == shm::ClockKind::kRealtime ? 1 : 0;
   }
-  kind.value = reinterpret_cast<std::int64_t>(event.sigev_value.sival_ptr);
-  if (event.sigev_notify == SIGEV_NONE) return kind;
-  if (event.sigev_signo <= 0 || event.sigev_signo > SIGRTMAX) return std::nullopt;
-  kind.signal = event.sigev_signo;
+  kind->value = reinterpret_cast<std::int64_t>(event.sigev_value.sival_ptr);
+  if (event.sigev_notify == SIGEV_NONE) return 0;
+  if (event.sigev_signo <= 0 || event.sigev_signo > SIGRTMAX) return EINVAL;
+  kind->signal = event.sigev_signo;
   if (event.sigev_notify == SIGEV_THREAD_ID) {
-    kind.signal_tid = event._sigev_un._tid;
-    return ProcessOfThread(kind.signal_tid) == task.process->pid ? std::optional(kind)
-                                                                 : std::nullopt;
+    kind->signal_tid = event._sigev_un._tid;
+    return ProcessOfThread(kind->signal_tid) == task.process->pid ? 0 : EINVAL;
   }
   const bool known = event.sigev_notify == SIGEV_SIGNAL || event.sigev_notify == SIGEV_THREAD;
-  return known ? std::optional(kind) : std::nullopt;
+  return known ? 0 : EINVAL;
 }
 
 }  // namespace
@@ -73,11 +60,12 @@ std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
   const int id = static_cast<int>(process.timers.next_id());
   event.sigev_value.sival_int = id;
   if (call.args[1] != 0 && !Read(task, call.args[1], &event)) return -EFAULT;
-  const auto kind = PosixKind(task, static_cast<int>(call.args[0]), event);
-  if (!kind.has_value()) return -EINVAL;
+  shm::TimerKind kind;
+  const auto clock = static_cast<clockid_t>(call.args[0]);
+  if (const int error = PosixKind(task, clock, event, &kind); error != 0) return -error;
   if (process.timers.IsFull()) return -EAGAIN;
   if (!Write(task, call.args[2], id)) return -EFAULT;
-  process.timers.Create(*kind);
+  process.timers.Create(kind);
   return 0;
 }
 
@@ -126,25 +114,19 @@ itimerspec Engine::ExchangeTimer(Task& task, const FoundTimer& found, bool sets,
   note.args[2] = interval_ns;
   SetTimerOf(*found.owner, task, note);
   const std::int64_t next = std::exchange(task.reply[0], 0);
-  const std::int64_t left = next == 0 ? 0 : std::max<std::int64_t>(1, next - now);
-  return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(left)};
+  return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(shm::TimeLeft(next, now))};
 }
 
 std::int64_t Engine::SetTimerRaw(Task& task, const FoundTimer& found, const TrappedCall& call) {
   itimerspec given{};
   if (!Read(task, call.args[2], &given)) return -EFAULT;
-  if (!IsValid(given.it_value) || !IsValid(given.it_interval)) return -EINVAL;
+  if (!IsValid(given)) return -EINVAL;
   const shm::TimerKind kind = *found.owner->timers.KindOf(found.id);
-  std::int64_t first = ToNs(given.it_value);
-  if (first != 0) {
-    std::int64_t offset = -TimerNow(task, *found.owner, kind);
-    if ((call.args[1] & kAbsolute) != 0) {
-      offset = kind.clock != shm::TimerClock::kTime ? 0
-               : kind.clock_tid != 0                ? header_->realtime_offset_ns
-                                                    : header_->monotonic_offset_ns;
-    }
-    first = std::max<std::int64_t>(1, first - offset);  // long past, but armed
-  }
+  const std::int64_t offset = kind.clock != shm::TimerClock::kTime ? 0
+                              : kind.clock_tid != 0                ? header_->realtime_offset_ns
+                                                                   : header_->monotonic_offset_ns;
+  const std::int64_t first = shm::FirstExpiry(ToNs(given.it_value), (call.args[1] & kAbsolute) != 0,
+                                              TimerNow(task, *found.owner, kind), offset);
   const itimerspec before = ExchangeTimer(task, found, true, first, ToNs(given.it_interval));
   return call.args[3] == 0 || Write(task, call.args[3], before) ? 0 : -EFAULT;
 }
@@ -159,21 +141,14 @@ std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
   if (call.number == SYS_setitimer && call.args[1] != 0 && !Read(task, call.args[1], &given)) {
     return -EFAULT;
   }
-  const timespec value{given.it_value.tv_sec, given.it_value.tv_usec * 1000},
-      interval{given.it_interval.tv_sec, given.it_interval.tv_usec * 1000};
-  if (!IsValid(value) || !IsValid(interval)) return -EINVAL;
+  if (!IsValid(given)) return -EINVAL;
   const bool sets = call.number != SYS_getitimer;
-  const std::int64_t delay = ToNs(value);
-  const std::int64_t first =
-      delay == 0 ? 0 : TimerNow(task, *task.process, *task.process->timers.KindOf(which)) + delay;
-  const itimerspec before = ExchangeTimer(task, found, sets, first, ToNs(interval));
-  const itimerval old{RoundUp(ToNs(before.it_interval)), RoundUp(ToNs(before.it_value))};
-  if (call.number == SYS_alarm) {
-    // As the kernel rounds it: never 0 while it was armed.
-    const bool up =
-        old.it_value.tv_usec >= 500'000 || (old.it_value.tv_sec == 0 && old.it_value.tv_usec > 0);
-    return old.it_value.tv_sec + (up ? 1 : 0);
-  }
+  const std::int64_t now = TimerNow(task, *task.process, *task.process->timers.KindOf(which));
+  const std::int64_t first = shm::FirstExpiry(ToNs(given.it_value), false, now, 0);
+  const itimerspec before = ExchangeTimer(task, found, sets, first, ToNs(given.it_interval));
+  const itimerval old{shm::RoundUpToTimeval(ToNs(before.it_interval)),
+                      shm::RoundUpToTimeval(ToNs(before.it_value))};
+  if (call.number == SYS_alarm) return shm::AlarmSeconds(old.it_value);
   const std::uint64_t address = call.args[sets ? 2 : 1];
   if (address == 0) return sets ? 0 : -EFAULT;
   return Write(task, address, old) ? 0 : -EFAULT;

@@ -15,6 +15,7 @@
 
 #include "coordinator/dds/well_formed.h"
 #include "coordinator/os/shared_memory.h"
+#include "shm/time_values.h"
 
 namespace tcs::dds {
 
@@ -38,7 +39,7 @@ constexpr std::size_t kFullBytes = std::size_t{1} << 20;
 constexpr std::int64_t kRediscoveryNs = 100'000'000;
 
 std::int64_t After(std::int64_t now_ns, std::int64_t ns) {
-  return ns < 0 || ns > shm::kNeverNs - now_ns ? shm::kNeverNs : now_ns + ns;
+  return ns < 0 ? shm::kNeverNs : shm::AddSaturated(now_ns, ns);
 }
 
 // A writer that keeps the last ones has room for it at the cost of an earlier one. What ends an

@@ -24,14 +24,16 @@
 
 #include "coordinator/os/say.h"
 #include "coordinator/os/trap.h"
+#include "shm/clock_ids.h"
 #include "shm/layout.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
 std::int64_t HostClockNs(clockid_t id) {
   timespec t;
   clock_gettime(id, &t);
-  return t.tv_sec * 1'000'000'000 + t.tv_nsec;
+  return shm::ToNs(t);
 }
 
 std::uint64_t CalibrateTsc() {
@@ -87,10 +89,8 @@ void LeaveRealTime(pid_t tid) {
 }
 
 std::int64_t ProcessCpuClockNs(pid_t pid) {
-  // The kernel's encoding of a process's CPU clock (posix-timers.h): CPUCLOCK_SCHED.
-  const clockid_t id = static_cast<clockid_t>((~static_cast<unsigned>(pid) << 3) | 2u);
   timespec t;
-  return clock_gettime(id, &t) == 0 ? t.tv_sec * 1'000'000'000 + t.tv_nsec : -1;
+  return clock_gettime(shm::CpuClockOf(pid), &t) == 0 ? shm::ToNs(t) : -1;
 }
 
 // A thread's own clock can be read by its own process only; this is the same number.

@@ -19,12 +19,12 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/strays.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
 // Between looks at whether a stop is one of the whole job.
 constexpr std::int64_t kStopTurnNs = 100'000'000;
 
@@ -87,7 +87,7 @@ class Keeper {
   int NextSignal() const {
     const std::int64_t until_ns = std::min({look_at_ns_, stop_by_ns_, stop_turn_ns_});
     const std::int64_t left_ns = std::max<std::int64_t>(0, until_ns - HostClockNs(CLOCK_MONOTONIC));
-    const timespec left{left_ns / kSecondNs, left_ns % kSecondNs};
+    const timespec left = shm::ToTimespec(left_ns);
     return std::max(0, sigtimedwait(&awaited_, nullptr, &left));
   }
 
@@ -97,8 +97,9 @@ class Keeper {
     }
     kill(coordinator_, signal);
     kill(coordinator_, SIGCONT);
-    stop_by_ns_ = std::min(stop_by_ns_, HostClockNs(CLOCK_MONOTONIC) +
-                                            std::int64_t{limits_.stop_within_s} * kSecondNs);
+    stop_by_ns_ =
+        std::min(stop_by_ns_, HostClockNs(CLOCK_MONOTONIC) +
+                                  std::int64_t{limits_.stop_within_s} * shm::kNsPerSecond);
   }
 
   // A stop of the job, by ^Z for one, is the guardian's, too: then the coordinator goes on with it.
@@ -129,7 +130,8 @@ class Keeper {
   }
 
   void LookLater() {
-    look_at_ns_ = HostClockNs(CLOCK_MONOTONIC) + std::int64_t{limits_.look_every_s} * kSecondNs;
+    look_at_ns_ =
+        HostClockNs(CLOCK_MONOTONIC) + std::int64_t{limits_.look_every_s} * shm::kNsPerSecond;
   }
 
   void Look() {
@@ -138,7 +140,7 @@ class Keeper {
     const std::int64_t computed_ns = std::max<std::int64_t>(0, ProcessCpuClockNs(coordinator_));
     const bool stands = std::exchange(beats_seen_, beats) == beats;
     const bool is_busy = computed_ns - std::exchange(computed_ns_, computed_ns) >
-                         std::int64_t{limits_.look_every_s} * (kSecondNs / 5 * 4);
+                         std::int64_t{limits_.look_every_s} * (shm::kNsPerSecond / 5 * 4);
     const bool is_held = ThreadState(coordinator_) == 't';
     const bool was_held = std::exchange(was_held_, is_held);
     if (stands && is_busy) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "coordinator/os/open_files.h"
+#include "shm/clock_ids.h"
 
 namespace tcs {
 
@@ -39,7 +40,7 @@ bool IsTimerDescriptor(int fd) { return IsAnonymous(getpid(), fd, kTimerFd); }
 
 bool IsOfRealtime(int timer_fd) {
   const auto clock = static_cast<clockid_t>(NumberInInfo(timer_fd, "clockid"));
-  return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_ALARM;
+  return shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
 }
 
 bool AddExpirations(int timer_fd, std::int64_t count) {

@@ -4,17 +4,13 @@
 #include <tuple>
 #include <utility>
 
-#include "shm/layout.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
 namespace {
 
 constexpr std::int64_t kNoTimeNs = -1;
-
-std::int64_t After(std::int64_t time_ns, std::int64_t duration_ns) {
-  return time_ns > shm::kNeverNs - duration_ns ? shm::kNeverNs : time_ns + duration_ns;
-}
 
 }  // namespace
 
@@ -96,11 +92,11 @@ std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
 }
 
 std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
-  return std::min(end_ns_, After(LeastOther(leaf), drift_bound_ns_));
+  return std::min(end_ns_, shm::AddSaturated(LeastOther(leaf), drift_bound_ns_));
 }
 
 std::int64_t TemporalConsistency::DynamicsHorizon() const {
-  return has_dynamics_ ? After(dynamics_ns_, drift_bound_ns_) : shm::kNeverNs;
+  return has_dynamics_ ? shm::AddSaturated(dynamics_ns_, drift_bound_ns_) : shm::kNeverNs;
 }
 
 std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {

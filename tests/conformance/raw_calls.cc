@@ -8,6 +8,7 @@
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 
 #include "tests/conformance/conformance.h"
 
@@ -47,6 +48,26 @@ void Clocks() {
   const long seconds = syscall(SYS_time, nullptr);
   EXPECT(seconds >= before / kSecond && seconds <= Now(CLOCK_REALTIME) / kSecond, "time: %ld",
          seconds);
+}
+
+// What is no clock, or one that nobody can sleep on or have timers of, is so however the call is
+// made.
+void WrongClocks() {
+  constexpr clockid_t kNone = 77;
+  const timespec request = ToTimespec(kMs);
+  timespec found;
+  timer_t id;
+  EXPECT(syscall(SYS_clock_gettime, kNone, &found) == -1 && errno == EINVAL, "no clock is read");
+  EXPECT(syscall(SYS_clock_nanosleep, kNone, 0, &request, nullptr) == -1 && errno == EINVAL,
+         "a sleep on no clock");
+  for (const clockid_t clock : {CLOCK_MONOTONIC_RAW, CLOCK_MONOTONIC_COARSE, CLOCK_REALTIME_COARSE,
+                                CLOCK_THREAD_CPUTIME_ID}) {
+    EXPECT(syscall(SYS_clock_nanosleep, clock, 0, &request, nullptr) == -1 && errno == EOPNOTSUPP,
+           "a sleep on clock %d", clock);
+    if (clock == CLOCK_THREAD_CPUTIME_ID) continue;
+    EXPECT(syscall(SYS_timer_create, clock, nullptr, &id) == -1 && errno == EOPNOTSUPP,
+           "a timer of clock %d", clock);
+  }
 }
 
 void Sleeps() {
@@ -217,6 +238,7 @@ void Refused() {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   Clocks();
+  WrongClocks();
   Sleeps();
   Timeouts();
   ReadFromChild("fgets", [](FILE* stream) {
