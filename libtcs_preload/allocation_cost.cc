@@ -1,5 +1,5 @@
-// What libtcs_allocations.so (allocations/) calls for each allocation and each lock under fixed
-// accounting.
+// What libtcs_allocations.so (allocations/) calls for each allocation and each lock, where they are
+// counted or have a set cost.
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -7,45 +7,65 @@ using namespace tcs::preload;
 
 namespace {
 
-// An allocation stands for what a program computes until the next one, 2 us unless told; taking
-// and releasing a lock is 20 ns of processor time natively.
-constexpr std::int64_t kLocksPerAllocation = 100;
+using tcs::shm::ClockPage;
+using tcs::shm::WorkCounts;
+
+// An allocation stands for what a program computes until the next one, 2 us unless told.
+constexpr std::int64_t kLocksPerAllocation = WorkCounts::kLocksPerAllocation;
 // So many locks in a row without anything that costs: it waits for others by looking again and
 // again. The locks between a program's calls and allocations cost nothing; how many they are may
 // depend on addresses.
 constexpr int kSpins = 1000;
 
-// Null where nothing is charged: by a thread that has not registered, and in the child of a fork
+// Null where nothing is counted: in a thread that has not registered, and in the child of a fork
 // before its first call. Never attaches.
-GuestThread* Charged() {
+GuestThread* Counted() {
   if (g_process->mode != ProcessState::kAttached) return nullptr;
   GuestThread& thread = t_thread;
-  const bool is_charged =
-      thread.slot != nullptr && !thread.attaching && thread.slot->clock.allocation_cost_ns != 0;
-  return is_charged ? &thread : nullptr;
+  const bool is_counted =
+      thread.slot != nullptr && !thread.attaching && thread.slot->clock.counts_work != 0;
+  return is_counted ? &thread : nullptr;
+}
+
+// Moves with everything that costs: time itself, where nothing else moves it.
+std::int64_t WhatHasCost(const tcs::shm::ThreadSlot& slot) {
+  if (g_header->accounting == tcs::shm::Accounting::kFixed) {
+    return tcs::shm::ReadClock(slot.clock).time_ns;
+  }
+  return static_cast<std::int64_t>(slot.work.calls + slot.work.locks);
 }
 
 }  // namespace
 
-// Both charge the calling thread, and let others have their turn where that takes it to its
-// horizon. Async-signal-safe; errno stays.
+// Both count what the calling thread does, and where it has a set cost charge it, and let others
+// have their turn if that takes it to its horizon. Async-signal-safe; errno stays.
 
 TCS_EXPORT void tcs_charge_allocation() noexcept {
-  GuestThread* thread = Charged();
+  GuestThread* thread = Counted();
   if (thread == nullptr) return;
-  Charge(thread->slot->clock, thread->slot->clock.allocation_cost_ns);
+  thread->slot->work.locks += WorkCounts::kLocksPerAllocation;
+  ClockPage& page = thread->slot->clock;
+  if (page.allocation_cost_ns == 0) return;
+  Charge(page, page.allocation_cost_ns);
   NowNs(*thread);
 }
 
 TCS_EXPORT void tcs_charge_lock() noexcept {
-  GuestThread* thread = Charged();
+  GuestThread* thread = Counted();
   if (thread == nullptr) return;
-  tcs::shm::ClockPage& page = thread->slot->clock;
-  if (const std::int64_t now = tcs::shm::ReadClock(page).time_ns; now != thread->locks_at_ns) {
-    thread->locks_at_ns = now;
+  if (const std::int64_t at = WhatHasCost(*thread->slot); at != thread->locks_at) {
+    thread->locks_at = at;
     thread->locks = 0;
   }
   if (++thread->locks <= kSpins) return;
-  Charge(page, page.allocation_cost_ns / kLocksPerAllocation);
-  thread->locks_at_ns = NowNs(*thread);
+  ++thread->slot->work.locks;
+  ClockPage& page = thread->slot->clock;
+  if (page.allocation_cost_ns == 0) {
+    thread->locks_at = WhatHasCost(*thread->slot);
+    return;
+  }
+  // At least something: who waits in such a loop must get on, however little allocations cost.
+  const std::int64_t cost_ns = page.allocation_cost_ns / kLocksPerAllocation;
+  Charge(page, cost_ns > 0 ? cost_ns : 1);
+  thread->locks_at = NowNs(*thread);
 }

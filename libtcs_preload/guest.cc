@@ -63,6 +63,12 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
   }
 }
 
+void CountCall(GuestThread& thread) {
+  ++thread.slot->work.calls;
+  shm::ClockPage& page = thread.slot->clock;
+  if (page.call_cost_ns != 0) Charge(page, page.call_cost_ns);
+}
+
 void DieWithoutCoordinator(const char* what) {
   static const char kPrefix[] = "tcs: this program runs under tcsim, but ";
   static const char kSuffix[] = "; it ends here\n";

@@ -28,9 +28,9 @@ struct GuestThread {
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
   bool passes_on = false;  // others wait for what it leaves (fd_wait.h)
-  // Locks taken while its time stood still at `locks_at_ns`; under fixed accounting.
+  // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;
-  std::int64_t locks_at_ns = 0;
+  std::int64_t locks_at = 0;
 };
 
 // Kept in a page that a fork leaves zeroed in the child, so that the child knows it has no slot
@@ -62,12 +62,13 @@ inline GuestThread* Current() {
 // Charges a set cost: of a call, or of an allocation.
 void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
-// The same for an interposed call: under fixed accounting it also charges the call.
+// Counts an interposed call, and charges it where it has a set cost.
+void CountCall(GuestThread& thread);
+
+// The same as Current for an interposed call, which it counts where calls are counted.
 inline GuestThread* Enter() {
   GuestThread* t = Current();
-  if (t != nullptr && __builtin_expect(t->slot->clock.call_cost_ns != 0, 0)) {
-    Charge(t->slot->clock, t->slot->clock.call_cost_ns);
-  }
+  if (t != nullptr && __builtin_expect(t->slot->clock.counts_work != 0, 0)) CountCall(*t);
   return t;
 }
 

@@ -17,7 +17,7 @@ void NoteReceived(GuestThread& thread, shm::Receipts::Of of) {
   // A handler that comes between overwrites one, which is then not counted.
   const std::uint32_t count = receipts.count.load(std::memory_order_relaxed);
   if (count >= shm::Receipts::kMost) return;
-  receipts.entries[count] = {shm::ShownTime(page, now), now.cpu_ns, of, 0};
+  receipts.entries[count] = {shm::ShownTime(page, now), now.cpu_ns, of, 0, thread.slot->work};
   receipts.count.store(count + 1, std::memory_order_release);
   // Full: any stop empties it.
   if (count + 1 == shm::Receipts::kMost && thread.depth == 0) {

@@ -28,11 +28,12 @@
 
 #include "shm/ipc_times.h"
 #include "shm/receipts.h"
+#include "shm/work_counts.h"
 
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 11;
+inline constexpr std::uint32_t kVersion = 12;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -184,11 +185,13 @@ struct ClockPage {
   std::atomic<std::int64_t> staleness_ns;
   // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
   std::int64_t allocation_cost_ns;
-  std::uint64_t reserved[3];
+  std::uint64_t counts_work;  // 1: the thread keeps its WorkCounts
+  std::uint64_t reserved[2];
 };
 static_assert(sizeof(ClockPage) == 192);
 static_assert(offsetof(ClockPage, staleness_ns) == 152);
 static_assert(offsetof(ClockPage, allocation_cost_ns) == 160);
+static_assert(offsetof(ClockPage, counts_work) == 168);
 static_assert(offsetof(ClockPage, executed_adjust) == 64);
 static_assert(offsetof(ClockPage, last_shown_ns) == 80);
 
@@ -251,15 +254,17 @@ struct alignas(64) ThreadSlot {
   std::atomic<std::uint32_t> ipc_count;
   IpcNote ipc_notes[kMostIpcNotes];
   Receipts receipts;
-  std::uint8_t reserved[48];
+  WorkCounts work;  // written by the thread, where it is counted
+  std::uint8_t reserved[32];
 };
-static_assert(sizeof(ThreadSlot) == 1024);
+static_assert(sizeof(ThreadSlot) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
 static_assert(offsetof(ThreadSlot, signals) == 560);
 static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
 static_assert(offsetof(ThreadSlot, receipts) == 760);
+static_assert(offsetof(ThreadSlot, work) == 1104);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters and kernel_waiters.

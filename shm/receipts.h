@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/work_counts.h"
+
 namespace tcs::shm {
 
 struct Receipts {
@@ -29,6 +31,7 @@ struct Receipts {
     std::int64_t cpu_ns;   // what it had been charged
     Of of;
     std::uint32_t padding;
+    WorkCounts work;  // of the thread until then, where it is counted
   };
 
   std::int64_t received_cpu_ns;  // what the thread had been charged at the last one
@@ -38,7 +41,7 @@ struct Receipts {
   std::uint32_t padding;
   Entry entries[kMost];
 };
-static_assert(sizeof(Receipts) == 24 + 24 * Receipts::kMost);
+static_assert(sizeof(Receipts) == 24 + 40 * Receipts::kMost);
 static_assert(offsetof(Receipts, entries) == 24);
 
 // Its wait is over.

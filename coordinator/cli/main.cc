@@ -94,6 +94,9 @@ int main(int argc, char** argv) {
   bool record = false;
   run->add_flag("--record", record,
                 "also write all DDS topics into the folder, as the rosbag2 bag `bag`");
+  bool for_fit = false;
+  run->add_flag("--for-fit", for_fit,
+                "also count each client's calls and allocations, which `tcsim fit` needs");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
@@ -206,6 +209,7 @@ int main(int argc, char** argv) {
     }
   }
   options.record = record;
+  options.counts_work = for_fit;
   options.waits_for_cpu = !no_wait;
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".

@@ -147,6 +147,9 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
         {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
     });
+    if (!options.counts_work) continue;
+    json["clients"][c.name]["calls"] = c.usage.work.calls;
+    json["clients"][c.name]["allocations"] = c.usage.work.allocations();
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -31,11 +31,12 @@ struct RunOptions {
   shm::Accounting accounting = shm::Accounting::kMeasured;
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
+  bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
   bool record = false;           // all DDS topics, into a bag in output_directory
   bool waits_for_cpu = true;     // where other runs have them all
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
-  std::string allocation_library;  // preloaded besides under fixed accounting
+  std::string allocation_library;  // preloaded besides where allocations are counted
   // What CLOCK_MONOTONIC shows at the start. 0 would look like a clock that was never set.
   std::int64_t uptime_ns = 1'000'000'000'000;
   // The same of CLOCK_REALTIME; if not set the host's date, or a fixed one under fixed accounting.

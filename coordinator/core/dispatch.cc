@@ -55,6 +55,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       metered,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
+  grant.counts_work = IsFixed() || options_.counts_work ? 1 : 0;
   grant.NoteLimits();
   grant.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
@@ -148,7 +149,10 @@ void Engine::Settle(Task& task) {
   shm::ClockPage& page = slot.clock;
   MeteredThread& metered = task.metered;
   host_cpu_.End(task, CpuClockOf(task));
-  if (trapped_.has_value() && trapped_->number != SYS_exit && slot.signals.load() == 0) {
+  // The shim counts and charges the calls that it sees, whatever the C library calls for it.
+  const bool made_unseen_call =
+      trapped_.has_value() && trapped_->number != SYS_exit && slot.signals.load() == 0;
+  if (made_unseen_call) {
     host_cpu_.ChargeCall(task, task.process->call_cost_ns);
   }
   const shm::ClockReading reading = host_cpu_.ClockOf(task);
@@ -177,6 +181,8 @@ void Engine::Settle(Task& task) {
   task.charged_ns = charged;
   task.debt_ns = debt;
   TakeReceipts(task, progress + frozen);
+  task.trapped_calls += made_unseen_call;
+  task.work = WithTrapped(task, slot.work);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
     NoteHeld(*task.process, start, progress - start);

@@ -412,7 +412,9 @@ class Engine {
   std::string CloseRecords();
   int AddRow(const std::string& group, const std::string& name);
   void NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns);
-  void NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns, bool of_timer);
+  static shm::WorkCounts WithTrapped(const Task& task, const shm::WorkCounts& seen);
+  void NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns,
+                const shm::WorkCounts& work, bool of_timer);
   void TakeReceipts(Task& task, std::int64_t now_ns);
   void NoteReceivedRaw(Task& task, bool of_timer);
   void NoteIdle(Task& task);

@@ -137,11 +137,12 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
   request.command = client.command;
   request.working_directory = client.working_directory;
   request.environment = client.environment;
-  const bool charges_allocations = IsFixed() && client.fixed_allocation_cost.ns() > 0;
+  const bool counts_allocations =
+      options_.counts_work || (IsFixed() && client.fixed_allocation_cost.ns() > 0);
   std::string& preload = request.environment["LD_PRELOAD"];
   preload = WithOurLibraries(
       client.environment.contains("LD_PRELOAD") ? preload : options_.user_preload,
-      options_.preload_library + (charges_allocations ? ":" + options_.allocation_library : ""));
+      options_.preload_library + (counts_allocations ? ":" + options_.allocation_library : ""));
   const std::string socket_name = OpenListener();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;

@@ -39,7 +39,9 @@ std::string Engine::OpenRecords() {
   }
   std::string error = trace_.Open(directory + "/trace.json");
   if (error.empty()) error = world_.OpenCsv(directory + "/bodies.csv");
-  if (error.empty()) error = activation_log_.Open(directory + "/activations.csv");
+  if (error.empty()) {
+    error = activation_log_.Open(directory + "/activations.csv", options_.counts_work);
+  }
   if (error.empty()) error = dispatch_log_.Open(directory + "/dispatches.csv", !IsFixed());
   return error;
 }
@@ -86,16 +88,23 @@ void Engine::NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns
   if (task.slot >= 0) shm::NoteWoken(Slot(task).receipts);
 }
 
+// What the thread has done according to `seen`, the shim's count of it.
+shm::WorkCounts Engine::WithTrapped(const Task& task, const shm::WorkCounts& seen) {
+  return {seen.calls + task.trapped_calls, seen.locks};
+}
+
 // It did not wait, and is at its next activation all the same (shm/receipts.h).
-void Engine::NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns, bool of_timer) {
+void Engine::NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns,
+                      const shm::WorkCounts& work, bool of_timer) {
   Activation& activation = task.activation;
   if (activation.start_ns < 0) activation.start_ns = activation.release_ns;
   now_ns = std::max(now_ns, activation.start_ns);
   charged_ns = std::max(charged_ns, activation.charged_ns);
   activation_log_.Write(task.process->name, task.is_further ? task.order : 0, activation, now_ns,
-                        charged_ns);
+                        charged_ns, work);
   ++task.activations;
-  activation = {of_timer ? ReleaseCause::kTime : ReleaseCause::kInput, now_ns, now_ns, charged_ns};
+  activation = {of_timer ? ReleaseCause::kTime : ReleaseCause::kInput, now_ns, now_ns, charged_ns,
+                work};
 }
 
 // What the thread has said of that since its dispatch, up to `now_ns` on its clock.
@@ -105,7 +114,7 @@ void Engine::TakeReceipts(Task& task, std::int64_t now_ns) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::Receipts::Entry entry = receipts.entries[i];
     NoteNext(task, std::min(entry.time_ns, now_ns), std::min(entry.cpu_ns, task.charged_ns),
-             entry.of == shm::Receipts::Of::kTimer);
+             WithTrapped(task, entry.work), entry.of == shm::Receipts::Of::kTimer);
   }
   receipts.count.store(0);
 }
@@ -113,7 +122,7 @@ void Engine::TakeReceipts(Task& task, std::int64_t now_ns) {
 // The same of a call that the kernel is to carry out, and that finds something there.
 void Engine::NoteReceivedRaw(Task& task, bool of_timer) {
   if (task.slot < 0 || !shm::NoteReceived(Slot(task).receipts, task.charged_ns)) return;
-  NoteNext(task, task.reached_ns + task.process->frozen_ns, task.charged_ns, of_timer);
+  NoteNext(task, task.reached_ns + task.process->frozen_ns, task.charged_ns, task.work, of_timer);
 }
 
 // It waits again, or has ended.
@@ -126,8 +135,9 @@ void Engine::NoteIdle(Task& task) {
   // No activation is charged less than nothing for that; those that follow are charged less.
   const std::int64_t charged = std::max(task.charged_ns, task.activation.charged_ns);
   activation_log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
-                        std::max(now, task.activation.start_ns), charged);
+                        std::max(now, task.activation.start_ns), charged, task.work);
   task.activation.charged_ns = charged;
+  task.activation.work = task.work;
 }
 
 void Engine::RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns,

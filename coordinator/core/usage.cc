@@ -39,7 +39,8 @@ Usage Engine::UsageOf(const Process& process) {
     usage += {.charged_ns = task->charged_ns,
               .host_cpu_ns = HostCpuOf(*task),
               .stolen_ns = StolenOf(*task),
-              .activations = task->activations};
+              .activations = task->activations,
+              .work = task->work};
   }
   return usage;
 }
@@ -60,6 +61,7 @@ void Engine::KeepUsageOf(Task& ended) {
       .charged_ns = ended.charged_ns,
       .stolen_ns = ended.slot < 0 ? 0 : StolenOf(ended),
       .activations = ended.activations,
+      .work = ended.work,
   };
   if (ended.metered.host_origin_ns < 0) {  // it never ran under its clock
     process.ended.Add(usage, 0, 0, 0);

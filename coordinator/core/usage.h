@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "shm/work_counts.h"
+
 namespace tcs {
 
 struct Usage {
@@ -10,6 +12,7 @@ struct Usage {
   std::int64_t host_cpu_ns = 0;  // by the kernel's CPU clocks
   std::int64_t stolen_ns = 0;
   std::int64_t activations = 0, overruns = 0;
+  shm::WorkCounts work{};  // where it is counted
 
   Usage& operator+=(const Usage& more) {
     charged_ns += more.charged_ns;
@@ -17,6 +20,8 @@ struct Usage {
     stolen_ns += more.stolen_ns;
     activations += more.activations;
     overruns += more.overruns;
+    work.calls += more.work.calls;
+    work.locks += more.work.locks;
     return *this;
   }
 };

@@ -16,6 +16,7 @@ void ClockGrant::WriteTo(shm::ClockPage& page) const {
   page.check_after_ticks = check_after_ticks;
   page.call_cost_ns = call_cost_ns;
   page.allocation_cost_ns = allocation_cost_ns;
+  page.counts_work = counts_work;
 }
 
 bool ClockGrant::StandsIn(const shm::ClockPage& page) const {
@@ -24,7 +25,8 @@ bool ClockGrant::StandsIn(const shm::ClockPage& page) const {
          page.idle_until_ns == idle_until_ns && page.read_safe_ns == read_safe_ns &&
          page.write_safe_ns == write_safe_ns && page.ns_per_host_ns_q32 == ns_per_host_ns_q32 &&
          page.ns_per_tick_q32 == ns_per_tick_q32 && page.check_after_ticks == check_after_ticks &&
-         page.call_cost_ns == call_cost_ns && page.allocation_cost_ns == allocation_cost_ns;
+         page.call_cost_ns == call_cost_ns && page.allocation_cost_ns == allocation_cost_ns &&
+         page.counts_work == counts_work;
 }
 
 void ClockGrant::NoteLimits() {

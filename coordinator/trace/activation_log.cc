@@ -26,14 +26,24 @@ constexpr std::string_view NameOf(ReleaseCause cause) {
 
 }  // namespace
 
-std::string ActivationLog::Open(const std::string& path) {
-  return file_.Open(path, "client,thread,cause,release_ns,start_ns,end_ns,charged_ns");
+std::string ActivationLog::Open(const std::string& path, bool with_work) {
+  with_work_ = with_work;
+  const std::string header = "client,thread,cause,release_ns,start_ns,end_ns,charged_ns";
+  return file_.Open(path, with_work ? header + ",calls,allocations" : header);
 }
 
 void ActivationLog::Write(const std::string& client, int thread, const Activation& activation,
-                          std::int64_t end_ns, std::int64_t charged_ns) {
-  file_.Line(client, thread, NameOf(activation.cause), activation.release_ns, activation.start_ns,
-             end_ns, charged_ns - activation.charged_ns);
+                          std::int64_t end_ns, std::int64_t charged_ns,
+                          const shm::WorkCounts& work) {
+  const std::string_view cause = NameOf(activation.cause);
+  const std::int64_t charged = charged_ns - activation.charged_ns;
+  if (!with_work_) {
+    file_.Line(client, thread, cause, activation.release_ns, activation.start_ns, end_ns, charged);
+    return;
+  }
+  file_.Line(client, thread, cause, activation.release_ns, activation.start_ns, end_ns, charged,
+             work.calls - activation.work.calls,
+             work.allocations() - activation.work.allocations());
 }
 
 }  // namespace tcs

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "coordinator/trace/csv_file.h"
+#include "shm/work_counts.h"
 
 namespace tcs {
 
@@ -18,20 +19,22 @@ struct Activation {
   std::int64_t release_ns = 0;  // it became ready
   std::int64_t start_ns = -1;   // it ran first; -1: not yet
   std::int64_t charged_ns = 0;  // to the thread before, at its most
+  shm::WorkCounts work{};       // that the thread had done before
 };
 
 class ActivationLog {
  public:
-  [[nodiscard]] std::string Open(const std::string& path);
-  // `thread` is 0 for the client's first one. `charged_ns` is what the thread has been charged in
-  // all.
+  // `with_work`: whether lines tell of calls and allocations, too.
+  [[nodiscard]] std::string Open(const std::string& path, bool with_work);
+  // `thread` is 0 for the client's first one. `charged_ns` and `work` are the thread's in all.
   void Write(const std::string& client, int thread, const Activation& activation,
-             std::int64_t end_ns, std::int64_t charged_ns);
+             std::int64_t end_ns, std::int64_t charged_ns, const shm::WorkCounts& work);
   void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close() { return file_.Close(); }
 
  private:
   CsvFile file_;
+  bool with_work_ = false;
 };
 
 }  // namespace tcs

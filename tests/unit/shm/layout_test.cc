@@ -9,10 +9,10 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 11u);
+TEST(Layout, VersionTwelveHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 12u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
-  EXPECT_EQ(sizeof(ThreadSlot), 1024u);
+  EXPECT_EQ(sizeof(ThreadSlot), 1152u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
@@ -21,18 +21,20 @@ TEST(Layout, VersionElevenHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
   EXPECT_EQ(offsetof(ClockPage, allocation_cost_ns), 160u);
+  EXPECT_EQ(offsetof(ClockPage, counts_work), 168u);
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
   EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
   EXPECT_EQ(offsetof(ThreadSlot, ipc_notes), 568u);
   EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
+  EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderAndTheTimesOfSystemVObjects) {
   EXPECT_EQ(offsetof(RunMemory, ipc_times), 128u);
   EXPECT_EQ(sizeof(RunMemory), 128u + 4096u * 32u);
-  EXPECT_EQ(kProcessMemorySize, 4096u * 1024u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 1152u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {
