@@ -85,6 +85,10 @@ int main(int argc, char** argv) {
   run->add_option("--duration", arguments.duration, "of virtual time, such as 20s");
   run->add_option("--drift", arguments.drift, "how far progress may drift apart, such as 1ms");
   CLI::Option* seeded = run->add_option("--seed", seed, "what ${seed} stands for");
+  run->add_option("--overlay", arguments.overlays,
+                  "FILE: a piece of a scenario whose values replace the scenario's, such as what "
+                  "`tcsim fit` writes; repeatable")
+      ->allow_extra_args(false);
   run->add_option("--set", arguments.set,
                   "KEY=VALUE: what the file would say, such as dynamics.engine=ode; repeatable")
       ->allow_extra_args(false);

@@ -59,6 +59,7 @@ void SayHowFar(int fd, const RunProgress& progress) {
 
 int RunCommand(const RunArguments& arguments, RunOptions options) {
   ScenarioOverrides overrides;
+  overrides.overlays = arguments.overlays;
   overrides.set = arguments.set;
   overrides.seed = arguments.seed;
   overrides.result_directory = AbsolutePathOf(arguments.out);

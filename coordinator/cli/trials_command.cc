@@ -56,9 +56,23 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
   return {};
 }
 
+// So that each trial is told, and the folder's record says, what the files say now.
+std::string AddOverlays(const TrialsArguments& arguments, TrialOptions* options) {
+  std::vector<std::string> set;
+  for (const std::string& path : arguments.overlays) {
+    const auto loaded = LoadOverlay(path);
+    if (const auto* error = std::get_if<LoadError>(&loaded)) return error->message;
+    const auto& texts = std::get<std::vector<std::string>>(loaded);
+    set.insert(set.end(), texts.begin(), texts.end());
+  }
+  options->set.insert(options->set.begin(), set.begin(), set.end());
+  return {};
+}
+
 std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
                      std::vector<Scenario>* scenarios) {
   plan->options = arguments.options;
+  if (std::string error = AddOverlays(arguments, &plan->options); !error.empty()) return error;
   plan->trials = arguments.trials;
   if (!arguments.vary.empty()) {
     if (std::string error = ParseVary(arguments.vary, &plan->vary.emplace()); !error.empty()) {

@@ -15,6 +15,7 @@ struct TrialsArguments {
   int jobs = 0;  // 0: as many as there is room for
   std::optional<std::uint64_t> first_seed;
   bool restart = false, host_network = false, no_wait = false;
+  std::vector<std::string> overlays;  // files
   TrialOptions options;
 };
 

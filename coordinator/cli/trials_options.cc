@@ -32,6 +32,10 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
                    "one at a time, in this machine's network, not each in one of its own");
   trials->add_option("--duration", options.duration, "of virtual time, such as 20s");
   trials->add_option("--drift", options.drift, "how far progress may drift apart, such as 1ms");
+  trials
+      ->add_option("--overlay", arguments->overlays,
+                   "FILE: a piece of a scenario whose values replace the scenario's")
+      ->allow_extra_args(false);
   trials->add_option("--set", options.set, "KEY=VALUE: another value for a key of the scenario")
       ->allow_extra_args(false);
   trials->add_option("--sync", options.sync, "as for run")

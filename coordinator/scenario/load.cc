@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/overlay.h"
 #include "coordinator/scenario/sections.h"
 #include "coordinator/scenario/yaml_reader.h"
 
@@ -18,9 +21,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestFile = 1 << 20;
 
-std::string ReadFile(const std::string& path) {
-  const auto fail = [&path](const std::string& why) {
-    throw ScenarioMistake{path + ": " + why + "; give the path of a scenario file"};
+std::string ReadFile(const std::string& path, const char* of_what) {
+  const auto fail = [&](const std::string& why) {
+    throw ScenarioMistake{path + ": " + why + "; give the path of " + of_what};
   };
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -34,6 +37,14 @@ std::string ReadFile(const std::string& path) {
   return text;
 }
 
+std::vector<Setting> ReadOverlay(const std::string& path) {
+  return SettingsOfOverlay(path, ReadFile(path, "a piece of a scenario"));
+}
+
+void Append(std::vector<Setting> more, std::vector<Setting>* settings) {
+  std::move(more.begin(), more.end(), std::back_inserter(*settings));
+}
+
 std::string FolderOf(const std::string& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);
@@ -42,12 +53,17 @@ std::string FolderOf(const std::string& path) {
 }
 
 Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
-  const YamlMap top = ParseYaml(path, ReadFile(path), overrides.set).AsMap();
+  std::vector<Setting> settings;
+  for (const std::string& overlay : overrides.overlays) {
+    Append(ReadOverlay(overlay), &settings);
+  }
+  Append(SettingsOfOptions(overrides.set), &settings);
+  const YamlMap top = ParseYaml(path, ReadFile(path, "a scenario file"), settings).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
                  "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
-  scenario.set = overrides.set;
+  for (const Setting& setting : settings) scenario.set.push_back(setting.text);
   scenario.name = fs::path(path).stem().string();
   if (const YamlValue* name = top.Find("name")) {
     scenario.name = name->AsText();
@@ -77,6 +93,16 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
 LoadResult<Scenario> LoadScenario(const std::string& path, const ScenarioOverrides& overrides) {
   try {
     return Load(path, overrides);
+  } catch (const ScenarioMistake& mistake) {
+    return LoadError{mistake.message};
+  }
+}
+
+LoadResult<std::vector<std::string>> LoadOverlay(const std::string& path) {
+  try {
+    std::vector<std::string> texts;
+    for (Setting& setting : ReadOverlay(path)) texts.push_back(std::move(setting.text));
+    return texts;
   } catch (const ScenarioMistake& mistake) {
     return LoadError{mistake.message};
   }

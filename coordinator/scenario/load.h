@@ -13,10 +13,11 @@
 
 namespace tcs {
 
-// What the command line sets in the file's stead. The last three, which win over `set`, must be
+// What the command line sets in the file's stead. The next three, which win over `set`, must be
 // valid (durations above 0).
 struct ScenarioOverrides {
-  std::vector<std::string> set;  // "KEY=VALUE", see set_option.h; checked like the file
+  std::vector<std::string> overlays;  // files, see overlay.h; checked like the scenario's
+  std::vector<std::string> set;       // "KEY=VALUE", see set_option.h, after them; the same
   std::optional<VirtualDuration> duration;
   std::optional<VirtualDuration> drift;
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
@@ -27,9 +28,12 @@ struct ScenarioOverrides {
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the
 // files it names change or the ports it names are taken. The first mistake is the error, one
 // sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "), or "--set
-// KEY=VALUE: " where the value does not come from the file. Reads the
+// KEY=VALUE: " where the value does not come from a file. Reads the
 // environment (PATH, ${NAME}); not thread-safe against those who change it.
 [[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
                                                 const ScenarioOverrides& overrides = {});
+
+// What the overlay `path` says, as --set would: a "KEY=VALUE" for each value.
+[[nodiscard]] LoadResult<std::vector<std::string>> LoadOverlay(const std::string& path);
 
 }  // namespace tcs

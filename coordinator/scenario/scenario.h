@@ -135,7 +135,7 @@ struct ClockSpec {
 struct Scenario {
   std::string name;
   std::string path;              // of the YAML file; empty for `tcsim exec`
-  std::vector<std::string> set;  // what --set has put in the file's stead
+  std::vector<std::string> set;  // what --overlay and --set have put in the file's stead
   VirtualDuration duration = VirtualDuration::Seconds(10);
   VirtualDuration drift_bound = VirtualDuration::Milliseconds(1);
   std::uint64_t seed = 1;

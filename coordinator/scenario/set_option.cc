@@ -39,7 +39,8 @@ bool EndsKey(std::string_view rest) { return rest.empty() || rest[0] == '.' || r
 // shared, for YAML knows aliases.
 class SetOption {
  public:
-  SetOption(const std::string& option, SetOptions* all) : option_(Shown(option)), all_(all) {
+  SetOption(const Setting& setting, SetOptions* all) : origin_(setting.origin), all_(all) {
+    const std::string& option = setting.text;
     const std::size_t equals = option.find('=');
     if (equals == std::string::npos || equals == 0) {
       Fail("this is not KEY=VALUE; write it like --set dynamics.step=1ms");
@@ -61,11 +62,11 @@ class SetOption {
 
  private:
   [[noreturn]] void Fail(const std::string& sentence) const {
-    throw ScenarioMistake{option_ + ": " + sentence};
+    throw ScenarioMistake{origin_ + ": " + sentence};
   }
 
   YAML::Node Ours(const YAML::Node& node) {
-    all_->origins_.emplace_back(node, option_);
+    all_->origins_.emplace_back(node, origin_);
     return node;
   }
 
@@ -175,15 +176,21 @@ class SetOption {
     return path.empty() ? key : path + "." + key;
   }
 
-  const std::string option_;
+  const std::string origin_;
   SetOptions* all_;
   std::string path_;
   YAML::Node value_;
 };
 
-YAML::Node SetOptions::Apply(const YAML::Node& root, const std::vector<std::string>& options) {
+std::vector<Setting> SettingsOfOptions(const std::vector<std::string>& options) {
+  std::vector<Setting> settings;
+  for (const std::string& option : options) settings.push_back({option, Shown(option)});
+  return settings;
+}
+
+YAML::Node SetOptions::Apply(const YAML::Node& root, const std::vector<Setting>& settings) {
   YAML::Node tree = root;
-  for (const std::string& option : options) tree.reset(SetOption(option, this).ApplyTo(tree));
+  for (const Setting& setting : settings) tree.reset(SetOption(setting, this).ApplyTo(tree));
   return tree;
 }
 

@@ -15,13 +15,24 @@
 
 namespace tcs {
 
+// One key with its value, as a text "KEY=VALUE", and where it was given: "--set KEY=VALUE", or
+// "FILE:LINE" of an overlay.
+struct Setting {
+  std::string text;
+  std::string origin;
+};
+
+// What --set gives.
+std::vector<Setting> SettingsOfOptions(const std::vector<std::string>& options);
+
 class SetOptions {
  public:
-  // The tree `root` with the `options`, each "KEY=VALUE", applied in their order. Changes nothing
-  // of `root`, whose nodes the new tree shares.
-  YAML::Node Apply(const YAML::Node& root, const std::vector<std::string>& options);
+  // The tree `root` with the `settings` applied in their order. Changes nothing of `root`, whose
+  // nodes the new tree shares.
+  YAML::Node Apply(const YAML::Node& root, const std::vector<Setting>& settings);
 
-  // "--set KEY=VALUE" if that is where `node` of the new tree comes from; null if it is the file.
+  // The setting's origin if that is where `node` of the new tree comes from; null if it is the
+  // scenario file.
   const std::string* OriginOf(const YAML::Node& node) const;
 
  private:

@@ -262,8 +262,7 @@ const YamlValue& YamlMap::Require(std::string_view key, std::string_view example
   place_.Fail("lacks the key " + Quote(key) + "; add it, like " + std::string(example));
 }
 
-YamlValue ParseYaml(const std::string& file, const std::string& text,
-                    const std::vector<std::string>& set) {
+YAML::Node ParseDocument(const std::string& file, const std::string& text) {
   const int last_line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
   YAML::Node document;
   std::optional<int> second;
@@ -275,16 +274,22 @@ YamlValue ParseYaml(const std::string& file, const std::string& text,
     throw ScenarioMistake{Place{file, line}.Prefix() + "this is not valid YAML (" + error.msg +
                           "); indent with spaces, and quote a text that holds : # { } [ or ]"};
   }
-  if (document.IsNull()) {
-    throw ScenarioMistake{Place{file, 1}.Prefix() +
-                          "the scenario is empty; write at least duration and robots"};
-  }
   if (second.has_value()) {
     throw ScenarioMistake{Place{file, *second}.Prefix() +
                           "a second YAML document begins here; keep one scenario to a file"};
   }
+  return document;
+}
+
+YamlValue ParseYaml(const std::string& file, const std::string& text,
+                    const std::vector<Setting>& settings) {
+  const YAML::Node document = ParseDocument(file, text);
+  if (document.IsNull()) {
+    throw ScenarioMistake{Place{file, 1}.Prefix() +
+                          "the scenario is empty; write at least duration and robots"};
+  }
   const auto options = std::make_shared<SetOptions>();
-  const YAML::Node tree = options->Apply(document, set);
+  const YAML::Node tree = options->Apply(document, settings);
   return YamlValue({file, LineOf(document, 1)}, "", tree, options);
 }
 

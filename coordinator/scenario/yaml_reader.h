@@ -23,6 +23,7 @@ struct ScenarioMistake {
   std::string message;  // "FILE:LINE: …" or "--set KEY=VALUE: …"
 };
 
+struct Setting;
 class SetOptions;
 class YamlMap;
 
@@ -100,10 +101,13 @@ class YamlMap {
   std::vector<Entry> entries_;
 };
 
-// Parses the YAML `text` of `file` and applies `set` to it, each element a "KEY=VALUE" (see
-// set_option.h); throws ScenarioMistake if it is not one YAML document or has no such place.
+// The YAML `text` of `file`; throws ScenarioMistake if it is not one YAML document.
+YAML::Node ParseDocument(const std::string& file, const std::string& text);
+
+// The same with `settings` applied to it (see set_option.h); throws ScenarioMistake also if it has
+// no such place, or is empty.
 YamlValue ParseYaml(const std::string& file, const std::string& text,
-                    const std::vector<std::string>& set = {});
+                    const std::vector<Setting>& settings);
 
 // Names of bodies, robots, clients and channels become names of files and topics: throws unless
 // the key is made of letters, digits, '_', '-' and '.', and does not begin with '.' or '-'.
