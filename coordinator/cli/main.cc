@@ -9,6 +9,7 @@
 
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/fit_command.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/report_command.h"
@@ -174,6 +175,13 @@ int main(int argc, char** argv) {
   topics->add_flag("--qos", topics_arguments.with_qos,
                    "the quality of service of each endpoint, too");
 
+  tcs::FitArguments fit_arguments;
+  CLI::App* fit = app.add_subcommand(
+      "fit", "the set costs with which --accounting fixed charges what a run has measured");
+  fit->add_option("folder", fit_arguments.folder, "what run --for-fit wrote")->required();
+  fit->add_option("--out", fit_arguments.out,
+                  "a file for the costs, as run --overlay takes it; printed unless told");
+
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
   doctor->add_flag("--json", as_json, "for programs");
@@ -202,6 +210,7 @@ int main(int argc, char** argv) {
   }
   if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
   if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
+  if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this is running inside another tcsim already; a run cannot contain another one");

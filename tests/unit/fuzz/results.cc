@@ -8,10 +8,14 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/fit/fit_table.h"
+#include "coordinator/fit/fragment.h"
+#include "coordinator/fit/measured_run.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/report/page.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/write.h"
+#include "coordinator/scenario/load.h"
 #include "tests/unit/fuzz/fuzz.h"
 #include "tests/unit/fuzz/mutate.h"
 
@@ -33,10 +37,10 @@ constexpr char kSummary[] = R"({
   "clients": {
     "r/planner": {"robot": "r", "class": "best-effort", "priority": 1, "charged_ns": 1000000000,
       "host_cpu_ns": 1, "stolen_ns": 5, "activations": 2, "overruns": 0, "ended_at_ns": -1,
-      "wait_status": 0},
+      "wait_status": 0, "calls": 70, "allocations": 400000},
     "r/controller": {"robot": "r", "class": "periodic", "priority": 9, "charged_ns": 20000000,
       "host_cpu_ns": 1, "stolen_ns": 5, "activations": 20, "overruns": 1, "ended_at_ns": -1,
-      "wait_status": 0}}
+      "wait_status": 0, "calls": 300, "allocations": 0}}
 })";
 
 std::string Bodies() {
@@ -50,14 +54,14 @@ std::string Bodies() {
 }
 
 Files RunFiles(const std::string& folder) {
-  std::string activations = "client,thread,cause,release_ns,start_ns,end_ns,charged_ns\n";
+  std::string activations = "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n";
   std::string dispatches = "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n";
   for (int i = 0; i < 40; ++i) {
     const std::string start = std::to_string(i * 1'000'000),
                       end = std::to_string(i * 1'000'000 + 9);
-    activations += "r/planner,0,input," + start + "," + start + "," + end + ",400000\n" +
-                   "r/controller,0,time," + start + "," + end + "," + end + ",1000\n" +
-                   "r/planner,3,thread," + start + "," + start + "," + end + ",9\n";
+    activations += "r/planner,0,input," + start + "," + start + "," + end + ",400000,7,900\n" +
+                   "r/controller,0,time," + start + "," + end + "," + end + ",1000,15,0\n" +
+                   "r/planner,3,thread," + start + "," + start + "," + end + ",9,1,0\n";
     dispatches += "r/planner #3," + start + "," + end + "," + start + "," + end + "\ndynamics," +
                   start + "," + end + "," + start + "," + end + "\n";
   }
@@ -165,6 +169,23 @@ std::string Report(const std::string& folder, const std::string& page_path, bool
   return error.empty() ? "" : "the page was not written: " + error;
 }
 
+// What `tcsim fit` makes of it, a scenario can be given.
+std::string Fit(const std::string& folder, const std::string& costs_path) {
+  const auto read = fit::ReadMeasuredRun(folder);
+  if (const auto* error = std::get_if<LoadError>(&read)) {
+    if (error->message.find(folder) != std::string::npos) return {};
+    return "a refusal of fit does not name the folder: " + Visible(error->message);
+  }
+  const auto& run = std::get<fit::MeasuredRun>(read);
+  const auto fits = fit::FitAll(run);
+  if (fit::FitTable(run, fits).empty()) return "the table of fit is empty";
+  static_cast<void>(fit::FitWarnings(run, fits));
+  std::ofstream(costs_path) << fit::FragmentOf(run, fits);
+  const auto loaded = LoadOverlay(costs_path);
+  const auto* error = std::get_if<LoadError>(&loaded);
+  return error == nullptr ? "" : "what fit writes cannot be read: " + Visible(error->message);
+}
+
 }  // namespace
 
 Tally FuzzResults(int count, std::uint64_t seed) {
@@ -194,6 +215,9 @@ Tally FuzzResults(int count, std::uint64_t seed) {
     const auto wrong = tally.Count(
         [&](bool* refused) { return Report(root / "run", root / "page.html", refused); });
     if (wrong.has_value()) SayWrong("results", number, *wrong, damaged);
+    const auto unfit =
+        tally.Count([&](bool*) { return Fit(root / "run", root / "costs.yaml"); });
+    if (unfit.has_value()) SayWrong("results", number, *unfit, damaged);
     fs::remove_all(root / "run");
   }
   fs::remove_all(root);

@@ -124,7 +124,7 @@ bool NamesItsPlace(const std::string& message, const std::string& path) {
 // What is wrong with how the loader takes the scenario, or nothing; `refused` is told apart by the
 // first character.
 std::string Load(const std::string& path, const std::vector<std::string>& set, bool* refused) {
-  const auto loaded = LoadScenario(path, {.set = set, .duration = {}, .drift = {}, .seed = {}});
+  const auto loaded = LoadScenario(path, {.overlays = {}, .set = set, .duration = {}, .drift = {}, .seed = {}});
   const auto* error = std::get_if<LoadError>(&loaded);
   *refused = error != nullptr;
   if (error == nullptr) return {};
@@ -153,6 +153,15 @@ Tally FuzzScenarios(int count, std::uint64_t seed) {
     }
     const std::string path = folder.Write("damaged.yaml", text);
     const auto wrong = tally.Count([&](bool* refused) { return Load(path, set, refused); });
+    // Any file is read as an overlay, though what it says may then be refused.
+    const auto lost = tally.Count([&](bool* no_overlay) {
+      const auto overlay = LoadOverlay(path);
+      const auto* error = std::get_if<LoadError>(&overlay);
+      *no_overlay = error != nullptr;
+      const bool is_told = error == nullptr || NamesItsPlace(error->message, path);
+      return is_told ? "" : "a refusal does not say where: " + Visible(error->message);
+    });
+    if (lost.has_value()) SayWrong("scenarios", number, *lost, text);
     if (wrong.has_value()) {
       SayWrong("scenarios", number, *wrong + (set.empty() ? "" : " with --set " + Visible(set[0])),
                text);

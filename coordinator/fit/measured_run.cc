@@ -1,0 +1,106 @@
+#include "coordinator/fit/measured_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "coordinator/report/csv.h"
+#include "coordinator/report/text.h"
+
+namespace tcs::fit {
+
+namespace {
+
+using Json = nlohmann::json;
+using report::CsvFields;
+
+// Far more than any run has, and so little that sums of it are numbers yet.
+constexpr double kMost = 1e18;
+
+std::optional<double> ToCount(std::string_view text) {
+  const std::optional<std::int64_t> value = report::ToInteger(text);
+  if (!value || *value < 0 || static_cast<double>(*value) > kMost) return {};
+  return static_cast<double>(*value);
+}
+
+double CountIn(const Json& json, const char* key) {
+  const double value = json.at(key).get<double>();
+  return value >= 0 && value <= kMost ? std::floor(value) : 0;
+}
+
+// ROBOT/CLIENT, as scenarios have them.
+bool IsName(const std::string& name) {
+  constexpr std::string_view kAllowed =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./";
+  const std::size_t slash = name.find('/');
+  return slash != std::string::npos && slash == name.rfind('/') && slash > 0 &&
+         slash + 1 < name.size() && name.find_first_not_of(kAllowed) == std::string::npos;
+}
+
+LoadError NotCounted(const std::string& folder) {
+  return LoadError{fmt::format(
+      "{} does not tell of calls and allocations; make the run again with --for-fit", folder)};
+}
+
+LoadResult<MeasuredRun> FromSummary(const std::string& folder) {
+  const std::string path = folder + "/summary.json";
+  const std::optional<std::string> text = report::ReadFile(path);
+  if (!text) {
+    return LoadError{fmt::format(
+        "{} has no summary.json: give the folder of a run that has ended, one made by `tcsim run "
+        "SCENARIO --for-fit --out {}`",
+        folder, folder)};
+  }
+  MeasuredRun run;
+  run.folder = folder;
+  try {
+    const Json json = Json::parse(*text);
+    if (json.value("accounting", "") == "fixed") {
+      return LoadError{fmt::format(
+          "{} is of a run with --accounting fixed, whose charges were set, not measured; make one "
+          "without, with --for-fit",
+          folder)};
+    }
+    json.at("scenario").get_to(run.scenario);
+    for (const auto& [name, entry] : json.at("clients").items()) {
+      if (!entry.contains("calls") || !entry.contains("allocations")) return NotCounted(folder);
+      if (!IsName(name)) return LoadError{path + " is damaged; make the run again"};
+      MeasuredClient& client = run.clients[name];
+      client.whole = {CountIn(entry, "charged_ns"), CountIn(entry, "calls"),
+                      CountIn(entry, "allocations")};
+      client.speed = json.at("robots").at(entry.at("robot").get<std::string>()).at("speed");
+    }
+  } catch (const Json::exception&) {
+    return LoadError{path + " is damaged; make the run again"};
+  }
+  return run;
+}
+
+}  // namespace
+
+LoadResult<MeasuredRun> ReadMeasuredRun(const std::string& folder) {
+  LoadResult<MeasuredRun> result = FromSummary(folder);
+  MeasuredRun* run = std::get_if<MeasuredRun>(&result);
+  if (run == nullptr) return result;
+  const std::string path = folder + "/activations.csv";
+  const auto take = [run](const CsvFields& fields) {
+    const auto client = run->clients.find(std::string(fields[0]));
+    const auto charged = ToCount(fields[1]), calls = ToCount(fields[2]),
+               allocations = ToCount(fields[3]);
+    if (client == run->clients.end() || !charged || !calls || !allocations) return false;
+    client->second.activations.push_back({*charged, *calls, *allocations});
+    return true;
+  };
+  const auto read = report::ReadCsv(path, {"client", "charged_ns", "calls", "allocations"}, take);
+  if (const auto* error = std::get_if<LoadError>(&read)) return *error;
+  if (const auto unusable = std::get<std::int64_t>(read); unusable > 0) {
+    run->warnings.push_back(
+        fmt::format("{} has {} of no use, left out", path, report::Count(unusable, "line")));
+  }
+  return result;
+}
+
+}  // namespace tcs::fit

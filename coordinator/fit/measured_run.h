@@ -1,0 +1,29 @@
+// What a result folder tells of what its clients did and were charged: summary.json and
+// activations.csv of `tcsim run --for-fit`.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coordinator/fit/costs.h"
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::fit {
+
+struct MeasuredClient {
+  double speed = 1;  // of its robot, to the host's
+  Work whole;
+  std::vector<Work> activations;  // that had ended by the run's end
+};
+
+struct MeasuredRun {
+  std::string folder, scenario;
+  std::map<std::string, MeasuredClient> clients;  // by ROBOT/CLIENT
+  std::vector<std::string> warnings;
+};
+
+// The error says what to do about a folder that nothing can be fitted to.
+[[nodiscard]] LoadResult<MeasuredRun> ReadMeasuredRun(const std::string& folder);
+
+}  // namespace tcs::fit
