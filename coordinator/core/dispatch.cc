@@ -10,6 +10,7 @@
 #include "coordinator/core/engine.h"
 #include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
+#include "coordinator/host/starvation_watch.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "shm/clock_page.h"
@@ -25,8 +26,6 @@ constexpr int kMostBriefTurns = 100;
 // How often a thread is looked at that has no clock yet.
 constexpr std::int64_t kLookTurnNs = 50'000'000;
 constexpr int kStartTurns = 600;
-// A thread that has not had the CPU for so long: others have it. The next look takes twice as long.
-constexpr std::int64_t kStarvedNs = 20'000'000;
 
 }  // namespace
 
@@ -209,12 +208,40 @@ void Engine::Settle(Task& task) {
   RecordRun(task, start, busy_until);
 }
 
+// The thread has a turn for the call that it has made, from when it was there to make it. True once
+// it must have run, and come back from the kernel: real time that has passed may be the host's.
+bool Engine::HasMadeCall(Task& task, int* turns) {
+  if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns &&
+      (ThreadState(task.tid) != 'R' || IsInUserMode(task.tid) || ++*turns > kMostBriefTurns)) {
+    task.brief_done = true;
+    return true;
+  }
+  if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
+    task.brief_id = 0;
+    task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
+  }
+  return false;
+}
+
+// The thread has not registered in so many turns. True if it is not waited for any more.
+bool Engine::GivesUpStart(Task& task, int turns) {
+  if (NeverRegisters(task)) {
+    Lower(task.tid);
+    EndTask(task, {task.reached_ns});
+    return true;
+  }
+  if (turns < kStartTurns) return false;
+  report_.error = fmt::format(
+      "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
+      "set-uid?",
+      ProgramOf(task.process->pid), task.process->name);
+  return true;
+}
+
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0;
-  std::uint64_t looked_tsc = host_cpu_.stop_tsc();
-  double starved_ticks = kStarvedNs * ticks_per_ns_;
-  std::int64_t looked_at_ns = -1;
+  StarvationWatch starvation(host_cpu_.stop_tsc(), ticks_per_ns_);
   held_turns_ = 0;
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
@@ -224,42 +251,17 @@ void Engine::AwaitStop(Task& task) {
     if (PollWhileRunning(task, asked_ns)) return;
     if (!preempted_) continue;
     preempted_ = false;
-    if (static_cast<double>(host_cpu_.stop_tsc() - looked_tsc) > starved_ticks) {
-      const std::int64_t had_ns = HostClockOf(task);
-      if (had_ns >= 0 && had_ns == std::exchange(looked_at_ns, had_ns)) {
-        LowerUnknownThreads();
-        starved_ticks *= 2;
-      }
-      looked_tsc = host_cpu_.stop_tsc();
+    const std::uint64_t now_tsc = host_cpu_.stop_tsc();
+    if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
+      LowerUnknownThreads();
     }
     if (task.is_brief) {
-      // A turn of its own for the call, from when the thread was there to make it.
-      // It must have run, and come back from the kernel: real time that has passed may be the
-      // host's.
-      if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns &&
-          (ThreadState(task.tid) != 'R' || IsInUserMode(task.tid) ||
-           ++brief_turns > kMostBriefTurns)) {
-        task.brief_done = true;
-        return;
-      }
-      if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
-        task.brief_id = 0;
-        task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
-      }
+      if (HasMadeCall(task, &brief_turns)) return;
       continue;
     }
     if (task.slot < 0) {
-      if (NeverRegisters(task)) {
-        Lower(task.tid);
-        EndTask(task, {task.reached_ns});
-        return;
-      }
-      if (++starting_turns < kStartTurns) continue;
-      report_.error = fmt::format(
-          "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
-          "set-uid?",
-          ProgramOf(task.process->pid), task.process->name);
-      return;
+      if (GivesUpStart(task, ++starting_turns)) return;
+      continue;
     }
     const Meter::Found found =
         host_cpu_.Look(task, running_horizon_ns_ + task.process->frozen_ns, CpuClockOf(task));

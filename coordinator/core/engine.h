@@ -127,6 +127,8 @@ class Engine {
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
   void GoOnBesideWoken();
+  bool HasMadeCall(Task& task, int* turns);
+  bool GivesUpStart(Task& task, int turns);
   void AwaitStop(Task& task);
   std::int64_t NsToLook(Task& task);
   void Settle(Task& task);

@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "coordinator/host/settlement.h"
-#include "coordinator/policy/stolen_time.h"
+#include "coordinator/host/stolen_time.h"
 
 namespace tcs {
 

@@ -2,7 +2,7 @@
 //
 // The TSC also counts what others took. So whenever much of it has passed unchecked the thread's
 // own CPU clock is asked, and the difference taken out. What is on both clocks and yet was not the
-// thread's tells by the coordinator's timer (policy/stolen_time.h).
+// thread's tells by the coordinator's timer (stolen_time.h).
 #pragma once
 
 #include "coordinator/host/meter.h"

@@ -1,4 +1,4 @@
-#include "coordinator/policy/stolen_time.h"
+#include "coordinator/host/stolen_time.h"
 
 #include <gtest/gtest.h>
 
