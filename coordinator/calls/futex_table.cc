@@ -90,11 +90,11 @@ FutexTable::Thread FutexTable::MostUrgent(const FutexKey& word, std::uint32_t bi
   const auto queue = queues_.find(word);
   if (queue == queues_.end()) return kNobody;
   Thread best = kNobody;
-  int best_priority = 0;
+  std::int64_t best_priority = 0;
   for (const Thread thread : queue->second) {
     const Waiting& waiting = waiting_.at(thread);
     if ((waiting.bits & bits) == 0 || waiting.expected_lock.has_value()) continue;
-    const int priority = priority_of_(thread);
+    const std::int64_t priority = priority_of_(thread);
     if (best != kNobody && priority <= best_priority) continue;
     best = thread;
     best_priority = priority;

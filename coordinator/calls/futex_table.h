@@ -22,7 +22,7 @@ class FutexTable {
   using Thread = int;
   static constexpr Thread kNobody = -1;
   // A thread's priority as it is now; higher is more urgent.
-  using PriorityOf = std::function<int(Thread)>;
+  using PriorityOf = std::function<std::int64_t(Thread)>;
 
   explicit FutexTable(PriorityOf priority_of) : priority_of_(std::move(priority_of)) {}
 

@@ -63,19 +63,23 @@ Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);
+  if (process.deadline_ns > 0) {
+    SchedulerOf(task).SetClientDeadline(task.order, process.deadline_ns, task.reached_ns);
+  }
   SetState(task, TaskState::kStarting);
   Refresh(*process.robot);
   return &task;
 }
 
 Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                      std::int64_t at_ns, const Process* maker) {
+                      std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker) {
   Process& process = PlaceForProcess();
   process.pid = pid;
   process.parent = parent;
   process.robot = robot;
   process.name = name;
   process.priority = priority;
+  process.deadline_ns = deadline_ns;
   process.pidfd = OpenPidfd(pid);
   if (maker != nullptr) {
     process.client = maker->client;
@@ -117,7 +121,8 @@ Task* Engine::KnownTask(pid_t tid) {
 }
 
 Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns) {
-  return NewTask(pid, parent, maker.robot, maker.name, maker.priority, at_ns, &maker);
+  return NewTask(pid, parent, maker.robot, maker.name, maker.priority, maker.deadline_ns, at_ns,
+                 &maker);
 }
 
 // Whatever the thread waits for, it waits no longer.

@@ -121,13 +121,20 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
   const bool goes_first = outside && task.state == TaskState::kWaiting &&
                           SchedulerOf(task).PreemptsOnWakeup(task.order);
   if (outside && reads && !task.waits_for_messages) NoteLateness(task, moment.ns, goes_first);
-  if (task.state == TaskState::kWaiting) {
+  const bool waited = task.state == TaskState::kWaiting;
+  if (waited) {
     ++task.activations;
     NoteReleased(task, reason, moment.ns);
-    SchedulerOf(task).StartTurn(task.order);
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
+  if (waited) {
+    // Where somebody more urgent ran on, the kernel's timer would still have been in time.
+    const bool timed = reason == shm::WakeReason::kDeadline;
+    const std::int64_t released_ns =
+        timed ? std::min(task.deadline_ns, task.reached_ns) : task.reached_ns;
+    SchedulerOf(task).WakeUp(task.order, released_ns, outside);
+  }
   // Others may have come further: what is due later than its own time it gets then.
   if (task.waits_for_messages) {
     task.messages_until_ns =

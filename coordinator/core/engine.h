@@ -209,7 +209,12 @@ class Engine {
   static const SchedulingParameters& ParametersOf(const Task& task) {
     return SchedulerOf(task).ParametersOf(task.order);
   }
-  static int PriorityOf(const Task& task) { return SchedulerOf(task).PriorityOf(task.order); }
+  static RobotScheduler::Priority PriorityOf(const Task& task) {
+    return SchedulerOf(task).PriorityOf(task.order);
+  }
+  static std::int64_t MaySchedule(const Task& asking, const Task& task,
+                                  const SchedulingParameters& wanted);
+  std::int64_t Schedule(const Task& asking, Task& task, const SchedulingParameters& wanted);
   static std::int64_t MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
                                     std::int64_t priority);
   std::int64_t SetPriority(const Task& asking, Task& task, std::int64_t policy,
@@ -392,7 +397,7 @@ class Engine {
   Task* TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
   void ProcessEnded(std::size_t index, Moment moment);
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                std::int64_t at_ns, const Process* maker = nullptr);
+                std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker = nullptr);
   Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
   Task& PlaceForTask();
   Process& PlaceForProcess();

@@ -162,7 +162,8 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
     Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
          "): threads wait for each other in real time");
   }
-  Task* task = NewTask(pid, getpid(), launch.robot, client.name, client.priority, at_ns);
+  Task* task = NewTask(pid, getpid(), launch.robot, client.name, client.priority,
+                       client.deadline.ns(), at_ns);
   launch.process = task->process;
   launch.process->started_at_ns = task->reached_ns;
   launch.process->is_client = true;

@@ -1,6 +1,7 @@
 // Calls to the scheduler that are made without the C library: the robot's scheduler answers them,
 // with the errors of the kernel's.
 #include <errno.h>
+#include <limits.h>
 #include <linux/sched.h>
 #include <sched.h>
 #include <sys/syscall.h>
@@ -26,6 +27,18 @@ struct Attributes {
 constexpr std::uint32_t kPageSize = 4096, kFirstAttributes = 48, kWholeAttributes = 56;
 static_assert(sizeof(Attributes) == kFirstAttributes);
 
+// A period that is not given is as long as the deadline. Times beyond all bounds are no times.
+DeadlineParameters DeadlineOf(const Attributes& attributes) {
+  const auto time = [](std::uint64_t ns) {
+    return static_cast<std::int64_t>(ns) < 0 ? 0 : static_cast<std::int64_t>(ns);
+  };
+  if (attributes.policy != SCHED_DEADLINE) return {};
+  const std::uint64_t period = attributes.period == 0 ? attributes.deadline : attributes.period;
+  return {.runtime_ns = time(attributes.runtime),
+          .deadline_ns = time(attributes.deadline),
+          .period_ns = time(period)};
+}
+
 }  // namespace
 
 std::int64_t Engine::SetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
@@ -47,13 +60,16 @@ std::int64_t Engine::SetAttributesRaw(Task& task, Task& of, const TrappedCall& c
   if (!Read(task, call.args[1], &attributes)) return -EFAULT;
   if (static_cast<std::int32_t>(attributes.policy) < 0) return -EINVAL;
   if ((attributes.flags & ~std::uint64_t{SCHED_FLAG_ALL}) != 0) return -EINVAL;
-  std::int64_t policy = attributes.policy;
-  if ((attributes.flags & SCHED_FLAG_RESET_ON_FORK) != 0) policy |= SCHED_RESET_ON_FORK;
-  if ((attributes.flags & SCHED_FLAG_KEEP_POLICY) != 0) policy = shm::kKeepPolicy;
-  std::int64_t priority = attributes.priority;
-  if ((attributes.flags & SCHED_FLAG_KEEP_PARAMS) != 0) priority = ParametersOf(of).priority;
-  // SCHED_DEADLINE, which robots have not got here, is refused like on a kernel without it.
-  return SetPriority(task, of, policy, priority);
+  SchedulingParameters wanted = ParametersOf(of);
+  if ((attributes.flags & SCHED_FLAG_KEEP_POLICY) == 0) {
+    wanted.policy = static_cast<int>(attributes.policy);
+    wanted.resets_on_fork = (attributes.flags & SCHED_FLAG_RESET_ON_FORK) != 0;
+  }
+  if ((attributes.flags & SCHED_FLAG_KEEP_PARAMS) == 0) {
+    wanted.priority = static_cast<int>(std::min<std::uint32_t>(attributes.priority, INT_MAX));
+    wanted.deadline = DeadlineOf(attributes);
+  }
+  return Schedule(task, of, wanted);
 }
 
 std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedCall& call) {
@@ -70,6 +86,11 @@ std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedC
   answer.first.policy = static_cast<std::uint32_t>(parameters.policy);
   answer.first.flags = parameters.resets_on_fork ? SCHED_FLAG_RESET_ON_FORK : 0;
   answer.first.priority = static_cast<std::uint32_t>(parameters.priority);
+  if (parameters.policy == SCHED_DEADLINE) {
+    answer.first.runtime = static_cast<std::uint64_t>(parameters.deadline.runtime_ns);
+    answer.first.deadline = static_cast<std::uint64_t>(parameters.deadline.deadline_ns);
+    answer.first.period = static_cast<std::uint64_t>(parameters.deadline.period_ns);
+  }
   return WriteMemory(task.process->pid, call.args[1], &answer, size) ? 0 : -EFAULT;
 }
 

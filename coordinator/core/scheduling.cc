@@ -4,6 +4,8 @@
 #include <limits.h>
 #include <sched.h>
 
+#include <algorithm>
+
 #include "coordinator/core/engine.h"
 #include "coordinator/core/scheduling_rights.h"
 
@@ -11,16 +13,30 @@ namespace tcs {
 
 namespace {
 
-bool IsValid(int policy, std::int64_t priority) {
-  if (IsRealTime(policy)) return priority >= 1 && priority <= 99;
-  return (policy == SCHED_OTHER || policy == SCHED_BATCH || policy == SCHED_IDLE) && priority == 0;
+// The kernel's bounds, of sched_deadline_period_min_us and sched_deadline_period_max_us too.
+constexpr std::int64_t kLeastRuntimeNs = 1024, kLeastPeriodNs = 100'000,
+                       kMostPeriodNs = (std::int64_t{1} << 22) * 1000;
+
+bool IsValid(const DeadlineParameters& wanted) {
+  return wanted.runtime_ns >= kLeastRuntimeNs && wanted.deadline_ns >= wanted.runtime_ns &&
+         wanted.period_ns >= wanted.deadline_ns && wanted.period_ns >= kLeastPeriodNs &&
+         wanted.period_ns <= kMostPeriodNs;
 }
 
+bool IsValid(const SchedulingParameters& wanted) {
+  if (IsRealTime(wanted.policy)) return wanted.priority >= 1 && wanted.priority <= 99;
+  if (wanted.priority != 0) return false;
+  if (wanted.policy == SCHED_DEADLINE) return IsValid(wanted.deadline);
+  return wanted.policy == SCHED_OTHER || wanted.policy == SCHED_BATCH ||
+         wanted.policy == SCHED_IDLE;
+}
+
+// As far as sched_setscheduler and sched_setparam can say it; the policy is a valid number.
 SchedulingParameters Wanted(const SchedulingParameters& now, std::int64_t policy,
                             std::int64_t priority) {
   const bool keeps = policy == shm::kKeepPolicy;
   return {.policy = keeps ? now.policy : static_cast<int>(policy & ~SCHED_RESET_ON_FORK),
-          .priority = static_cast<int>(priority),
+          .priority = static_cast<int>(std::clamp<std::int64_t>(priority, -1, INT_MAX)),
           .resets_on_fork = keeps ? now.resets_on_fork : (policy & SCHED_RESET_ON_FORK) != 0};
 }
 
@@ -50,28 +66,47 @@ void Engine::LeaveLock(Task& task) {
   if (owner != RobotScheduler::kNobody) FindPriority(TaskAt(owner));
 }
 
+std::int64_t Engine::MaySchedule(const Task& asking, const Task& task,
+                                 const SchedulingParameters& wanted) {
+  if (!IsValid(wanted)) return -EINVAL;
+  if (!MaySetScheduling(asking.tid, task.tid, ParametersOf(task), wanted)) return -EPERM;
+  if (wanted.policy != SCHED_DEADLINE) return 0;
+  if (!SchedulerOf(task).MayRunAnywhere(task.order)) return -EPERM;
+  return SchedulerOf(task).Admits(task.order, wanted.deadline) ? 0 : -EBUSY;
+}
+
+std::int64_t Engine::Schedule(const Task& asking, Task& task, const SchedulingParameters& wanted) {
+  if (const std::int64_t error = MaySchedule(asking, task, wanted); error != 0) return error;
+  const std::int64_t now = std::max(asking.reached_ns, task.reached_ns);
+  SchedulerOf(task).SetParameters(task.order, wanted, now);
+  FindPriority(task);
+  if (IsRunnable(task)) Requeue(task);
+  return 0;
+}
+
 std::int64_t Engine::MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
                                    std::int64_t priority) {
-  const SchedulingParameters& now = ParametersOf(task);
-  const SchedulingParameters wanted = Wanted(now, policy, priority);
   if (policy != shm::kKeepPolicy && (policy < 0 || policy > INT_MAX)) return -EINVAL;
-  if (!IsValid(wanted.policy, priority)) return -EINVAL;
-  return MaySetScheduling(asking.tid, task.tid, now, wanted) ? 0 : -EPERM;
+  return MaySchedule(asking, task, Wanted(ParametersOf(task), policy, priority));
 }
 
 std::int64_t Engine::SetPriority(const Task& asking, Task& task, std::int64_t policy,
                                  std::int64_t priority) {
-  if (const std::int64_t error = MayPrioritize(asking, task, policy, priority); error != 0) {
-    return error;
-  }
-  SchedulerOf(task).SetParameters(task.order, Wanted(ParametersOf(task), policy, priority));
-  FindPriority(task);
-  return 0;
+  if (policy != shm::kKeepPolicy && (policy < 0 || policy > INT_MAX)) return -EINVAL;
+  return Schedule(asking, task, Wanted(ParametersOf(task), policy, priority));
 }
 
 std::int64_t Engine::SetAffinity(const Task& asking, Task& task, std::uint64_t cores) {
   if (!MaySetAffinity(asking.tid, task.tid)) return -EPERM;
-  return SchedulerOf(task).SetCores(task.order, cores) ? 0 : -EINVAL;
+  RobotScheduler& scheduler = SchedulerOf(task);
+  const std::uint64_t before = scheduler.CoresOf(task.order);
+  if (!scheduler.SetCores(task.order, cores)) return -EINVAL;
+  // What it was promised was promised of all cores.
+  if (ParametersOf(task).policy == SCHED_DEADLINE && !scheduler.MayRunAnywhere(task.order)) {
+    scheduler.SetCores(task.order, before);
+    return -EBUSY;
+  }
+  return 0;
 }
 
 // `tid` as the program knows it.

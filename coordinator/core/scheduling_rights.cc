@@ -30,6 +30,7 @@ bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
                       const SchedulingParameters& wanted) {
   const Credentials credentials = ReadCredentials(asking);
   if (IsPrivileged(credentials)) return true;
+  if (wanted.policy == SCHED_DEADLINE) return false;
   if (IsRealTime(wanted.policy)) {
     const rlim_t most = LimitOf(tid, RLIMIT_RTPRIO);
     if (wanted.policy != now.policy && most == 0) return false;

@@ -9,7 +9,8 @@
 
 namespace tcs {
 
-// Threads by their kernel numbers. True for who has CAP_SYS_NICE.
+// Threads by their kernel numbers. True for who has CAP_SYS_NICE; SCHED_DEADLINE is for nobody
+// else.
 bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
                       const SchedulingParameters& wanted);
 bool MaySetAffinity(pid_t asking, pid_t tid);

@@ -131,6 +131,7 @@ struct Process {
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;
+  std::int64_t deadline_ns = 0;  // its client's, under scheduler: edf; 0: none
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
   bool patch_vdso = false, dds_endpoints = false;
   // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the

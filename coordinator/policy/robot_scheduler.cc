@@ -8,20 +8,24 @@ namespace tcs {
 
 namespace {
 
-constexpr int kRealTimeBand = 1'000'000, kIdleBand = -1'000'000;
+// Deadlines are before half of the time that there is.
+constexpr RobotScheduler::Priority kDeadlineBand = INT64_MAX, kRealTimeBand = 1'000'000,
+                                   kIdleBand = -1'000'000;
+constexpr std::int64_t kLatestDeadlineNs = INT64_MAX / 2;
 constexpr int kMostOwners = 64;  // in a chain of who is blocked on whom; a circle ends there
 constexpr std::int64_t kQuantumNs = 1'000'000, kRoundRobinQuantumNs = 100'000'000;
 // How far a core may run past what others could send to a more urgent thread on it.
 constexpr std::int64_t kGrainNs = 100'000;
 
-std::int64_t QuantumOf(const SchedulingParameters& parameters) {
-  if (parameters.policy == SCHED_FIFO) return RobotScheduler::kNever;
-  return parameters.policy == SCHED_RR ? kRoundRobinQuantumNs : kQuantumNs;
+// Of processor time, in millionths.
+std::int64_t Bandwidth(const DeadlineParameters& parameters) {
+  if (parameters.runtime_ns == 0) return 0;
+  return parameters.runtime_ns * 1'000'000 / parameters.period_ns;  // of seconds at most
 }
+constexpr std::int64_t kMostBandwidth = 950'000;  // per core
 
-int OwnPriority(const SchedulingParameters& parameters, int client_priority) {
-  if (IsRealTime(parameters.policy)) return kRealTimeBand + parameters.priority;
-  return client_priority + (parameters.policy == SCHED_IDLE ? kIdleBand : 0);
+RobotScheduler::Priority OfDeadline(std::int64_t deadline_ns) {
+  return kDeadlineBand - std::min(deadline_ns, kLatestDeadlineNs);
 }
 
 bool Allows(std::uint64_t cores, std::size_t core) { return (cores >> (core & 63) & 1) != 0; }
@@ -69,8 +73,58 @@ void RobotScheduler::Remove(Thread thread) {
   }
 }
 
-void RobotScheduler::SetParameters(Thread thread, const SchedulingParameters& parameters) {
+bool RobotScheduler::HasDeadline(const Entity& entity) {
+  return entity.parameters.policy == SCHED_DEADLINE ||
+         (entity.parameters.policy == SCHED_OTHER && entity.client_deadline_ns > 0);
+}
+
+RobotScheduler::Priority RobotScheduler::OwnPriority(const Entity& entity) {
+  const SchedulingParameters& parameters = entity.parameters;
+  if (HasDeadline(entity)) return OfDeadline(entity.server.deadline_ns());
+  if (IsRealTime(parameters.policy)) return kRealTimeBand + parameters.priority;
+  return entity.client_priority + (parameters.policy == SCHED_IDLE ? kIdleBand : 0);
+}
+
+RobotScheduler::Priority RobotScheduler::PriorityIfWoken(const Entity& entity,
+                                                         std::int64_t now_ns) const {
+  if (!HasDeadline(entity)) return entity.priority;
+  return std::max(entity.inherited, OfDeadline(entity.server.DeadlineIfWoken(now_ns)));
+}
+
+std::int64_t RobotScheduler::QuantumOf(const Entity& entity) {
+  if (entity.parameters.policy == SCHED_FIFO || HasDeadline(entity)) return kNever;
+  return entity.parameters.policy == SCHED_RR ? kRoundRobinQuantumNs : kQuantumNs;
+}
+
+void RobotScheduler::StartServer(Entity& entity, std::int64_t now_ns) {
+  if (!HasDeadline(entity)) return;
+  const bool is_own = entity.parameters.policy == SCHED_DEADLINE;
+  entity.server.Start(is_own ? entity.parameters.deadline
+                             : DeadlineParameters{.deadline_ns = entity.client_deadline_ns},
+                      now_ns);
+}
+
+void RobotScheduler::SetParameters(Thread thread, const SchedulingParameters& parameters,
+                                   std::int64_t now_ns) {
+  ChargeBudgetOf(thread);
   At(thread).parameters = parameters;
+  StartServer(At(thread), now_ns);
+}
+
+void RobotScheduler::SetClientDeadline(Thread thread, std::int64_t deadline_ns,
+                                       std::int64_t now_ns) {
+  At(thread).client_deadline_ns = deadline_ns;
+  StartServer(At(thread), now_ns);
+  FindEffectivePriority(thread);
+}
+
+bool RobotScheduler::Admits(Thread thread, const DeadlineParameters& parameters) const {
+  std::int64_t promised = Bandwidth(parameters);
+  for (const Entity& entity : entities_) {
+    if (entity.thread == thread || entity.parameters.policy != SCHED_DEADLINE) continue;
+    promised += Bandwidth(entity.parameters.deadline);
+  }
+  return promised <= kMostBandwidth * static_cast<std::int64_t>(cores_.size());
 }
 
 bool RobotScheduler::SetCores(Thread thread, std::uint64_t allowed) {
@@ -82,7 +136,9 @@ bool RobotScheduler::SetCores(Thread thread, std::uint64_t allowed) {
 
 void RobotScheduler::Inherit(Thread child, Thread creator) {
   const Entity& from = At(creator);
-  const bool starts_anew = from.parameters.resets_on_fork && IsRealTime(from.parameters.policy);
+  const int policy = from.parameters.policy;
+  const bool starts_anew =
+      policy == SCHED_DEADLINE || (from.parameters.resets_on_fork && IsRealTime(policy));
   At(child).parameters = starts_anew ? SchedulingParameters{} : from.parameters;
   At(child).parameters.resets_on_fork = false;
   SetCores(child, from.allowed);
@@ -94,10 +150,12 @@ bool RobotScheduler::FindEffectivePriority(Thread thread) {
   bool changed = false;
   Entity* next = Find(thread);
   for (int i = 0; next != nullptr && i < kMostOwners; ++i) {
-    int priority = OwnPriority(next->parameters, next->client_priority);
+    next->inherited = kNoPriority;
     for (const Entity& waiter : entities_) {
-      if (waiter.blocked_on == next->thread) priority = std::max(priority, waiter.priority);
+      if (waiter.blocked_on != next->thread) continue;
+      next->inherited = std::max(next->inherited, waiter.priority);
     }
+    const Priority priority = std::max(OwnPriority(*next), next->inherited);
     if (priority != next->priority) {
       next->priority = priority;
       queue_.SetPriority(next->thread, priority);
@@ -110,6 +168,7 @@ bool RobotScheduler::FindEffectivePriority(Thread thread) {
 
 void RobotScheduler::Enqueue(Thread thread, std::int64_t from_ns, bool goes_first) {
   const Entity& entity = At(thread);
+  if (HasDeadline(entity)) from_ns = std::max(from_ns, entity.server.throttled_until_ns());
   queue_.Add({thread, entity.priority, from_ns, entity.allowed, goes_first});
 }
 
@@ -154,16 +213,58 @@ void RobotScheduler::Dispatch(std::size_t core, Thread thread) {
   cores_[core].running = thread;
   cores_[core].priority = entity.priority;
   cores_[core].sharing = queue_.CountOf(entity.priority);
+  cores_[core].charged_to_ns = progress_[core];
+}
+
+// What the core's thread has run since it was charged last. Where that is all that it has, its next
+// deadline is its next period's, and it runs no earlier.
+void RobotScheduler::ChargeBudget(Core& core, std::int64_t now_ns) {
+  const std::int64_t ran_ns = now_ns - std::exchange(core.charged_to_ns, now_ns);
+  Entity* entity = Find(core.running);
+  if (entity == nullptr || entity->parameters.policy != SCHED_DEADLINE) return;
+  entity->server.Spend(ran_ns, now_ns);
+  FindEffectivePriority(entity->thread);
+}
+
+void RobotScheduler::ChargeBudgetOf(Thread thread) {
+  for (std::size_t core = 0; core < cores_.size(); ++core) {
+    if (cores_[core].running == thread) ChargeBudget(cores_[core], progress_[core]);
+  }
+}
+
+void RobotScheduler::WakeUp(Thread thread, std::int64_t now_ns, bool is_release) {
+  Entity& entity = At(thread);
+  entity.turn_ns = 0;
+  if (!HasDeadline(entity)) return;
+  ChargeBudgetOf(thread);
+  const bool has_budget = entity.parameters.policy == SCHED_DEADLINE;
+  if (!has_budget && !is_release && now_ns < entity.server.deadline_ns()) return;
+  entity.server.WakeUp(now_ns);
+  FindEffectivePriority(thread);
+}
+
+// Under SCHED_DEADLINE it has done what it had to do in this period.
+void RobotScheduler::Yield(Thread thread) {
+  Entity* entity = Find(thread);
+  if (entity == nullptr || entity->parameters.policy != SCHED_DEADLINE) {
+    return queue_.Rotate(thread);
+  }
+  ChargeBudgetOf(thread);
+  for (std::size_t core = 0; core < cores_.size(); ++core) {
+    if (cores_[core].running == thread) entity->server.GiveUp(progress_[core]);
+  }
+  FindEffectivePriority(thread);
 }
 
 void RobotScheduler::Stop(std::size_t core, std::int64_t advanced_ns, std::int64_t used_ns) {
   Core& its = cores_[core];
   TCS_CHECK(its.running != kNobody && advanced_ns >= 0);
   ShareOut(its, advanced_ns);
+  ChargeBudget(its, progress_[core]);
   Entity* ran = Find(std::exchange(its.running, kNobody));
   if (ran == nullptr) return;  // it has ended
   ran->turn_ns += used_ns;
-  if (ran->turn_ns < QuantumOf(ran->parameters)) return;
+  if (ran->turn_ns < QuantumOf(*ran)) return;
   ran->turn_ns = 0;
   if (queue_.IsReady(ran->thread)) its.turn_over = ran->thread;
 }
@@ -184,7 +285,7 @@ void RobotScheduler::ShareOut(const Core& core, std::int64_t ns) {
 }
 
 bool RobotScheduler::CanPreemptOnWakeup(const Entity& entity) const {
-  return preempts_on_wakeup_ && entity.parameters.policy == SCHED_OTHER;
+  return preempts_on_wakeup_ && entity.parameters.policy == SCHED_OTHER && !HasDeadline(entity);
 }
 
 bool RobotScheduler::PreemptsOnWakeup(const Entity& entity, std::int64_t after_ns) const {
@@ -212,11 +313,12 @@ bool RobotScheduler::MakesRoom(std::size_t core, const Entity& woken, std::int64
 std::int64_t RobotScheduler::LatenessOf(Thread woken, std::int64_t sent_ns,
                                         std::int64_t earliest_ns, bool goes_first) const {
   const Entity& entity = At(woken);
+  const Priority priority = PriorityIfWoken(entity, sent_ns);
   std::size_t best = cores_.size();
   std::int64_t start = kNever;
   for (std::size_t core = 0; core < cores_.size(); ++core) {
     if (!Allows(entity.allowed, core)) continue;
-    if (!queue_.YieldsTo(core, entity.priority, goes_first)) continue;
+    if (!queue_.YieldsTo(core, priority, goes_first)) continue;
     const std::int64_t its = std::max({progress_[core], sent_ns, earliest_ns});
     if (its < start) best = core;
     start = std::min(start, its);
@@ -224,13 +326,12 @@ std::int64_t RobotScheduler::LatenessOf(Thread woken, std::int64_t sent_ns,
   if (best == cores_.size()) return 0;
   // One that goes first only since its equals have run on had its turn to wait for.
   const std::int64_t late_ns = start - sent_ns;
-  const bool counts =
-      queue_.YieldsTo(best, entity.priority, false) || PreemptsOnWakeup(entity, -late_ns);
+  const bool counts = queue_.YieldsTo(best, priority, false) || PreemptsOnWakeup(entity, -late_ns);
   return counts ? late_ns : 0;
 }
 
 std::int64_t RobotScheduler::TurnEnd(std::size_t core, const Entity& running) const {
-  const std::int64_t quantum = QuantumOf(running.parameters);
+  const std::int64_t quantum = QuantumOf(running);
   return quantum == kNever ? kNever : progress_[core] + quantum - running.turn_ns;
 }
 
@@ -252,12 +353,13 @@ std::int64_t RobotScheduler::PastInput(std::size_t core, std::int64_t input_ns,
 std::int64_t RobotScheduler::HorizonForInput(std::size_t core, const Entity& running,
                                              const Entity& other, const Wait& wait,
                                              const Outlook& outlook) const {
-  if (other.priority > running.priority) {
-    if (!wait.for_input && !(wait.for_thread && cores_.size() > 1)) return kNever;
-    return std::min(PastInput(core, outlook.input_ns, outlook), outlook.output_ns);
-  }
-  if (other.priority < running.priority || running.parameters.policy == SCHED_FIFO ||
-      !wait.for_input || !CanPreemptOnWakeup(other) || !queue_.YieldsTo(core, other.priority)) {
+  if (!wait.for_input && !(wait.for_thread && cores_.size() > 1)) return kNever;
+  const std::int64_t first =
+      std::min(PastInput(core, outlook.input_ns, outlook), outlook.output_ns);
+  const Priority priority = PriorityIfWoken(other, std::max(first, progress_[core]));
+  if (priority > running.priority) return first;
+  if (priority < running.priority || QuantumOf(running) == kNever || !wait.for_input ||
+      !CanPreemptOnWakeup(other) || !queue_.YieldsTo(core, other.priority)) {
     return kNever;
   }
   const std::int64_t from =
@@ -274,14 +376,22 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
   const Entity& running = At(thread);
   const std::uint32_t process = wait_of_(thread).process;
   const std::int64_t now = progress_[core];
-  const bool is_fifo = running.parameters.policy == SCHED_FIFO;
+  const bool takes_turns = QuantumOf(running) != kNever;
   const std::int64_t turn_end = TurnEnd(core, running);
   const bool yields = queue_.YieldsTo(core, running.priority);
-  std::int64_t limit = limit_ns, idle = limit_ns;
+  std::int64_t limit = limit_ns, idle = HasDeadline(running) ? 0 : limit_ns;
+  if (HasDeadline(running) && running.server.budget_ns() != kNever) {
+    limit = std::min(limit, now + running.server.budget_ns());
+  }
   for (const Entity& other : entities_) {
     const Wait wait = wait_of_(other.thread);
-    const bool precedes = other.priority > running.priority;
-    if (wait.process == process || precedes) limit = std::min(limit, wait.next_expiry_ns);
+    const auto precedes_at = [&](std::int64_t ns) {
+      return PriorityIfWoken(other, std::max(ns, now)) > running.priority;
+    };
+    // A timer that releases it does so in time, also where it is not its turn yet.
+    if (wait.process == process || HasDeadline(other) || precedes_at(wait.next_expiry_ns)) {
+      limit = std::min(limit, wait.next_expiry_ns);
+    }
     idle = std::min(idle, wait.next_expiry_ns);
     if (&other == &running) continue;
     if (!wait.waits) {
@@ -289,7 +399,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
       continue;
     }
     idle = std::min(idle, wait.until_ns);
-    if (other.priority == running.priority && !is_fifo) {
+    if (other.priority == running.priority && takes_turns) {
       const std::int64_t due = std::min(wait.until_ns, wait.next_expiry_ns);
       if (due != kNever && yields && PreemptsOnWakeup(other, due - now)) {
         if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(due, now));
@@ -300,7 +410,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
     if (wait.for_input) {
       idle = std::min({idle, PastInput(core, outlook.input_ns, outlook), outlook.output_ns});
     }
-    if (precedes) limit = std::min(limit, wait.until_ns);
+    if (precedes_at(wait.until_ns)) limit = std::min(limit, wait.until_ns);
     limit = std::min(limit, HorizonForInput(core, running, other, wait, outlook));
   }
   limit = std::min(limit, queue_.NextToPrecede(core));
@@ -316,9 +426,10 @@ std::int64_t RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread th
   for (const Entity& other : entities_) {
     const Wait wait = wait_of_(other.thread);
     if (wait.process != process || !wait.waits || wait.own_until_ns == kNever) continue;
-    if (other.priority < running.priority) continue;
     const std::int64_t due = wait.own_until_ns;
-    limit = std::min(limit, other.priority > running.priority ? due : std::max(due, turn_end));
+    const Priority priority = PriorityIfWoken(other, due);
+    if (priority < running.priority) continue;
+    limit = std::min(limit, priority > running.priority ? due : std::max(due, turn_end));
   }
   return limit;
 }

@@ -2,13 +2,20 @@
 // (its horizon), whether a thread that wakes preempts one that runs, when a turn is over, and which
 // priority a thread has in effect.
 //
-// Priority. SCHED_FIFO and SCHED_RR precede all others by their POSIX priorities; SCHED_OTHER and
+// Priority. Threads with deadlines precede all others, the earliest deadline first: those of
+// SCHED_DEADLINE, which are throttled where they have used up their budgets (deadline_server.h),
+// and those of a client that has a relative deadline, whose threads of SCHED_OTHER have it from
+// each release on. SCHED_FIFO and SCHED_RR follow by their POSIX priorities; SCHED_OTHER and
 // SCHED_BATCH have their client's; SCHED_IDLE follows them all. The effective priority is the
 // greatest of a thread's own and of those that are blocked on it (priority inheritance).
-// Quantum. Equals take turns: of 1 ms, of 100 ms under SCHED_RR, without end under SCHED_FIFO.
+//
+// Quantum. Equals take turns: of 1 ms, of 100 ms under SCHED_RR, without end under SCHED_FIFO and
+// where there is a deadline.
+//
 // Wake-up preemption. As on Linux, a thread of SCHED_OTHER that time or input wakes goes before its
 // equals if it has used less than its fair share of late (share.h). A thread that its own robot's
 // threads wake waits for its turn.
+//
 // Horizon. A core runs on until the first instant at which another thread of the robot could take
 // it over: as far as that is known, which is when waits end by themselves and when the rest of the
 // scheduler tree could send input.
@@ -23,7 +30,8 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/deadline_server.h"
+#include "coordinator/policy/run_queue.h"
 #include "coordinator/policy/scheduling_parameters.h"
 #include "coordinator/policy/share.h"
 
@@ -31,10 +39,11 @@ namespace tcs {
 
 class RobotScheduler {
  public:
-  using Thread = FixedPriority::Thread;
-  using Turn = FixedPriority::Turn;
-  static constexpr Thread kNobody = FixedPriority::kNobody;
-  static constexpr std::uint64_t kEveryCore = FixedPriority::kEveryCore;
+  using Thread = RunQueue::Thread;
+  using Priority = RunQueue::Priority;
+  using Turn = RunQueue::Turn;
+  static constexpr Thread kNobody = RunQueue::kNobody;
+  static constexpr std::uint64_t kEveryCore = RunQueue::kEveryCore;
   static constexpr std::int64_t kNever = INT64_MAX;
 
   // What a thread does while it has no core, as whoever keeps its waits knows it.
@@ -78,28 +87,35 @@ class RobotScheduler {
   // A new thread of a client with that priority, not ready yet.
   void Add(Thread thread, int client_priority);
   void Remove(Thread thread);
+  // Its client's: each release has its deadline so much later.
+  void SetClientDeadline(Thread thread, std::int64_t deadline_ns, std::int64_t now_ns);
 
   // What threads ask for. Whoever changes parameters or who is blocked on whom has the effective
   // priorities found anew.
   const SchedulingParameters& ParametersOf(Thread thread) const { return At(thread).parameters; }
-  void SetParameters(Thread thread, const SchedulingParameters& parameters);
+  void SetParameters(Thread thread, const SchedulingParameters& parameters, std::int64_t now_ns);
+  // Admission control: whether the robot's cores can keep the deadlines that it has promised if the
+  // thread has these, too. As on Linux a twentieth of the cores is left to others.
+  bool Admits(Thread thread, const DeadlineParameters& parameters) const;
   std::uint64_t CoresOf(Thread thread) const { return At(thread).allowed; }  // of those there are
+  bool MayRunAnywhere(Thread thread) const { return CoresOf(thread) == EveryCore(); }
   // False, and nothing has changed, if the robot has none of these cores.
   bool SetCores(Thread thread, std::uint64_t allowed);
-  // The child gets what its creator has.
+  // The child gets what its creator has, but no deadline.
   void Inherit(Thread child, Thread creator);
   void SetBlockedOn(Thread thread, Thread owner);  // kNobody: it waits for nobody any more
   Thread BlockedOn(Thread thread) const { return At(thread).blocked_on; }
   // Of the thread, and of those that it is blocked on, one after the other. True if one is another.
   bool FindEffectivePriority(Thread thread);
-  int PriorityOf(Thread thread) const { return At(thread).priority; }
+  Priority PriorityOf(Thread thread) const { return At(thread).priority; }
 
   // The thread is ready, from then on, and keeps its place if it was; it is not any more.
   void Enqueue(Thread thread, std::int64_t from_ns, bool goes_first);
   void Dequeue(Thread thread) { queue_.Remove(thread); }
-  // Its wait is over: it has a whole turn before it.
-  void StartTurn(Thread thread) { At(thread).turn_ns = 0; }
-  void Yield(Thread thread) { queue_.Rotate(thread); }
+  // Its wait is over: it has a whole turn before it. If time or another robot has ended the wait,
+  // that is a release, and so it is if its deadline is over.
+  void WakeUp(Thread thread, std::int64_t now_ns, bool is_release);
+  void Yield(Thread thread);
   // It has slept after it ran for so long, so that what it still runs begins another turn.
   void SleptSince(Thread thread, std::int64_t ran_ns);
 
@@ -133,21 +149,27 @@ class RobotScheduler {
                           bool goes_first) const;
 
  private:
+  static constexpr Priority kNoPriority = INT64_MIN;
+
   struct Entity {
     Thread thread = kNobody;
     int client_priority = 0;
     SchedulingParameters parameters;
     std::uint64_t allowed = kEveryCore;
-    int priority = 0;  // effective
+    Priority priority = 0;             // effective
+    Priority inherited = kNoPriority;  // from those that are blocked on it
     Thread blocked_on = kNobody;
-    std::int64_t turn_ns = 0;  // had since its equals last had a turn
-    Share share;               // of what it and its equals have had
+    std::int64_t client_deadline_ns = 0;  // 0: none
+    DeadlineServer server;                // while it has a deadline
+    std::int64_t turn_ns = 0;             // had since its equals last had a turn
+    Share share;                          // of what it and its equals have had
   };
   struct Core {
     Thread running = kNobody;
-    int priority = 0;            // of the running one when it began,
-    std::size_t sharing = 0;     // and how many were ready at that
-    Thread turn_over = kNobody;  // goes behind its equals
+    Priority priority = 0;           // of the running one when it began,
+    std::size_t sharing = 0;         // and how many were ready at that
+    std::int64_t charged_to_ns = 0;  // its budget
+    Thread turn_over = kNobody;      // goes behind its equals
     std::int64_t next_action_ns = kNever;
   };
 
@@ -156,6 +178,14 @@ class RobotScheduler {
   const Entity& At(Thread thread) const;
   Entity& At(Thread thread) { return const_cast<Entity&>(std::as_const(*this).At(thread)); }
   std::uint64_t EveryCore() const;
+
+  static bool HasDeadline(const Entity& entity);
+  static Priority OwnPriority(const Entity& entity);
+  Priority PriorityIfWoken(const Entity& entity, std::int64_t now_ns) const;
+  static std::int64_t QuantumOf(const Entity& entity);
+  void StartServer(Entity& entity, std::int64_t now_ns);
+  void ChargeBudget(Core& core, std::int64_t now_ns);
+  void ChargeBudgetOf(Thread thread);
 
   std::int64_t DueAt(std::int64_t progress_ns) const;
   std::int64_t TurnEnd(std::size_t core, const Entity& running) const;
@@ -169,7 +199,7 @@ class RobotScheduler {
 
   bool preempts_on_wakeup_;
   WaitOf wait_of_;
-  FixedPriority queue_;
+  RunQueue queue_;
   std::vector<Core> cores_;
   std::vector<std::int64_t> progress_;  // of the cores
   std::vector<Entity> entities_;

@@ -1,14 +1,28 @@
-// What a thread has asked its robot's scheduler for, in POSIX's terms.
+// What a thread has asked its robot's scheduler for, in POSIX's and Linux's terms.
 #pragma once
 
 #include <sched.h>
 
+#include <cstdint>
+
+#ifndef SCHED_DEADLINE
+#define SCHED_DEADLINE 6  // of <linux/sched.h>
+#endif
+
 namespace tcs {
+
+// Of SCHED_DEADLINE: so much processor time in each period, by so long after its beginning.
+struct DeadlineParameters {
+  std::int64_t runtime_ns = 0;  // 0: without end, and no period is kept
+  std::int64_t deadline_ns = 0;
+  std::int64_t period_ns = 0;
+};
 
 struct SchedulingParameters {
   int policy = SCHED_OTHER;
   int priority = 0;             // of SCHED_FIFO and SCHED_RR: 1 to 99
   bool resets_on_fork = false;  // SCHED_RESET_ON_FORK: what it creates is an ordinary thread
+  DeadlineParameters deadline{};
 
   // As sched_getscheduler says it.
   int PolicyAndFlag() const { return policy | (resets_on_fork ? SCHED_RESET_ON_FORK : 0); }

@@ -47,6 +47,31 @@ DdsTransport LoadDdsTransport(const YamlValue& value) {
              Suggest(text, {"endpoints", "sockets"}, "ways of DDS"));
 }
 
+SchedulerPolicy LoadScheduler(const YamlValue& value) {
+  const std::string text = value.AsText();
+  if (text == "fixed_priority") return SchedulerPolicy::kFixedPriority;
+  if (text == "edf") return SchedulerPolicy::kEarliestDeadlineFirst;
+  value.Fail("is the unknown '" + text + "'; " +
+             Suggest(text, {"fixed_priority", "edf"}, "schedulers"));
+}
+
+// A controller that nobody knows the deadlines of would come last, behind all that have some.
+void LoadDeadline(const YamlMap::Entry& entry, const YamlMap& map, SchedulerPolicy scheduler,
+                  ClientSpec* client) {
+  const YamlValue* deadline = map.Find("deadline");
+  const bool is_edf = scheduler == SchedulerPolicy::kEarliestDeadlineFirst;
+  if (deadline != nullptr && !is_edf) {
+    deadline->Fail("is for robots with `scheduler: edf`; by fixed priorities it means nothing");
+  }
+  if (deadline != nullptr) {
+    client->deadline = deadline->AsPositiveDuration();
+  } else if (is_edf && client->client_class == ClientClass::kPeriodic) {
+    entry.value.Fail(
+        "has no deadline, which `scheduler: edf` orders periodic clients by; add one, as in "
+        "deadline: 10ms");
+  }
+}
+
 std::vector<std::string> LoadCommand(const YamlValue& value, const Variables& variables) {
   std::vector<std::string> command;
   const std::vector<YamlValue> words = value.AsList("[./controller, --rate, 100]");
@@ -78,12 +103,13 @@ std::map<std::string, std::string> LoadEnvironment(const YamlValue& value,
 }
 
 ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
-                      const Variables& variables, const Scenario& scenario) {
+                      SchedulerPolicy scheduler, const Variables& variables,
+                      const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly({"command", "class", "priority", "body", "environment", "fixed_call_cost",
-                 "fixed_allocation_cost", "patch_vdso", "dds", "working_directory", "start",
-                 "after", "stop_signal", "stop_grace"});
+  map.AllowOnly({"command", "class", "priority", "deadline", "body", "environment",
+                 "fixed_call_cost", "fixed_allocation_cost", "patch_vdso", "dds",
+                 "working_directory", "start", "after", "stop_signal", "stop_grace"});
   ClientSpec client;
   client.name = robot + "/" + entry.key;
   client.working_directory = variables.scenario_directory;
@@ -92,6 +118,7 @@ ClientSpec LoadClient(const YamlMap::Entry& entry, const std::string& robot,
   if (const YamlValue* v = map.Find("priority")) {
     client.priority = static_cast<int>(v->AsInteger(0, 99));
   }
+  LoadDeadline(entry, map, scheduler, &client);
   if (const YamlValue* v = map.Find("body")) client.body = FindBody(*v, scenario);
   if (const YamlValue* v = map.Find("environment")) {
     client.environment = LoadEnvironment(*v, variables);
@@ -112,16 +139,17 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
                     const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly({"cpu", "clients"});
+  map.AllowOnly({"cpu", "scheduler", "clients"});
   RobotSpec robot;
   robot.name = entry.key;
   if (const YamlValue* cpu = map.Find("cpu")) LoadCpu(*cpu, &robot);
+  if (const YamlValue* v = map.Find("scheduler")) robot.scheduler = LoadScheduler(*v);
   const YamlValue& clients =
       map.Require("clients", "clients: {controller: {command: [./controller]}}");
   const YamlMap client_map = clients.AsMap();
   if (client_map.entries().empty()) clients.Fail("is empty; a robot needs at least one client");
   for (const YamlMap::Entry& client : client_map.entries()) {
-    robot.clients.push_back(LoadClient(client, robot.name, variables, scenario));
+    robot.clients.push_back(LoadClient(client, robot.name, robot.scheduler, variables, scenario));
   }
   return robot;
 }

@@ -44,7 +44,8 @@ struct ClientSpec {
   ClientFolder folder = ClientFolder::kThere;
   std::string copied_folder;  // absolute; empty: none
   ClientClass client_class = ClientClass::kBestEffort;
-  int priority = 0;                                // higher runs first on its robot
+  int priority = 0;            // higher runs first on its robot
+  VirtualDuration deadline{};  // after each release, under kEarliestDeadlineFirst; 0: none
   std::map<std::string, std::string> environment;  // added to tcsim's own
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
@@ -68,11 +69,17 @@ inline std::string FileNameOf(const ClientSpec& client) {
   return name;
 }
 
+enum class SchedulerPolicy {
+  kFixedPriority,
+  kEarliestDeadlineFirst,  // among clients with deadlines, which precede all others
+};
+
 struct RobotSpec {
   std::string name;
   int cores = 1;
   double speed = 1.0;  // of one core, relative to the host's
   std::vector<ClientSpec> clients;
+  SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
 };
 
 struct UdpEndpoint {

@@ -234,7 +234,7 @@ TEST(RobotScheduler, AChildHasItsCreatorsParametersUnlessTheyAreReset) {
   EXPECT_EQ(robot.scheduler.ParametersOf(kTwo).policy, SCHED_FIFO);
   EXPECT_EQ(robot.scheduler.CoresOf(kTwo), 2u);
   robot.scheduler.SetParameters(kOne,
-                                {.policy = SCHED_FIFO, .priority = 50, .resets_on_fork = true});
+                                {.policy = SCHED_FIFO, .priority = 50, .resets_on_fork = true}, 0);
   robot.Add(kThree);
   robot.scheduler.Inherit(kThree, kOne);
   EXPECT_EQ(robot.scheduler.ParametersOf(kThree).policy, SCHED_OTHER);

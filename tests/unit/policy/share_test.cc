@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/run_queue.h"
 
 namespace tcs {
 namespace {
@@ -74,7 +74,7 @@ class Core {
       Wake();
       robot_.Assign({now_ns_});
       const int running = robot_.Next(0).thread;
-      if (running == FixedPriority::kNobody) {
+      if (running == RunQueue::kNobody) {
         ++now_ns_;
         continue;
       }
@@ -93,7 +93,7 @@ class Core {
       if (robot_.IsReady(static_cast<int>(i)) || thread.due_ns > now_ns_) continue;
       thread.left_ns = thread.computes_ns;
       thread.turn_ns = 0;
-      robot_.Add({static_cast<int>(i), kPriority, now_ns_, FixedPriority::kEveryCore,
+      robot_.Add({static_cast<int>(i), kPriority, now_ns_, RunQueue::kEveryCore,
                   thread.share.GoesFirst()});
     }
   }
@@ -118,7 +118,7 @@ class Core {
     }
   }
 
-  FixedPriority robot_{1};
+  RunQueue robot_{1};
   std::vector<Thread> threads_;
   std::int64_t now_ns_ = 0;
 };

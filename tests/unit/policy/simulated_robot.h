@@ -28,7 +28,7 @@ class SimulatedRobot {
   void Add(Thread thread, SchedulingParameters parameters = {}, int client_priority = 0) {
     scheduler.Add(thread, client_priority);
     waits[thread].process = static_cast<std::uint32_t>(thread);
-    scheduler.SetParameters(thread, parameters);
+    scheduler.SetParameters(thread, parameters, 0);
     scheduler.FindEffectivePriority(thread);
   }
   void AddReady(Thread thread, SchedulingParameters parameters = {}, int client_priority = 0) {
@@ -45,7 +45,7 @@ class SimulatedRobot {
   }
   void Wake(Thread thread, std::int64_t at_ns, bool goes_first) {
     waits[thread] = {.process = waits[thread].process};
-    scheduler.StartTurn(thread);
+    scheduler.WakeUp(thread, at_ns, true);
     scheduler.Enqueue(thread, at_ns, goes_first);
     scheduler.Assign(kNever);
   }
@@ -63,6 +63,7 @@ class SimulatedRobot {
     ComeTo(core, progress_[core] + ns);
     scheduler.Enqueue(thread, progress_[core], false);
     scheduler.Stop(core, ns, ns);
+    scheduler.Enqueue(thread, progress_[core], false);
     scheduler.EndTurn(core);
     scheduler.Assign(kNever);
   }

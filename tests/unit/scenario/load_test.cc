@@ -200,6 +200,16 @@ TEST_F(LoadTest, ClassesMayBeWrittenWithAnUnderscore) {
   EXPECT_EQ(scenario.robots[0].clients[0].client_class, ClientClass::kBestEffort);
 }
 
+TEST_F(LoadTest, DeadlinesGoWithTheEarliestDeadlineFirst) {
+  const std::string text = WithReplaced("priority: 80", "deadline: 4ms");
+  const Scenario scenario =
+      Load(WithReplaced("    cpu: {cores", "    scheduler: edf\n    cpu: {cores", text));
+  const RobotSpec& robot = scenario.robots[0];
+  EXPECT_EQ(robot.scheduler, SchedulerPolicy::kEarliestDeadlineFirst);
+  EXPECT_EQ(robot.clients[0].deadline, VirtualDuration::Milliseconds(4));
+  EXPECT_EQ(robot.clients[1].deadline, VirtualDuration{});
+}
+
 TEST_F(LoadTest, CommandsAreRelativeToTheFileWhereverTcsimRuns) {
   const auto before = std::filesystem::current_path();
   folder_.Write("s.yaml", kGoodScenario);

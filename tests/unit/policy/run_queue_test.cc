@@ -1,4 +1,4 @@
-#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/run_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -6,22 +6,22 @@ namespace tcs {
 namespace {
 
 constexpr int kPlanner = 1, kController = 2, kLogger = 3;
-constexpr int kNobody = FixedPriority::kNobody;
+constexpr int kNobody = RunQueue::kNobody;
 constexpr std::int64_t kNever = INT64_MAX;
 
-FixedPriority::Thread FirstOfOneCore(FixedPriority& robot) {
+RunQueue::Thread FirstOfOneCore(RunQueue& robot) {
   robot.Assign({0});
   return robot.Next(0).thread;
 }
 
-TEST(FixedPriority, NobodyRunsWhereNobodyIsReady) {
-  FixedPriority robot(1);
+TEST(RunQueue, NobodyRunsWhereNobodyIsReady) {
+  RunQueue robot(1);
   EXPECT_EQ(FirstOfOneCore(robot), kNobody);
   EXPECT_EQ(robot.Next(0).start_ns, kNever);
 }
 
-TEST(FixedPriority, TheMostUrgentRunsWheneverItBecameReady) {
-  FixedPriority robot(1);
+TEST(RunQueue, TheMostUrgentRunsWheneverItBecameReady) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
   robot.Add({kController, 80, 0});
   EXPECT_EQ(FirstOfOneCore(robot), kController);
@@ -29,8 +29,8 @@ TEST(FixedPriority, TheMostUrgentRunsWheneverItBecameReady) {
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
 }
 
-TEST(FixedPriority, AmongEqualsTheFirstReadyKeepsRunning) {
-  FixedPriority robot(1);
+TEST(RunQueue, AmongEqualsTheFirstReadyKeepsRunning) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
   robot.Add({kLogger, 10, 0});
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
@@ -39,8 +39,8 @@ TEST(FixedPriority, AmongEqualsTheFirstReadyKeepsRunning) {
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner) << "being ready twice must not cost its turn";
 }
 
-TEST(FixedPriority, EqualsTakeTurnsWhenRotated) {
-  FixedPriority robot(1);
+TEST(RunQueue, EqualsTakeTurnsWhenRotated) {
+  RunQueue robot(1);
   for (const int thread : {kPlanner, kLogger, kController}) robot.Add({thread, 10, 0});
   for (const int turn : {kPlanner, kLogger, kController, kPlanner, kLogger}) {
     EXPECT_EQ(FirstOfOneCore(robot), turn);
@@ -48,8 +48,8 @@ TEST(FixedPriority, EqualsTakeTurnsWhenRotated) {
   }
 }
 
-TEST(FixedPriority, RotatingDoesNotPassLessUrgentOnes) {
-  FixedPriority robot(1);
+TEST(RunQueue, RotatingDoesNotPassLessUrgentOnes) {
+  RunQueue robot(1);
   robot.Add({kController, 80, 0});
   robot.Add({kPlanner, 10, 0});
   robot.Rotate(kController);
@@ -57,10 +57,10 @@ TEST(FixedPriority, RotatingDoesNotPassLessUrgentOnes) {
   EXPECT_FALSE(robot.HasWaitingEqual(0));
 }
 
-TEST(FixedPriority, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
-  FixedPriority robot(1);
+TEST(RunQueue, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
+  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
   EXPECT_EQ(FirstOfOneCore(robot), kLogger);
   EXPECT_FALSE(robot.YieldsTo(0, 10)) << "one that goes first, too, waits for its turn";
   robot.Rotate(kLogger);
@@ -70,30 +70,30 @@ TEST(FixedPriority, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
   EXPECT_TRUE(robot.YieldsTo(0, 11, false));
 }
 
-TEST(FixedPriority, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {
-  FixedPriority robot(1);
+TEST(RunQueue, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
-  robot.Add({kController, 10, 0, FixedPriority::kEveryCore, true});
+  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
+  robot.Add({kController, 10, 0, RunQueue::kEveryCore, true});
   for (const int turn : {kLogger, kController, kPlanner}) {
     EXPECT_EQ(FirstOfOneCore(robot), turn);
     robot.Remove(turn);
   }
 }
 
-TEST(FixedPriority, WhoGoesFirstPrecedesNobodyMoreUrgent) {
-  FixedPriority robot(1);
+TEST(RunQueue, WhoGoesFirstPrecedesNobodyMoreUrgent) {
+  RunQueue robot(1);
   robot.Add({kController, 80, 0});
-  robot.Add({kLogger, 10, 0, FixedPriority::kEveryCore, true});
+  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   EXPECT_FALSE(robot.YieldsTo(0, 10));
   EXPECT_EQ(robot.NextToPrecede(0), kNever);
 }
 
-TEST(FixedPriority, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
-  FixedPriority robot(1);
+TEST(RunQueue, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 700, FixedPriority::kEveryCore, true});
+  robot.Add({kLogger, 10, 700, RunQueue::kEveryCore, true});
   robot.Assign({300});
   EXPECT_EQ(robot.Next(0).thread, kPlanner);
   EXPECT_EQ(robot.NextToPrecede(0), 700);
@@ -101,8 +101,8 @@ TEST(FixedPriority, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
   EXPECT_EQ(robot.Next(0).thread, kLogger);
 }
 
-TEST(FixedPriority, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
-  FixedPriority robot(1);
+TEST(RunQueue, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
+  RunQueue robot(1);
   robot.Add({kController, 80, 0});
   robot.Add({kPlanner, 10, 0});
   robot.SetPriority(kPlanner, 80);
@@ -113,15 +113,15 @@ TEST(FixedPriority, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
   EXPECT_FALSE(robot.IsReady(kLogger)) << "a priority makes nobody ready";
 }
 
-TEST(FixedPriority, RemovingOneThatIsNotReadyChangesNothing) {
-  FixedPriority robot(1);
+TEST(RunQueue, RemovingOneThatIsNotReadyChangesNothing) {
+  RunQueue robot(1);
   robot.Add({kPlanner, 10, 0});
   robot.Remove(kLogger);
   EXPECT_EQ(robot.size(), 1u);
 }
 
-TEST(FixedPriority, AThreadRunsNoEarlierThanItHasCome) {
-  FixedPriority robot(1);
+TEST(RunQueue, AThreadRunsNoEarlierThanItHasCome) {
+  RunQueue robot(1);
   robot.Add({kController, 80, 600});
   robot.Add({kPlanner, 10, 500});
   robot.Assign({500});
@@ -135,8 +135,8 @@ TEST(FixedPriority, AThreadRunsNoEarlierThanItHasCome) {
   EXPECT_EQ(robot.NextToPrecede(0), kNever);
 }
 
-TEST(FixedPriority, EachCoreRunsAThreadOfItsOwn) {
-  FixedPriority robot(2);
+TEST(RunQueue, EachCoreRunsAThreadOfItsOwn) {
+  RunQueue robot(2);
   for (const int thread : {kPlanner, kController, kLogger}) robot.Add({thread, 10, 0});
   robot.Assign({0, 0});
   EXPECT_EQ(robot.Next(0).thread, kPlanner);
@@ -147,8 +147,8 @@ TEST(FixedPriority, EachCoreRunsAThreadOfItsOwn) {
   EXPECT_FALSE(robot.HasWaitingEqual(0));
 }
 
-TEST(FixedPriority, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
-  FixedPriority robot(2);
+TEST(RunQueue, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
+  RunQueue robot(2);
   robot.Add({kPlanner, 10, 500});
   robot.Ran(1, kPlanner);
   robot.Assign({300, 500});
@@ -156,8 +156,8 @@ TEST(FixedPriority, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
   EXPECT_EQ(robot.Next(0).thread, kNobody);
 }
 
-TEST(FixedPriority, WhoWakesTakesTheIdleCore) {
-  FixedPriority robot(2);
+TEST(RunQueue, WhoWakesTakesTheIdleCore) {
+  RunQueue robot(2);
   robot.Add({kPlanner, 10, 500});
   robot.Ran(0, kPlanner);
   robot.Add({kController, 80, 500});
@@ -167,8 +167,8 @@ TEST(FixedPriority, WhoWakesTakesTheIdleCore) {
   EXPECT_EQ(robot.Next(1).start_ns, 500);
 }
 
-TEST(FixedPriority, WhoIsDisplacedMovesToAFreeCore) {
-  FixedPriority robot(2);
+TEST(RunQueue, WhoIsDisplacedMovesToAFreeCore) {
+  RunQueue robot(2);
   robot.Add({kPlanner, 10, 500});
   robot.Ran(0, kPlanner);
   robot.Add({kController, 80, 500, 1});  // only core 0
@@ -177,8 +177,8 @@ TEST(FixedPriority, WhoIsDisplacedMovesToAFreeCore) {
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
 }
 
-TEST(FixedPriority, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
-  FixedPriority robot(2);
+TEST(RunQueue, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
+  RunQueue robot(2);
   robot.Add({kPlanner, 10, 500});
   robot.Add({kLogger, 5, 500});
   robot.Ran(0, kPlanner);
@@ -189,8 +189,8 @@ TEST(FixedPriority, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
   EXPECT_EQ(robot.Next(1).thread, kPlanner) << "and not the logger";
 }
 
-TEST(FixedPriority, AffinityIsKept) {
-  FixedPriority robot(2);
+TEST(RunQueue, AffinityIsKept) {
+  RunQueue robot(2);
   robot.Add({kPlanner, 10, 0, 2});
   robot.Add({kLogger, 10, 0, 2});
   robot.Assign({0, 0});

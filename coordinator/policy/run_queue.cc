@@ -1,29 +1,29 @@
-#include "coordinator/policy/fixed_priority.h"
+#include "coordinator/policy/run_queue.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace tcs {
 
-std::vector<FixedPriority::Ready>::const_iterator FixedPriority::Find(Thread thread) const {
+std::vector<RunQueue::Ready>::const_iterator RunQueue::Find(Thread thread) const {
   return std::find_if(ready_.begin(), ready_.end(),
                       [thread](const Ready& ready) { return ready.thread == thread; });
 }
 
-bool FixedPriority::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
+bool RunQueue::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
 
-std::size_t FixedPriority::CountOf(int priority) const {
+std::size_t RunQueue::CountOf(Priority priority) const {
   return static_cast<std::size_t>(
       std::count_if(ready_.begin(), ready_.end(),
                     [priority](const Ready& ready) { return ready.priority == priority; }));
 }
 
-bool FixedPriority::Precedes(const Ready& one, const Ready& other) {
+bool RunQueue::Precedes(const Ready& one, const Ready& other) {
   return one.priority > other.priority ||
          (one.priority == other.priority && one.first && !other.first);
 }
 
-void FixedPriority::Add(const Ready& added) {
+void RunQueue::Add(const Ready& added) {
   if (const auto found = Find(added.thread); found != ready_.end()) {
     Ready& known = ready_[static_cast<std::size_t>(found - ready_.begin())];
     known.from_ns = added.from_ns;
@@ -35,17 +35,17 @@ void FixedPriority::Add(const Ready& added) {
   ready_.insert(behind, added);
 }
 
-void FixedPriority::Remove(Thread thread) {
+void RunQueue::Remove(Thread thread) {
   if (const auto found = Find(thread); found != ready_.end()) ready_.erase(found);
   std::replace(on_.begin(), on_.end(), thread, kNobody);
 }
 
-void FixedPriority::Rotate(Thread thread) {
+void RunQueue::Rotate(Thread thread) {
   const auto found = Find(thread);
   if (found != ready_.end()) SetPriority(thread, found->priority);
 }
 
-void FixedPriority::SetPriority(Thread thread, int priority) {
+void RunQueue::SetPriority(Thread thread, Priority priority) {
   const auto found = Find(thread);
   if (found == ready_.end()) return;
   Ready moved = *found;
@@ -55,25 +55,25 @@ void FixedPriority::SetPriority(Thread thread, int priority) {
   Add(moved);
 }
 
-void FixedPriority::SetAllowed(Thread thread, std::uint64_t allowed) {
+void RunQueue::SetAllowed(Thread thread, std::uint64_t allowed) {
   if (const auto found = Find(thread); found != ready_.end()) {
     ready_[static_cast<std::size_t>(found - ready_.begin())].allowed = allowed;
   }
 }
 
-bool FixedPriority::HasTurn(Thread thread) const {
+bool RunQueue::HasTurn(Thread thread) const {
   return std::any_of(turns_.begin(), turns_.end(),
                      [thread](const Turn& turn) { return turn.thread == thread; });
 }
 
-bool FixedPriority::StaysElsewhere(Thread thread, std::size_t core) const {
+bool RunQueue::StaysElsewhere(Thread thread, std::size_t core) const {
   const auto found = std::find(on_.begin(), on_.end(), thread);
   if (found == on_.end()) return false;
   const auto home = static_cast<std::size_t>(found - on_.begin());
   return home != core && turns_[home].thread == kNobody;
 }
 
-void FixedPriority::Choose(std::size_t core, std::int64_t progress_ns, bool keep_places) {
+void RunQueue::Choose(std::size_t core, std::int64_t progress_ns, bool keep_places) {
   Turn& turn = turns_[core];
   for (const Ready& ready : ready_) {
     if ((ready.allowed >> (core & 63) & 1) == 0 || HasTurn(ready.thread)) continue;
@@ -83,7 +83,7 @@ void FixedPriority::Choose(std::size_t core, std::int64_t progress_ns, bool keep
   }
 }
 
-void FixedPriority::Assign(const std::vector<std::int64_t>& progress_ns) {
+void RunQueue::Assign(const std::vector<std::int64_t>& progress_ns) {
   std::fill(turns_.begin(), turns_.end(), Turn{});
   if (turns_.size() == 1) return Choose(0, progress_ns[0], false);
   std::vector<std::size_t> cores(turns_.size());
@@ -97,7 +97,7 @@ void FixedPriority::Assign(const std::vector<std::int64_t>& progress_ns) {
   }
 }
 
-bool FixedPriority::HasWaitingEqual(std::size_t core) const {
+bool RunQueue::HasWaitingEqual(std::size_t core) const {
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return false;
   return std::any_of(ready_.begin(), ready_.end(), [&](const Ready& ready) {
@@ -106,13 +106,13 @@ bool FixedPriority::HasWaitingEqual(std::size_t core) const {
   });
 }
 
-bool FixedPriority::YieldsTo(std::size_t core, int priority, bool first) const {
+bool RunQueue::YieldsTo(std::size_t core, Priority priority, bool first) const {
   const auto own = Find(turns_[core].thread);
   return own == ready_.end() ||
          Precedes({.thread = kNobody, .priority = priority, .from_ns = 0, .first = first}, *own);
 }
 
-std::int64_t FixedPriority::NextToPrecede(std::size_t core) const {
+std::int64_t RunQueue::NextToPrecede(std::size_t core) const {
   std::int64_t next = INT64_MAX;
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return next;

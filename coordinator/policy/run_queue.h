@@ -1,4 +1,4 @@
-// Who runs on the virtual CPUs (cores) of one robot: the most urgent ready threads, wherever there
+// Which of a robot's ready threads run on its cores: those of the highest priority, wherever there
 // is a core for them; among equals the one that became ready first, until it waits or is rotated
 // behind them (SCHED_FIFO, and SCHED_RR at a quantum's end). One that is woken may go first, before
 // its equals, but not before one that has gone first and has its turn yet.
@@ -15,15 +15,17 @@
 
 namespace tcs {
 
-class FixedPriority {
+class RunQueue {
  public:
+  // Higher runs first. Fixed ones and those made of deadlines are in one order.
+  using Priority = std::int64_t;
   using Thread = int;
   static constexpr Thread kNobody = -1;
   static constexpr std::uint64_t kEveryCore = ~std::uint64_t{0};
 
   struct Ready {
     Thread thread;
-    int priority;
+    Priority priority;
     std::int64_t from_ns;                // runs no earlier
     std::uint64_t allowed = kEveryCore;  // cores; bit 0 is core 0
     bool first = false;                  // it goes before its equals, until it is rotated
@@ -34,7 +36,7 @@ class FixedPriority {
     std::int64_t start_ns = INT64_MAX;
   };
 
-  explicit FixedPriority(std::size_t cores) : on_(cores, kNobody), turns_(cores) {}
+  explicit RunQueue(std::size_t cores) : on_(cores, kNobody), turns_(cores) {}
 
   // Ready, behind its equals unless it goes first. A thread that is ready already keeps its place.
   void Add(const Ready& ready);
@@ -43,7 +45,7 @@ class FixedPriority {
   // Behind its equals, as after a yield or a quantum.
   void Rotate(Thread thread);
   // A ready thread moves behind its new equals; for one that is not ready nothing happens.
-  void SetPriority(Thread thread, int priority);
+  void SetPriority(Thread thread, Priority priority);
   // The same of the cores that it may run on; it keeps its place.
   void SetAllowed(Thread thread, std::uint64_t allowed);
   // The thread has had a turn on the core, and stays there.
@@ -59,8 +61,8 @@ class FixedPriority {
   std::int64_t NextToPrecede(std::size_t core) const;
   // Whether a thread of that priority would take the core from its thread if it became ready now,
   // and went before its equals.
-  bool YieldsTo(std::size_t core, int priority, bool first = true) const;
-  std::size_t CountOf(int priority) const;
+  bool YieldsTo(std::size_t core, Priority priority, bool first = true) const;
+  std::size_t CountOf(Priority priority) const;
 
   bool IsReady(Thread thread) const;
   std::size_t size() const { return ready_.size(); }
