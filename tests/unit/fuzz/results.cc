@@ -54,7 +54,8 @@ std::string Bodies() {
 }
 
 Files RunFiles(const std::string& folder) {
-  std::string activations = "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n";
+  std::string activations =
+      "client,thread,cause,release_ns,start_ns,end_ns,charged_ns,calls,allocations\n";
   std::string dispatches = "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n";
   for (int i = 0; i < 40; ++i) {
     const std::string start = std::to_string(i * 1'000'000),
@@ -215,8 +216,7 @@ Tally FuzzResults(int count, std::uint64_t seed) {
     const auto wrong = tally.Count(
         [&](bool* refused) { return Report(root / "run", root / "page.html", refused); });
     if (wrong.has_value()) SayWrong("results", number, *wrong, damaged);
-    const auto unfit =
-        tally.Count([&](bool*) { return Fit(root / "run", root / "costs.yaml"); });
+    const auto unfit = tally.Count([&](bool*) { return Fit(root / "run", root / "costs.yaml"); });
     if (unfit.has_value()) SayWrong("results", number, *unfit, damaged);
     fs::remove_all(root / "run");
   }

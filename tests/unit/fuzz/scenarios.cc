@@ -124,7 +124,8 @@ bool NamesItsPlace(const std::string& message, const std::string& path) {
 // What is wrong with how the loader takes the scenario, or nothing; `refused` is told apart by the
 // first character.
 std::string Load(const std::string& path, const std::vector<std::string>& set, bool* refused) {
-  const auto loaded = LoadScenario(path, {.overlays = {}, .set = set, .duration = {}, .drift = {}, .seed = {}});
+  const auto loaded =
+      LoadScenario(path, {.overlays = {}, .set = set, .duration = {}, .drift = {}, .seed = {}});
   const auto* error = std::get_if<LoadError>(&loaded);
   *refused = error != nullptr;
   if (error == nullptr) return {};
