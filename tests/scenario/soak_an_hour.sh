@@ -36,7 +36,9 @@ for name, client in summary["clients"].items():
     log = out / ("run/%s.err.log" % name.replace("/", "-"))
     assert client["wait_status"] == 0 and client["ended_at_ns"] >= seconds * 10**9, (name, client, log.read_text())
 rows = [line.split() for line in (out / "sizes").read_text().splitlines()]
-sizes = [(int(row[0]), int(row[1])) for row in rows if len(row) == 2]
+# From when its clients are there: before that it may wait for a processor.
+sizes = [(int(row[0]), int(row[1])) for row in rows if len(row) == 2 and int(row[1]) > 100]
+assert len(sizes) > 20, rows
 middle = len(sizes) // 3
 memory, fds = zip(*sizes)
 children = 100 * seconds // 36
