@@ -53,9 +53,9 @@ SocketError CannotBind(const UdpEndpoint& endpoint, int error) {
   }
 }
 
-std::variant<int, SocketError> Open() {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd >= 0) return fd;
+std::variant<UniqueFd, SocketError> Open() {
+  UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (fd) return fd;
   const int error = errno;
   return SocketError{std::string("cannot open a UDP socket: ") + std::strerror(error), error};
 }
@@ -68,7 +68,7 @@ std::variant<UdpSocket, SocketError> UdpSocket::Bind(const UdpEndpoint& endpoint
   std::variant<UdpSocket, SocketError> opened = ForSending();
   if (const auto* socket = std::get_if<UdpSocket>(&opened)) {
     // No SO_REUSEADDR: two programs on one UDP port would share its datagrams by chance.
-    if (bind(socket->fd_, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
+    if (bind(socket->fd(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0) {
       return CannotBind(endpoint, errno);
     }
   }
@@ -76,26 +76,15 @@ std::variant<UdpSocket, SocketError> UdpSocket::Bind(const UdpEndpoint& endpoint
 }
 
 std::variant<UdpSocket, SocketError> UdpSocket::ForSending() {
-  const auto opened = Open();
+  auto opened = Open();
   if (const auto* error = std::get_if<SocketError>(&opened)) return *error;
-  return UdpSocket(std::get<int>(opened));
-}
-
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
-UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
-UdpSocket::~UdpSocket() {
-  if (fd_ >= 0) close(fd_);
+  return UdpSocket(std::move(std::get<UniqueFd>(opened)));
 }
 
 UdpEndpoint UdpSocket::LocalEndpoint() const {
   sockaddr_in address{};
   socklen_t size = sizeof address;
-  getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+  getsockname(fd(), reinterpret_cast<sockaddr*>(&address), &size);
   return FromAddress(address);
 }
 
@@ -104,7 +93,7 @@ std::optional<SocketError> UdpSocket::SendTo(const UdpEndpoint& to, std::string_
   if (!address) return NotAnAddress(to);
   ssize_t sent;
   do {
-    sent = sendto(fd_, payload.data(), payload.size(), MSG_NOSIGNAL,
+    sent = sendto(fd(), payload.data(), payload.size(), MSG_NOSIGNAL,
                   reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
   } while (sent < 0 && errno == EINTR);
   if (sent >= 0) return std::nullopt;
@@ -124,7 +113,7 @@ std::variant<std::optional<Datagram>, SocketError> UdpSocket::Receive() {
   ssize_t size;
   do {
     socklen_t from_size = sizeof from;
-    size = recvfrom(fd_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from),
+    size = recvfrom(fd(), buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from),
                     &from_size);
   } while (size < 0 && errno == EINTR);
   if (size >= 0) {

@@ -7,8 +7,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 
+#include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
 
 namespace tcs {
@@ -30,12 +32,8 @@ class UdpSocket {
   // A socket for sending only; its port is the kernel's choice.
   [[nodiscard]] static std::variant<UdpSocket, SocketError> ForSending();
 
-  UdpSocket(UdpSocket&& other) noexcept;
-  UdpSocket& operator=(UdpSocket&& other) noexcept;
-  ~UdpSocket();
-
   // For epoll; stays the socket's.
-  int fd() const { return fd_; }
+  int fd() const { return fd_.get(); }
   // The address it is bound to; port 0 before the first send of a socket for sending.
   UdpEndpoint LocalEndpoint() const;
 
@@ -47,9 +45,9 @@ class UdpSocket {
   [[nodiscard]] std::variant<std::optional<Datagram>, SocketError> Receive();
 
  private:
-  explicit UdpSocket(int fd) : fd_(fd) {}
+  explicit UdpSocket(UniqueFd fd) : fd_(std::move(fd)) {}
 
-  int fd_ = -1;
+  UniqueFd fd_;
 };
 
 // Whether some socket of this machine gets what is sent to `endpoint`; true where that is not for

@@ -156,8 +156,7 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
 // For trials that are not to wait: who has the processors; empty if one is free.
 std::string WhoHasProcessors() {
   std::string taken;
-  const CpuClaim claim = ClaimCpu(false, &taken);
-  if (claim.fd >= 0) close(claim.fd);
+  ClaimCpu(false, &taken);  // and given back at once
   return taken;
 }
 

@@ -80,7 +80,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   process.name = name;
   process.priority = priority;
   process.deadline_ns = deadline_ns;
-  process.pidfd = OpenPidfd(pid);
+  process.pidfd.Reset(OpenPidfd(pid));
   if (maker != nullptr) {
     process.client = maker->client;
     process.call_cost_ns = maker->call_cost_ns;
@@ -90,8 +90,8 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.frozen_ns = maker->frozen_ns;
     process.shown_ns = maker->shown_ns;
   }
-  if (process.pidfd >= 0) {
-    reactor_.Add(process.pidfd, EPOLLIN, {Tag::kProcess, process.index});
+  if (process.pidfd) {
+    reactor_.Add(process.pidfd.get(), EPOLLIN, {Tag::kProcess, process.index});
   }
   Task* task = AddTask(process, pid, at_ns);
   // Children have no name of their own; their place in the order is the same in every run.
@@ -151,7 +151,7 @@ void Engine::LeaveWait(Task& task) {
 void Engine::EndTask(Task& task, Moment moment) {
   Process& process = *task.process;
   KeepUsageOf(task);
-  if (task.cpu_clock_fd >= 0) close(task.cpu_clock_fd);
+  task.cpu_clock_fd.Reset();
   if (task.slot >= 0) {
     report_.staleness_ns = std::max(report_.staleness_ns, StalenessOf(task));
     process.link->FreeSlot(task.slot);
@@ -187,9 +187,8 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   }
   KeepUsageOf(process);
   process.timer_fds.clear();
-  reactor_.Remove(process.pidfd);
-  close(process.pidfd);
-  process.pidfd = -1;
+  reactor_.Remove(process.pidfd.get());
+  process.pidfd.Reset();
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
   Process* parent = LivingProcess(process.parent);
   if (parent != nullptr) {

@@ -7,17 +7,15 @@
 #include <cstdint>
 
 #include "coordinator/core/task.h"
+#include "coordinator/os/unique_fd.h"
 
 namespace tcs {
 
 class Borrowed {
  public:
   Borrowed(const Task& task, int fd);
-  ~Borrowed();
-  Borrowed(const Borrowed&) = delete;
-  Borrowed& operator=(const Borrowed&) = delete;
 
-  int fd() const { return fd_; }  // -1: there is none of that number
+  int fd() const { return fd_.get(); }  // -1: there is none of that number
 
   // False for files and folders, and for what is no descriptor.
   bool CanWait() const;
@@ -37,7 +35,7 @@ class Borrowed {
   std::int64_t SocketTimeout(int option) const;
 
  private:
-  int fd_;
+  UniqueFd fd_;
 };
 
 }  // namespace tcs

@@ -32,8 +32,8 @@ constexpr int kStartTurns = 600;
 // The thread's own CPU clock; -1 if it cannot be read any more.
 std::int64_t Engine::HostClockOf(Task& task) {
   if (task.process->threads == 1) return ProcessCpuClockNs(task.tid);
-  if (task.cpu_clock_fd < 0) task.cpu_clock_fd = OpenThreadCpuClock(task.tid);
-  return ReadThreadCpuClock(task.cpu_clock_fd);
+  if (!task.cpu_clock_fd) task.cpu_clock_fd.Reset(OpenThreadCpuClock(task.tid));
+  return ReadThreadCpuClock(task.cpu_clock_fd.get());
 }
 
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {

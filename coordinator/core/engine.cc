@@ -36,12 +36,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
       end_ns_(scenario.duration.ns()) {}
 
-Engine::~Engine() {
-  for (const int fd : {memfd_, signals_, claim_.fd}) {
-    if (fd >= 0) close(fd);
-  }
-  for (const Listener& listener : listeners_) close(listener.fd);
-}
+Engine::~Engine() = default;
 
 void Engine::Warn(const std::string& text) {
   if (std::find(report_.warnings.begin(), report_.warnings.end(), text) == report_.warnings.end()) {

@@ -50,12 +50,12 @@ class Engine {
   std::string PrepareListener();
   // Where a client and its descendants register.
   struct Listener {
-    int fd;
+    UniqueFd fd;
     Process* client;
   };
   // Somebody who has not said yet what it wants.
   struct Connection {
-    int fd;
+    UniqueFd fd;
     Process* client;  // that its listener is for
   };
   std::string OpenListener();
@@ -162,7 +162,7 @@ class Engine {
   Reactor::Found OnTrap(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnCommand(Subject channel, std::uint32_t events, Moment moment);
   Reactor::Found OnSignal(Subject subject, std::uint32_t events, Moment moment);
-  Reactor::Found OnGraceRanOut(Subject timer, std::uint32_t events, Moment moment);
+  Reactor::Found OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
 
@@ -503,7 +503,7 @@ class Engine {
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
   shm::RunHeader* header_ = nullptr;  // in it
-  int memfd_ = -1, signals_ = -1;
+  UniqueFd memfd_, signals_;
   std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
@@ -530,7 +530,8 @@ class Engine {
   StopRequest stop_;
   bool reached_end_ = false;
   std::int64_t grace_began_ns_ = shm::kNeverNs;
-  bool grace_ran_out_ = false;                             // of real time
+  UniqueFd grace_timer_;                                   // of real time:
+  bool grace_ran_out_ = false;                             // it has
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
   bool notified_ = false, preempted_ = false;              // why the running thread was stopped

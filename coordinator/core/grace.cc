@@ -99,11 +99,11 @@ void Engine::LimitRealTime() {
   const double computing_ns = kMostRealFactor * speed * static_cast<double>(longest_ns);
   std::int64_t limit_ns = kLeastRealNs + static_cast<std::int64_t>(std::min(computing_ns, 1e18));
   if (stop_.asked()) limit_ns = std::min(limit_ns, kMostRealIfAskedNs);
-  const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
+  grace_timer_.Reset(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK));
   itimerspec when{};
   when.it_value = shm::ToTimespec(limit_ns);
-  timerfd_settime(timer, 0, &when, nullptr);
-  reactor_.Add(timer, EPOLLIN, {Tag::kGraceRanOut, static_cast<std::uint32_t>(timer)});
+  timerfd_settime(grace_timer_.get(), 0, &when, nullptr);
+  reactor_.Add(grace_timer_.get(), EPOLLIN, {Tag::kGraceRanOut});
 }
 
 std::int64_t Engine::KillTimeOf(const Process& process) const {

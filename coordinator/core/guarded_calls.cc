@@ -39,14 +39,9 @@ pid_t ProcessOfFd(int fd) {
 
 // The same of a client's.
 pid_t ProcessOfFd(pid_t client, int number) {
-  const int pidfd = OpenPidfd(client);
-  if (pidfd < 0) return 0;
-  const int fd = DuplicateFd(pidfd, number);
-  close(pidfd);
-  if (fd < 0) return 0;
-  const pid_t pid = ProcessOfFd(fd);
-  close(fd);
-  return pid;
+  const UniqueFd pidfd(OpenPidfd(client));
+  const UniqueFd fd(pidfd ? DuplicateFd(pidfd.get(), number) : -1);
+  return fd ? ProcessOfFd(fd.get()) : 0;
 }
 
 bool MaySignal(const Credentials& sender, pid_t receiver) {

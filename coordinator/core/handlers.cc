@@ -54,12 +54,11 @@ Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
 Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment moment) {
   const auto fd = static_cast<int>(subject.index);
   const auto found = std::find_if(connections_.begin(), connections_.end(),
-                                  [fd](const Connection& one) { return one.fd == fd; });
+                                  [fd](const Connection& one) { return one.fd.get() == fd; });
   if (found == connections_.end()) return {};  // it was cut off
-  const Connection connection = *found;
+  const Connection connection = std::move(*found);
   connections_.erase(found);
   const bool registers = Attach(fd, *connection.client, moment);
-  close(fd);
   return registers ? kConcernsAll : Reactor::Found{};
 }
 
@@ -101,7 +100,7 @@ Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) 
 
 Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
   signalfd_siginfo info;
-  if (read(signals_, &info, sizeof info) != sizeof info) return {};
+  if (read(signals_.get(), &info, sizeof info) != sizeof info) return {};
   // ^C is for the program that has the terminal.
   if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL && options_.output_directory.empty()) {
     return {};
@@ -110,8 +109,8 @@ Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
   return {.stops_running = true};
 }
 
-Reactor::Found Engine::OnGraceRanOut(Subject timer, std::uint32_t, Moment) {
-  close(static_cast<int>(timer.index));
+Reactor::Found Engine::OnGraceRanOut(Subject, std::uint32_t, Moment) {
+  grace_timer_.Reset();
   grace_ran_out_ = true;
   return {.stops_running = true};
 }

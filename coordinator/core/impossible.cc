@@ -87,14 +87,14 @@ void Engine::Expel(Process& process, const char* what) {
         fmt::format("{} (pid {}) has written what cannot be into the memory that it shares with "
                     "tcs ({}), and was ended; look for a pointer gone astray in it",
                     process.name, process.pid, what));
-  syscall(SYS_pidfd_send_signal, process.pidfd, SIGKILL, nullptr, 0);
+  syscall(SYS_pidfd_send_signal, process.pidfd.get(), SIGKILL, nullptr, 0);
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
     if (task->process != &process) continue;
     host_cpu_.active().LetRun(*task);
     if (task != running_) AwaitDeath(*task);
   }
-  pollfd end{process.pidfd, POLLIN, 0};
+  pollfd end{process.pidfd.get(), POLLIN, 0};
   poll(&end, 1, kDeathMs);
 }
 

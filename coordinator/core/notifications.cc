@@ -40,7 +40,7 @@ void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
   task.waits_for_fds = true;
   task.wait_number = ++wait_counter_;
   for (std::size_t i = 0; i < count; ++i) {
-    const int fd = DuplicateFd(task.process->pidfd, fds[i].fd);
+    const int fd = DuplicateFd(task.process->pidfd.get(), fds[i].fd);
     if (fd < 0) continue;
     const std::uint32_t events = fds[i].events | EPOLLONESHOT;
     if (reactor_.Modify(fd, events, SubjectOfWait(task))) {

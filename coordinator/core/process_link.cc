@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <new>
+#include <optional>
+#include <utility>
 
 #include "coordinator/os/shared_memory.h"
 
@@ -18,20 +20,19 @@ constexpr std::size_t kKeptAfterEnd = 64;
 
 std::unique_ptr<ProcessLink> ProcessLink::Make() {
   std::unique_ptr<ProcessLink> link(new ProcessLink);
-  const SharedMemory memory = MakeSharedMemory("tcs", shm::kProcessMemorySize);
-  if (memory.fd < 0) return nullptr;
-  link->memory_fd_ = memory.fd;
+  SharedMemory memory = MakeSharedMemory("tcs", shm::kProcessMemorySize);
+  if (!memory.fd) return nullptr;
+  link->memory_fd_ = std::move(memory.fd);
   link->slots_ = static_cast<shm::ThreadSlot*>(memory.at);
-  if (pipe2(link->pipe_, O_CLOEXEC) != 0) return nullptr;
-  fcntl(link->pipe_[0], F_SETFL, O_NONBLOCK);
+  std::optional<Pipe> pipe = Pipe::Make();
+  if (!pipe.has_value()) return nullptr;
+  link->notifications_ = std::move(*pipe);
+  fcntl(link->incoming_fd(), F_SETFL, O_NONBLOCK);
   return link;
 }
 
 ProcessLink::~ProcessLink() {
   if (slots_ != nullptr) munmap(slots_, shm::kProcessMemorySize);
-  for (const int fd : {memory_fd_, pipe_[0], pipe_[1]}) {
-    if (fd >= 0) close(fd);
-  }
 }
 
 int ProcessLink::TakeSlot(Task& task) {

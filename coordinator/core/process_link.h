@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "coordinator/os/pipe.h"
+#include "coordinator/os/unique_fd.h"
 #include "shm/layout.h"
 
 namespace tcs {
@@ -30,14 +32,15 @@ class ProcessLink {
   Task* TaskAt(std::uint32_t index) const;
   shm::ThreadSlot& SlotAt(int index) const { return slots_[index]; }
 
-  int memory_fd() const { return memory_fd_; }
-  int notify_fd() const { return pipe_[1]; }    // the process's end,
-  int incoming_fd() const { return pipe_[0]; }  // and ours, which never waits
+  int memory_fd() const { return memory_fd_.get(); }
+  int notify_fd() const { return notifications_.write_end.get(); }   // the process's end,
+  int incoming_fd() const { return notifications_.read_end.get(); }  // and ours, which never waits
 
  private:
   ProcessLink() = default;
 
-  int memory_fd_ = -1, pipe_[2] = {-1, -1};
+  UniqueFd memory_fd_;
+  Pipe notifications_;
   shm::ThreadSlot* slots_ = nullptr;
   std::vector<Task*> tasks_;  // by slot, of all that were ever used
   std::deque<int> freed_;     // the earliest first

@@ -58,13 +58,11 @@ void Refuse(int connection, const char* why) {
 }  // namespace
 
 void Engine::Accept(const Listener& listener) {
-  const int connection = accept4(listener.fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (connection < 0) return;
-  if (connections_.size() == kMostSilent) {
-    close(connections_.front().fd);
-    connections_.pop_front();
-  }
-  connections_.push_back({connection, listener.client});
+  UniqueFd fd(accept4(listener.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (!fd) return;
+  const int connection = fd.get();
+  if (connections_.size() == kMostSilent) connections_.pop_front();
+  connections_.push_back({std::move(fd), listener.client});
   reactor_.Add(connection, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(connection)});
 }
 
@@ -110,7 +108,7 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
   if (first == nullptr || !by_another) return true;
   of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.
-  if (first->cpu_clock_fd >= 0) close(std::exchange(first->cpu_clock_fd, -1));
+  first->cpu_clock_fd.Reset();
   first->metered.host_origin_ns = HostClockOf(*first) - first->metered.HostNs(first->charged_ns);
   return true;
 }
@@ -176,7 +174,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   PlaceAtGate(task, moment.ns);
   shm::AttachReply reply = NewReply();
   reply.slot = static_cast<std::uint32_t>(task.slot);
-  const int fds[shm::kMostAttachFds] = {memfd_, process.link->memory_fd(),
+  const int fds[shm::kMostAttachFds] = {memfd_.get(), process.link->memory_fd(),
                                         process.link->notify_fd()};
   Send(connection, reply, wants_all ? std::span<const int>(fds) : std::span<const int>());
   return true;

@@ -65,9 +65,9 @@ std::string Engine::Prepare() {
 }
 
 std::string Engine::PrepareMemory() {
-  const SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
-  if (memory.fd < 0) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
-  memfd_ = memory.fd;
+  SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
+  if (!memory.fd) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
+  memfd_ = std::move(memory.fd);
   memory_ = new (memory.at) shm::RunMemory{};
   header_ = &memory_->header;
   header_->magic = shm::kMagic;
@@ -90,10 +90,10 @@ std::string Engine::PrepareListener() {
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  signals_ = signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK);
+  signals_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
 
   socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
-  reactor_.Add(signals_, EPOLLIN, {Tag::kSignal});
+  reactor_.Add(signals_.get(), EPOLLIN, {Tag::kSignal});
   return {};
 }
 
@@ -103,7 +103,7 @@ std::string Engine::OpenListener() {
   const std::string name = fmt::format("{}.{}", socket_name_, client);
   const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (listener < 0) return {};
-  listeners_.push_back({listener, nullptr});
+  listeners_.push_back({UniqueFd(listener), nullptr});
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   memcpy(address.sun_path + 1, name.data(), name.size());

@@ -109,7 +109,7 @@ struct Task : HostThread {
   int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
   bool is_cut_off = false;      // it has been told that its connection is not there any more
-  int cpu_clock_fd = -1;        // where its CPU clock is read, if it is not its process's
+  UniqueFd cpu_clock_fd;        // where its CPU clock is read, if it is not its process's
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
@@ -127,7 +127,7 @@ struct Process {
   Process* client = nullptr;          // the client that it is or descends from
   const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;
-  int pidfd = -1;
+  UniqueFd pidfd;
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;
@@ -169,7 +169,7 @@ struct Process {
 // A child that was not announced and has not registered, perhaps never will.
 struct UnknownChild {
   pid_t parent = 0;
-  int pidfd = -1;
+  UniqueFd pidfd;
 };
 
 struct VirtualCpu {

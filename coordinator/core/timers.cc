@@ -36,7 +36,7 @@ bool IsAwaited(const Process& process) {
 
 // Our copy of a process's descriptor; none if that is no timer.
 UniqueFd Engine::TimerDescriptorOf(const Process& process, int number) {
-  UniqueFd fd(DuplicateFd(process.pidfd, number));
+  UniqueFd fd(DuplicateFd(process.pidfd.get(), number));
   return fd && IsTimerDescriptor(fd.get()) ? std::move(fd) : UniqueFd();
 }
 

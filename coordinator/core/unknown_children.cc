@@ -26,19 +26,18 @@ void Engine::FindUnknownChildren(Process& parent) {
     const bool known = std::any_of(processes_.begin(), processes_.end(),
                                    [pid](const Process& p) { return p.pid == pid; });
     if (known) continue;
-    const int pidfd = OpenPidfd(pid);
-    if (pidfd < 0) continue;
-    unknown_children_[pid] = {parent.pid, pidfd};
-    reactor_.Add(pidfd, EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
+    UniqueFd pidfd(OpenPidfd(pid));
+    if (!pidfd) continue;
+    reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
+    unknown_children_[pid] = {parent.pid, std::move(pidfd)};
   }
 }
 
 void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
   const auto found = unknown_children_.find(pid);
   if (found == unknown_children_.end()) return;
-  const UnknownChild child = found->second;
-  reactor_.Remove(child.pidfd);
-  close(child.pidfd);
+  const UnknownChild child = std::move(found->second);
+  reactor_.Remove(child.pidfd.get());
   unknown_children_.erase(found);
   // A parent that waits for children of another kind leaves it there.
   untaken_children_.insert(pid);

@@ -18,11 +18,8 @@ namespace {
 constexpr std::int64_t kCountsNs = 1'000'000'000;
 
 std::int64_t ClockOf(pid_t tid) {
-  const int clock = OpenThreadCpuClock(tid);
-  if (clock < 0) return -1;
-  const std::int64_t ns = ReadThreadCpuClock(clock);
-  close(clock);
-  return ns;
+  const UniqueFd clock(OpenThreadCpuClock(tid));
+  return clock ? ReadThreadCpuClock(clock.get()) : -1;
 }
 
 bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0; }

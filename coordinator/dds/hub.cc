@@ -60,13 +60,12 @@ Hub::~Hub() {
   for (const Member& member : members_) {
     if (member.area == nullptr) continue;
     munmap(member.area, shm::kDdsAreaSize);
-    close(member.fd);
   }
 }
 
 int Hub::AreaOf(Number number) const {
   const Member* member = Find(number);
-  return member == nullptr ? -1 : member->fd;
+  return member == nullptr ? -1 : member->fd.get();
 }
 
 void Hub::Member::ShowDue() const {
@@ -100,11 +99,11 @@ Hub::Number Hub::Join(std::int64_t now_ns) {
     errno = ENOSPC;
     return 0;
   }
-  const SharedMemory memory = MakeSharedMemory("tcs-dds", shm::kDdsAreaSize);
-  if (memory.fd < 0) return 0;
+  SharedMemory memory = MakeSharedMemory("tcs-dds", shm::kDdsAreaSize);
+  if (!memory.fd) return 0;
   Member& member = members_.emplace_back();
   member.area = static_cast<char*>(memory.at);
-  member.fd = memory.fd;
+  member.fd = std::move(memory.fd);
   const Number number = count();
   auto* area = new (memory.at) shm::DdsArea{};
   area->process = number;
@@ -122,9 +121,8 @@ void Hub::Leave(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return;
   munmap(member->area, shm::kDdsAreaSize);
-  fallocate(member->fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+  fallocate(member->fd.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
             static_cast<off_t>(shm::kDdsAreaSize));
-  close(member->fd);
   const bool was_full = member->full, was_stopped = member->stopped;
   *member = Member{};
   // Who waits for it goes on when others miss it.
@@ -291,7 +289,7 @@ bool Hub::IsAnothers(const Guid& guid, Number number) const {
 // Of a box of which so many bytes have been used.
 void Hub::GiveBack(const Member& member, std::size_t box, std::size_t bytes) {
   if (bytes <= shm::kDdsUsualSize) return;
-  fallocate(member.fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+  fallocate(member.fd.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
             static_cast<off_t>(box + shm::kDdsUsualSize),
             static_cast<off_t>(bytes - shm::kDdsUsualSize));
 }

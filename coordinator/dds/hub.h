@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "coordinator/dds/message.h"
+#include "coordinator/os/unique_fd.h"
 #include "shm/dds_exchange.h"
 #include "shm/layout.h"
 
@@ -102,7 +103,7 @@ class Hub {
 
   struct Member {
     char* area = nullptr;  // null: it has left
-    int fd = -1;           // of the area
+    UniqueFd fd;           // of the area
     bool delivers = false;
     bool full = false;
     bool stopped = false;

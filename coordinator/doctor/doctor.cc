@@ -11,12 +11,15 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "coordinator/doctor/interpret.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/pipe.h"
 #include "coordinator/os/trap.h"
+#include "coordinator/os/unique_fd.h"
 
 namespace tcs {
 
@@ -48,32 +51,29 @@ int TryDescriptors() {
     alarm(5);
     for (;;) pause();
   }
-  const int pidfd = OpenPidfd(child);
-  const int fd = pidfd < 0 ? -1 : DuplicateFd(pidfd, 0);
-  const int error = fd < 0 ? errno : 0;
-  if (fd >= 0) close(fd);
-  if (pidfd >= 0) close(pidfd);
+  const UniqueFd pidfd(OpenPidfd(child));
+  const UniqueFd fd(pidfd ? DuplicateFd(pidfd.get(), 0) : -1);
+  const int error = fd ? 0 : errno;
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   return error;
 }
 
 Finding TryShim(const std::string& path) {
-  int said[2];
-  if (pipe(said) != 0) return JudgeShim(path, -1, "no pipe can be made");
+  std::optional<Pipe> said = Pipe::Make();
+  if (!said.has_value()) return JudgeShim(path, -1, "no pipe can be made");
   const pid_t child = fork();
   if (child == 0) {
-    dup2(said[1], STDERR_FILENO);
+    dup2(said->write_end.get(), STDERR_FILENO);
     setenv("LD_PRELOAD", path.c_str(), 1);
     unsetenv("TCS_SOCKET");
     alarm(5);
     execlp("true", "true", nullptr);
     _exit(127);
   }
-  close(said[1]);
+  said->write_end.Reset();
   char text[512];
-  const ssize_t n = child < 0 ? 0 : read(said[0], text, sizeof text);
-  close(said[0]);
+  const ssize_t n = child < 0 ? 0 : read(said->read_end.get(), text, sizeof text);
   int status = -1;
   if (child > 0) waitpid(child, &status, 0);
   return JudgeShim(path, status,

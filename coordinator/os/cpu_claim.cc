@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "coordinator/os/say.h"
@@ -34,15 +36,13 @@ std::vector<int> AllowedCpus() {
   return cpus;
 }
 
-// Its descriptor; -1 if another process holds the claim, -2 if it cannot be made.
-int TryToClaim(int cpu) {
+// None: another process holds the claim. Without a descriptor: it cannot be made.
+std::optional<UniqueFd> TryToClaim(int cpu) {
   const std::string folder = "/sys/devices/system/cpu/cpu" + std::to_string(cpu);
-  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return -2;
-  if (flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
-  const bool held = errno == EWOULDBLOCK;
-  close(fd);
-  return held ? -1 : -2;
+  UniqueFd fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!fd || flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
+  if (errno == EWOULDBLOCK) return std::nullopt;
+  return UniqueFd();
 }
 
 // Who holds the lock on the CPU's folder; 0 if that cannot be found out.
@@ -119,8 +119,7 @@ CpuClaim ClaimCpu(bool waits, std::string* taken) {
   if (cpus.size() > 1) cpus.pop_back();
   for (bool said = false;; usleep(kRetryUs)) {
     for (const int cpu : cpus) {
-      const int fd = TryToClaim(cpu);
-      if (fd != -1) return {cpu, fd < 0 ? -1 : fd};
+      if (std::optional<UniqueFd> fd = TryToClaim(cpu)) return {cpu, std::move(*fd)};
     }
     if (!said) {
       const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);

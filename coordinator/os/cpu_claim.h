@@ -4,11 +4,13 @@
 
 #include <string>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 struct CpuClaim {
   int cpu = -1;
-  int fd = -1;  // holds the claim; it ends with the last copy of this descriptor
+  UniqueFd fd;  // holds the claim; it ends with the last copy of this descriptor
 };
 
 // The last CPU that the calling process may use and no other tcsim has claimed; the first one only

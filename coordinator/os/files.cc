@@ -32,10 +32,11 @@ bool WriteAll(int fd, const std::string& text) {
 
 std::string WriteWhole(const std::string& path, const std::string& text, Withstands what) {
   const std::string unfinished = path + ".new";
-  const int fd = open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  UniqueFd fd(open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   // Without the fsync a power cut may leave the new name with nothing in it.
-  bool done = fd >= 0 && WriteAll(fd, text) && (what == Withstands::kCrash || fsync(fd) == 0);
-  done = fd >= 0 && close(fd) == 0 && done;
+  bool done =
+      fd && WriteAll(fd.get(), text) && (what == Withstands::kCrash || fsync(fd.get()) == 0);
+  if (done) done = close(fd.Release()) == 0;
   if (done && std::rename(unfinished.c_str(), path.c_str()) == 0) return {};
   return path + " cannot be written: " + strerror(errno) +
          "; make room, or choose another folder with --out";
@@ -98,20 +99,7 @@ std::string LastLine(const std::string& path) {
 
 FolderLock::FolderLock(const std::string& path)
     : fd_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  is_ours_ = fd_ < 0 || flock(fd_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-}
-
-FolderLock::FolderLock(FolderLock&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), is_ours_(std::exchange(other.is_ours_, false)) {}
-
-FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  std::swap(is_ours_, other.is_ours_);
-  return *this;
-}
-
-FolderLock::~FolderLock() {
-  if (fd_ >= 0) close(fd_);
+  is_ours_ = !fd_ || flock(fd_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
 }  // namespace tcs

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 // What a file outlives: the death of any process, or of the machine, too, which takes the disk's
@@ -35,15 +37,12 @@ class FolderLock {
   FolderLock() = default;
   // Does not wait. Where the file system knows no locks, the folder counts as ours.
   explicit FolderLock(const std::string& path);
-  FolderLock(FolderLock&& other) noexcept;
-  FolderLock& operator=(FolderLock&& other) noexcept;
-  ~FolderLock();
 
   // False while another process holds it.
   bool IsOurs() const { return is_ours_; }
 
  private:
-  int fd_ = -1;
+  UniqueFd fd_;
   bool is_ours_ = false;
 };
 

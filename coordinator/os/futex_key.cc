@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 namespace {
@@ -34,14 +36,12 @@ constexpr std::uint64_t kIsShared = 0x08;
 
 // None: this kernel does not answer, or the process has gone.
 std::optional<Mapping> AskForMapping(const std::string& maps, std::uint64_t address) {
-  const int fd = open(maps.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return std::nullopt;
+  const UniqueFd fd(open(maps.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!fd) return std::nullopt;
   MappingQuery query{};
   query.size = sizeof query;
   query.query_addr = address;
-  const bool answered = ioctl(fd, kQueryMapping, &query) == 0;
-  close(fd);
-  if (!answered) return std::nullopt;
+  if (ioctl(fd.get(), kQueryMapping, &query) != 0) return std::nullopt;
   return Mapping{(query.vma_flags & kIsShared) != 0,
                  query.vma_start,
                  query.vma_offset,

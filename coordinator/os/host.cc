@@ -22,8 +22,10 @@
 #include <optional>
 #include <system_error>
 
+#include "coordinator/os/pipe.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/trap.h"
+#include "coordinator/os/unique_fd.h"
 #include "shm/clock_ids.h"
 #include "shm/layout.h"
 #include "shm/time_values.h"
@@ -119,10 +121,9 @@ struct ThreadStat {
 ThreadStat ReadThreadStat(pid_t tid) {
   char path[64], text[512];
   snprintf(path, sizeof path, "/proc/%d/stat", tid);
-  const int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return {};
-  const ssize_t n = read(fd, text, sizeof text - 1);
-  close(fd);
+  const UniqueFd fd(open(path, O_RDONLY | O_CLOEXEC));
+  if (!fd) return {};
+  const ssize_t n = read(fd.get(), text, sizeof text - 1);
   text[std::max<ssize_t>(n, 0)] = '\0';
   // The name may hold anything; the state follows its last parenthesis.
   const char* end = strrchr(text, ')');
@@ -168,10 +169,9 @@ namespace {
 const char* ReadStatus(pid_t tid, char (&text)[4096]) {
   char path[64];
   snprintf(path, sizeof path, "/proc/%d/status", tid);
-  const int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return nullptr;
-  const ssize_t n = read(fd, text, sizeof text - 1);
-  close(fd);
+  const UniqueFd fd(open(path, O_RDONLY | O_CLOEXEC));
+  if (!fd) return nullptr;
+  const ssize_t n = read(fd.get(), text, sizeof text - 1);
   text[std::max<ssize_t>(n, 0)] = '\0';
   return text;
 }
@@ -314,10 +314,8 @@ void HandOverTrap(int to_parent, int from_parent, const std::vector<pid_t>& guar
 int TakeOverTrap(pid_t child, int from_child) {
   int listener = -1;
   if (read(from_child, &listener, sizeof listener) != sizeof listener || listener < 0) return -1;
-  const int pidfd = OpenPidfd(child);
-  const int taken = pidfd < 0 ? -1 : DuplicateFd(pidfd, listener);
-  if (pidfd >= 0) close(pidfd);
-  return taken;
+  const UniqueFd pidfd(OpenPidfd(child));
+  return pidfd ? DuplicateFd(pidfd.get(), listener) : -1;
 }
 
 }  // namespace
@@ -326,33 +324,26 @@ Spawned Spawn(const SpawnRequest& request) {
   std::vector<char*> argv;
   for (const std::string& word : request.command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  int up[2], down[2];
-  if (pipe2(up, O_CLOEXEC) != 0) return {};
-  if (pipe2(down, O_CLOEXEC) != 0) {
-    close(up[0]), close(up[1]);
-    return {};
-  }
+  std::optional<Pipe> up = Pipe::Make(), down = Pipe::Make();
+  if (!up.has_value() || !down.has_value()) return {};
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid != 0) {
-    close(up[1]);
-    close(down[0]);
+    up->write_end.Reset();
     Spawned spawned{pid, -1};
     if (pid > 0) {
       // The child comes this far at our own level; for the rest it waits for its dispatch. The
       // level is set here, not in the child, which next runs when it has been given another one.
-      spawned.trap = TakeOverTrap(pid, up[0]);
+      spawned.trap = TakeOverTrap(pid, up->read_end.get());
       SetLevel(pid, Level::kWaiting);
     }
-    close(up[0]);
-    close(down[1]);
     return spawned;
   }
-  close(up[0]);
-  close(down[1]);
+  up->read_end.Reset();
+  down->write_end.Reset();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  HandOverTrap(up[1], down[0], request.guarded);
+  HandOverTrap(up->write_end.get(), down->read_end.get(), request.guarded);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -364,9 +355,8 @@ Spawned Spawn(const SpawnRequest& request) {
   }
   auto redirect = [](const std::string& path, int to) {
     if (path.empty()) return;
-    const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (fd >= 0) dup2(fd, to);
-    if (fd >= 0) close(fd);
+    const UniqueFd fd(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644));
+    if (fd) dup2(fd.get(), to);
   };
   redirect(request.log_stdout, 1);
   redirect(request.log_stderr, 2);

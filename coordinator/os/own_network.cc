@@ -15,17 +15,15 @@
 #include <cstdint>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/unique_fd.h"
 
 namespace tcs {
 
 namespace {
 
 bool Put(const char* path, const std::string& text) {
-  const int fd = open(path, O_WRONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  const bool done = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  close(fd);
-  return done;
+  const UniqueFd fd(open(path, O_WRONLY | O_CLOEXEC));
+  return fd && write(fd.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
 // Who has no right to make a network has it in a user namespace, where everybody stays who they
@@ -42,13 +40,13 @@ bool MakeNetwork() {
 // With it come 127.0.0.1 and its routes. Multicast goes there, too: programs that find each other
 // by it have no other interface.
 bool RaiseLoopback() {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return false;
+  const UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!fd) return false;
   ifreq request{};
   strcpy(request.ifr_name, "lo");
-  bool up = ioctl(fd, SIOCGIFFLAGS, &request) == 0;
+  bool up = ioctl(fd.get(), SIOCGIFFLAGS, &request) == 0;
   request.ifr_flags = static_cast<short>(request.ifr_flags | IFF_UP | IFF_MULTICAST);
-  up = up && ioctl(fd, SIOCSIFFLAGS, &request) == 0;
+  up = up && ioctl(fd.get(), SIOCSIFFLAGS, &request) == 0;
   rtentry route{};
   const auto address = [](std::uint32_t host_order) {
     sockaddr_in in{};
@@ -62,9 +60,7 @@ bool RaiseLoopback() {
   route.rt_genmask = address(0xf0000000);
   route.rt_flags = RTF_UP;
   route.rt_dev = request.ifr_name;
-  up = up && ioctl(fd, SIOCADDRT, &route) == 0;
-  close(fd);
-  return up;
+  return up && ioctl(fd.get(), SIOCADDRT, &route) == 0;
 }
 
 constexpr int kLosesRealTime = 255;  // not an errno

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
 
 namespace tcs {
 
@@ -15,17 +16,15 @@ constexpr int kSealFutureWrite = 0x0010;  // F_SEAL_FUTURE_WRITE, of Linux 5.1
 
 // Sealed only once it is mapped, for then nobody else maps it for writing.
 SharedMemory Make(const char* name, std::size_t size, int seals) {
-  const int fd = memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  if (fd < 0) return {};
-  if (fchmod(fd, 0600) == 0 && ftruncate(fd, static_cast<off_t>(size)) == 0) {
-    void* at = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    if (at != MAP_FAILED) {
-      if (fcntl(fd, F_ADD_SEALS, seals) == 0) return {fd, at};
-      munmap(at, size);
-    }
+  UniqueFd fd(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!fd || fchmod(fd.get(), 0600) != 0 || ftruncate(fd.get(), static_cast<off_t>(size)) != 0) {
+    return {};
   }
+  void* at = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+  if (at == MAP_FAILED) return {};
+  if (fcntl(fd.get(), F_ADD_SEALS, seals) == 0) return {std::move(fd), at};
   const int error = errno;
-  close(fd);
+  munmap(at, size);
   errno = error;
   return {};
 }

@@ -5,10 +5,12 @@
 
 #include <cstddef>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 struct SharedMemory {
-  int fd = -1;         // -1: errno is set
+  UniqueFd fd;         // none: errno is set
   void* at = nullptr;  // where this process can read and write it
 };
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/elf_file.h"
 
 namespace tcs {
@@ -22,20 +23,6 @@ namespace fs = std::filesystem;
 constexpr int kMostInterpreters = 4;
 // Of a '#!' line the kernel reads no more.
 constexpr std::size_t kLongestHashBang = 255;
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 LoadError Mistake(const std::string& path, std::string_view what) {
   return LoadError{"'" + path + "' " + std::string(what)};
@@ -121,7 +108,7 @@ std::optional<LoadError> CheckElf(const std::string& path, const ElfFile& elf) {
 
 std::optional<LoadError> Check(const std::string& path, int depth) {
   if (const int error = WhyNotExecutable(path); error != 0) return NotExecutable(path, error);
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) {
     return Mistake(path, "may not be read, so tcs cannot tell how it is linked; chmod +r it");
   }

@@ -53,11 +53,11 @@ namespace {
 std::string RunProcess::Start(const RunProcessRequest& request, RunProcess* process) {
   RunProcess started;
   // Inherited, so without MFD_CLOEXEC: the run sets that itself, before it has clients.
-  started.progress_ = memfd_create("tcs-progress", 0);
-  if (started.progress_ < 0) return strerror(errno);
+  started.progress_.Reset(memfd_create("tcs-progress", 0));
+  if (!started.progress_) return strerror(errno);
   std::vector<std::string> words{"tcsim"};
   words.insert(words.end(), request.arguments.begin(), request.arguments.end());
-  words.insert(words.end(), {"--progress-fd", std::to_string(started.progress_)});
+  words.insert(words.end(), {"--progress-fd", std::to_string(started.progress_.get())});
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -66,17 +66,17 @@ std::string RunProcess::Start(const RunProcessRequest& request, RunProcess* proc
   if (started.pid_ == 0) Become(request, argv.data(), parent);
   if (started.pid_ < 0) return strerror(errno);
   // Not for the runs that come after it.
-  fcntl(started.progress_, F_SETFD, FD_CLOEXEC);
-  started.pidfd_ = OpenPidfd(started.pid_);
-  if (started.pidfd_ < 0) return strerror(errno);
+  fcntl(started.progress_.get(), F_SETFD, FD_CLOEXEC);
+  started.pidfd_.Reset(OpenPidfd(started.pid_));
+  if (!started.pidfd_) return strerror(errno);
   *process = std::move(started);
   return {};
 }
 
 RunProcess::RunProcess(RunProcess&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
-      pidfd_(std::exchange(other.pidfd_, -1)),
-      progress_(std::exchange(other.progress_, -1)) {}
+      pidfd_(std::move(other.pidfd_)),
+      progress_(std::move(other.progress_)) {}
 
 RunProcess& RunProcess::operator=(RunProcess&& other) noexcept {
   std::swap(pid_, other.pid_);
@@ -85,15 +85,11 @@ RunProcess& RunProcess::operator=(RunProcess&& other) noexcept {
   return *this;
 }
 
-RunProcess::~RunProcess() {
-  EndInOrder();
-  if (pidfd_ >= 0) close(pidfd_);
-  if (progress_ >= 0) close(progress_);
-}
+RunProcess::~RunProcess() { EndInOrder(); }
 
 std::int64_t RunProcess::virtual_ns() const {
   std::int64_t ns = 0;
-  return pread(progress_, &ns, sizeof ns, 0) == sizeof ns ? ns : 0;
+  return pread(progress_.get(), &ns, sizeof ns, 0) == sizeof ns ? ns : 0;
 }
 
 void RunProcess::EndInOrder() const {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 struct RunProcessRequest {
@@ -29,7 +31,7 @@ class RunProcess {
   ~RunProcess();
 
   // Readable once it has ended.
-  int pidfd() const { return pidfd_; }
+  int pidfd() const { return pidfd_.get(); }
   // How far it says that it is, in virtual time.
   std::int64_t virtual_ns() const;
   void EndInOrder() const;
@@ -38,8 +40,8 @@ class RunProcess {
 
  private:
   pid_t pid_ = -1;
-  int pidfd_ = -1;
-  int progress_ = -1;  // a file in memory that it writes one number to
+  UniqueFd pidfd_;
+  UniqueFd progress_;  // a file in memory that it writes one number to
 };
 
 }  // namespace tcs

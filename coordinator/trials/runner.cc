@@ -19,6 +19,7 @@
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/stop_request.h"
+#include "coordinator/os/unique_fd.h"
 #include "coordinator/trials/run_process.h"
 
 namespace tcs {
@@ -100,7 +101,7 @@ class Runner {
   TrialsProgress progress_;
   RunnerReport report_;
   const std::int64_t start_ns_ = HostClockNs(CLOCK_MONOTONIC);
-  int signals_ = -1;
+  UniqueFd signals_;
   StopRequest stop_;
 };
 
@@ -109,14 +110,13 @@ RunnerReport Runner::Run() {
   sigemptyset(&stops);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&stops, signal);
   sigprocmask(SIG_BLOCK, &stops, nullptr);
-  signals_ = signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK);
+  signals_.Reset(signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK));
   for (;;) {
     if (!report_.interrupted) StartMore();
     if (running_.empty() || stop_.insists()) break;
     if (events_.on_progress && !report_.interrupted) events_.on_progress(Look());
     Wait();
   }
-  close(signals_);
   return std::move(report_);
 }
 
@@ -179,7 +179,7 @@ void Runner::End(TrialEnd end, double seconds) {
 }
 
 void Runner::Wait() {
-  std::vector<pollfd> fds{{signals_, POLLIN, 0}};
+  std::vector<pollfd> fds{{signals_.get(), POLLIN, 0}};
   for (const Running& running : running_) fds.push_back({running.process.pidfd(), POLLIN, 0});
   const int happened = poll(fds.data(), fds.size(), events_.on_progress ? kLookMs : -1);
   // First, since ^C at a terminal reaches the runs, too: their ends are no failures then.
@@ -198,7 +198,7 @@ void Runner::Wait() {
 
 void Runner::TakeSignal() {
   signalfd_siginfo info;
-  while (read(signals_, &info, sizeof info) == sizeof info) {
+  while (read(signals_.get(), &info, sizeof info) == sizeof info) {
     const bool is_first = !stop_.asked();
     stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
     report_.interrupted = true;

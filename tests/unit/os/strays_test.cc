@@ -25,7 +25,6 @@ class Strays : public ::testing::Test {
       kill(pid, SIGKILL);
       waitpid(pid, nullptr, 0);
     }
-    if (claim_.fd >= 0) close(claim_.fd);
   }
 
   // A child that waits or spins, for some seconds at most, with that priority.
