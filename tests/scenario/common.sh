@@ -6,3 +6,6 @@ tcsim=$build/bin/tcsim
 # The process that coordinates the run whose tcsim has this number: tcsim > its keeper > it.
 coordinator_of() { pgrep -P "$(pgrep -P "$1")"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
+# What is in /dev/shm by now and was not when the test began: other runs' files come and go.
+shared_at_start=$(ls /dev/shm)
+new_in_shm() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort); }

@@ -15,7 +15,6 @@ scenario() { # SEED of the hostile client, or nothing
 }
 # A name of its own, by which all that is left can be found.
 cp "$build/bin/hostile" "$out/hostile"
-shared_before=$(ls /dev/shm | wc -l)
 scenario >"$out/alone.yaml"
 "$tcsim" run "$out/alone.yaml" --accounting fixed --out "$out/alone" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 grep -qx done "$out/alone/one-honest.out.log" || fail "the honest program was not done: $(cat "$out/alone/"*.log)"
@@ -36,7 +35,7 @@ for ((seed = first; seed < first + rounds; ++seed)); do
   grep -q 'bug in tcs\|fault of tcsim' "$out/warned" && wrong="$wrong finds a bug"
   left=$(pgrep -f "$out/hostile" || true)
   [[ -z $left ]] || wrong="$wrong leaves processes: $left"
-  (($(ls /dev/shm | wc -l) == shared_before)) || wrong="$wrong leaves something in /dev/shm"
+  [[ -z $(new_in_shm) ]] || wrong="$wrong leaves something in /dev/shm: $(new_in_shm)"
   if [[ -n $wrong ]]; then
     failed=$((failed + 1))
     printf '%s: %s (status %s)\n%s\n' "$deeds" "$wrong" "$status" "$(cat "$out/warned" "$out/said")" >&2

@@ -5,7 +5,6 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 mark="tcs_mark_$$"
 program="sh -c 'while :; do :; done # $mark' & while :; do :; done # $mark"
 trap 'pkill -9 -f "$mark" || true' EXIT
-shared_before=$(ls /dev/shm | wc -l)
 
 tcsim_pid() { echo "$tcsim_pid"; }
 keeper_pid() { pgrep -P "$tcsim_pid"; }
@@ -33,4 +32,4 @@ for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KIL
   done
   [[ -z $left ]] || fail "after $victim there is still: $left"
 done
-(($(ls /dev/shm | wc -l) == shared_before)) || fail "something is left in /dev/shm"
+[[ -z $(new_in_shm) ]] || fail "something is left in /dev/shm: $(new_in_shm)"

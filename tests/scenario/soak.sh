@@ -20,7 +20,6 @@ kinds=(periodic bursts threads births children stream datagrams signals descript
     done
   done
 } >"$out/scenario.yaml"
-shared_before=$(ls /dev/shm | wc -l)
 
 "$tcsim" run "$out/scenario.yaml" --out "$out/run" >"$out/said" 2>&1 &
 run=$!
@@ -54,5 +53,5 @@ middle = max(counts[len(counts) // 3 : len(counts) * 2 // 3])
 assert max(counts[len(counts) * 2 // 3 :]) <= middle + 60, counts
 assert set((out / "threads").read_text().split()) <= {"0", "1"}, "the coordinator has threads"
 PY
-(($(ls /dev/shm | wc -l) == shared_before)) || fail "something is left in /dev/shm"
+[[ -z $(new_in_shm) ]] || fail "something is left in /dev/shm: $(new_in_shm)"
 ! pgrep -f "$build/bin/soak_client" >/dev/null || fail "clients are left"

@@ -3,7 +3,6 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # Whichever process of `tcsim trials` is killed, and however: nothing of its runs is left, and the
 # next call goes on.
-shared_before=$(ls /dev/shm | wc -l)
 victims() {  # what to kill of the call whose process is $1
   case $2 in
     guardian) echo "$1" ;;
@@ -22,7 +21,7 @@ for victim in guardian:KILL trials:KILL both:KILL guardian:TERM guardian:HUP; do
   wait "$call" 2>/dev/null || true
   nothing_is_left "$victim"
 done
-(($(ls /dev/shm | wc -l) == shared_before)) || fail "something is left in /dev/shm"
+[[ -z $(new_in_shm) ]] || fail "something is left in /dev/shm: $(new_in_shm)"
 
 # A run that is killed is one trial that failed.
 "$tcsim" trials "$out/scenario.yaml" --duration 1h --trials 1 --out "$out/t" >"$out/said" 2>&1 &
