@@ -373,7 +373,9 @@ std::int64_t RobotScheduler::HorizonForInput(std::size_t core, const Entity& run
 RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread thread,
                                                   std::int64_t limit_ns,
                                                   const Outlook& outlook) const {
-  const Entity& running = At(thread);
+  const Entity* found = Find(thread);
+  if (found == nullptr) return {.run_ns = limit_ns};  // it has ended since it was dispatched
+  const Entity& running = *found;
   const std::uint32_t process = wait_of_(thread).process;
   const std::int64_t now = progress_[core];
   const bool takes_turns = QuantumOf(running) != kNever;
@@ -419,7 +421,9 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
 }
 
 std::int64_t RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread thread) const {
-  const Entity& running = At(thread);
+  const Entity* found = Find(thread);
+  if (found == nullptr) return kNever;  // it has ended since it was dispatched
+  const Entity& running = *found;
   const std::uint32_t process = wait_of_(thread).process;
   const std::int64_t turn_end = TurnEnd(core, running);
   std::int64_t limit = queue_.HasWaitingEqual(core) ? turn_end : kNever;

@@ -170,6 +170,18 @@ TEST(HorizonOf, AThreadThatIsAloneMaySleepUntilSomethingHappens) {
   EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, 0);
 }
 
+TEST(HorizonOf, AThreadThatEndsWhileItRunsHasNoHorizonButItsLimit) {
+  SimulatedRobot robot;
+  robot.AddReady(kRunning);
+  robot.scheduler.Dispatch(0, kRunning);
+  robot.scheduler.Remove(kRunning);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).run_ns, kLater);
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kNever);
+  robot.scheduler.Stop(0, kMilli, kMilli);
+  robot.scheduler.Assign(kNever);
+  EXPECT_EQ(robot.Next(), RobotScheduler::kNobody);
+}
+
 TEST(HorizonWhileWorldStands, OnlyThreadsOfTheSameProcessBecomeDue) {
   SimulatedRobot robot(1, false);
   robot.AddReady(kRunning);
