@@ -185,15 +185,15 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
   return found;
 }
 
-// `is_rest`: a further look at an instant.
+// `is_rest`: a further look at an instant, at which the running thread stands as it was found.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
   const bool held = held_turns_ > 0 && running_ != nullptr && !host_cpu_.detector().is_armed();
   const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
-  const bool counts = running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
+  const bool counts = !is_rest && running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
   const shm::ClockReading before = counts ? host_cpu_.ClockOf(*running_) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
-  host_cpu_.Woke();
+  if (!is_rest) host_cpu_.Woke();
   if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*running_, before, timeout_ns);
   if (n == 0 && running_ != nullptr) {
