@@ -143,6 +143,7 @@ class Engine {
 
   // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
   static constexpr const char* kWrongIpcNotes = "times of System V objects";
+  bool HasTakenTooMuch(const Task& task) const;
   const char* WhatIsImpossible(const Task& task) const;
   static const char* WhatIsImpossible(const shm::Notification& note);
   void Expel(Process& process, const char* what);
@@ -514,6 +515,11 @@ class Engine {
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
   std::map<pid_t, std::int64_t> lowered_;
+  struct UnknownThreads {
+    std::int64_t dispatch = -1;             // in which they were seen,
+    std::map<pid_t, std::int64_t> used_ns;  // and what they had used by then
+  };
+  UnknownThreads unknown_threads_;
   int most_pids_ = MostPids();
   int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;

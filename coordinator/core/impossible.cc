@@ -26,6 +26,17 @@ constexpr int kDeathMs = 1000;
 
 }  // namespace
 
+// More than it has run was taken out of its clock, as stolen: by its program, or because the host's
+// clocks do not agree. What its CPU clock says counts then, which nobody can make up.
+bool Engine::HasTakenTooMuch(const Task& task) const {
+  if (IsFixed() || !task.HasOwnClock()) return false;
+  const std::int64_t added = shm::AdjustValue(Slot(task).clock.executed_adjust.load());
+  const std::int64_t ran =
+      shm::MulQ32(static_cast<std::int64_t>(host_cpu_.stop_tsc() - task.grant.base_tsc),
+                  task.grant.ns_per_tick_q32);
+  return added < -kSlackNs - std::max<std::int64_t>(0, ran);
+}
+
 // Of the clock of a thread that has just been stopped; null if all is well.
 const char* Engine::WhatIsImpossible(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;
@@ -35,9 +46,7 @@ const char* Engine::WhatIsImpossible(const Task& task) const {
   if (moved < 0 || moved > kLargeSlackNs) return "its processor clock";
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());
-  const std::int64_t ran = shm::MulQ32(
-      static_cast<std::int64_t>(host_cpu_.stop_tsc() - grant.base_tsc), grant.ns_per_tick_q32);
-  if (added < -kSlackNs - std::max<std::int64_t>(0, ran)) return "a clock that went back";
+  if (IsFixed() && added < -kSlackNs) return "a clock that went back";
   if (!IsFixed() && added > kLargeSlackNs) return "a clock that went ahead";
   const std::int64_t idle = std::max<std::int64_t>(0, grant.most_idle_ns - grant.base_time_ns);
   if (waited < 0 || waited > idle + kSlackNs) return "a sleep beyond what it was allowed";

@@ -6,6 +6,9 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <map>
+#include <utility>
+
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/strays.h"
@@ -16,6 +19,8 @@ namespace {
 
 // Of processor time: for so long time waits for a thread that has no level any more.
 constexpr std::int64_t kCountsNs = 1'000'000'000;
+// Of processor time between two looks: whoever has used less does not keep the CPU from others.
+constexpr std::int64_t kComputesNs = 10'000'000;
 
 std::int64_t ClockOf(pid_t tid) {
   const UniqueFd clock(OpenThreadCpuClock(tid));
@@ -26,12 +31,22 @@ bool IsOwnThread(pid_t tid) { return syscall(SYS_tgkill, getpid(), tid, 0) == 0;
 
 }  // namespace
 
-// The dispatched thread has not had the CPU for a while.
+// The dispatched thread has not had the CPU for a while. Others of the host may have it, too: so an
+// unknown thread loses its level only if it has computed since the look before, in this dispatch.
 void Engine::LowerUnknownThreads() {
+  const std::map<pid_t, std::int64_t> before = std::exchange(unknown_threads_.used_ns, {});
+  const bool is_first =
+      std::exchange(unknown_threads_.dispatch, report_.switches) != report_.switches;
   for (const pid_t tid : RealTimeThreadsOn(claim_.cpu, most_pids_)) {
     if (KnownTask(tid) != nullptr || tid == host_cpu_.detector().pid() || IsOwnThread(tid))
       continue;
-    Lower(tid);
+    const std::int64_t used_ns = ClockOf(tid);
+    const auto seen = before.find(tid);
+    if (!is_first && seen != before.end() && used_ns - seen->second >= kComputesNs) {
+      Lower(tid);
+    } else {
+      unknown_threads_.used_ns[tid] = used_ns;
+    }
   }
 }
 

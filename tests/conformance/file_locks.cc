@@ -1,6 +1,7 @@
 // Locks of files (flock, fcntl's of both kinds, lockf): who waits has the lock when it is given up,
 // by a call, by closing the file or by ending, and those who wait are served in their order.
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -129,25 +130,31 @@ void Interrupted(const Kind& kind) {
   sigaction(SIGUSR1, &action, nullptr);
   const pid_t parent = getpid();
   const std::int64_t start = Now();
-  int ready[2];
-  EXPECT(pipe(ready) == 0, "pipe");
+  int ready[2], release[2];
+  EXPECT(pipe(ready) == 0 && pipe(release) == 0, "pipe");
+  char byte;
   const pid_t child = fork();
   if (child == 0) {
     const int fd = Open();
     EXPECT(kind.lock(fd) == 0 && write(ready[1], "x", 1) == 1, "%s", kind.name);
     SleepUntil(start + 60 * Ms());
-    kill(parent, SIGUSR1);
-    SleepUntil(start + 100 * Ms());
+    // On a loaded host the parent may not have come to its wait yet.
+    pollfd released{release[0], POLLIN, 0};
+    do {
+      kill(parent, SIGUSR1);
+    } while (poll(&released, 1, 50) == 0);
     _exit(0);
   }
   const int fd = Open();
-  char byte;
   EXPECT(read(ready[0], &byte, 1) == 1, "read");
   EXPECT(kind.lock(fd) == -1 && errno == EINTR, "%s: %s", kind.name, strerror(errno));
   ExpectPassed(start, 60 * Ms(), "a handler");
-  EXPECT(waitpid(child, nullptr, 0) == child, "waitpid");
-  close(ready[0]);
-  close(ready[1]);
+  EXPECT(write(release[1], "x", 1) == 1, "write");
+  pid_t ended = 0;
+  while ((ended = waitpid(child, nullptr, 0)) == -1 && errno == EINTR) {
+  }
+  EXPECT(ended == child, "waitpid");
+  for (const int end : {ready[0], ready[1], release[0], release[1]}) close(end);
   close(fd);
 }
 
