@@ -76,12 +76,16 @@ bool Engine::SetTimer(Task& task, const shm::Notification& note) {
 bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& note) {
   const std::int64_t id = note.args[0];
   ProcessTimers& timers = process.timers;
-  if (note.kind == shm::NotificationKind::kTimerCreate) CreateTimer(task, note);
-  if (note.kind == shm::NotificationKind::kTimerDelete) DeleteTimer(process, id);
-  if (note.kind == shm::NotificationKind::kTimerCreate || !timers.KindOf(id).has_value()) {
-    return false;
-  }
   bool wrote = false;
+  if (note.kind == shm::NotificationKind::kTimerCreate) {
+    CreateTimer(task, note);
+    return wrote;
+  }
+  if (note.kind == shm::NotificationKind::kTimerDelete) {
+    DeleteTimer(process, id);
+    return wrote;
+  }
+  if (!timers.KindOf(id).has_value()) return wrote;
   if (note.kind == shm::NotificationKind::kTimerOverrun) {
     if (note.args[1] == 0) {
       wrote = BringUpToDate(process, task, id);
