@@ -173,9 +173,9 @@ void Engine::EndTask(Task& task, Moment moment) {
 void Engine::ProcessEnded(std::size_t index, Moment moment) {
   Process& process = processes_[index];
   if (process.dead) return;
-  if (running_ != nullptr && running_->process == &process) {
-    Settle(*running_);
-    moment.ns = running_->reached_ns;
+  if (turn_.IsIn(process)) {
+    Settle(*turn_.task());
+    moment.ns = turn_.task()->reached_ns;
   }
   process.dead = true;
   process.ended_at_ns = moment.ns;

@@ -235,7 +235,7 @@ void Engine::ShowDeliverersTheirDeadlines() {
     if (deliverer == nullptr || !deliverer->waits_for_messages) continue;
     const std::int64_t due = hub_.DueNs(process->dds_number);
     if (std::exchange(deliverer->deadline_ns, due) == due) continue;
-    const bool inside = running_ != nullptr && running_->process->robot == process->robot;
+    const bool inside = turn_.IsOn(*process->robot);
     if (due != shm::kNeverNs && !inside) {
       NoteLateness(*deliverer, due, SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
     }

@@ -95,13 +95,13 @@ void Engine::Resume(Task& task) {
 // The running thread has woken one of another computer, which does not need its core. It goes on,
 // as far as that one now allows.
 void Engine::GoOnBesideWoken() {
-  shm::ClockPage& page = Slot(*running_).clock;
-  const VirtualCpu& cpu = *running_->cpu;
+  shm::ClockPage& page = Slot(*turn_.task()).clock;
+  const VirtualCpu& cpu = *turn_.task()->cpu;
   std::int64_t idle_until = 0;
-  const std::int64_t allowed = std::max(HorizonFor(*running_, &idle_until), WrittenAt());
-  running_horizon_ns_ = std::min(running_horizon_ns_, allowed);
-  ClockGrant& grant = running_->grant;
-  grant.horizon_ns = running_horizon_ns_ + running_->process->frozen_ns;
+  const std::int64_t allowed = std::max(HorizonFor(*turn_.task(), &idle_until), WrittenAt());
+  turn_.LimitTo(allowed);
+  ClockGrant& grant = turn_.task()->grant;
+  grant.horizon_ns = turn_.horizon_ns() + turn_.task()->process->frozen_ns;
   grant.idle_until_ns = 0;  // it asks
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
@@ -112,7 +112,7 @@ void Engine::GoOnBesideWoken() {
 // Real time until the running thread has to be looked at.
 std::int64_t Engine::NsToLook(Task& task) {
   if (task.slot < 0) return kLookTurnNs;
-  return host_cpu_.NsToLook(task, running_horizon_ns_ + task.process->frozen_ns);
+  return host_cpu_.NsToLook(task, turn_.horizon_ns() + task.process->frozen_ns);
 }
 
 void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
@@ -125,16 +125,16 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
 // The virtual time of what the running thread has just done to others: the time that its clock
 // showed when it held for the write.
 std::int64_t Engine::WrittenAt() const {
-  const std::int64_t start = running_->cpu->progress_ns;
-  if (running_->slot < 0 || IsCallback()) return start;
-  const std::int64_t shown = Slot(*running_).clock.last_shown_ns.load();
-  return std::clamp(shown, start, std::max(start, running_horizon_ns_));
+  const std::int64_t start = turn_.task()->cpu->progress_ns;
+  if (turn_.task()->slot < 0 || IsCallback()) return start;
+  const std::int64_t shown = Slot(*turn_.task()).clock.last_shown_ns.load();
+  return std::clamp(shown, start, std::max(start, turn_.horizon_ns()));
 }
 
 // It may be settled again in the same dispatch.
 void Engine::RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end_ns) {
   const std::uint64_t until_tsc = host_cpu_.stop_tsc();
-  RecordSlice(task.row, start_ns, end_ns, std::exchange(recorded_tsc_, until_tsc), until_tsc);
+  RecordSlice(task.row, start_ns, end_ns, std::exchange(turn_.recorded_tsc, until_tsc), until_tsc);
 }
 
 void Engine::Settle(Task& task) {
@@ -151,7 +151,7 @@ void Engine::Settle(Task& task) {
   host_cpu_.End(task, CpuClockOf(task));
   // The shim counts and charges the calls that it sees, whatever the C library calls for it.
   const bool made_unseen_call =
-      trapped_.has_value() && trapped_->number != SYS_exit && slot.signals.load() == 0;
+      turn_.trapped.has_value() && turn_.trapped->number != SYS_exit && slot.signals.load() == 0;
   if (made_unseen_call) {
     host_cpu_.ChargeCall(task, task.process->call_cost_ns);
   }
@@ -161,14 +161,14 @@ void Engine::Settle(Task& task) {
   // Whom it has woken, however long ago it sent what did, it must not have left behind further than
   // the drift bound: what it has computed beyond is a debt.
   if (!IsCallback()) {
-    running_horizon_ns_ = std::min(running_horizon_ns_, root_.Horizon(task.cpu->leaf));
+    turn_.LimitTo(root_.Horizon(task.cpu->leaf));
   }
   StoppedRun run{.start_ns = start,
-                 .horizon_ns = running_horizon_ns_,
+                 .horizon_ns = turn_.horizon_ns(),
                  .reached_ns = reading.time_ns - frozen,
                  .shown_ns = page.last_shown_ns.load() - frozen,
-                 .is_preempted = preempted_ && !notified_};
-  if (notified_ && slot.note.kind != shm::NotificationKind::kYield) {
+                 .is_preempted = turn_.timed_out && !turn_.notified};
+  if (turn_.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted_ns = slot.note.time_ns - frozen;
   }
   const auto [progress, debt, ours] = SettleRun(run);
@@ -243,15 +243,14 @@ bool Engine::GivesUpStart(Task& task, int turns) {
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0;
   StarvationWatch starvation(host_cpu_.stop_tsc(), ticks_per_ns_);
-  held_turns_ = 0;
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : NsToLook(task);
     if (PollWhileRunning(task, asked_ns)) return;
-    if (!preempted_) continue;
-    preempted_ = false;
+    if (!turn_.timed_out) continue;
+    turn_.timed_out = false;
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
       LowerUnknownThreads();
@@ -265,10 +264,10 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     const Meter::Found found =
-        host_cpu_.Look(task, running_horizon_ns_ + task.process->frozen_ns, CpuClockOf(task));
+        host_cpu_.Look(task, turn_.horizon_ns() + task.process->frozen_ns, CpuClockOf(task));
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
-      preempted_ = true;
+      turn_.timed_out = true;
       return;
     }
   }
@@ -278,7 +277,7 @@ void Engine::AwaitStop(Task& task) {
 // would spin for ever. It waits until somebody has run, and looks again, as long as it makes no
 // call.
 void Engine::StepAside(Task& task) {
-  if (notified_ || trapped_.has_value() || task.state == TaskState::kDead) {
+  if (turn_.HasSpoken() || task.state == TaskState::kDead) {
     task.spins = false;
     return;
   }
@@ -301,36 +300,36 @@ void Engine::WakeSpinners() {
   }
 }
 
-void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
-  if (task.notified_early) {
-    task.notified_early = false;
-    task.parked = true;
-    SetState(task, TaskState::kReady);
+// What it has said without being dispatched. True if that is all for now.
+bool Engine::AnswerEarly(Task& task) {
+  if (!task.notified_early && !task.early_trap.has_value()) return false;
+  task.parked = true;
+  SetState(task, TaskState::kReady);
+  const Moment moment{task.reached_ns};
+  bool finds_more = false;
+  if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
-    if (!TakeIpcNotes(task)) return Expel(*task.process, kWrongIpcNotes);
+    if (!TakeIpcNotes(task)) {
+      Expel(*task.process, kWrongIpcNotes);
+      return true;
+    }
     const shm::Notification early = Slot(task).note;
-    const Moment moment{task.reached_ns};
-    if (Handle(task, early)) PollEvents(0, moment);
-    return;
-  }
-  if (task.early_trap.has_value()) {
+    finds_more = Handle(task, early);
+  } else {
     const TrappedCall early = *task.early_trap;
     task.early_trap.reset();
-    task.parked = true;
-    SetState(task, TaskState::kReady);
-    const Moment moment{task.reached_ns};
-    if (HandleTrapped(task, early)) PollEvents(0, moment);
-    return;
+    finds_more = HandleTrapped(task, early);
   }
+  if (finds_more) PollEvents(0, moment);
+  return true;
+}
+
+void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   Beat();
-  running_ = &task;
-  trapped_.reset();
-  const bool looks_again = task.brief_done;
-  task.is_brief = task.follow_up != FollowUp::kNone && !looks_again;
+  task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && IsFixed()) horizon_ns = task.cpu->progress_ns;
-  running_horizon_ns_ = horizon_ns;
-  notified_ = preempted_ = false;
+  turn_.Begin(task, horizon_ns);
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     SendTimerSignalsTo(task);
@@ -339,48 +338,69 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
-  const Moment call{task.cpu->progress_ns};
   Resume(task);
-  recorded_tsc_ = host_cpu_.stop_tsc();
+  turn_.recorded_tsc = host_cpu_.stop_tsc();
   if (task.activation.start_ns < 0) {
     task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
   }
-  AwaitStop(task);
+}
+
+void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
-  running_ = nullptr;
-  const Moment stop{task.cpu->progress_ns};
-  latest_ns_ = stop.ns;
-  if (stop.ns >= running_horizon_ns_) {
+  turn_.End();
+  latest_ns_ = task.cpu->progress_ns;
+  if (latest_ns_ >= turn_.horizon_ns()) {
     ++task.used_up;
-  } else if (notified_ || trapped_.has_value()) {
+  } else if (turn_.HasSpoken()) {
     task.used_up = 0;
   }
+}
+
+// Who is concerned by how the turn has passed, whatever its thread wants now. Its calls were made
+// at `call`.
+void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
+  const Moment stop{task.cpu->progress_ns};
   ExpireCpuTimers(task);
   if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call, looks_again);
   task.process->timers.EndRests(stop.ns);
-  if (notified_ || trapped_.has_value()) PassOn(task, stop);
+  if (turn_.HasSpoken()) PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
-  if (!notified_ && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0, stop);
+  if (!turn_.notified && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0, stop);
+}
+
+// What the thread has said at the end of its turn.
+void Engine::Answer(Task& task) {
+  if (task.state == TaskState::kDead || !turn_.HasSpoken()) return;
+  const Moment moment{task.reached_ns};
+  task.parked = true;
+  bool finds_more = false;
+  if (turn_.notified) {
+    task.reply[0] = task.reply[1] = 0;
+    const shm::Notification note = Slot(task).note;
+    finds_more = Handle(task, note);
+  } else {
+    finds_more = HandleTrapped(task, *turn_.trapped);
+  }
+  // What is there already ends the wait here and now.
+  if (finds_more) PollEvents(0, moment);
+}
+
+void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
+  if (AnswerEarly(task)) return;
+  const bool looks_again = task.brief_done;
+  const Moment call{task.cpu->progress_ns};
+  BeginTurn(task, horizon_ns, idle_until_ns);
+  AwaitStop(task);
+  EndTurn(task);
+  TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {
     if (task.state != TaskState::kDead) AwaitDeath(task);
     return;
   }
   if (task.spins) StepAside(task);
-  bool finds_more = false;
-  const Moment moment{task.reached_ns};
-  if (notified_ && task.state != TaskState::kDead) {
-    task.parked = true;
-    task.reply[0] = task.reply[1] = 0;
-    const shm::Notification note = Slot(task).note;
-    finds_more = Handle(task, note);
-  } else if (trapped_.has_value() && task.state != TaskState::kDead) {
-    task.parked = true;
-    finds_more = HandleTrapped(task, *trapped_);
-  }
-  // What is there already ends the wait here and now.
-  if (finds_more) PollEvents(0, moment);
+  Answer(task);
 }
 
 }  // namespace tcs

@@ -63,7 +63,7 @@ void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   // A deliverer that waits for something else must not be waited for: it may need what those hold.
   if (task.is_deliverer && !IsRunnable(task) && !task.waits_for_messages) {
     ReleaseThoseAwaitingDeliverer(*task.process,
-                                  {&task == running_ ? WrittenAt() : task.reached_ns});
+                                  {turn_.IsOf(task) ? WrittenAt() : task.reached_ns});
   }
 }
 
@@ -111,8 +111,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
   const bool reads = task.state == TaskState::kWaiting &&
                      (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
                       task.awaited_signals != 0 || task.waits_for_messages);
-  const bool outside = moment.from_outside ||
-                       (running_ != nullptr && running_->process->robot != task.process->robot);
+  const bool outside = moment.from_outside || (turn_.lasts() && !turn_.IsOn(*task.process->robot));
   const bool goes_first = outside && task.state == TaskState::kWaiting &&
                           SchedulerOf(task).PreemptsOnWakeup(task.order);
   if (outside && reads && !task.waits_for_messages) NoteLateness(task, moment.ns, goes_first);
@@ -149,7 +148,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
 std::int64_t Engine::EarliestWake() const {
   if (IsCallback()) return 0;
   std::int64_t earliest = root_.EarliestWake();
-  if (running_ != nullptr) earliest = std::max(earliest, WrittenAt() - scenario_.drift_bound.ns());
+  if (turn_.lasts()) earliest = std::max(earliest, WrittenAt() - scenario_.drift_bound.ns());
   return earliest;
 }
 

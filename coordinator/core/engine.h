@@ -19,6 +19,7 @@
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
 #include "coordinator/core/task.h"
+#include "coordinator/core/turn.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
@@ -124,6 +125,11 @@ class Engine {
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
+  bool AnswerEarly(Task& task);
+  void BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
+  void EndTurn(Task& task);
+  void TellOthersOf(Task& task, Moment call, bool looks_again);
+  void Answer(Task& task);
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
   void GoOnBesideWoken();
@@ -505,13 +511,13 @@ class Engine {
   shm::RunMemory* memory_ = nullptr;
   shm::RunHeader* header_ = nullptr;  // in it
   UniqueFd memfd_, signals_;
-  std::optional<TrappedCall> trapped_;  // the running thread has stopped in it
   std::uint64_t key_counter_ = 0;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t wait_order_counter_ = 0;
   std::uint32_t key_waiters_ = 0;
   FifoExecutor executor_;
   HostCpu host_cpu_{executor_};
+  Turn turn_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
   std::map<pid_t, std::int64_t> lowered_;
@@ -521,7 +527,6 @@ class Engine {
   };
   UnknownThreads unknown_threads_;
   int most_pids_ = MostPids();
-  int held_turns_ = 0;  // since the running thread was found blocked in the kernel
   std::vector<Listener> listeners_;
   std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
@@ -530,9 +535,6 @@ class Engine {
   std::int64_t end_ns_ = 0;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   std::int64_t latest_ns_ = 0;
-  Task* running_ = nullptr;
-  std::int64_t running_horizon_ns_ = 0;
-  std::uint64_t recorded_tsc_ = 0;  // up to here its slices have been recorded
   StopRequest stop_;
   bool reached_end_ = false;
   std::int64_t grace_began_ns_ = shm::kNeverNs;
@@ -540,7 +542,6 @@ class Engine {
   bool grace_ran_out_ = false;                             // it has
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
-  bool notified_ = false, preempted_ = false;              // why the running thread was stopped
 
   RunReport report_;
   std::int64_t client_host_ns_ = 0;

@@ -33,8 +33,8 @@ constexpr int kExitTurns = 20;
 }  // namespace
 
 bool Engine::NotificationArrived(Task& task, Moment moment) {
-  if (&task == running_) {
-    notified_ = true;
+  if (turn_.IsOf(task)) {
+    turn_.notified = true;
   } else if (task.state == TaskState::kWaiting &&
              Slot(task).note.kind == shm::NotificationKind::kInterrupted) {
     MakeReady(task, shm::WakeReason::kSignal, moment);
@@ -108,52 +108,52 @@ void Engine::LetDie(const Process& process) {
 void Engine::LendLevel() {
   std::vector<Task*> own, others;
   for (Task& task : tasks_) {
-    if (&task == running_ || task.parked || task.state == TaskState::kDead) continue;
+    if (turn_.IsOf(task) || task.parked || task.state == TaskState::kDead) continue;
     if (task.may_run || ThreadState(task.tid) != 'R') continue;
     if (IsInUserMode(task.tid)) continue;
-    (task.process == running_->process ? own : others).push_back(&task);
+    (task.process == turn_.task()->process ? own : others).push_back(&task);
   }
   const std::vector<Task*>& able = own.empty() ? others : own;
   if (able.empty()) return;
-  host_cpu_.active().Lend(*able[static_cast<std::size_t>(held_turns_) % able.size()]);
+  host_cpu_.active().Lend(*able[static_cast<std::size_t>(turn_.held_looks) % able.size()]);
 }
 
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
-  const char state = ThreadState(running_->tid);
-  if (state != 'S' && running_->process->threads > 1) LetDie(*running_->process);
-  if ((state == 'Z' || state == 'X') && held_turns_ > kExitTurns && HasExited(*running_)) {
-    Task& ended = *running_;
-    Settle(ended);
-    EndTask(ended, {ended.reached_ns});
-    WakeThoseWaitingFor(ended, {ended.reached_ns});
+  Task& task = *turn_.task();
+  const char state = ThreadState(task.tid);
+  if (state != 'S' && task.process->threads > 1) LetDie(*task.process);
+  if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns && HasExited(task)) {
+    Settle(task);
+    EndTask(task, {task.reached_ns});
+    WakeThoseWaitingFor(task, {task.reached_ns});
     return true;
   }
-  if (state == 'S' && CutsOff(*running_)) return running_->process->expelled;
+  if (state == 'S' && CutsOff(task)) return task.process->expelled;
   const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
-  if (!stopped && (state != 'S' || running_->slot < 0)) {
+  if (!stopped && (state != 'S' || task.slot < 0)) {
     if (state == 'D') LendLevel();
     return false;
   }
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
   // program because of a short system call.
-  const bool alone = running_->process->threads == 1;
+  const bool alone = task.process->threads == 1;
   const int turns = !alone ? 0 : IsFixed() ? kHeldTurnsFixed : world_.present() ? kHeldTurns : 0;
-  const bool expected = running_->expects_kernel;
-  if (!stopped && !expected && held_turns_ < turns) return false;
-  SetState(*running_, TaskState::kUnseen);
-  running_->parked = false;
+  const bool expected = task.expects_kernel;
+  if (!stopped && !expected && turn_.held_looks < turns) return false;
+  SetState(task, TaskState::kUnseen);
+  task.parked = false;
   if (expected && !stopped) return true;
   if (stopped) {
     const Moment moment{WrittenAt()};
-    NoteStops(*running_->process, moment);
-    NoteWhetherStopped(*running_->process, moment.ns);
+    NoteStops(*task.process, moment);
+    NoteWhetherStopped(*task.process, moment.ns);
     return true;
   }
   Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
-      running_->process->name, ThreadSystemCall(running_->tid)));
+      task.process->name, ThreadSystemCall(task.tid)));
   return true;
 }
 
@@ -170,7 +170,7 @@ bool Engine::CutsOff(Task& task) {
   shm::ThreadSlot& slot = Slot(task);
   slot.wake_reason.store(shm::WakeReason::kCutOff);
   HostCpu::OpenGate(slot);
-  held_turns_ = 0;
+  turn_.held_looks = 0;
   host_cpu_.detector().Arm();
   return true;
 }
@@ -187,29 +187,29 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 
 // `is_rest`: a further look at an instant, at which the running thread stands as it was found.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
-  const bool held = held_turns_ > 0 && running_ != nullptr && !host_cpu_.detector().is_armed();
+  const bool held = turn_.held_looks > 0 && turn_.lasts() && !host_cpu_.detector().is_armed();
   const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs : kHeldTurnNs;
   if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
-  const bool counts = !is_rest && running_ != nullptr && running_->slot >= 0 && timeout_ns >= 0;
-  const shm::ClockReading before = counts ? host_cpu_.ClockOf(*running_) : shm::ClockReading{};
+  const bool counts = !is_rest && turn_.HasClock() && timeout_ns >= 0;
+  const shm::ClockReading before = counts ? host_cpu_.ClockOf(*turn_.task()) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
   if (!is_rest) host_cpu_.Woke();
   if (n == 0 && is_rest) return {};
-  if (counts) TakeOutUntold(*running_, before, timeout_ns);
-  if (n == 0 && running_ != nullptr) {
+  if (counts) TakeOutUntold(*turn_.task(), before, timeout_ns);
+  if (n == 0 && turn_.lasts()) {
     if (held) {
       host_cpu_.active().TakeBack();
       host_cpu_.detector().Arm();
     } else {
-      preempted_ = true;
+      turn_.timed_out = true;
     }
     return {};
   }
-  if (running_ != nullptr) moment = {WrittenAt()};
+  if (turn_.lasts()) moment = {WrittenAt()};
   Reactor::Found found = reactor_.Handle(moment);
   found |= WakeReadyAwaiters(moment);
-  if (running_ == nullptr || found.stops_running || !found.blocks_running) return found;
-  ++held_turns_;
+  if (!turn_.lasts() || found.stops_running || !found.blocks_running) return found;
+  ++turn_.held_looks;
   found.stops_running = BlockedInKernel();
   return found;
 }
@@ -222,10 +222,10 @@ Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
     return task->state != TaskState::kWaiting || !task->waits_for_fds;
   });
   if (awaiters.empty()) return {};
-  const bool beside = running_ != nullptr && running_->slot >= 0 &&
-                      std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-                        return task->process->robot == running_->process->robot;
-                      });
+  const bool beside =
+      turn_.HasClock() && std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+        return turn_.IsOn(*task->process->robot);
+      });
   WakeAwaiters(std::move(awaiters), moment);
   if (beside) GoOnBesideWoken();
   return {.stops_running = !beside, .wakes_others = true};

@@ -12,7 +12,7 @@ void Engine::DoFollowUp(Task& task, Moment call, bool last) {
   // Something else may have stopped it before it has even come to the call: then once more. And
   // once more in any case, for how far it has come is not known.
   const FollowUp what = task.follow_up;
-  if (last || notified_ || trapped_.has_value()) {
+  if (last || turn_.HasSpoken()) {
     task.follow_up = FollowUp::kNone;
     task.brief_done = false;
   }

@@ -61,8 +61,8 @@ void Engine::EndClients() {
 
 void Engine::BeginGrace() {
   grace_began_ns_ = report_.virtual_ns;
-  if (running_ != nullptr) Settle(*running_);  // the dynamics have failed beside it
-  running_ = nullptr;
+  if (turn_.lasts()) Settle(*turn_.task());  // the dynamics have failed beside it
+  turn_.End();
   root_.EndDynamics();
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);

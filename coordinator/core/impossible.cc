@@ -101,7 +101,7 @@ void Engine::Expel(Process& process, const char* what) {
   for (Task* task : threads) {
     if (task->process != &process) continue;
     host_cpu_.active().LetRun(*task);
-    if (task != running_) AwaitDeath(*task);
+    if (!turn_.IsOf(*task)) AwaitDeath(*task);
   }
   pollfd end{process.pidfd.get(), POLLIN, 0};
   poll(&end, 1, kDeathMs);

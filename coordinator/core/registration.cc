@@ -94,10 +94,10 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
            !IsDying(task->tid);
   });
   if (lives_on) return false;
-  const bool by_another = running_ != nullptr && running_ != first && running_->process == of;
+  const bool by_another = turn_.IsIn(*of) && turn_.task() != first;
   if (by_another) {
-    Settle(*running_);
-    moment.ns = running_->reached_ns;
+    Settle(*turn_.task());
+    moment.ns = turn_.task()->reached_ns;
   }
   for (Task* task : threads) {
     if (task->process != of || task == first) continue;
@@ -144,7 +144,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   }
   const Task* stranger = KnownTask(hello.tid);
   const bool is_anothers =
-      stranger != nullptr && stranger == running_ && stranger->process->pid != hello.pid;
+      stranger != nullptr && turn_.IsOf(*stranger) && stranger->process->pid != hello.pid;
   if (is_anothers || (hello.tid == hello.pid && !EndThreadsLostInExec(hello.pid, moment))) {
     Refuse(connection, "it has a place there already");
     return false;
@@ -166,7 +166,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   }
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
-  if (&task != running_) host_cpu_.active().HoldUnknown(task);
+  if (!turn_.IsOf(task)) host_cpu_.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {  // a new process; or it has executed another program
     DeletePosixTimers(process);
     LeaveDds(process, moment);

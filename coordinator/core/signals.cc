@@ -50,7 +50,7 @@ bool Engine::PollSignals() {
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
-  const std::int64_t now_ns = running_ != nullptr ? WrittenAt() : latest_ns_;
+  const std::int64_t now_ns = turn_.lasts() ? WrittenAt() : latest_ns_;
   for (Task& task : tasks_) {
     if (task.awaited_signals == 0) continue;
     const Moment moment{std::max(now_ns, task.reached_ns)};
@@ -66,8 +66,8 @@ bool Engine::PollSignals() {
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
   while (waiting_for_signals_ + waiting_for_stops_ > 0 && timeout_ns > kLookEveryNs) {
     if (PollEvents(kLookEveryNs, {}).stops_running) return true;
-    if (!preempted_) return false;
-    preempted_ = false;
+    if (!turn_.timed_out) return false;
+    turn_.timed_out = false;
     if (PollSignals()) return true;
     timeout_ns -= kLookEveryNs;
     host_cpu_.Continue(task);
@@ -100,7 +100,7 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
 // it run before (while the running thread waits for the disk), the kernel would end the call with
 // an error of its own, and the result would be lost.
 void Engine::AnswerAhead(Task& task) {
-  if (&task == running_ || task.trap_id == 0 || task.trap_continues ||
+  if (turn_.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
       task.state != TaskState::kReady) {
     return;
   }

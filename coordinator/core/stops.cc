@@ -36,7 +36,7 @@ void Engine::LetStop(const Process& process) {
   if (!certain && !stops) return;
   for (Task* task : threads) {
     const bool waits = task->state == TaskState::kWaiting;
-    if (task != running_ && ThreadState(task->tid) != 'T' && (certain || waits)) {
+    if (!turn_.IsOf(*task) && ThreadState(task->tid) != 'T' && (certain || waits)) {
       host_cpu_.active().LetKernelFinish(*task);
     }
     certain |= ThreadState(task->tid) == 'T';

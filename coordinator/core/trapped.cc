@@ -34,8 +34,8 @@ void Engine::TrapArrived(int listener, Moment moment) {
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call->number == SYS_futex);
   if (!ours) return HandleStranger(*call, moment);
-  if (task == running_) {
-    trapped_ = *call;
+  if (turn_.IsOf(*task)) {
+    turn_.trapped = *call;
     return;
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
@@ -77,8 +77,8 @@ void Engine::ReleaseTrapped() {
     task.trap_id = 0;
     task.early_trap.reset();
   }
-  if (trapped_.has_value()) LetThrough(*trapped_);
-  trapped_.reset();
+  if (turn_.trapped.has_value()) LetThrough(*turn_.trapped);
+  turn_.trapped.reset();
 }
 
 }  // namespace tcs
