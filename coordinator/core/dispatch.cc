@@ -139,7 +139,6 @@ void Engine::RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
-  if (HasTakenTooMuch(task)) host_cpu_.Check(task, CpuClockOf(task));
   if (const char* what = WhatIsImpossible(task); what != nullptr) {
     task.reached_ns = task.cpu->progress_ns;
     Expel(*task.process, what);

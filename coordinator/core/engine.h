@@ -149,7 +149,6 @@ class Engine {
 
   // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
   static constexpr const char* kWrongIpcNotes = "times of System V objects";
-  bool HasTakenTooMuch(const Task& task) const;
   const char* WhatIsImpossible(const Task& task) const;
   static const char* WhatIsImpossible(const shm::Notification& note);
   void Expel(Process& process, const char* what);

@@ -26,17 +26,6 @@ constexpr int kDeathMs = 1000;
 
 }  // namespace
 
-// More than it has run was taken out of its clock, as stolen: by its program, or because the host's
-// clocks do not agree. What its CPU clock says counts then, which nobody can make up.
-bool Engine::HasTakenTooMuch(const Task& task) const {
-  if (IsFixed() || !task.HasOwnClock()) return false;
-  const std::int64_t added = shm::AdjustValue(Slot(task).clock.executed_adjust.load());
-  const std::int64_t ran =
-      shm::MulQ32(static_cast<std::int64_t>(host_cpu_.stop_tsc() - task.grant.base_tsc),
-                  task.grant.ns_per_tick_q32);
-  return added < -kSlackNs - std::max<std::int64_t>(0, ran);
-}
-
 // Of the clock of a thread that has just been stopped; null if all is well.
 const char* Engine::WhatIsImpossible(const Task& task) const {
   const shm::ClockPage& page = Slot(task).clock;

@@ -8,6 +8,22 @@
 
 namespace tcs {
 
+namespace {
+
+// More than what clocks and the coordinator's estimates differ by in one dispatch.
+constexpr std::int64_t kSlackNs = 10'000'000;
+
+// More than it has run was taken out of its clock, as stolen: by its program, or because the host's
+// clocks do not agree.
+bool HasTakenTooMuch(const shm::ClockPage& page, std::uint64_t tsc) {
+  const std::int64_t ran_ns =
+      shm::MulQ32(static_cast<std::int64_t>(tsc - page.base_tsc), page.ns_per_tick_q32);
+  return shm::AdjustValue(page.executed_adjust.load()) <
+         -kSlackNs - std::max<std::int64_t>(0, ran_ns);
+}
+
+}  // namespace
+
 void MeasuredMeter::SetRates(const MeteredThread& thread, const SetCosts&,
                              ClockGrant& grant) const {
   grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / thread.speed);
@@ -89,7 +105,11 @@ void MeasuredMeter::CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const C
 }
 
 void MeasuredMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
-  CheckIfDue(thread, tsc, clock);
+  if (HasTakenTooMuch(*thread.page, tsc)) {
+    Check(thread, tsc, clock);
+  } else {
+    CheckIfDue(thread, tsc, clock);
+  }
   thread.unchecked_ticks = tsc - thread.page->last_check_tsc.load(std::memory_order_relaxed);
 }
 

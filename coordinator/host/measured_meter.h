@@ -2,7 +2,8 @@
 //
 // The TSC also counts what others took. So whenever much of it has passed unchecked the thread's
 // own CPU clock is asked, and the difference taken out. What is on both clocks and yet was not the
-// thread's tells by the coordinator's timer (stolen_time.h).
+// thread's tells by the coordinator's timer (stolen_time.h). The thread takes out by itself what it
+// finds stolen; where that is more than it can have run, its CPU clock is asked, too.
 #pragma once
 
 #include "coordinator/host/meter.h"

@@ -142,6 +142,27 @@ TEST_F(MeasuredMeterTest, AThreadThatWasStolenFromHasNotComeToItsHorizon) {
   EXPECT_EQ(asked_, 1);
 }
 
+TEST_F(MeasuredMeterTest, WhoTakesOutMoreThanItHasRunIsChargedWhatItsCpuClockSays) {
+  Dispatch(kBegun);
+  const std::uint64_t tsc = kBegun + 20 * kTicksPerUs;  // too early for a check
+  host_cpu_ns_ += 15 * kUs;
+  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -50 * kMs);
+  End(tsc);
+  EXPECT_EQ(ClockAt(tsc), kStart + 15 * kUs);
+  EXPECT_EQ(asked_, 1);
+}
+
+TEST_F(MeasuredMeterTest, WhatItFindsStolenItMayTakeOut) {
+  Dispatch(kBegun);
+  const std::uint64_t tsc = kBegun + 20 * kTicksPerMs;
+  host_cpu_ns_ += 5 * kMs;
+  page_.executed_adjust = shm::PackAdjust(page_.executed_adjust.load(), -15 * kMs);
+  page_.last_check_tsc = tsc;
+  End(tsc);
+  EXPECT_EQ(ClockAt(tsc), kStart + 5 * kMs);
+  EXPECT_EQ(asked_, 0);
+}
+
 TEST_F(MeasuredMeterTest, LearnsHowLateTimersAre) {
   Dispatch(kBegun);
   page_.check_after_ticks = ~std::uint64_t{0};  // nothing is stolen
