@@ -3,10 +3,13 @@
 #include <linux/sched.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
-#include "tests/conformance/conformance.h"
+#include <atomic>
+
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
@@ -74,21 +77,29 @@ void Check(const char* what, pid_t (*make)()) {
   }
 }
 
-// One that is known, and lives for a while.
-pid_t ByFork() {
+// One that is known, and lives for a while; natively until it may end.
+pid_t ByFork(const std::atomic<bool>* may_end = nullptr) {
   const pid_t pid = fork();
   if (pid != 0) return pid;
   usleep(100'000);
+  NativelyUntil([=] { return may_end == nullptr || may_end->load(); });
   _exit(4);
+}
+
+std::atomic<bool>* SharedFlag() {
+  return static_cast<std::atomic<bool>*>(
+      mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
 }
 
 // Beside one that is known.
 void Beside() {
+  std::atomic<bool>* const unknown_has_ended = SharedFlag();
   const std::int64_t start = Now();
-  const pid_t known = ByFork();
+  const pid_t known = ByFork(unknown_has_ended);
   const pid_t unknown = ByRawFork();
   int status = 0;
   EXPECT(wait(&status) == unknown && WEXITSTATUS(status) == 3, "%x", status);
+  *unknown_has_ended = true;
   EXPECT(wait(&status) == known && WEXITSTATUS(status) == 4, "%x", status);
   EXPECT(Now() - start >= 100 * kMs, "early");
   EXPECT(wait(&status) == -1 && errno == ECHILD, "one more");

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace conformance {
 
@@ -19,6 +20,7 @@ void WakesAfterTheDelay(const char* what, Child child, Parent parent) {
   EXPECT(pid >= 0, "fork");
   if (pid == 0) {
     usleep(kChildDelay / 1000);
+    NativelyUntil([] { return Sleeps(getppid()); });
     child();
     _exit(0);
   }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -33,16 +34,9 @@ int MakeSet(int fd, std::uint32_t events) {
 
 // Returns when the thread, which says its number before, waits.
 void AwaitSleep(const std::atomic<pid_t>& tid) {
-  for (char state = 'R'; state != 'S';) {
+  do {
     usleep(kApartUs);
-    if (tid == 0) continue;
-    char path[64], text[256] = {};
-    snprintf(path, sizeof path, "/proc/%d/stat", tid.load());
-    const int fd = open(path, O_RDONLY);
-    EXPECT(fd >= 0 && read(fd, text, sizeof text - 1) > 0, "%s: %s", path, strerror(errno));
-    close(fd);
-    state = strrchr(text, ')')[2];
-  }
+  } while (tid == 0 || !Sleeps(tid));
 }
 
 // Threads that began to wait one after another; `wait(i)` returns when the i-th has got something.

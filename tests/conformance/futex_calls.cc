@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -55,17 +56,20 @@ void Timeouts() {
 struct Waiters {
   Word word{0}, other{0};
   Word woken[3]{};
+  InOrder arrivals;
   std::vector<std::thread> threads;
 
   Waiters() {
     for (std::uint32_t i = 0; i < 3; ++i) {
       threads.emplace_back([this, i] {
+        arrivals.Comes(static_cast<int>(i));
         EXPECT(Futex(word, FUTEX_WAIT_BITSET_PRIVATE, 0, nullptr, nullptr, 1u << i) == 0,
                "waiter %u: %s", i, strerror(errno));
         woken[i] = 1;
       });
       usleep(20'000);  // in this order
     }
+    arrivals.AwaitAll(3);
   }
   ~Waiters() {
     for (std::thread& thread : threads) thread.join();

@@ -11,6 +11,7 @@
 #include <atomic>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
@@ -136,15 +137,23 @@ void SignalsWhileWaiting() {
   EXPECT(g_handled >= 6, "%d handlers have run", g_handled.load());
 }
 
-void* LockAndEnd(void* mutex) {
-  EXPECT(pthread_mutex_lock(static_cast<pthread_mutex_t*>(mutex)) == 0, "lock");
+struct Owned {
+  pthread_mutex_t mutex;
+  std::atomic<bool> is_locked;
+};
+
+void* LockAndEnd(void* memory) {
+  auto* owned = static_cast<Owned*>(memory);
+  EXPECT(pthread_mutex_lock(&owned->mutex) == 0, "lock");
+  owned->is_locked = true;
   usleep(20'000);
   return nullptr;
 }
 
 void OwnerDies(int protocol, bool process) {
-  auto* mutex = static_cast<pthread_mutex_t*>(
+  auto* owned = static_cast<Owned*>(
       mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  pthread_mutex_t* const mutex = &owned->mutex;
   pthread_mutexattr_t attributes;
   pthread_mutexattr_init(&attributes);
   pthread_mutexattr_setprotocol(&attributes, protocol);
@@ -153,17 +162,18 @@ void OwnerDies(int protocol, bool process) {
   pthread_mutex_init(mutex, &attributes);
   pid_t child = -1;
   pthread_t thread{};
+  const std::int64_t start = Now();
   if (process) {
     child = fork();
     if (child == 0) {
-      LockAndEnd(mutex);
+      LockAndEnd(owned);
       _exit(0);
     }
   } else {
-    pthread_create(&thread, nullptr, LockAndEnd, mutex);
+    pthread_create(&thread, nullptr, LockAndEnd, owned);
   }
-  const std::int64_t start = Now();
   usleep(10'000);
+  NativelyUntil([=] { return owned->is_locked.load(); });
   const int error = pthread_mutex_lock(mutex);
   EXPECT(error == EOWNERDEAD, "protocol %d: %s", protocol, strerror(error));
   ExpectSoonAfter(start, 19 * kMs, "the owner's death", 15 * kMs);

@@ -9,6 +9,7 @@
 #include <atomic>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
@@ -120,11 +121,13 @@ bool Holds() {
 void Condition(bool held) {
   static std::atomic<int> had;
   had = 0;
+  InOrder waiters;
   const std::int64_t start = Now();
   pthread_t threads[3];
   for (int i = 0; i < 3; ++i) {
-    threads[i] = Thread([=] {
+    threads[i] = Thread([=, &waiters] {
       SleepUntil(start + (i + 1) * 10 * kMs);
+      waiters.Comes(i);
       EXPECT(WaitForLock() == 0, "%s", strerror(errno));
       EXPECT(Holds(), "without the lock");
       // One after another: each has it for 10 ms.
@@ -135,6 +138,7 @@ void Condition(bool held) {
     });
   }
   SleepUntil(start + 90 * kMs);
+  waiters.AwaitAll(3);
   if (held) {
     Lock();
     EXPECT(HandOn(INT_MAX) == 3, "%s", strerror(errno));

@@ -9,6 +9,7 @@
 
 #include "tests/conformance/alarm_in.h"
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -199,6 +200,7 @@ void* Receive(void*) {
 
 void ExpectReceived(int count, std::int64_t sent, const char* what) {
   usleep(5'000);
+  NativelyUntil([=] { return g_received >= count; });
   EXPECT(g_received == count, "%s: %d were received", what, g_received.load());
   if (g_mode == Mode::kMeasured)
     EXPECT(g_received_at - sent < kMs, "%s: %lld ns later", what,

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include "tests/conformance/child_later.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -71,6 +72,7 @@ void SemaphoreWaits(int id) {
     _exit(0);
   }
   usleep(kChildDelay / 1000);
+  NativelyUntil([=] { return semctl(id, 1, GETVAL) == 0; });  // the child has it
   Must(Operate(id, 1, -1));
   const std::int64_t passed = Now() - start;
   EXPECT(passed >= 2 * kChildDelay, "undone after %lld ns", (long long)passed);
@@ -79,7 +81,7 @@ void SemaphoreWaits(int id) {
   EXPECT(waitpid(holder, nullptr, 0) == holder, "waitpid");
 }
 
-// Two that wait for one semaphore get it in the order in which they came.
+// Three that wait for one semaphore get it in the order in which they came.
 void SemaphoreOrder(int id) {
   int order[2];
   EXPECT(pipe(order) == 0, "pipe");
@@ -88,11 +90,13 @@ void SemaphoreOrder(int id) {
     children[i] = fork();
     if (children[i] == 0) {
       usleep(static_cast<unsigned>(i + 1) * 5000);
+      NativelyUntil([=] { return semctl(id, 0, GETNCNT) == i; });
       Must(Operate(id, 0, -1));
       _exit(write(order[1], &i, sizeof i) == sizeof i ? 0 : 1);
     }
   }
   usleep(kChildDelay / 1000);
+  NativelyUntil([=] { return semctl(id, 0, GETNCNT) == 3; });
   for (int i = 0; i < 3; ++i) {
     Must(Operate(id, 0, 1));
     int came = -1;
@@ -139,6 +143,19 @@ void Messages(int id) {
 volatile sig_atomic_t g_alarms = 0;
 void CountAlarm(int) { g_alarms = g_alarms + 1; }
 
+// A SIGALRM for a caller that will wait. Natively from a child, which sees whether it does.
+void AlarmTheWaiter() {
+  if (g_mode != Mode::kNative) {
+    ualarm(kChildDelay / 1000, 0);
+    return;
+  }
+  if (fork() != 0) return;
+  usleep(kChildDelay / 1000);
+  NativelyUntil([] { return Sleeps(getppid()); });
+  kill(getppid(), SIGALRM);
+  _exit(0);
+}
+
 // A handler ends the wait, even one that wants calls to be made again.
 void Interruptions(int semaphores, int messages) {
   struct sigaction action {};
@@ -147,12 +164,13 @@ void Interruptions(int semaphores, int messages) {
   sigaction(SIGALRM, &action, nullptr);
   for (const bool receives : {false, true}) {
     const std::int64_t start = Now();
-    ualarm(kChildDelay / 1000, 0);
+    AlarmTheWaiter();
     Message message;
     const long result = receives ? msgrcv(messages, &message, 8, 0, 0) : Operate(semaphores, 0, -1);
     EXPECT(result == -1 && errno == EINTR, "%ld: %s", result, strerror(errno));
     ExpectWaited(start + (g_mode == Mode::kFixed ? kCallNs : 0), kChildDelay, 1,
                  "an interrupted wait");
+    if (g_mode == Mode::kNative) EXPECT(wait(nullptr) > 0, "%s", strerror(errno));
   }
   EXPECT(g_alarms == 2, "%d alarms", int(g_alarms));
 }
