@@ -365,7 +365,6 @@ class Engine {
 
   // Timers (timers.cc); the rules are ProcessTimers'.
   // True: it has written to a timer descriptor.
-  bool SetTimer(Task& task, const shm::Notification& note);
   bool SetTimerOf(Process& process, Task& task, const shm::Notification& note);
   void FireDue(Robot& robot, std::int64_t now_ns);
   bool Expire(Process& process, std::int64_t now_ns);

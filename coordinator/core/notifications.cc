@@ -145,7 +145,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kTimerGet:
     case Kind::kTimerDelete:
     case Kind::kTimerOverrun:
-      looks_again = SetTimer(task, note);
+      looks_again = SetTimerOf(*task.process, task, note);
       break;
     case Kind::kSpawned:
       if (note.args[0] == 0) {

@@ -68,25 +68,21 @@ void Engine::DeletePosixTimers(Process& process) {
                 [&](const auto& entry) { return !process.timers.KindOf(entry.first).has_value(); });
 }
 
-bool Engine::SetTimer(Task& task, const shm::Notification& note) {
-  return SetTimerOf(*task.process, task, note);
-}
-
 // A timer of `process`, by one of its threads, or of its children, which have its descriptors.
 bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& note) {
   const std::int64_t id = note.args[0];
   ProcessTimers& timers = process.timers;
-  bool wrote = false;
   if (note.kind == shm::NotificationKind::kTimerCreate) {
     CreateTimer(task, note);
-    return wrote;
+    return false;
   }
   if (note.kind == shm::NotificationKind::kTimerDelete) {
     DeleteTimer(process, id);
-    return wrote;
+    return false;
   }
-  if (!timers.KindOf(id).has_value()) return wrote;
+  if (!timers.KindOf(id).has_value()) return false;
   if (note.kind == shm::NotificationKind::kTimerOverrun) {
+    bool wrote = false;
     if (note.args[1] == 0) {
       wrote = BringUpToDate(process, task, id);
     } else {
@@ -96,7 +92,7 @@ bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
     task.reply[0] = timers.Overruns(id);
     return wrote;
   }
-  wrote = BringUpToDate(process, task, id);
+  const bool wrote = BringUpToDate(process, task, id);
   const ProcessTimers::Setting before = timers.Get(id);
   task.reply[0] = before.next_ns;
   task.reply[1] = before.interval_ns;
