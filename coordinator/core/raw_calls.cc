@@ -23,6 +23,7 @@
 #include "coordinator/core/client_values.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 #include "coordinator/os/open_files.h"
 #include "shm/clock_ids.h"
 
@@ -208,10 +209,10 @@ std::optional<std::vector<shm::WaitFd>> Engine::RawWaitFds(const Task& task,
 // The signals that end the call though the thread blocks them: its mask lets them in. Those that do
 // nothing, or only stop the thread, do not.
 std::uint64_t Engine::RawAwaitedSignals(const Task& task, const TrappedCall& call) {
-  constexpr auto bit = [](int signal) { return std::uint64_t{1} << (signal - 1); };
-  constexpr std::uint64_t kNoEnd = bit(SIGCHLD) | bit(SIGCONT) | bit(SIGURG) | bit(SIGWINCH) |
-                                   bit(SIGTSTP) | bit(SIGTTIN) | bit(SIGTTOU);
-  constexpr std::uint64_t kNeverHeld = bit(SIGKILL) | bit(SIGSTOP);
+  constexpr std::uint64_t kNoEnd = SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) |
+                                   SignalBit(SIGWINCH) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) |
+                                   SignalBit(SIGTTOU);
+  constexpr std::uint64_t kNeverHeld = SignalBit(SIGKILL) | SignalBit(SIGSTOP);
   std::uint64_t address = 0, mask = 0;
   switch (call.number) {
     case SYS_ppoll:

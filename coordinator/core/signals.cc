@@ -9,6 +9,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 
 namespace tcs {
 
@@ -16,14 +17,10 @@ namespace {
 
 constexpr std::int64_t kLookEveryNs = 10'000'000;  // real time
 
-constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
-
-constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
-
 // What of `pending` makes a thread with these sets run or end. What only stops it does so when it
 // runs next.
 std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::uint64_t blocked) {
-  return pending & ~blocked & ~(kStops & ~sets.caught);
+  return pending & ~blocked & ~(kStopSignals & ~sets.caught);
 }
 
 }  // namespace
@@ -129,7 +126,7 @@ void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
     const SignalSets sets = ReadSignalSets(task.tid);
     const std::uint64_t ignored = sets.blocked | sets.caught;
     stopped |= ThreadState(task.tid) == 'T' ||
-               ((sets.own_pending | sets.shared_pending) & kStops & ~ignored) != 0;
+               ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;
   }
   if (stopped) {
     hub_.Stop(process.dds_number, at_ns);

@@ -7,16 +7,9 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 
 namespace tcs {
-
-namespace {
-
-constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
-
-constexpr std::uint64_t kStops = Bit(SIGSTOP) | Bit(SIGTSTP) | Bit(SIGTTIN) | Bit(SIGTTOU);
-
-}  // namespace
 
 // A thread acts on a signal that stops it when it runs next. So each gets to run for that, and the
 // coordinator goes on when it has stopped. Only SIGSTOP is sure to stop, so what other signals do
@@ -27,9 +20,9 @@ void Engine::LetStop(const Process& process) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     const SignalSets sets = ReadSignalSets(task->tid);
-    const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStops &
+    const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStopSignals &
                                   ~(sets.blocked | sets.caught | sets.ignored);
-    certain |= (pending & Bit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';
+    certain |= (pending & SignalBit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';
     stops |= pending != 0;
     threads.push_back(task);
   }

@@ -5,18 +5,17 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr std::uint64_t Bit(int signal) { return std::uint64_t{1} << (signal - 1); }
-
 // Would the thread run a handler for it?
 bool Handles(const Task& task, int signal) {
   const SignalSets sets = ReadSignalSets(task.tid);
   const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
-  return (sets.caught & ~blocked & Bit(signal)) != 0;
+  return (sets.caught & ~blocked & SignalBit(signal)) != 0;
 }
 
 void Send(Process& process, const TimerSignal& signal, pid_t tid) {
@@ -42,7 +41,7 @@ pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
   for (const Task* task : process.robot->tasks) {
     if (task->process != &process || task->waits_for_fds) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if ((task->awaited_signals & Bit(signal.number)) != 0) return task->tid;
+    if ((task->awaited_signals & SignalBit(signal.number)) != 0) return task->tid;
   }
   return 0;
 }
@@ -96,7 +95,7 @@ void Engine::NoteAccepted(Process& process) {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
     const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
     const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
-    if ((pending & Bit(sent.number)) == 0) process.timers.Accept(sent.timer_id);
+    if ((pending & SignalBit(sent.number)) == 0) process.timers.Accept(sent.timer_id);
   }
 }
 

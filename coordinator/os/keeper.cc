@@ -18,6 +18,7 @@
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
+#include "coordinator/os/signal_bits.h"
 #include "coordinator/os/strays.h"
 #include "shm/time_values.h"
 
@@ -30,11 +31,9 @@ constexpr std::int64_t kStopTurnNs = 100'000'000;
 
 // True if a signal has stopped the process, or is about to.
 bool IsStopped(pid_t pid) {
-  constexpr auto bit = [](int signal) { return std::uint64_t{1} << (signal - 1); };
-  constexpr std::uint64_t kStops = bit(SIGSTOP) | bit(SIGTSTP) | bit(SIGTTIN) | bit(SIGTTOU);
   const SignalSets sets = ReadSignalSets(pid);
   const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & ~sets.ignored;
-  return ThreadState(pid) == 'T' || (pending & kStops & ~sets.blocked) != 0;
+  return ThreadState(pid) == 'T' || (pending & kStopSignals & ~sets.blocked) != 0;
 }
 
 class Keeper {
