@@ -526,6 +526,7 @@ class Engine {
   UnknownThreads unknown_threads_;
   int most_pids_ = MostPids();
   std::vector<Listener> listeners_;
+  std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
   std::string socket_name_;  // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;

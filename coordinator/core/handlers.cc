@@ -86,7 +86,7 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
   if ((events & EPOLLIN) == 0) {
     // Nobody is left whose calls could arrive here.
     reactor_.Remove(listener);
-    close(listener);
+    std::erase_if(traps_, [listener](const UniqueFd& trap) { return trap.get() == listener; });
     return {};
   }
   TrapArrived(listener, moment);

@@ -153,11 +153,13 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
     request.log_stdout = base + ".out.log";
     request.log_stderr = base + ".err.log";
   }
-  const Spawned spawned = Spawn(request);
+  Spawned spawned = Spawn(request);
   const pid_t pid = spawned.pid;
   if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
-  if (spawned.trap >= 0) {
-    reactor_.Add(spawned.trap, EPOLLIN, {Tag::kTrap, static_cast<std::uint32_t>(spawned.trap)});
+  if (spawned.trap) {
+    const int trap = spawned.trap.get();
+    reactor_.Add(trap, EPOLLIN, {Tag::kTrap, static_cast<std::uint32_t>(trap)});
+    traps_.push_back(std::move(spawned.trap));
   } else {
     Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
          "): threads wait for each other in real time");

@@ -2,7 +2,6 @@
 
 #include <sys/epoll.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <utility>
 
@@ -34,10 +33,6 @@ Reactor::Found& Reactor::Found::operator|=(const Found& other) {
 
 Reactor::Reactor() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
 
-Reactor::~Reactor() {
-  if (epoll_ >= 0) close(epoll_);
-}
-
 void Reactor::On(Tag tag, Handler handler) {
   handlers_[static_cast<std::size_t>(tag)] = std::move(handler);
 }
@@ -46,23 +41,23 @@ bool Reactor::Add(int fd, std::uint32_t events, const Subject& subject) {
   epoll_event event{};
   event.events = events;
   event.data.u64 = Packed(subject);
-  return epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0;
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
 }
 
 bool Reactor::Modify(int fd, std::uint32_t events, const Subject& subject) {
   epoll_event event{};
   event.events = events;
   event.data.u64 = Packed(subject);
-  return epoll_ctl(epoll_, EPOLL_CTL_MOD, fd, &event) == 0;
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event) == 0;
 }
 
-void Reactor::Remove(int fd) { epoll_ctl(epoll_, EPOLL_CTL_DEL, fd, nullptr); }
+void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr); }
 
 std::size_t Reactor::Wait(std::int64_t timeout_ns) {
   TCS_CHECK(!is_handling_);
   epoll_event events[kAtOnce];
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
-  const int found = epoll_pwait2(epoll_, events, static_cast<int>(kAtOnce),
+  const int found = epoll_pwait2(epoll_.get(), events, static_cast<int>(kAtOnce),
                                  timeout_ns < 0 ? nullptr : &timeout, nullptr);
   count_ = found < 0 ? 0 : static_cast<std::size_t>(found);
   for (std::size_t i = 0; i < count_; ++i) {

@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "coordinator/core/moment.h"
+#include "coordinator/os/unique_fd.h"
 
 namespace tcs {
 
@@ -56,7 +57,6 @@ class Reactor {
   using Handler = std::function<Found(const Subject&, std::uint32_t events, Moment)>;
 
   Reactor();
-  ~Reactor();
   Reactor(const Reactor&) = delete;
   Reactor& operator=(const Reactor&) = delete;
 
@@ -84,7 +84,7 @@ class Reactor {
     std::uint32_t events;
   };
 
-  int epoll_;
+  UniqueFd epoll_;
   bool is_full_ = false, is_handling_ = false;
   std::array<Queued, kAtOnce> queue_;
   std::size_t count_ = 0;  // in it

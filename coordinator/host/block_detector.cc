@@ -37,41 +37,37 @@ namespace {
 }  // namespace
 
 BlockDetector::~BlockDetector() {
-  if (pidfd_ >= 0) {
-    // By this and not by its number, which may be another's by now.
-    syscall(SYS_pidfd_send_signal, pidfd_, SIGKILL, nullptr, 0);
-    siginfo_t info;
-    waitid(P_PIDFD, static_cast<id_t>(pidfd_), &info, WEXITED);
-  }
-  for (const int fd : {pidfd_, arm_, fired_}) {
-    if (fd >= 0) close(fd);
-  }
+  if (!pidfd_) return;
+  // By this and not by its number, which may be another's by now.
+  syscall(SYS_pidfd_send_signal, pidfd_.get(), SIGKILL, nullptr, 0);
+  siginfo_t info;
+  waitid(P_PIDFD, static_cast<id_t>(pidfd_.get()), &info, WEXITED);
 }
 
 std::string BlockDetector::Start() {
-  arm_ = eventfd(0, EFD_CLOEXEC);
-  fired_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  arm_.Reset(eventfd(0, EFD_CLOEXEC));
+  fired_.Reset(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   const pid_t coordinator = getpid();
   const pid_t detector = fork();
   if (detector < 0) return "the block detector's process cannot be made";
   if (detector == 0) {
     if (getppid() != coordinator) _exit(0);
-    Detect(arm_, fired_);
+    Detect(arm_.get(), fired_.get());
   }
   pid_ = detector;
-  pidfd_ = OpenPidfd(detector);
+  pidfd_.Reset(OpenPidfd(detector));
   return {};
 }
 
 void BlockDetector::Arm() {
   if (armed_) return;
   const std::uint64_t one = 1;
-  armed_ = write(arm_, &one, sizeof one) == sizeof one;
+  armed_ = write(arm_.get(), &one, sizeof one) == sizeof one;
 }
 
 bool BlockDetector::TakeFired() {
   std::uint64_t count;
-  if (read(fired_, &count, sizeof count) != sizeof count) return false;
+  if (read(fired_.get(), &count, sizeof count) != sizeof count) return false;
   armed_ = false;
   return true;
 }

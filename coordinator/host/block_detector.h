@@ -9,6 +9,8 @@
 
 #include <string>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 class BlockDetector {
@@ -26,22 +28,22 @@ class BlockDetector {
   void Arm();
   bool is_armed() const { return armed_; }
   // Readable once it has fired.
-  int fired_fd() const { return fired_; }
+  int fired_fd() const { return fired_.get(); }
   // False if it has not fired since. Otherwise it is not armed any more.
   bool TakeFired();
 
   pid_t pid() const { return pid_; }
   // Readable once its process has ended. While programs compute all the time it does not even get
   // the processor to die, so that it may be worth while to look.
-  int end_fd() const { return pidfd_; }
+  int end_fd() const { return pidfd_.get(); }
   bool IsDying() const;
   // Of a process that has ended or is dying: one sentence.
   std::string HowItEnded() const;
 
  private:
   pid_t pid_ = -1;
-  int pidfd_ = -1;
-  int arm_ = -1, fired_ = -1;  // eventfds
+  UniqueFd pidfd_;
+  UniqueFd arm_, fired_;  // eventfds
   bool armed_ = false;
 };
 

@@ -298,24 +298,24 @@ namespace {
 // The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
 // parent has taken it.
 void HandOverTrap(int to_parent, int from_parent, const std::vector<pid_t>& guarded) {
-  const int listener = InstallTrap(guarded);
+  const UniqueFd listener(InstallTrap(guarded));
+  const int number = listener.get();
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
-  if (syscall(SYS_write, to_parent, &listener, sizeof listener, 0, 0, own) !=
-      static_cast<long>(sizeof listener)) {
+  if (syscall(SYS_write, to_parent, &number, sizeof number, 0, 0, own) !=
+      static_cast<long>(sizeof number)) {
     _exit(127);
   }
   char taken;
   while (syscall(SYS_read, from_parent, &taken, 1, 0, 0, own) < 0 && errno == EINTR) {
   }
-  if (listener >= 0) close(listener);
 }
 
-int TakeOverTrap(pid_t child, int from_child) {
+UniqueFd TakeOverTrap(pid_t child, int from_child) {
   int listener = -1;
-  if (read(from_child, &listener, sizeof listener) != sizeof listener || listener < 0) return -1;
+  if (read(from_child, &listener, sizeof listener) != sizeof listener || listener < 0) return {};
   const UniqueFd pidfd(OpenPidfd(child));
-  return pidfd ? DuplicateFd(pidfd.get(), listener) : -1;
+  return pidfd ? UniqueFd(DuplicateFd(pidfd.get(), listener)) : UniqueFd();
 }
 
 }  // namespace
@@ -330,7 +330,7 @@ Spawned Spawn(const SpawnRequest& request) {
   const pid_t pid = fork();
   if (pid != 0) {
     up->write_end.Reset();
-    Spawned spawned{pid, -1};
+    Spawned spawned{pid, {}};
     if (pid > 0) {
       // The child comes this far at our own level; for the rest it waits for its dispatch. The
       // level is set here, not in the child, which next runs when it has been given another one.

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
 // Who is to do only what the kernel has to do for it does that at once, above the coordinator.
@@ -121,7 +123,7 @@ struct SpawnRequest {
 
 struct Spawned {
   pid_t pid = -1;  // -1: errno is set
-  int trap = -1;   // where its futex calls arrive, and those of all that it starts; -1: nowhere
+  UniqueFd trap;   // where its futex calls arrive, and those of all that it starts; none: nowhere
 };
 
 // The new process, at Level::kWaiting on the coordinator's CPU, killed with the coordinator.

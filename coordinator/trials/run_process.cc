@@ -23,14 +23,14 @@ namespace {
 [[noreturn]] void Become(const RunProcessRequest& request, char** argv, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);
-  const int log = open(request.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0666);
-  const int null = open("/dev/null", O_RDONLY);
-  if (log < 0 || null < 0) _exit(127);
-  dup2(null, STDIN_FILENO);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
-  close(null);
-  close(log);
+  UniqueFd log(open(request.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0666));
+  UniqueFd null(open("/dev/null", O_RDONLY));
+  if (!log || !null) _exit(127);
+  dup2(null.get(), STDIN_FILENO);
+  dup2(log.get(), STDOUT_FILENO);
+  dup2(log.get(), STDERR_FILENO);
+  null.Reset();
+  log.Reset();
   if (request.own_network) {
     if (const std::string why = EnterOwnNetwork(); !why.empty()) {
       fprintf(stderr,
