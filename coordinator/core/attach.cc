@@ -190,18 +190,10 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   reactor_.Remove(process.pidfd.get());
   process.pidfd.Reset();
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
-  Process* parent = LivingProcess(process.parent);
-  if (parent != nullptr) {
+  if (Process* parent = LivingProcess(process.parent); parent != nullptr) {
     parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;
-    ++parent->children_changed;
+    ChildChanged(*parent, process.pid, false, moment);
   }
-  for (Task& task : tasks_) {
-    if (task.waits_for_child && task.process->pid == process.parent &&
-        (task.awaited_child <= 0 || task.awaited_child == process.pid)) {
-      MakeReady(task, shm::WakeReason::kGo, moment);
-    }
-  }
-  if (parent != nullptr) WakeForSignals(*parent, moment);
   StartThoseAfter(process);
   WakeEveryKey(moment);
   LeaveDds(process, moment);

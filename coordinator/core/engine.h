@@ -192,7 +192,7 @@ class Engine {
   void LetStop(const Process& process);
   void LetGoOn(const Process& process);
   void NoteStops(Process& process, Moment moment);
-  void TellParent(const Process& child, Moment moment);
+  void ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment);
   void LookAtStops(Moment moment);
 
   // Children that nobody announced (unknown_children.cc).

@@ -45,7 +45,8 @@ void Engine::NoteStops(Process& process, Moment moment) {
   process.stopped = process.stop_is_news = stopped;
   process.continue_is_news = !stopped;
   if (!stopped) LetGoOn(process);
-  TellParent(process, moment);
+  Process* parent = LivingProcess(process.parent);
+  if (parent != nullptr) ChildChanged(*parent, process.pid, true, moment);
 }
 
 // The kernel sends the parent its signal when one of the threads runs next: those that wait may do
@@ -61,18 +62,17 @@ void Engine::LetGoOn(const Process& process) {
   }
 }
 
-// Those who wait for such a change of a child look at it, and its signal is there.
-void Engine::TellParent(const Process& child, Moment moment) {
-  Process* parent = LivingProcess(child.parent);
-  if (parent == nullptr) return;
-  ++parent->children_changed;
+// A child has ended, or, `by_stop`, has stopped or gone on: the parent's threads that wait for such
+// a change look at it, and its signal is there.
+void Engine::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment) {
+  ++parent.children_changed;
   for (Task& task : tasks_) {
-    if (task.waits_for_child && task.awaits_stops && task.process == parent &&
-        (task.awaited_child <= 0 || task.awaited_child == child.pid)) {
+    if (task.waits_for_child && (task.awaits_stops || !by_stop) && task.process == &parent &&
+        (task.awaited_child <= 0 || task.awaited_child == child)) {
       MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }
-  WakeForSignals(*parent, moment);
+  WakeForSignals(parent, moment);
 }
 
 // Nobody says that a process has been stopped from outside.

@@ -42,15 +42,7 @@ void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
   // A parent that waits for children of another kind leaves it there.
   untaken_children_.insert(pid);
   Process* parent = LivingProcess(child.parent);
-  if (parent == nullptr) return;
-  ++parent->children_changed;
-  for (Task& task : tasks_) {
-    if (task.waits_for_child && task.process == parent &&
-        (task.awaited_child <= 0 || task.awaited_child == pid)) {
-      MakeReady(task, shm::WakeReason::kGo, moment);
-    }
-  }
-  WakeForSignals(*parent, moment);
+  if (parent != nullptr) ChildChanged(*parent, pid, false, moment);
 }
 
 bool Engine::HasUnknownChild(const Process& parent) const {
