@@ -6,7 +6,7 @@ namespace tcs {
 
 void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
                           ClockGrant& grant) const {
-  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / thread.speed);
+  grant.ns_per_host_ns_q32 = thread.NsPerHostNsQ32();
   grant.ns_per_tick_q32 = 0;
   grant.check_after_ticks = ~std::uint64_t{0};
   grant.call_cost_ns = costs.call_ns;

@@ -26,7 +26,7 @@ bool HasTakenTooMuch(const shm::ClockPage& page, std::uint64_t tsc) {
 
 void MeasuredMeter::SetRates(const MeteredThread& thread, const SetCosts&,
                              ClockGrant& grant) const {
-  grant.ns_per_host_ns_q32 = static_cast<std::uint64_t>(4294967296.0 / thread.speed);
+  grant.ns_per_host_ns_q32 = thread.NsPerHostNsQ32();
   grant.ns_per_tick_q32 =
       static_cast<std::uint64_t>(static_cast<double>(rate_.ns_per_tick_q32) / thread.speed);
   grant.check_after_ticks =

@@ -46,6 +46,8 @@ struct MeteredThread {
   std::int64_t HostNs(std::int64_t virtual_ns) const {
     return static_cast<std::int64_t>(static_cast<double>(virtual_ns) * speed);
   }
+  // Virtual nanoseconds per one of the host's, times 2^32.
+  std::uint64_t NsPerHostNsQ32() const { return static_cast<std::uint64_t>(4294967296.0 / speed); }
 };
 
 class Meter {
