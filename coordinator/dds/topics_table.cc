@@ -7,11 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "coordinator/text/text_table.h"
+
 namespace tcs::dds {
 namespace {
-
-constexpr std::size_t kColumns = 8;
-using Row = std::array<std::string, kColumns>;
 
 // "100 Hz", "0.5 Hz", "99.97 Hz".
 std::string RateText(double hz) { return hz == 0 ? "-" : fmt::format("{:.4g} Hz", hz); }
@@ -96,40 +95,28 @@ std::optional<std::string> WhyApart(const TopicReport& topic, const std::string&
 }  // namespace
 
 std::string TopicsTable(const std::vector<TopicReport>& topics, bool with_qos) {
-  constexpr std::array<bool, kColumns> kIsNumber = {false, false, true,  true,
-                                                    true,  true,  false, false};
   const bool has_domains =
       std::any_of(topics.begin(), topics.end(), [](const TopicReport& t) { return t.domain != 0; });
-  std::vector<Row> rows = {
-      {"topic", "type", "domain", "samples", "rate", "drops", "writers", "readers"}};
+  std::vector<TextColumn> columns = {{"topic", false}, {"type", false}};
+  if (has_domains) columns.push_back({"domain"});
+  columns.insert(columns.end(), {{"samples"}, {"rate"}, {"drops"}});
+  columns.insert(columns.end(), {{"writers", false}, {"readers", false}});
+  TextTable table(columns);
   for (const TopicReport& t : topics) {
-    rows.push_back({t.topic, t.type, std::to_string(t.domain), std::to_string(t.samples),
-                    RateText(t.RateHz()), std::to_string(t.drops), Who(t, EndpointKind::kWriter),
-                    Who(t, EndpointKind::kReader)});
-  }
-  std::array<std::size_t, kColumns> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < kColumns; ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string table;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    std::string line;
-    for (std::size_t i = 0; i < kColumns; ++i) {
-      if (i == 2 && !has_domains) continue;
-      const std::string gap = line.empty() ? "" : "  ";
-      line += kIsNumber[i] ? fmt::format("{}{:>{}}", gap, rows[r][i], widths[i])
-                           : fmt::format("{}{:<{}}", gap, rows[r][i], widths[i]);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    table += line + "\n";
-    if (r == 0 || !with_qos) continue;
-    for (const EndpointReport& end : topics[r - 1].endpoints) {
-      table += fmt::format("    {} {}{}: {}\n",
-                           end.kind == EndpointKind::kWriter ? "writer" : "reader", end.process,
-                           end.count > 1 ? fmt::format(" x{}", end.count) : "", QosText(end.qos));
+    std::vector<std::string> cells = {t.topic, t.type};
+    if (has_domains) cells.push_back(std::to_string(t.domain));
+    cells.insert(cells.end(),
+                 {std::to_string(t.samples), RateText(t.RateHz()), std::to_string(t.drops),
+                  Who(t, EndpointKind::kWriter), Who(t, EndpointKind::kReader)});
+    table.Row(std::move(cells));
+    if (!with_qos) continue;
+    for (const EndpointReport& end : t.endpoints) {
+      table.Note(fmt::format(
+          "    {} {}{}: {}", end.kind == EndpointKind::kWriter ? "writer" : "reader", end.process,
+          end.count > 1 ? fmt::format(" x{}", end.count) : "", QosText(end.qos)));
     }
   }
-  return table;
+  return table.Text();
 }
 
 std::vector<std::string> TopicWarnings(const std::vector<TopicReport>& topics) {

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/text.h"
+#include "coordinator/text/text_table.h"
 
 namespace tcs::fit {
 
 namespace {
-
-constexpr std::size_t kColumns = 8;
-using Row = std::array<std::string, kColumns>;
 
 // So much of it in other activations than it was measured in: hardly more than sums agree.
 constexpr double kLargeMisfit = 0.8;
@@ -54,7 +51,7 @@ Charges ChargesOf(const Costs& costs, const std::vector<Work>& activations) {
   return charges;
 }
 
-Row RowOf(const ClientFit& fit, const MeasuredClient& client) {
+std::vector<std::string> RowOf(const ClientFit& fit, const MeasuredClient& client) {
   const Charges charges = ChargesOf(fit.costs, client.activations);
   const auto at = [&charges](double share) {
     if (charges.measured.empty()) return std::string("-");
@@ -70,20 +67,6 @@ Row RowOf(const ClientFit& fit, const MeasuredClient& client) {
           client.activations.empty()
               ? "-"
               : fmt::format("{:.0f} %", 100 * MisfitOf(fit.costs, client.activations))};
-}
-
-std::string Text(const std::vector<Row>& rows) {
-  std::array<std::size_t, kColumns> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < kColumns; ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    text += fmt::format("{:<{}}", row[0], widths[0]);
-    for (std::size_t i = 1; i < kColumns; ++i) text += fmt::format("  {:>{}}", row[i], widths[i]);
-    text += '\n';
-  }
-  return text;
 }
 
 std::string WarningOf(const std::string& name, const MeasuredClient& client, const Costs& costs) {
@@ -123,10 +106,16 @@ std::vector<ClientFit> FitAll(const MeasuredRun& run) {
 }
 
 std::string FitTable(const MeasuredRun& run, const std::vector<ClientFit>& fits) {
-  std::vector<Row> rows{{"measured | with these costs", "a call", "an allocation", "charged in all",
-                         "activations' median", "95 % below", "longest", "misfit"}};
-  for (const ClientFit& fit : fits) rows.push_back(RowOf(fit, run.clients.at(fit.client)));
-  return Text(rows);
+  TextTable table({{"measured | with these costs", false},
+                   {"a call"},
+                   {"an allocation"},
+                   {"charged in all"},
+                   {"activations' median"},
+                   {"95 % below"},
+                   {"longest"},
+                   {"misfit"}});
+  for (const ClientFit& fit : fits) table.Row(RowOf(fit, run.clients.at(fit.client)));
+  return table.Text();
 }
 
 std::vector<std::string> FitWarnings(const MeasuredRun& run, const std::vector<ClientFit>& fits) {

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "coordinator/text/text_table.h"
 
 namespace tcs::report {
 
-struct Column {
-  std::string title;
-  bool is_number = true;
-};
+using Column = TextColumn;
 
 // All texts are plain.
 class Table {
