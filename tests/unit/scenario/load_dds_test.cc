@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
-#include <variant>
 
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
@@ -22,12 +21,7 @@ constexpr auto Ms = VirtualDuration::Milliseconds;
 class LoadDdsTest : public testing::Test {
  protected:
   Scenario Load(std::string_view text) {
-    auto result = LoadScenario(folder_.Write("s.yaml", text));
-    if (const auto* error = std::get_if<LoadError>(&result)) {
-      ADD_FAILURE() << error->message;
-      return {};
-    }
-    return std::get<Scenario>(std::move(result));
+    return ScenarioOf(LoadScenario(folder_.Write("s.yaml", text)));
   }
 
   ScenarioFolder folder_;

@@ -26,12 +26,7 @@ class LoadLivesTest : public testing::Test {
            "}\n";
   }
   Scenario Load(const std::string& text) {
-    auto result = LoadScenario(folder_.Write("s.yaml", text), {.result_directory = Result()});
-    if (const auto* error = std::get_if<LoadError>(&result)) {
-      ADD_FAILURE() << error->message;
-      return {};
-    }
-    return std::get<Scenario>(std::move(result));
+    return ScenarioOf(LoadScenario(folder_.Write("s.yaml", text), {.result_directory = Result()}));
   }
   ClientSpec First(const std::string& keys) { return Load(Text(keys)).robots.at(0).clients.at(0); }
   std::string Wrong(const std::string& a, const std::string& b = "", const std::string& c = "") {

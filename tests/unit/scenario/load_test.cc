@@ -18,12 +18,7 @@ using testing::Pair;
 class LoadTest : public testing::Test {
  protected:
   Scenario Load(std::string_view text, const ScenarioOverrides& overrides = {}) {
-    auto result = LoadScenario(folder_.Write("s.yaml", text), overrides);
-    if (const auto* error = std::get_if<LoadError>(&result)) {
-      ADD_FAILURE() << error->message;
-      return {};
-    }
-    return std::get<Scenario>(std::move(result));
+    return ScenarioOf(LoadScenario(folder_.Write("s.yaml", text), overrides));
   }
 
   ScenarioFolder folder_;

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <variant>
-
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
 
@@ -23,22 +21,10 @@ class OverlayTest : public testing::Test {
     return LoadScenario(folder_.Write("s.yaml", kGoodScenario), {.overlays = {path}, .set = set});
   }
   Scenario Load(std::string_view overlay, const std::vector<std::string>& set = {}) const {
-    auto result = Result(overlay, set);
-    if (const auto* error = std::get_if<LoadError>(&result)) {
-      ADD_FAILURE() << error->message;
-      return {};
-    }
-    return std::get<Scenario>(std::move(result));
+    return ScenarioOf(Result(overlay, set));
   }
-  // Without the folder.
   std::string Complaint(std::string_view overlay) const {
-    const auto result = Result(overlay);
-    const auto* error = std::get_if<LoadError>(&result);
-    if (error == nullptr) return "";
-    EXPECT_EQ(error->message.find('\n'), std::string::npos);
-    const std::string prefix = folder_.path() + "/";
-    return error->message.starts_with(prefix) ? error->message.substr(prefix.size())
-                                              : error->message;
+    return tcs::Complaint(folder_, Result(overlay));
   }
 
   const ScenarioFolder folder_;

@@ -1,13 +1,13 @@
 #include "tests/unit/scenario/scenario_folder.h"
 
+#include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 #include <variant>
-
-#include "coordinator/scenario/load.h"
 
 namespace tcs {
 
@@ -133,13 +133,26 @@ std::string WithReplaced(std::string_view from, std::string_view to, std::string
   return text.replace(at, from.size(), to);
 }
 
-std::string Complaint(const ScenarioFolder& folder, std::string_view text) {
-  const auto result = LoadScenario(folder.Write("s.yaml", text));
+Scenario ScenarioOf(LoadResult<Scenario> result) {
+  if (const auto* error = std::get_if<LoadError>(&result)) {
+    ADD_FAILURE() << error->message;
+    return {};
+  }
+  return std::get<Scenario>(std::move(result));
+}
+
+std::string Complaint(const ScenarioFolder& folder, const LoadResult<Scenario>& result) {
   const auto* error = std::get_if<LoadError>(&result);
   if (error == nullptr) return "";
+  EXPECT_EQ(error->message.find('\n'), std::string::npos) << error->message;
   const std::string prefix = folder.path() + "/";
-  return error->message.starts_with(prefix) ? error->message.substr(prefix.size())
-                                            : "not in the file: " + error->message;
+  return error->message.starts_with(prefix) ? error->message.substr(prefix.size()) : error->message;
+}
+
+std::string Complaint(const ScenarioFolder& folder, std::string_view text) {
+  const std::string complaint = Complaint(folder, LoadScenario(folder.Write("s.yaml", text)));
+  const bool is_in_the_file = complaint.empty() || complaint.starts_with("s.yaml");
+  return is_in_the_file ? complaint : "not in the file: " + complaint;
 }
 
 }  // namespace tcs

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "coordinator/scenario/load.h"
+
 namespace tcs {
 
 class ScenarioFolder {
@@ -39,8 +41,14 @@ extern const std::string_view kGoodDdsScenario;
 std::string WithReplaced(std::string_view from, std::string_view to,
                          std::string_view text = kGoodScenario);
 
-// What LoadScenario says of the `text`, written to FOLDER/s.yaml, without "FOLDER/"; "" if it is
-// fine.
+// What was loaded; a failure of the test and an empty scenario if it was refused.
+Scenario ScenarioOf(LoadResult<Scenario> result);
+
+// Why it was refused, in one line, without the "FOLDER/" of a mistake in a file of the folder; ""
+// if it was not.
+std::string Complaint(const ScenarioFolder& folder, const LoadResult<Scenario>& result);
+
+// The same of the `text` as FOLDER/s.yaml, in which the mistake must be.
 std::string Complaint(const ScenarioFolder& folder, std::string_view text);
 
 }  // namespace tcs

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <variant>
-
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
 
@@ -16,25 +14,16 @@ using testing::StartsWith;
 
 class SetTest : public testing::Test {
  protected:
+  LoadResult<Scenario> Result(std::string_view text, const std::vector<std::string>& set) const {
+    return LoadScenario(folder_.Write("s.yaml", text), {.set = set});
+  }
   Scenario Load(std::string_view text, const std::vector<std::string>& set) const {
-    auto result = LoadScenario(folder_.Write("s.yaml", text), {.set = set});
-    if (const auto* error = std::get_if<LoadError>(&result)) {
-      ADD_FAILURE() << error->message;
-      return {};
-    }
-    return std::get<Scenario>(std::move(result));
+    return ScenarioOf(Result(text, set));
   }
   Scenario Load(const std::vector<std::string>& set) const { return Load(kGoodScenario, set); }
 
-  // Without the folder, which only the file's mistakes have.
   std::string Complaint(std::string_view text, const std::vector<std::string>& set) const {
-    const auto result = LoadScenario(folder_.Write("s.yaml", text), {.set = set});
-    const auto* error = std::get_if<LoadError>(&result);
-    if (error == nullptr) return "";
-    EXPECT_EQ(error->message.find('\n'), std::string::npos);
-    const std::string prefix = folder_.path() + "/";
-    return error->message.starts_with(prefix) ? error->message.substr(prefix.size())
-                                              : error->message;
+    return tcs::Complaint(folder_, Result(text, set));
   }
   std::string Complaint(const std::vector<std::string>& set) const {
     return Complaint(kGoodScenario, set);
