@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""The table of folders in docs/ARCHITECTURE.md is true: every folder of the sources has a row, and
+includes what its row says and nothing else. A name of the last column that is no folder of the
+project's is one in coordinator/; words without marks are for readers."""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PAGE = ROOT / "docs/ARCHITECTURE.md"
+TOPS = ("shm", "libtcs_preload", "coordinator", "simbody_bridge")
+SOURCES = (".h", ".cc", ".c")
+
+
+def full(name: str) -> str:
+    return name if name.split("/")[0] in TOPS else f"coordinator/{name}"
+
+
+def marked(cell: str) -> list[str]:
+    return [full(name) for name in re.findall(r"`([^`]+)`", cell)]
+
+
+def rules() -> dict[str, list[str]]:
+    """For each folder, with a slash at its end, what it may include: folders or files."""
+    found = {}
+    for line in PAGE.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if line.startswith("| `") and len(cells) == 3 and cells[0].endswith("/`"):
+            for folder in marked(cells[0]):
+                found[folder] = marked(cells[2])
+    return found
+
+
+def mistakes() -> list[str]:
+    allowed = rules()
+    if not allowed:
+        return [f"{PAGE}: no table of folders was found"]
+    found = [f"{PAGE}: there is no folder {folder}" for folder in allowed if not (ROOT / folder).is_dir()]
+    for top in TOPS:
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix not in SOURCES:
+                continue
+            name = str(path.relative_to(ROOT))
+            of = max((f for f in allowed if name.startswith(f)), key=len, default=None)
+            if of is None:
+                found.append(f"{name}: its folder has no row in {PAGE}")
+                continue
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                include = re.match(r'\s*#\s*include "([^"]+)"', line)
+                if include is None or include[1].split("/")[0] not in TOPS:
+                    continue
+                if not include[1].startswith((of, *allowed[of])):
+                    found.append(f"{name}:{number}: {of} may not include {include[1]}")
+    return found
+
+
+if __name__ == "__main__":
+    found = mistakes()
+    print("\n".join(found))
+    sys.exit(1 if found else 0)
