@@ -125,28 +125,6 @@ Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64
                  &maker);
 }
 
-// Whatever the thread waits for, it waits no longer.
-void Engine::LeaveWait(Task& task) {
-  EndWatches(task);
-  EndKeyWait(task);
-  waiting_for_child_ -= task.waits_for_child;
-  waiting_for_stops_ -= task.awaits_stops;
-  task.awaits_stops = false;
-  waiting_for_signals_ -= task.awaited_signals != 0;
-  task.awaited_signals = 0;
-  task.waits_for_messages = false;
-  waiting_for_room_ -= task.waits_for_room != 0;
-  task.waits_for_room = 0;
-  if (std::exchange(task.waits_for_deliverer, false)) {
-    --task.process->waiting_for_deliverer;
-  }
-  task.waits_for_child = task.waits_for_fds = task.has_wait_mask = false;
-  task.trap_wait = TrapWait::kNone;
-  futexes_.Leave(task.order);
-  task.deadline_ns = shm::kNeverNs;
-  LeaveLock(task);
-}
-
 // What the thread has had and done goes to its process.
 void Engine::EndTask(Task& task, Moment moment) {
   Process& process = *task.process;
@@ -160,6 +138,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   PassOn(task, moment);
   LeaveWait(task);
   SetState(task, TaskState::kDead);
+  queues_.Forget(task.order);
   SchedulerOf(task).Remove(task.order);
   --living_;
   task.parked = true;
@@ -195,7 +174,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
     ChildChanged(*parent, process.pid, false, moment);
   }
   StartThoseAfter(process);
-  WakeEveryKey(moment);
+  WakeEveryQueue(moment);
   LeaveDds(process, moment);
   if (!process.is_client) ended_processes_.push_back(&process);
   const std::optional<int> status = WaitStatusOf(process.pid);

@@ -92,7 +92,7 @@ void Engine::TakeOwnMessages() {
   ShowDeliverersTheirDeadlines();
 }
 
-void Engine::HandleDds(Task& task, const shm::Notification& note) {
+void Engine::HandleDds(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
   Process& process = *task.process;
   switch (note.kind) {
     case shm::NotificationKind::kDdsJoin:
@@ -104,20 +104,17 @@ void Engine::HandleDds(Task& task, const shm::Notification& note) {
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
       break;
-    case shm::NotificationKind::kDdsRoom:
-      if (!hub_.IsFull(static_cast<dds::Hub::Number>(note.args[0]))) break;
-      task.waits_for_room = static_cast<dds::Hub::Number>(note.args[0]);
-      ++waiting_for_room_;
-      SetState(task, TaskState::kWaiting);
+    case shm::NotificationKind::kDdsRoom: {
+      const auto receiver = static_cast<dds::Hub::Number>(note.args[0]);
+      if (hub_.IsFull(receiver)) EnterWait(task, {awaited::Room{receiver}, deadline_ns});
       break;
+    }
     case shm::NotificationKind::kDdsSockets:
       WarnOfSockets(process, static_cast<shm::WhySockets>(note.args[0]));
       break;
     default:
       if (!IsDelivering(process, task.reached_ns)) break;
-      task.waits_for_deliverer = true;
-      ++process.waiting_for_deliverer;
-      SetState(task, TaskState::kWaiting);
+      EnterWait(task, {awaited::Deliverer{}, deadline_ns});
       SchedulerOf(task).SetBlockedOn(task.order, process.deliverer->order);
       FindPriority(*process.deliverer);
   }
@@ -195,9 +192,7 @@ void Engine::AwaitMessages(Task& task) {
   }
   hub_.CameBack(process.dds_number);
   ReleaseThoseAwaitingRoom(process.dds_number, {task.reached_ns});
-  task.waits_for_messages = true;
-  task.deadline_ns = hub_.DueNs(process.dds_number);
-  SetState(task, TaskState::kWaiting);
+  EnterWait(task, {awaited::Messages{}, hub_.DueNs(process.dds_number)});
   ReleaseThoseAwaitingDeliverer(process, {task.reached_ns});
 }
 
@@ -205,14 +200,16 @@ void Engine::AwaitMessages(Task& task) {
 bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
   const Task* deliverer = process.deliverer;
   if (deliverer == nullptr) return false;
-  if (deliverer->waits_for_messages) return hub_.DueNs(process.dds_number) <= now_ns;
+  if (deliverer->Awaits<awaited::Messages>() != nullptr) {
+    return hub_.DueNs(process.dds_number) <= now_ns;
+  }
   return IsRunnable(*deliverer);
 }
 
 void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
-  if (process.waiting_for_deliverer == 0) return;
+  if (wait_counts_.for_deliverer() == 0) return;
   for (Task* task : process.robot->tasks) {
-    if (task->process != &process || !task->waits_for_deliverer) continue;
+    if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
     if (!IsDelivering(process, task->reached_ns)) {
       MakeReady(*task, shm::WakeReason::kGo, moment);
     }
@@ -221,20 +218,20 @@ void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment
 
 // Those that sent to a process more than it can take at once.
 void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
-  if (waiting_for_room_ == 0 || hub_.IsFull(number)) return;
+  if (wait_counts_.for_room() == 0 || hub_.IsFull(number)) return;
   for (Task& task : tasks_) {
-    if (task.state == TaskState::kWaiting && task.waits_for_room == number) {
-      MakeReady(task, shm::WakeReason::kGo, moment);
-    }
+    const auto* wait = task.Awaits<awaited::Room>();
+    if (wait == nullptr || wait->process != number) continue;
+    MakeReady(task, shm::WakeReason::kGo, moment);
   }
 }
 
 void Engine::ShowDeliverersTheirDeadlines() {
   for (const Process* process : dds_processes_) {
     Task* deliverer = process->deliverer;
-    if (deliverer == nullptr || !deliverer->waits_for_messages) continue;
+    if (deliverer == nullptr || deliverer->Awaits<awaited::Messages>() == nullptr) continue;
     const std::int64_t due = hub_.DueNs(process->dds_number);
-    if (std::exchange(deliverer->deadline_ns, due) == due) continue;
+    if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
     const bool inside = turn_.IsOn(*process->robot);
     if (due != shm::kNeverNs && !inside) {
       NoteLateness(*deliverer, due, SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));

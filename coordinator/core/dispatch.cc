@@ -284,8 +284,7 @@ void Engine::StepAside(Task& task) {
        " has computed for 5 s without a call or an allocation: under --accounting fixed that "
        "counts as waiting for "
        "what others do, and depends on the host; run it with --accounting measured");
-  SetState(task, TaskState::kWaiting);
-  task.deadline_ns = shm::kNeverNs;
+  EnterWait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
   Refresh(*task.process->robot);
 }
@@ -293,7 +292,7 @@ void Engine::StepAside(Task& task) {
 void Engine::WakeSpinners() {
   has_spinners_ = false;
   for (Task& task : tasks_) {
-    if (task.spins && task.state == TaskState::kWaiting) {
+    if (task.Awaits<awaited::OthersRun>() != nullptr) {
       MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
     }
   }

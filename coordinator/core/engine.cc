@@ -51,6 +51,8 @@ bool Engine::IsRunnable(const Task& task) {
 }
 
 void Engine::SetState(Task& task, TaskState state, bool goes_first) {
+  TCS_CHECK(MayFollow(task.state, state));
+  TCS_CHECK(task.wait.has_value() == (state == TaskState::kWaiting));
   const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
   if (ends && task.state != TaskState::kWaiting) NoteIdle(task);
   if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
@@ -61,7 +63,7 @@ void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   task.state = state;
   Requeue(task, goes_first);
   // A deliverer that waits for something else must not be waited for: it may need what those hold.
-  if (task.is_deliverer && !IsRunnable(task) && !task.waits_for_messages) {
+  if (task.is_deliverer && !IsRunnable(task) && task.Awaits<awaited::Messages>() == nullptr) {
     ReleaseThoseAwaitingDeliverer(*task.process,
                                   {turn_.IsOf(task) ? WrittenAt() : task.reached_ns});
   }
@@ -75,26 +77,28 @@ void Engine::Requeue(Task& task, bool goes_first) {
   }
 }
 
-// Whether the wait is over by time: the world's, or, where others of its process compute while the
+// Whether a wait is over by time: the world's, or, where others of its process compute while the
 // world stands still, that of the process's own clock.
 bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
-  if (task.deadline_ns <= now_ns) return true;
-  return IsCallback() && task.deadline_ns <= task.process->shown_ns - task.frozen_ns;
+  if (!task.wait.has_value()) return false;
+  const std::int64_t deadline_ns = task.wait->deadline_ns;
+  if (deadline_ns <= now_ns) return true;
+  return IsCallback() && deadline_ns <= task.process->shown_ns - task.frozen_ns;
 }
 
 RobotScheduler::Wait Engine::WaitOf(const Task& task) const {
   const Process& process = *task.process;
   RobotScheduler::Wait wait{.process = process.index,
                             .next_expiry_ns = process.timers.NextExpiry()};
-  wait.waits = task.state == TaskState::kWaiting && !task.spins;
+  wait.waits = task.wait.has_value() && task.Awaits<awaited::OthersRun>() == nullptr;
   if (!wait.waits) return wait;
-  wait.for_input = AwaitsInput(task);
-  wait.for_thread = task.trap_wait == TrapWait::kFutex;
+  wait.for_input = IsForInput(*task.wait);
+  wait.for_thread = task.Awaits<awaited::Futex>() != nullptr;
   wait.from_ns = task.reached_ns;
-  wait.until_ns = task.deadline_ns;
-  if (IsCallback() && task.deadline_ns != shm::kNeverNs) {
+  wait.until_ns = task.wait->deadline_ns;
+  if (IsCallback() && wait.until_ns != shm::kNeverNs) {
     wait.is_over = HasRunOut(task, 0);
-    wait.own_until_ns = task.deadline_ns + task.frozen_ns - process.frozen_ns;
+    wait.own_until_ns = wait.until_ns + task.frozen_ns - process.frozen_ns;
   }
   return wait;
 }
@@ -108,14 +112,11 @@ void Engine::Refresh(Robot& robot) {
 
 void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
   if (task.state == TaskState::kDead) return;
-  const bool reads = task.state == TaskState::kWaiting &&
-                     (task.waits_for_fds || task.waits_for_child || task.waits_for_key ||
-                      task.awaited_signals != 0 || task.waits_for_messages);
+  const bool waited = task.wait.has_value(), reads = waited && LooksAtOthers(*task.wait);
+  const bool for_messages = task.Awaits<awaited::Messages>() != nullptr;
   const bool outside = moment.from_outside || (turn_.lasts() && !turn_.IsOn(*task.process->robot));
-  const bool goes_first = outside && task.state == TaskState::kWaiting &&
-                          SchedulerOf(task).PreemptsOnWakeup(task.order);
-  if (outside && reads && !task.waits_for_messages) NoteLateness(task, moment.ns, goes_first);
-  const bool waited = task.state == TaskState::kWaiting;
+  const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
+  if (outside && reads && !for_messages) NoteLateness(task, moment.ns, goes_first);
   if (waited) {
     ++task.activations;
     NoteReleased(task, reason, moment.ns);
@@ -126,15 +127,15 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
     // Where somebody more urgent ran on, the kernel's timer would still have been in time.
     const bool timed = reason == shm::WakeReason::kDeadline;
     const std::int64_t released_ns =
-        timed ? std::min(task.deadline_ns, task.reached_ns) : task.reached_ns;
+        timed ? std::min(task.wait->deadline_ns, task.reached_ns) : task.reached_ns;
     SchedulerOf(task).WakeUp(task.order, released_ns, outside);
   }
   // Others may have come further: what is due later than its own time it gets then.
-  if (task.waits_for_messages) {
+  if (for_messages) {
     task.messages_until_ns =
-        reason == shm::WakeReason::kDeadline ? task.deadline_ns : task.reached_ns;
+        reason == shm::WakeReason::kDeadline ? task.wait->deadline_ns : task.reached_ns;
   }
-  if (task.trap_wait != TrapWait::kNone) FinishTrappedWait(task, reason);
+  if (waited && task.wait->is_in_trapped_call) FinishTrappedWait(task, reason);
   LeaveWait(task);
   // Whoever waited for others looks at what they did: that must be all of it.
   SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady, goes_first);
@@ -167,12 +168,6 @@ bool Engine::IsSafe(const Task& task) const {
   const VirtualCpu& cpu = *task.cpu;
   return cpu.progress_ns <= (task.hold == shm::NotificationKind::kRead ? root_.ReadSafe(cpu.leaf)
                                                                        : root_.WriteSafe(cpu.leaf));
-}
-
-// What ends its wait may come from elsewhere.
-bool Engine::AwaitsInput(const Task& task) {
-  return task.waits_for_fds || task.waits_for_key || task.awaited_signals != 0 ||
-         task.waits_for_messages || task.waits_for_room != 0;
 }
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
@@ -235,8 +230,7 @@ void Engine::LetWorldGoOnWithout(Task& task) {
                   task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
                   static_cast<double>(task.cpu->progress_ns) * 1e-9));
   host_cpu_.active().Hold(task);
-  SetState(task, TaskState::kWaiting);
-  task.deadline_ns = shm::kNeverNs;
+  EnterWait(task, {awaited::Nothing{}});
   Refresh(*task.process->robot);
 }
 
@@ -265,6 +259,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   // here before the turn begins.
   if (turn.start_ns > cpu.progress_ns || root_.First() != cpu.leaf) return;
   Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
+  TCS_CHECK(task.reached_ns <= cpu.progress_ns);  // nobody runs before what has made it ready
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;
   if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
@@ -361,7 +356,7 @@ void Engine::PollUnseen() {
 
 void Engine::WaitOutside() {
   Beat();
-  const bool unseen = unseen_ > 0 || waiting_for_child_ > 0 || waiting_for_signals_ > 0;
+  const bool unseen = unseen_ > 0 || wait_counts_.for_child() > 0 || wait_counts_.for_signals() > 0;
   PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {latest_ns_});
 }
 

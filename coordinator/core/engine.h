@@ -92,7 +92,6 @@ class Engine {
   std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
-  static bool AwaitsInput(const Task& task);
   std::int64_t EarliestWake() const;
   void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
   bool IsSafe(const Task& task) const;
@@ -112,7 +111,7 @@ class Engine {
   std::vector<std::string> WhatIsAwaited() const;
   std::vector<std::string> ComputingStrangers() const;
   std::pair<int, std::string> WhatItAwaits(const Task& task) const;
-  std::string AwaitedDescriptors(const Task& task) const;
+  std::string AwaitedDescriptors(const Task& task, const awaited::Descriptors& wait) const;
 
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
@@ -122,6 +121,11 @@ class Engine {
   void Requeue(Task& task, bool goes_first = false);
   void Refresh(Robot& robot);
   void MakeReady(Task& task, shm::WakeReason reason, Moment moment);
+
+  // Waits (waits.cc): their one beginning and end.
+  void EnterWait(Task& task, Wait wait);
+  void LeaveWait(Task& task);
+  void ShowObjectWaiters();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -174,19 +178,21 @@ class Engine {
 
   // Notifications (notifications.cc). True: as TakeNotifications.
   bool Handle(Task& task, const shm::Notification& note);
-  void WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count);
-  void WaitForChild(Task& task, pid_t which, bool stops);
+  static std::int64_t WaitDeadlineOf(const Task& task, const shm::Notification& note);
+  awaited::Descriptors Watch(const Task& task, const shm::WaitFd* fds, std::size_t count);
+  awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
+  void GoBehind(Task& task, awaited::Descriptors& watched);
 
   // Those who wait to take from the same descriptor (one_waiter.cc).
-  void WakeAwaiters(std::vector<Task*> awaiters, Moment moment);
+  void WakeAwaiters(const std::vector<Task*>& awaiters, Moment moment);
   void PassOver(Task& task, Task& first);
   void PassOn(Task& first, Moment moment);
 
   bool Yield(Task& task);  // as Handle
   void NoteSpawnedThread(Task& creator, const shm::Notification& note);
   void NoteSpawnedProcess(Task& parent, pid_t pid);
-  void EndWatches(Task& task);
-  static Subject SubjectOfWait(const Task& task);
+  void EndWatches(const awaited::Descriptors& watched);
+  static Subject SubjectOfWait(const Task& task, const awaited::Descriptors& watched);
 
   // Children that are stopped and go on (stops.cc).
   void LetStop(const Process& process);
@@ -228,7 +234,7 @@ class Engine {
   std::int64_t SetAffinity(const Task& asking, Task& task, std::uint64_t cores);
   void InheritScheduling(Task& task, const Task& creator);
   void FindPriority(Task& task);
-  static void BlockOn(Task& task, Task* owner);
+  static void BlockOn(Task& task, const Task* owner);
   void LeaveLock(Task& task);
 
   // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
@@ -236,6 +242,7 @@ class Engine {
   void TrapArrived(int listener, Moment moment);
   void ExitThread(Task& task, const TrappedCall& call);
   bool HandleTrapped(Task& task, const TrappedCall& call);
+  void InterruptTrappedWait(Task& task);
   void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call, Moment moment);
   void ReleaseTrapped();
@@ -274,7 +281,7 @@ class Engine {
   void TransferRaw(Task& task, const TrappedCall& call);
   static bool Receives(const TrappedCall& call);
 
-  // Locks of files (keys.cc).
+  // Locks of files (wait_queues.cc).
   void LockRaw(Task& task);
   bool LookAtKernelWaits(Moment moment);
 
@@ -301,8 +308,8 @@ class Engine {
   void HandleFutex(Task& task, const TrappedCall& call);
   bool HoldsToWake(Task& task, const TrappedCall& call, int command);
   std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, Moment moment);
-  std::int64_t FutexDeadline(Task& task, const TrappedCall& call, int command,
-                             const timespec& timeout);
+  std::int64_t FutexDeadline(const Task& task, const TrappedCall& call, int command,
+                             const timespec& timeout, std::int64_t* deadline_ns);
   static std::int64_t WrongFutexCall(const Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWait(Task& task, const TrappedCall& call, int command);
   std::int64_t FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
@@ -312,7 +319,7 @@ class Engine {
   FutexKey FutexKeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
   FutexKey WokenKeyFor(const Process& process, const TrappedCall& call,
                        std::uint64_t address) const;
-  void StartFutexWait(Task& task);
+  void EnterFutexWait(Task& task, awaited::Futex wait, std::int64_t deadline_ns);
   Task* MostUrgentWaiter(const FutexKey& key, std::uint32_t bits);
 
   // Several at once, and from a condition to its lock (futex_queues.cc).
@@ -327,12 +334,10 @@ class Engine {
   bool HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment);
   void WakeThoseWaitingFor(Task& ended, Moment moment);
 
-  // Kernel objects that cannot be polled (keys.cc).
-  void WaitForKey(Task& task, const shm::Notification& note);
-  bool WakeKey(std::int64_t kind, std::int64_t id, Moment moment);
-  void WakeEveryKey(Moment moment);
-  void EndKeyWait(Task& task);
-  void NoteTerminal(Task& task, int fd);
+  // Kernel objects that cannot be polled (wait_queues.cc).
+  void WaitAtQueue(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
+  bool WakeQueue(std::int64_t kind, std::int64_t id, Moment moment);
+  void WakeEveryQueue(Moment moment);
   void FlushTerminals();
 
   // Programs that speak DDS (dds.cc).
@@ -342,7 +347,7 @@ class Engine {
   void WarnOfDrops();
   void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
   void TakeOwnMessages();
-  void HandleDds(Task& task, const shm::Notification& note);
+  void HandleDds(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
   void JoinDds(Task& task);
   void SendDds(Process& process, std::size_t bytes, std::int64_t at_ns);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
@@ -358,7 +363,6 @@ class Engine {
   void WakeSignalled(pid_t receiver, Moment moment);
   void WakeForSignals(Process& process, Moment moment);
   void AnswerAhead(Task& task);
-  void AwaitSignals(Task& task, std::uint64_t set);
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
   bool PollSignals();
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
@@ -409,7 +413,6 @@ class Engine {
   Task* AddTask(Process& process, pid_t tid, std::int64_t at_ns);
   Task* AddThread(Process& process, pid_t tid, std::int64_t at_ns);
   bool EndThreadsLostInExec(pid_t pid, Moment moment);
-  void LeaveWait(Task& task);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
   void LendLevel();
@@ -493,12 +496,9 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  int living_ = 0;             // threads that are not dead
-  int unseen_ = 0;             // threads in TaskState::kUnseen
-  int waiting_for_child_ = 0;  // and such that wait for a child
-  int waiting_for_room_ = 0;   // and such that have sent more than others could take at once
-  int waiting_for_signals_ = 0;
-  int waiting_for_stops_ = 0;
+  int living_ = 0;  // threads that are not dead
+  int unseen_ = 0;  // threads in TaskState::kUnseen
+  WaitCounts wait_counts_;
   std::map<pid_t, UnknownChild> unknown_children_;  // the living
   std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet
   std::uint64_t next_signal_look_tsc_ = 0;
@@ -509,10 +509,9 @@ class Engine {
   shm::RunMemory* memory_ = nullptr;
   shm::RunHeader* header_ = nullptr;  // in it
   UniqueFd memfd_, signals_;
-  std::uint64_t key_counter_ = 0;
+  WaitQueues queues_;
   std::uint32_t wait_counter_ = 0;
-  std::uint64_t wait_order_counter_ = 0;
-  std::uint32_t key_waiters_ = 0;
+  std::uint64_t fds_order_counter_ = 0;
   FifoExecutor executor_;
   HostCpu host_cpu_{executor_};
   Turn turn_;
@@ -527,7 +526,7 @@ class Engine {
   int most_pids_ = MostPids();
   std::vector<Listener> listeners_;
   std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
-  std::string socket_name_;  // of the first; the others' have their numbers in them
+  std::string socket_name_;      // of the first; the others' have their numbers in them
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
 

@@ -218,15 +218,14 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
 Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
   std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
   // Something else may have ended the wait meanwhile.
-  std::erase_if(awaiters, [](const Task* task) {
-    return task->state != TaskState::kWaiting || !task->waits_for_fds;
-  });
+  std::erase_if(awaiters,
+                [](const Task* task) { return task->Awaits<awaited::Descriptors>() == nullptr; });
   if (awaiters.empty()) return {};
   const bool beside =
       turn_.HasClock() && std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
         return turn_.IsOn(*task->process->robot);
       });
-  WakeAwaiters(std::move(awaiters), moment);
+  WakeAwaiters(awaiters, moment);
   if (beside) GoOnBesideWoken();
   return {.stops_running = !beside, .wakes_others = true};
 }

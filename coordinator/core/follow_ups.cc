@@ -20,7 +20,7 @@ void Engine::DoFollowUp(Task& task, Moment call, bool last) {
     case FollowUp::kNone:
       break;
     case FollowUp::kBacklogs:
-      WakeKey(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
+      WakeQueue(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
       PassOn(task, call);
       break;
     case FollowUp::kTaken:

@@ -40,21 +40,21 @@ FutexKey Engine::WokenKeyFor(const Process& process, const TrappedCall& call,
 }
 
 // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
-std::int64_t Engine::FutexDeadline(Task& task, const TrappedCall& call, int command,
-                                   const timespec& timeout) {
-  task.deadline_ns = shm::kNeverNs;
+std::int64_t Engine::FutexDeadline(const Task& task, const TrappedCall& call, int command,
+                                   const timespec& timeout, std::int64_t* deadline_ns) {
+  *deadline_ns = shm::kNeverNs;
   if (call.args[3] == 0) return 0;
   if (!shm::IsValid(timeout)) return -EINVAL;
   const std::int64_t ns = shm::ToNs(timeout);
   if (ns > shm::kFarNs) return 0;
   const std::int64_t now = task.reached_ns;
   if (command == FUTEX_WAIT) {
-    task.deadline_ns = now + ns;
+    *deadline_ns = now + ns;
     return 0;
   }
   const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
   const std::int64_t offset = realtime ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
-  task.deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
+  *deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
   return 0;
 }
 
@@ -68,7 +68,8 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
             : ReadMemory(task.process->pid, word, {call.args[3], &timeout, sizeof timeout}))) {
     return -EFAULT;
   }
-  if (const std::int64_t wrong = FutexDeadline(task, call, command, timeout); wrong != 0) {
+  std::int64_t deadline_ns = 0;
+  if (const auto wrong = FutexDeadline(task, call, command, timeout, &deadline_ns); wrong != 0) {
     return wrong;
   }
   // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
@@ -84,18 +85,15 @@ std::int64_t Engine::FutexWait(Task& task, const TrappedCall& call, int command)
       usleep(kEndTurnUs);
     }
   }
-  task.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK);
   futexes_.Wait(task.order, FutexKeyFor(task, call, call.args[0]),
                 command == FUTEX_WAIT ? kAnyBit : bits);
-  StartFutexWait(task);
+  EnterFutexWait(task, {.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK)}, deadline_ns);
   return 0;
 }
 
-void Engine::StartFutexWait(Task& task) {
-  task.woken_futex = 0;
-  task.was_requeued = false;
-  task.trap_wait = TrapWait::kFutex;
-  SetState(task, TaskState::kWaiting);
+// After the table of futexes knows where.
+void Engine::EnterFutexWait(Task& task, awaited::Futex wait, std::int64_t deadline_ns) {
+  EnterWait(task, {wait, deadline_ns, true});
 }
 
 std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint32_t bits,
@@ -104,7 +102,7 @@ std::int64_t Engine::FutexWake(const FutexKey& key, std::int64_t most, std::uint
   for (; woken < most; ++woken) {
     Task* best = MostUrgentWaiter(key, bits);
     if (best == nullptr) break;
-    best->woken_futex = futexes_.IndexOf(best->order, key);
+    best->Awaits<awaited::Futex>()->woken_word = futexes_.IndexOf(best->order, key);
     MakeReady(*best, shm::WakeReason::kGo, moment);
   }
   return woken;

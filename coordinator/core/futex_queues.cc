@@ -32,15 +32,15 @@ std::int64_t Engine::FutexWaitForAny(Task& task, const TrappedCall& call) {
   }
   const pid_t pid = task.process->pid;
   timespec timeout{};
+  std::int64_t deadline_ns = shm::kNeverNs;
   if (call.args[3] != 0) {
     const auto clock = static_cast<int>(call.args[4]);
     if (clock != CLOCK_MONOTONIC && clock != CLOCK_REALTIME) return -EINVAL;
     if (!ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
     TrappedCall timed = call;  // in the form of FUTEX_WAIT_BITSET
     timed.args[1] = clock == CLOCK_REALTIME ? FUTEX_CLOCK_REALTIME : 0;
-    if (const auto wrong = FutexDeadline(task, timed, FUTEX_WAIT_BITSET, timeout); wrong != 0) {
-      return wrong;
-    }
+    const auto wrong = FutexDeadline(task, timed, FUTEX_WAIT_BITSET, timeout, &deadline_ns);
+    if (wrong != 0) return wrong;
   }
   std::vector<WaitedWord> words(count);
   if (!ReadMemory(pid, call.args[0], words.data(), count * sizeof words[0])) return -EFAULT;
@@ -57,9 +57,8 @@ std::int64_t Engine::FutexWaitForAny(Task& task, const TrappedCall& call) {
     if (value != static_cast<std::uint32_t>(word.value)) return -EAGAIN;
     keys.push_back(KeyOf(pid, word.address, (word.flags & FUTEX_PRIVATE_FLAG) != 0));
   }
-  task.names_tid = 0;
   futexes_.WaitForAny(task.order, std::move(keys), kAnyBit);
-  StartFutexWait(task);
+  EnterFutexWait(task, {}, deadline_ns);
   return 0;
 }
 
@@ -69,16 +68,16 @@ std::int64_t Engine::FutexWaitForLock(Task& task, const TrappedCall& call) {
   TrappedCall wait = call;
   wait.args[5] = kAnyBit;
   const std::int64_t result = FutexWait(task, wait, FUTEX_WAIT_BITSET);
-  if (result != 0 || task.trap_wait != TrapWait::kFutex) return result;
-  task.names_tid = 0;
+  auto* entered = task.Awaits<awaited::Futex>();
+  if (result != 0 || entered == nullptr) return result;
+  *entered = {.lock_address = call.args[4]};
   futexes_.ExpectLock(task.order, FutexKeyFor(task, call, call.args[4]));
-  task.lock_address = call.args[4];
   return 0;
 }
 
 void Engine::RequeueToLock(Task& waiter, const FutexKey& lock, Task& owner) {
   futexes_.Move(waiter.order, FutexKey(futexes_.WordOf(waiter.order)), lock);
-  waiter.was_requeued = true;
+  waiter.Awaits<awaited::Futex>()->was_requeued = true;
   BlockOn(waiter, &owner);
   FindPriority(owner);
 }
@@ -115,7 +114,7 @@ std::int64_t Engine::FutexRequeueToLock(Task& task, const TrappedCall& call) {
     RequeueToLock(TaskAt(waiters[i]), to, *owner);
   }
   if (owner_tid == 0) {
-    owner->handed_lock = owner->lock_address;
+    owner->handed_lock = owner->Awaits<awaited::Futex>()->lock_address;
     MakeReady(*owner, shm::WakeReason::kGo, {task.reached_ns});
   }
   return static_cast<std::int64_t>(count);

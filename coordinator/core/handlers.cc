@@ -69,9 +69,9 @@ Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment momen
 
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
   Task& task = tasks_[subject.index];
-  const bool is_its_wait =
-      task.state == TaskState::kWaiting && task.waits_for_fds && subject == SubjectOfWait(task);
-  if (!is_its_wait || std::exchange(task.skips_event, false)) return {};
+  auto* wait = task.Awaits<awaited::Descriptors>();
+  if (wait == nullptr || subject != SubjectOfWait(task, *wait)) return {};
+  if (std::exchange(wait->skips_event, false)) return {};
   ready_awaiters_.push_back(&task);
   return {.wakes_others = true};
 }

@@ -40,15 +40,15 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
   if (owner == nullptr) return -ESRCH;
   timespec timeout{};
   if (call.args[3] != 0 && !ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
-  if (const std::int64_t wrong = FutexDeadline(task, call, command, timeout); wrong != 0) {
+  std::int64_t deadline_ns = 0;
+  if (const auto wrong = FutexDeadline(task, call, command, timeout, &deadline_ns); wrong != 0) {
     return wrong;
   }
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
-  BlockOn(task, owner);
-  task.lock_address = call.args[0];
   futexes_.Wait(task.order, key, FUTEX_BITSET_MATCH_ANY);
-  StartFutexWait(task);
+  EnterFutexWait(task, {.lock_address = call.args[0]}, deadline_ns);
+  BlockOn(task, owner);
   FindPriority(*owner);
   return 0;
 }
@@ -57,19 +57,19 @@ std::int64_t Engine::FutexLock(Task& task, const TrappedCall& call, int command)
 bool Engine::HandLockOn(const FutexKey& key, std::uint32_t flags, Moment moment) {
   Task* next = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY);
   if (next == nullptr) return false;
-  Task* before = next->lock_owner;
+  const awaited::Futex wait = *next->Awaits<awaited::Futex>();
   BlockOn(*next, nullptr);
-  next->handed_lock = next->lock_address;
+  next->handed_lock = wait.lock_address;
   futexes_.Leave(next->order);
   const bool others = MostUrgentWaiter(key, FUTEX_BITSET_MATCH_ANY) != nullptr;
   const std::uint32_t value =
       static_cast<std::uint32_t>(next->tid) | flags | (others ? kWaiters : 0);
-  WriteMemory(next->process->pid, next->lock_address, &value, sizeof value);
+  WriteMemory(next->process->pid, wait.lock_address, &value, sizeof value);
   for (const FutexTable::Thread waiter : futexes_.WaitersAt(key)) {
     BlockOn(TaskAt(waiter), next);
   }
   MakeReady(*next, shm::WakeReason::kGo, moment);
-  if (before != nullptr) FindPriority(*before);
+  if (wait.owner != awaited::kNobody) FindPriority(TaskAt(wait.owner));
   FindPriority(*next);
   return true;
 }
@@ -88,10 +88,11 @@ std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
 // does not reach them.
 void Engine::WakeThoseWaitingFor(Task& ended, Moment moment) {
   for (Task& task : tasks_) {
-    if (task.trap_wait != TrapWait::kFutex) continue;
-    if (task.lock_owner == &ended) {
+    const auto* wait = task.Awaits<awaited::Futex>();
+    if (wait == nullptr) continue;
+    if (wait->owner == ended.order) {
       HandLockOn(FutexKey(futexes_.WordOf(task.order)), kDied, moment);
-    } else if (task.names_tid == ended.tid) {
+    } else if (wait->names_tid == ended.tid) {
       MakeReady(task, shm::WakeReason::kGo, moment);
     }
   }

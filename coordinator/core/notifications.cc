@@ -1,5 +1,6 @@
 // What clients say. Everything in a notification is untrusted: it is a copy, and it is checked.
 #include <sys/epoll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,56 +13,77 @@
 
 namespace tcs {
 
+namespace {
+
+bool IsTerminal(int fd) {
+  struct stat status {};
+  return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd) != 0;
+}
+
+// Sleeps, with a mask of their own or without, and waits for signals.
+Wait::What IdleFor(const shm::Notification& note) {
+  const auto set = static_cast<std::uint64_t>(note.args[1]);
+  if (note.args[0] == 2 && set != 0) return awaited::Signals{set};
+  return note.args[0] == 1 ? awaited::Time{.mask = set} : awaited::Time{};
+}
+
+}  // namespace
+
 // The client shares the open file, so closing our descriptor leaves it in the epoll set until the
 // client closes it, too. That is what we want: the next wait for it, under the same number of ours,
 // only has to arm it again. What fires meanwhile is of a wait that is over (Tag::kAwaited). But a
 // client's epoll set with a signalfd in it must not be polled by us when its wait is over: we have
 // other signals, and it would forget that there is one.
-void Engine::EndWatches(Task& task) {
-  const bool forgets = task.watches_terminal || task.awaited_signals != 0;
-  for (const int fd : task.watched) {
-    if (forgets || task.is_edge_armed) reactor_.Remove(fd);
-    close(fd);
-  }
-  task.watched.clear();
-  task.takes = task.last_is_first = task.is_edge_armed = task.skips_event = false;
-  task.passed_over_for = nullptr;
-  if (task.watches_terminal) header_->key_waiters.store(--key_waiters_);
-  task.watches_terminal = false;
+void Engine::EndWatches(const awaited::Descriptors& watched) {
+  const bool forgets = watched.has_terminal || watched.signals != 0 || watched.is_edge_armed;
+  if (!forgets) return;
+  for (const UniqueFd& fd : watched.fds) reactor_.Remove(fd.get());
 }
 
-Subject Engine::SubjectOfWait(const Task& task) {
+Subject Engine::SubjectOfWait(const Task& task, const awaited::Descriptors& watched) {
   return {Tag::kAwaited, static_cast<std::uint32_t>(task.order),
-          task.wait_number & Subject::kNumberMask};
+          watched.number & Subject::kNumberMask};
 }
 
-void Engine::WatchFds(Task& task, const shm::WaitFd* fds, std::size_t count) {
-  SetState(task, TaskState::kWaiting);
-  task.waits_for_fds = true;
-  task.wait_number = ++wait_counter_;
+awaited::Descriptors Engine::Watch(const Task& task, const shm::WaitFd* fds, std::size_t count) {
+  awaited::Descriptors watched{.number = ++wait_counter_, .order = task.fds_order};
+  const Subject subject = SubjectOfWait(task, watched);
   for (std::size_t i = 0; i < count; ++i) {
-    const int fd = DuplicateFd(task.process->pidfd.get(), fds[i].fd);
-    if (fd < 0) continue;
+    UniqueFd fd(DuplicateFd(task.process->pidfd.get(), fds[i].fd));
+    if (!fd) continue;
     const std::uint32_t events = fds[i].events | EPOLLONESHOT;
-    if (reactor_.Modify(fd, events, SubjectOfWait(task))) {
-      task.watched.push_back(fd);
-    } else if (reactor_.Add(fd, events, SubjectOfWait(task))) {
-      task.watched.push_back(fd);
-      NoteTerminal(task, fd);  // never left in the set, so it always comes this way
-    } else {
-      close(fd);
+    if (!reactor_.Modify(fd.get(), events, subject)) {
+      if (!reactor_.Add(fd.get(), events, subject)) continue;
+      // Terminals are never left in the set, so they always come this way.
+      watched.has_terminal |= IsTerminal(fd.get());
     }
+    watched.fds.push_back(std::move(fd));
   }
+  return watched;
 }
 
-void Engine::WaitForChild(Task& task, pid_t which, bool stops) {
-  SetState(task, TaskState::kWaiting);
-  task.waits_for_child = true;
-  task.awaited_child = which;
-  ++waiting_for_child_;
-  task.awaits_stops = stops;
-  waiting_for_stops_ += stops;
-  task.deadline_ns = shm::kNeverNs;
+// The wait is a new one, behind all others that want to take from the same descriptor.
+void Engine::GoBehind(Task& task, awaited::Descriptors& watched) {
+  watched.order = task.fds_order = ++fds_order_counter_;
+}
+
+// What the notification asks for: whether one event is for one waiter, and whether signals end it.
+awaited::Descriptors Engine::WatchAsAsked(Task& task, const shm::Notification& note) {
+  awaited::Descriptors watched = Watch(task, note.fds, note.fd_count);
+  watched.signals = static_cast<std::uint64_t>(note.args[1]);
+  watched.takes =
+      note.args[0] != 0 && watched.fds.size() == 1 && note.fd_count == 1 && watched.signals == 0;
+  watched.last_is_first = note.args[0] == 2;
+  if (watched.takes) watched.events = note.fds[0].events;
+  if (note.args[2] == 0) GoBehind(task, watched);
+  return watched;
+}
+
+// From the program's clock to the robot's.
+std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
+  if (note.deadline_ns == shm::kNeverNs) return shm::kNeverNs;
+  const std::int64_t deadline_ns = std::max<std::int64_t>(0, note.deadline_ns);
+  return std::max(deadline_ns - task.process->frozen_ns, task.reached_ns);
 }
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
@@ -102,12 +124,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
   }
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
-  // From the program's clock to the robot's.
-  task.deadline_ns = shm::kNeverNs;
-  if (note.deadline_ns != shm::kNeverNs) {
-    const std::int64_t deadline_ns = std::max<std::int64_t>(0, note.deadline_ns);
-    task.deadline_ns = std::max(deadline_ns - task.process->frozen_ns, task.reached_ns);
-  }
+  const std::int64_t deadline_ns = WaitDeadlineOf(task, note);
   switch (note.kind) {
     case Kind::kRead:
     case Kind::kWrite:
@@ -115,23 +132,14 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       task.hold = note.kind;
       break;
     case Kind::kIdle:
-      SetState(task, TaskState::kWaiting);
-      task.has_wait_mask = note.args[0] == 1;
-      task.wait_mask = static_cast<std::uint64_t>(note.args[1]);
-      if (note.args[0] == 2) AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
+      EnterWait(task, {IdleFor(note), deadline_ns});
       break;
     case Kind::kWaitFds:
-      WatchFds(task, note.fds, note.fd_count);
-      task.takes =
-          note.args[0] != 0 && task.watched.size() == 1 && note.fd_count == 1 && note.args[1] == 0;
-      task.last_is_first = note.args[0] == 2;
-      if (task.takes) task.watched_events = note.fds[0].events;
-      if (note.args[2] == 0) task.wait_order = ++wait_order_counter_;
-      AwaitSignals(task, static_cast<std::uint64_t>(note.args[1]));
+      EnterWait(task, {WatchAsAsked(task, note), deadline_ns});
       looks_again = true;
       break;
     case Kind::kWaitChild:
-      WaitForChild(task, static_cast<pid_t>(note.args[0]), note.args[1] != 0);
+      EnterWait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
       FindUnknownChildren(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
@@ -169,13 +177,14 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       WakeSignalled(static_cast<pid_t>(note.args[0]), moment);
       break;
     case Kind::kWaitKey:
-      WaitForKey(task, note);
+      WaitAtQueue(task, note, deadline_ns);
       break;
     case Kind::kWakeKey:
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (WakeKey(note.args[0], note.args[1], moment) && ParametersOf(task).policy == SCHED_OTHER) {
+      if (WakeQueue(note.args[0], note.args[1], moment) &&
+          ParametersOf(task).policy == SCHED_OTHER) {
         SchedulerOf(task).Yield(task.order);
       }
       break;
@@ -185,7 +194,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsSync:
     case Kind::kDdsRoom:
     case Kind::kDdsSockets:
-      HandleDds(task, note);
+      HandleDds(task, note, deadline_ns);
       break;
     case Kind::kQueueNotifies:
       header_->queues_notify.store(1);

@@ -1,12 +1,10 @@
-// One event, one waiter. Of several threads that wait to take from the same descriptor (read,
-// accept, the events of an epoll set) the kernel wakes one: the one that waits longest, of those in
-// one epoll set the one that came last. So does it of several that wait in epoll sets which hold
-// the same descriptor with EPOLLEXCLUSIVE. To the coordinator, which polls for each of them, such
-// an event comes for all.
+// One event, one waiter (calls/one_waiter.h): which descriptors offer the same event, and what the
+// kernel has there. So does the kernel with several threads that wait in epoll sets which hold the
+// same descriptor with EPOLLEXCLUSIVE; what that keeps from the others is the first one's for good.
 //
-// The others are passed over: they wait on, for the next event. Should the first leave something,
-// it is for the next of them: a thread that has taken something says so, if others were passed over
-// for it (kPassOn). What EPOLLEXCLUSIVE keeps from the others is the first one's for good.
+// A thread that has taken something says so, if others were passed over for it (kPassOn).
+#include "coordinator/calls/one_waiter.h"
+
 #include <poll.h>
 #include <sys/epoll.h>
 #include <unistd.h>
@@ -30,20 +28,25 @@ bool IsReady(int fd, std::uint32_t events) {
   return poll(&probe, 1, 0) > 0;
 }
 
-// In the order of waiting, or of waiters in an epoll set the other way round.
-bool GoesBefore(const Task* one, const Task* other) {
-  const auto place = [](const Task& task) {
-    const auto order = static_cast<std::int64_t>(task.wait_order);
-    return task.last_is_first ? -order : order;
-  };
-  return place(*one) < place(*other);
+EventWaiter WaiterOf(const Task& task) {
+  const awaited::Descriptors& wait = *task.Awaits<awaited::Descriptors>();
+  return {task.order, wait.takes, wait.last_is_first, wait.order};
+}
+
+// The only descriptor of one that takes.
+int DescriptorOf(const Task& task) {
+  return task.Awaits<awaited::Descriptors>()->fds.front().get();
+}
+
+bool HasEvent(const Task& task) {
+  return IsReady(DescriptorOf(task), task.Awaits<awaited::Descriptors>()->events);
 }
 
 bool IsExclusive(const EpollEntry& entry) { return (entry.events & EPOLLEXCLUSIVE) != 0; }
 
 // Whether all that `other`'s set has to offer is a descriptor that both sets hold exclusively.
 bool OffersTheSameOnly(const Task& first, const Task& other) {
-  const int set = first.watched.front(), other_set = other.watched.front();
+  const int set = DescriptorOf(first), other_set = DescriptorOf(other);
   std::vector<EpollEntry> exclusive = EntriesOf(set);
   std::erase_if(exclusive, [](const EpollEntry& entry) { return !IsExclusive(entry); });
   if (exclusive.empty()) return false;
@@ -66,31 +69,30 @@ bool OffersTheSameOnly(const Task& first, const Task& other) {
 }  // namespace
 
 // Those for whom an event has come, in one look at the kernel.
-void Engine::WakeAwaiters(std::vector<Task*> awaiters, Moment moment) {
-  std::sort(awaiters.begin(), awaiters.end(), GoesBefore);
-  std::vector<Task*> woken;
-  for (Task* task : awaiters) {
-    const bool takes = task->takes && task->watched.size() == 1;
-    const auto first = std::find_if(woken.begin(), woken.end(), [&](const Task* one) {
-      return takes && one->takes && one->watched.size() == 1 &&
-             (IsSameFile(one->watched.front(), task->watched.front()) ||
-              OffersTheSameOnly(*one, *task));
-    });
-    if (first == woken.end()) {
-      woken.push_back(task);
-    } else {
-      PassOver(*task, **first);
-    }
+void Engine::WakeAwaiters(const std::vector<Task*>& awaiters, Moment moment) {
+  std::vector<EventWaiter> waiters;
+  for (const Task* task : awaiters) waiters.push_back(WaiterOf(*task));
+  const std::vector<EventShare> shares =
+      ShareEvents(std::move(waiters), [this](int first, int second) {
+        const Task &one = TaskAt(first), &other = TaskAt(second);
+        return IsSameFile(DescriptorOf(one), DescriptorOf(other)) || OffersTheSameOnly(one, other);
+      });
+  for (const EventShare& share : shares) {
+    if (share.passed_over_for == kNoThread) continue;
+    PassOver(TaskAt(share.thread), TaskAt(share.passed_over_for));
   }
-  for (Task* task : woken) {
-    if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kGo, moment);
+  for (const EventShare& share : shares) {
+    Task& task = TaskAt(share.thread);
+    const bool is_woken = share.passed_over_for == kNoThread && task.wait.has_value();
+    if (is_woken) MakeReady(task, shm::WakeReason::kGo, moment);
   }
 }
 
 void Engine::PassOver(Task& task, Task& first) {
-  const int fd = task.watched.front();
-  if (IsSameFile(first.watched.front(), fd)) {
-    task.passed_over_for = &first;
+  awaited::Descriptors& wait = *task.Awaits<awaited::Descriptors>();
+  const int fd = DescriptorOf(task);
+  if (IsSameFile(DescriptorOf(first), fd)) {
+    wait.passed_over_for = first.order;
     first.passes_on = true;
     first.reply[1] = 1;
     // What the kernel carries out for it nobody tells of.
@@ -99,30 +101,31 @@ void Engine::PassOver(Task& task, Task& first) {
     }
   }
   // What is there already comes once more, at once, and is not for it.
-  task.skips_event = IsReady(fd, task.watched_events);
-  reactor_.Modify(fd, task.watched_events | EPOLLET, SubjectOfWait(task));
-  task.is_edge_armed = true;
+  wait.skips_event = HasEvent(task);
+  reactor_.Modify(fd, wait.events | EPOLLET, SubjectOfWait(task, wait));
+  wait.is_edge_armed = true;
 }
 
 // The thread has tried what it was woken for: what it has left is for the next.
 void Engine::PassOn(Task& first, Moment moment) {
   if (!std::exchange(first.passes_on, false)) return;
-  std::vector<Task*> others;
+  std::vector<EventWaiter> passed_over;
   for (Task& task : tasks_) {
-    if (task.passed_over_for == &first) others.push_back(&task);
+    auto* wait = task.Awaits<awaited::Descriptors>();
+    if (wait == nullptr || wait->passed_over_for != first.order) continue;
+    wait->passed_over_for = awaited::kNobody;
+    passed_over.push_back(WaiterOf(task));
   }
-  if (others.empty()) return;
-  std::sort(others.begin(), others.end(), GoesBefore);
-  Task* next = nullptr;
-  for (Task* task : others) {
-    task->passed_over_for = next;
-    if (next != nullptr || !IsReady(task->watched.front(), task->watched_events)) continue;
-    next = task;
+  const Rest rest =
+      PassRestOn(std::move(passed_over), [this](int thread) { return HasEvent(TaskAt(thread)); });
+  if (rest.next == kNoThread) return;
+  for (const int thread : rest.behind) {
+    TaskAt(thread).Awaits<awaited::Descriptors>()->passed_over_for = rest.next;
   }
-  if (next == nullptr) return;
-  MakeReady(*next, shm::WakeReason::kGo, moment);
-  next->passes_on = next != others.back();
-  next->reply[1] = next->passes_on ? 1 : 0;
+  Task& next = TaskAt(rest.next);
+  MakeReady(next, shm::WakeReason::kGo, moment);
+  next.passes_on = !rest.behind.empty();
+  next.reply[1] = next.passes_on ? 1 : 0;
 }
 
 }  // namespace tcs

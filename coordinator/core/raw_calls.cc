@@ -23,8 +23,8 @@
 #include "coordinator/core/client_values.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
-#include "coordinator/os/signal_bits.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/os/signal_bits.h"
 #include "shm/clock_ids.h"
 
 namespace tcs {
@@ -133,10 +133,9 @@ std::int64_t Engine::SleepRaw(Task& task, const TrappedCall& call) {
         is_real ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
     until = ToTimeoutNs(request) - offset - task.process->frozen_ns;
   }
-  task.trap_wait = TrapWait::kSleep;
-  task.deadline_ns = std::max(until, task.reached_ns);
-  task.remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
-  SetState(task, TaskState::kWaiting);
+  const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
+  EnterWait(task, {awaited::Time{.remaining_address = remaining_address},
+                   std::max(until, task.reached_ns), true});
   return 0;
 }
 
@@ -247,11 +246,11 @@ std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
     HoldRaw(task, shm::NotificationKind::kRead);
     return 0;
   }
-  task.trap_wait = TrapWait::kFds;
-  task.deadline_ns =
+  const std::int64_t deadline_ns =
       timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
-  WatchFds(task, waited->data(), waited->size());
-  AwaitSignals(task, RawAwaitedSignals(task, call));
+  awaited::Descriptors watched = Watch(task, waited->data(), waited->size());
+  watched.signals = RawAwaitedSignals(task, call);
+  EnterWait(task, {std::move(watched), deadline_ns, true});
   return 0;
 }
 
@@ -305,8 +304,7 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   });
   if (stops) ForgetNews(*task.process);
   if (has_news) return HoldRaw(task, shm::NotificationKind::kRead);
-  task.trap_wait = TrapWait::kChild;
-  WaitForChild(task, which, stops);
+  EnterWait(task, {awaited::Child{which, stops}, shm::kNeverNs, true});
 }
 
 // True: as Handle.
@@ -407,45 +405,52 @@ bool Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     default:  // SYS_io_uring_setup
       task.trap_result = -ENOSYS;
   }
-  return task.trap_wait == TrapWait::kFds || task.trap_wait == TrapWait::kTransfer;
+  return task.Awaits<awaited::Descriptors>() != nullptr;
+}
+
+// A signal's handler ends a trapped call that waits; the result may be the kernel's ERESTARTSYS or
+// ERESTARTNOINTR, which it never shows to programs: then it makes the call again.
+void Engine::InterruptTrappedWait(Task& task) {
+  constexpr int kRestart = 512, kRestartAlways = 513;
+  const Wait& wait = *task.wait;
+  task.trap_continues = false;
+  task.trap_result = wait.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
+  if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
+    // A lock is never given up for a signal: the C library would take it for acquired.
+    if (futex->owner != awaited::kNobody || futexes_.ExpectedLock(task.order).has_value()) {
+      task.trap_result = -kRestartAlways;
+    }
+    if (futex->was_requeued) task.trap_result = -EAGAIN;
+    if (futexes_.WaitsForAny(task.order)) task.trap_result = -kRestart;
+  }
+  const auto* sleep = wait.As<awaited::Time>();
+  if (sleep != nullptr && sleep->remaining_address != 0) {
+    const std::int64_t left = std::max<std::int64_t>(0, wait.deadline_ns - task.reached_ns);
+    Write(task, sleep->remaining_address, ToTimespec(left));
+  }
 }
 
 // A trapped call that waited goes on, for `reason`.
 void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
-  // The kernel's ERESTARTSYS and ERESTARTNOINTR, which it never shows to programs.
-  constexpr int kRestart = 512, kRestartAlways = 513;
-  const TrapWait wait = task.trap_wait;
-  if (reason == shm::WakeReason::kSignal) {
-    task.trap_continues = false;
-    // As the kernel has it: after a handler it makes the call again if that wants it.
-    task.trap_result = task.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
-    // A lock is never given up for a signal: the C library would take it for acquired.
-    if (task.lock_owner != nullptr || futexes_.ExpectedLock(task.order).has_value()) {
-      task.trap_result = -kRestartAlways;
-    }
-    if (wait == TrapWait::kFutex && task.was_requeued) task.trap_result = -EAGAIN;
-    if (futexes_.WaitsForAny(task.order)) task.trap_result = -kRestart;
-    if (wait == TrapWait::kSleep && task.remaining_address != 0) {
-      const std::int64_t left = std::max<std::int64_t>(0, task.deadline_ns - task.reached_ns);
-      Write(task, task.remaining_address, ToTimespec(left));
-    }
-    return;
-  }
+  if (reason == shm::WakeReason::kSignal) return InterruptTrappedWait(task);
   const bool timed_out = reason == shm::WakeReason::kDeadline;
   task.trap_result = 0;
-  if (wait == TrapWait::kFutex) {
-    task.trap_result = timed_out ? -ETIMEDOUT : static_cast<std::int64_t>(task.woken_futex);
+  if (const auto* futex = task.Awaits<awaited::Futex>(); futex != nullptr) {
+    task.trap_result = timed_out ? -ETIMEDOUT : static_cast<std::int64_t>(futex->woken_word);
   }
-  if (wait == TrapWait::kChild && task.awaits_stops) ForgetNews(*task.process);
-  if (!timed_out && wait == TrapWait::kTransfer && Receives(task.trapped_call)) {
-    NoteReceivedRaw(task, false);
+  if (const auto* child = task.Awaits<awaited::Child>(); child != nullptr && child->stops) {
+    ForgetNews(*task.process);
   }
-  if (timed_out && wait == TrapWait::kTransfer) {
-    task.trap_continues = false;
+  const auto* watched = task.Awaits<awaited::Descriptors>();
+  if (watched == nullptr) return;
+  if (!timed_out) {
+    if (watched->transfers && Receives(task.trapped_call)) NoteReceivedRaw(task, false);
+    return;
+  }
+  task.trap_continues = false;
+  if (watched->transfers) {
     task.trap_result = -EAGAIN;
-  }
-  if (timed_out && wait == TrapWait::kFds) {
-    task.trap_continues = false;
+  } else {
     ClearRawResult(task, task.trapped_call);
   }
 }

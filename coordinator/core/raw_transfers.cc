@@ -150,13 +150,14 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
     return;
   }
   const std::int64_t timeout = fd.SocketTimeout(transfer.reads ? SO_RCVTIMEO : SO_SNDTIMEO);
-  if (timeout != shm::kNeverNs) task.deadline_ns = task.reached_ns + timeout;
   const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  task.trap_wait = TrapWait::kTransfer;
-  WatchFds(task, &waited, 1);
-  task.takes = task.watched.size() == 1;
-  task.watched_events = waited.events;
-  task.wait_order = ++wait_order_counter_;
+  awaited::Descriptors watched = Watch(task, &waited, 1);
+  watched.transfers = true;
+  watched.takes = watched.fds.size() == 1;
+  watched.events = waited.events;
+  GoBehind(task, watched);
+  EnterWait(task, {std::move(watched),
+                   timeout == shm::kNeverNs ? shm::kNeverNs : task.reached_ns + timeout, true});
 }
 
 }  // namespace tcs

@@ -13,18 +13,19 @@ namespace {
 // Whether the process's DDS samples are being handed over: whom this wakes, a sample has woken.
 bool IsTakingSamples(const Process& process) {
   const Task* deliverer = process.deliverer;
-  return deliverer != nullptr && !deliverer->waits_for_messages;
+  return deliverer != nullptr && deliverer->Awaits<awaited::Messages>() == nullptr;
 }
 
 ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
-  if (task.waits_for_messages) return ReleaseCause::kInput;
+  if (task.Awaits<awaited::Messages>() != nullptr) return ReleaseCause::kInput;
   if (reason == shm::WakeReason::kDeadline) return ReleaseCause::kTime;
   if (task.process->expired_ns != shm::kNeverNs) return ReleaseCause::kTime;
   if (reason == shm::WakeReason::kSignal) return ReleaseCause::kSignal;
-  if (task.trap_wait == TrapWait::kFutex) {
+  if (task.Awaits<awaited::Futex>() != nullptr) {
     return IsTakingSamples(*task.process) ? ReleaseCause::kInput : ReleaseCause::kThread;
   }
-  return task.waits_for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
+  const bool for_child = task.Awaits<awaited::Child>() != nullptr;
+  return for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ void Engine::NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns
   Activation& activation = task.activation;
   activation.cause = CauseOf(task, reason);
   const bool by_deadline = reason == shm::WakeReason::kDeadline;
-  const std::int64_t due_ns = by_deadline ? task.deadline_ns : process.expired_ns;
+  const std::int64_t due_ns = by_deadline ? task.wait->deadline_ns : process.expired_ns;
   activation.release_ns = std::min(at_ns, due_ns);
   // A program's clock does not go back to the world's.
   if (IsCallback()) activation.release_ns = std::max(activation.release_ns, process.shown_ns);

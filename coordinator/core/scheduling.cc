@@ -53,8 +53,10 @@ void Engine::FindPriority(Task& task) {
 
 // The task waits for a lock of the owner's. A thread of another robot inherits no priority: they
 // are computers apart.
-void Engine::BlockOn(Task& task, Task* owner) {
-  task.lock_owner = owner;
+void Engine::BlockOn(Task& task, const Task* owner) {
+  if (auto* lock = task.Awaits<awaited::Futex>(); lock != nullptr) {
+    lock->owner = owner == nullptr ? awaited::kNobody : owner->order;
+  }
   const bool inherits = owner != nullptr && owner->process->robot == task.process->robot;
   SchedulerOf(task).SetBlockedOn(task.order, inherits ? owner->order : RobotScheduler::kNobody);
 }

@@ -27,29 +27,23 @@ std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::ui
 
 // True if the thread waits for a signal that is pending: then it goes on.
 bool Engine::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
-  if (((sets.own_pending | sets.shared_pending) & task.awaited_signals) == 0) return false;
+  const std::uint64_t pending = sets.own_pending | sets.shared_pending;
+  if (!task.wait.has_value() || (pending & SignalsThatEnd(*task.wait)) == 0) return false;
   MakeReady(task, shm::WakeReason::kGo, moment);
   return true;
-}
-
-void Engine::AwaitSignals(Task& task, std::uint64_t set) {
-  if (set == 0) return;
-  task.awaited_signals = set;
-  ++waiting_for_signals_;
-  EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
 }
 
 // Nobody says that a signal has come from outside, so those who wait for one are looked at now and
 // then. True if one goes on.
 bool Engine::PollSignals() {
-  const bool awaited = waiting_for_signals_ > 0 || waiting_for_stops_ > 0;
+  const bool awaited = wait_counts_.for_signals() > 0 || wait_counts_.for_stops() > 0;
   if (!awaited || __rdtsc() < next_signal_look_tsc_) return false;
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
   const std::int64_t now_ns = turn_.lasts() ? WrittenAt() : latest_ns_;
   for (Task& task : tasks_) {
-    if (task.awaited_signals == 0) continue;
+    if (!task.wait.has_value() || SignalsThatEnd(*task.wait) == 0) continue;
     const Moment moment{std::max(now_ns, task.reached_ns)};
     if (!EndAwait(task, ReadSignalSets(task.tid), moment)) continue;
     latest_ns_ = moment.ns;
@@ -61,7 +55,7 @@ bool Engine::PollSignals() {
 
 // PollEvents for the running thread, in turns while somebody waits for signals.
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
-  while (waiting_for_signals_ + waiting_for_stops_ > 0 && timeout_ns > kLookEveryNs) {
+  while (wait_counts_.for_signals() + wait_counts_.for_stops() > 0 && timeout_ns > kLookEveryNs) {
     if (PollEvents(kLookEveryNs, {}).stops_running) return true;
     if (!turn_.timed_out) return false;
     turn_.timed_out = false;
@@ -83,9 +77,8 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
     if (!host_cpu_.active().IsLast(task)) host_cpu_.active().Hold(task);
     const SignalSets sets = ReadSignalSets(task.tid);
     if (EndAwait(task, sets, moment)) continue;
-    const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
     const std::uint64_t mine =
-        Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, blocked);
+        Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, BlockedOf(task, sets));
     taken |= mine;
     if (mine == 0) continue;
     if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);

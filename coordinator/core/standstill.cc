@@ -45,6 +45,16 @@ std::string KindOf(int fd) {
   return "a " + std::string(target, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
 }
 
+std::string NameOf(const KernelObject& object) {
+  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kSemaphores)) {
+    return "for a System V semaphore";
+  }
+  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kMessages)) {
+    return "at a System V message queue";
+  }
+  return "for room in a listener's backlog";
+}
+
 // The first few of them, and how many more there are.
 std::string Joined(const std::vector<std::string>& all) {
   std::string text;
@@ -58,27 +68,24 @@ std::string Joined(const std::vector<std::string>& all) {
 }  // namespace
 
 // The descriptors as the program numbers them, as far as it has said so.
-std::string Engine::AwaitedDescriptors(const Task& task) const {
-  const bool raw = task.trap_wait != TrapWait::kNone;
+std::string Engine::AwaitedDescriptors(const Task& task, const awaited::Descriptors& wait) const {
+  const bool raw = task.wait->is_in_trapped_call;
   const shm::Notification& note = Slot(task).note;
   const bool writes = (raw ? 0 : note.fds[0].events & EPOLLOUT) != 0;
   const std::string what = writes ? "room to write" : "input";
-  if (task.watched.empty()) return "waits for " + what;
-  const std::string kind = KindOf(task.watched[0]);
-  if (task.watched.size() > 1) {
+  if (wait.fds.empty()) return "waits for " + what;
+  const std::string kind = KindOf(wait.fds[0].get());
+  if (wait.fds.size() > 1) {
     return fmt::format("waits for {} of {} descriptors", writes ? "one" : "input at one",
-                       task.watched.size());
+                       wait.fds.size());
   }
-  if (task.trap_wait == TrapWait::kFds) return fmt::format("waits for {} ({})", what, kind);
+  if (raw && !wait.transfers) return fmt::format("waits for {} ({})", what, kind);
   const auto number = raw ? static_cast<std::int32_t>(task.trapped_call.args[0]) : note.fds[0].fd;
   return fmt::format("waits for {} at descriptor {} ({})", what, number, kind);
 }
 
 // What the thread waits for; what others of its own program can end comes last.
 std::pair<int, std::string> Engine::WhatItAwaits(const Task& task) const {
-  constexpr auto is_key = [](const Task& t, shm::WaitKey key) {
-    return t.key_kind == static_cast<std::int64_t>(key);
-  };
   if (task.process->stopped || ThreadState(task.tid) == 'T') {
     return {0, "is stopped by a signal (SIGCONT lets it go on)"};
   }
@@ -88,21 +95,22 @@ std::pair<int, std::string> Engine::WhatItAwaits(const Task& task) const {
   }
   if (task.state == TaskState::kStarting) return {8, "is being started"};
   if (task.state != TaskState::kWaiting) return {9, "is about to act"};
-  if (task.waits_for_fds) return {2, AwaitedDescriptors(task)};
-  if (task.waits_for_key) {
-    if (is_key(task, shm::WaitKey::kSemaphores)) return {2, "waits for a System V semaphore"};
-    if (is_key(task, shm::WaitKey::kMessages)) return {2, "waits at a System V message queue"};
-    return {2, "waits for room in a listener's backlog"};
+  if (const auto* wait = task.Awaits<awaited::Descriptors>(); wait != nullptr) {
+    return {2, AwaitedDescriptors(task, *wait)};
   }
-  if (task.waits_for_messages) return {6, "waits for DDS messages"};
-  if (task.waits_for_room != 0) return {3, "waits until others have taken its DDS messages"};
-  if (task.waits_for_child) {
-    return {4, task.awaited_child > 0
-                   ? fmt::format("waits for its child {} to end", task.awaited_child)
-                   : "waits for a child to end"};
+  if (const auto* wait = task.Awaits<awaited::Queue>(); wait != nullptr) {
+    return {2, "waits " + NameOf(wait->of)};
   }
-  if (task.trap_wait == TrapWait::kFutex) {
-    if (task.names_tid > 0) return {5, fmt::format("waits for thread {}", task.names_tid)};
+  if (task.Awaits<awaited::Messages>() != nullptr) return {6, "waits for DDS messages"};
+  if (task.Awaits<awaited::Room>() != nullptr) {
+    return {3, "waits until others have taken its DDS messages"};
+  }
+  if (const auto* wait = task.Awaits<awaited::Child>(); wait != nullptr) {
+    return {4, wait->which > 0 ? fmt::format("waits for its child {} to end", wait->which)
+                               : "waits for a child to end"};
+  }
+  if (const auto* wait = task.Awaits<awaited::Futex>(); wait != nullptr) {
+    if (wait->names_tid > 0) return {5, fmt::format("waits for thread {}", wait->names_tid)};
     return {5, "waits for a lock or a condition that nobody gives it"};
   }
   const bool has_child =
@@ -133,7 +141,8 @@ std::vector<std::string> Engine::WhatIsAwaited() const {
 bool Engine::AwaitsTerminal() const {
   return options_.output_directory.empty() &&
          std::any_of(tasks_.begin(), tasks_.end(), [](const Task& task) {
-           return task.state == TaskState::kWaiting && task.watches_terminal;
+           const auto* wait = task.Awaits<awaited::Descriptors>();
+           return wait != nullptr && wait->has_terminal;
          });
 }
 

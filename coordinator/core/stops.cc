@@ -67,22 +67,22 @@ void Engine::LetGoOn(const Process& process) {
 void Engine::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment) {
   ++parent.children_changed;
   for (Task& task : tasks_) {
-    if (task.waits_for_child && (task.awaits_stops || !by_stop) && task.process == &parent &&
-        (task.awaited_child <= 0 || task.awaited_child == child)) {
-      MakeReady(task, shm::WakeReason::kGo, moment);
-    }
+    const auto* wait = task.Awaits<awaited::Child>();
+    if (wait == nullptr || task.process != &parent || !wait->MayBe(child)) continue;
+    if (wait->stops || !by_stop) MakeReady(task, shm::WakeReason::kGo, moment);
   }
   WakeForSignals(parent, moment);
 }
 
 // Nobody says that a process has been stopped from outside.
 void Engine::LookAtStops(Moment moment) {
-  if (waiting_for_stops_ == 0) return;
+  if (wait_counts_.for_stops() == 0) return;
   for (Process& process : processes_) {
     const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
     if (parent == nullptr) continue;
     const bool awaited = std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
-      return task.awaits_stops && task.process == parent;
+      const auto* wait = task.Awaits<awaited::Child>();
+      return wait != nullptr && wait->stops && task.process == parent;
     });
     if (awaited) NoteStops(process, moment);
   }

@@ -14,7 +14,9 @@
 
 #include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
+#include "coordinator/core/task_state.h"
 #include "coordinator/core/usage.h"
+#include "coordinator/core/wait.h"
 #include "coordinator/host/host_thread.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/trap.h"
@@ -22,22 +24,11 @@
 #include "coordinator/policy/robot_scheduler.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/trace/activation_log.h"
+#include "shm/check.h"
 #include "shm/layout.h"
 #include "shm/virtual_time.h"
 
 namespace tcs {
-
-enum class TaskState {
-  kStarting,  // not attached yet                     -> kReady by its attach
-  kReady,     // wants its virtual CPU                -> running, by dispatch
-  kHolding,   // wants it once a time is safe         -> kReady by the progress of others
-  kWaiting,   // for a deadline, descriptors, a child -> kReady by what it waits for, or a signal
-  kUnseen,  // blocked in a call the shim cannot see -> kReady once the kernel has it runnable again
-  kDead,
-};
-
-// What a thread waits for in a trapped call.
-enum class TrapWait { kNone, kFutex, kSleep, kFds, kTransfer, kChild };
 
 // Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
 enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued };
@@ -56,53 +47,27 @@ struct Task : HostThread {
   // The virtual time that it has come to: of its last stop, or of what has made it ready since.
   std::int64_t reached_ns = 0;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
-  std::int64_t deadline_ns = shm::kNeverNs;
-  std::int64_t frozen_ns = 0;  // its process's when it last stopped
-  bool waits_for_fds = false, waits_for_child = false, waits_for_key = false;
-  pid_t awaited_child = 0;           // this one; 0: any
-  bool awaits_stops = false;         // also that one stops or goes on
+  std::optional<Wait> wait;                                   // while kWaiting
+  std::int64_t frozen_ns = 0;                                 // its process's when it last stopped
   std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
-  std::int64_t key_kind = 0, key_id = 0;  // of what it waits for (keys.cc)
-  std::uint64_t key_order = 0;            // of waiting
-  // Of programs that speak DDS (dds.cc).
-  bool is_deliverer = false, waits_for_messages = false, waits_for_deliverer = false;
-  std::uint32_t waits_for_room = 0;     // of that process among those that speak DDS
+  std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
+  bool passes_on = false;            // others were passed over for it (one_waiter.cc)
+  bool is_deliverer = false;         // of DDS messages, to its process
   std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
-  bool has_wait_mask = false;           // it waits with a signal mask of its own (sigsuspend):
-  std::uint64_t wait_mask = 0;          // this one; bit 0 is signal 1
-  std::uint64_t awaited_signals = 0;    // its wait ends when one of them is pending
-  std::vector<int> watched;             // descriptors in the coordinator's epoll set
-  bool watches_terminal = false;        // among the watched
-  bool takes = false;                   // one event of its one descriptor is for one waiter,
-  bool last_is_first = false;           // the one that came last
-  std::uint32_t watched_events = 0;     // of that descriptor
-  std::uint64_t wait_order = 0;         // of waiting for descriptors, over several attempts
-  Task* passed_over_for = nullptr;  // the thread that the last event was for, until it has tried
-  bool passes_on = false;           // it is such a thread for others
-  bool is_edge_armed = false;       // its descriptor tells of every further event,
-  bool skips_event = false;         // and the next one is of what is there
-  std::uint32_t wait_number = 0;    // of its last wait for descriptors
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
   bool trap_continues = false;            // or the kernel carries it out
-  TrapWait trap_wait = TrapWait::kNone;
-  FollowUp follow_up = FollowUp::kNone;  // of the call that the kernel carries out
-  bool is_brief = false;                 // it runs for that call only,
-  bool brief_done = false;               // as has been seen,
-  std::uint64_t brief_id = 0;            // by which it was trapped; 0: it is making it,
-  std::int64_t brief_until_ns = 0;       // until then on its host's clock
-  bool expects_kernel = false;           // in its next call the kernel may hold it
-  TrappedCall trapped_call;              // the last but futex calls
-  std::uint64_t remaining_address = 0;   // where a sleep leaves what a signal cuts off; 0: nowhere
-  std::size_t woken_futex = 0;           // which of several it was woken at
-  bool was_requeued = false;             // it waits for the lock that it was moved to
-  Task* lock_owner = nullptr;            // of the priority-inheriting lock that it waits for,
-  std::uint64_t lock_address = 0;        // which is here in its memory
-  std::uint64_t handed_lock = 0;         // has been handed to it, and it does not know yet; 0: none
-  // What the futex's word says: the thread that it waits for in a join, or a lock's owner.
-  pid_t names_tid = 0;
+  FollowUp follow_up = FollowUp::kNone;   // of the call that the kernel carries out
+  bool is_brief = false;                  // it runs for that call only,
+  bool brief_done = false;                // as has been seen,
+  std::uint64_t brief_id = 0;             // by which it was trapped; 0: it is making it,
+  std::int64_t brief_until_ns = 0;        // until then on its host's clock
+  bool expects_kernel = false;            // in its next call the kernel may hold it
+  TrappedCall trapped_call;               // the last but futex calls
+  // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
+  std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
@@ -119,7 +84,23 @@ struct Task : HostThread {
   Activation activation;    // this one, while it does not wait
   bool is_further = false;  // not the first thread of a client
   int row = 0;              // in the schedule trace and the log of dispatches
+
+  // What it waits for, if that is of this kind.
+  template <class Kind>
+  const Kind* Awaits() const {
+    return wait.has_value() ? wait->As<Kind>() : nullptr;
+  }
+  template <class Kind>
+  Kind* Awaits() {
+    return wait.has_value() ? wait->As<Kind>() : nullptr;
+  }
 };
+
+// The signals that do not reach the thread: those that it blocks, or its wait does.
+inline std::uint64_t BlockedOf(const Task& task, const SignalSets& sets) {
+  const auto mask = task.wait.has_value() ? MaskOf(*task.wait) : std::nullopt;
+  return mask.value_or(sets.blocked);
+}
 
 struct Process {
   std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
@@ -151,11 +132,10 @@ struct Process {
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
-  std::uint32_t dds_number = 0;   // in dds::Hub; 0: it has not joined
-  bool dds_warned = false;        // a client: of what it, or a descendant, sends
-  bool has_erred = false;         // a client: it, or a descendant, was expelled
-  Task* deliverer = nullptr;      // its thread that takes what is for it
-  int waiting_for_deliverer = 0;  // threads
+  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  bool dds_warned = false;       // a client: of what it, or a descendant, sends
+  bool has_erred = false;        // a client: it, or a descendant, was expelled
+  Task* deliverer = nullptr;     // its thread that takes what is for it
   bool dead = false;
   bool killed = false;         // at the end of its grace
   bool expelled = false;       // killed, for what it has written into shared memory
@@ -194,6 +174,7 @@ struct Robot {
 };
 
 inline void VirtualCpu::ComeTo(std::int64_t ns) {
+  TCS_CHECK(ns >= progress_ns);
   progress_ns = ns;
   robot->scheduler.SetProgress(core, ns);
 }

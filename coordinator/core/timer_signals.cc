@@ -14,8 +14,7 @@ namespace {
 // Would the thread run a handler for it?
 bool Handles(const Task& task, int signal) {
   const SignalSets sets = ReadSignalSets(task.tid);
-  const std::uint64_t blocked = task.has_wait_mask ? task.wait_mask : sets.blocked;
-  return (sets.caught & ~blocked & SignalBit(signal)) != 0;
+  return (sets.caught & ~BlockedOf(task, sets) & SignalBit(signal)) != 0;
 }
 
 void Send(Process& process, const TimerSignal& signal, pid_t tid) {
@@ -39,9 +38,10 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
 // The thread that waits to accept it, 0 if there is none. The kernel, too, prefers it to others.
 pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
   for (const Task* task : process.robot->tasks) {
-    if (task->process != &process || task->waits_for_fds) continue;
+    const auto* wait = task->Awaits<awaited::Signals>();
+    if (wait == nullptr || task->process != &process) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if ((task->awaited_signals & SignalBit(signal.number)) != 0) return task->tid;
+    if ((wait->set & SignalBit(signal.number)) != 0) return task->tid;
   }
   return 0;
 }

@@ -140,9 +140,9 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   latest_ns_ = now_ns;
   bool wrote = false;
   for (Task* task : robot.tasks) {
-    if (task->state == TaskState::kWaiting && HasRunOut(*task, now_ns)) {
+    if (HasRunOut(*task, now_ns)) {
       Process& woken = *task->process;
-      woken.shown_ns = std::max(woken.shown_ns, task->deadline_ns + task->frozen_ns);
+      woken.shown_ns = std::max(woken.shown_ns, task->wait->deadline_ns + task->frozen_ns);
       MakeReady(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;

@@ -14,7 +14,6 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.follow_up = FollowUp::kNone;
   task.brief_done = false;
   task.expects_kernel = false;
-  task.deadline_ns = shm::kNeverNs;
   bool looks_again = false;
   if (call.number == SYS_futex) {
     HandleFutex(task, call);

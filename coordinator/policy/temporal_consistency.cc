@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "shm/check.h"
 #include "shm/time_values.h"
 
 namespace tcs {
@@ -56,6 +57,7 @@ bool TemporalConsistency::HasGivenWay(Leaf leaf) const {
 void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns) {
   next_ns = std::max(next_ns, EarliestWake());
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
+  TCS_CHECK(progress_ns >= times.progress_ns);
   const bool moved = times.next_ns != next_ns;
   const bool progressed = times.progress_ns != progress_ns;
   times.progress_ns = progress_ns;
