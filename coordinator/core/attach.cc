@@ -12,52 +12,9 @@
 
 namespace tcs {
 
-namespace {
-
-constexpr std::size_t kKeptAfterEnd = 64;
-
-}  // namespace
-
-// The place of one that ended long enough ago, so that nobody speaks of it any more; else a new
-// one.
-Task& Engine::PlaceForTask() {
-  if (ended_tasks_.size() > kKeptAfterEnd) {
-    Task& task = *ended_tasks_.front();
-    ended_tasks_.pop_front();
-    const int order = task.order;
-    task = Task{};
-    task.order = order;
-    return task;
-  }
-  Task& task = tasks_.emplace_back();
-  task.order = static_cast<int>(tasks_.size() - 1);
-  return task;
-}
-
-// The same. A child that has not been waited for keeps its place, and so does a client.
-Process& Engine::PlaceForProcess() {
-  if (ended_processes_.size() > kKeptAfterEnd) {
-    Process& process = *ended_processes_.front();
-    ended_processes_.pop_front();
-    if (ThreadState(process.pid) != 'Z') {
-      const std::uint32_t index = process.index;
-      process = Process{};
-      process.index = index;
-      return process;
-    }
-    ended_processes_.push_back(&process);
-  }
-  Process& process = processes_.emplace_back();
-  process.index = static_cast<std::uint32_t>(processes_.size() - 1);
-  return process;
-}
-
 Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
-  Task& task = PlaceForTask();
-  ++living_;
-  by_tid_[tid] = &task;
+  Task& task = table_.AddTask(tid);
   task.process = &process;
-  task.tid = tid;
   task.parked = false;
   task.metered.speed = process.robot->speed;
   task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
@@ -73,8 +30,7 @@ Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
 
 Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
                       std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker) {
-  Process& process = PlaceForProcess();
-  process.pid = pid;
+  Process& process = table_.AddProcess(pid);
   process.parent = parent;
   process.robot = robot;
   process.name = name;
@@ -109,17 +65,6 @@ Task* Engine::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
   return task;
 }
 
-Process* Engine::LivingProcess(pid_t pid) {
-  const auto found = std::find_if(processes_.begin(), processes_.end(),
-                                  [pid](const Process& p) { return p.pid == pid && !p.dead; });
-  return found == processes_.end() ? nullptr : &*found;
-}
-
-Task* Engine::KnownTask(pid_t tid) {
-  const auto known = by_tid_.find(tid);
-  return known == by_tid_.end() ? nullptr : known->second;
-}
-
 Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns) {
   return NewTask(pid, parent, maker.robot, maker.name, maker.priority, maker.deadline_ns, at_ns,
                  &maker);
@@ -140,23 +85,22 @@ void Engine::EndTask(Task& task, Moment moment) {
   SetState(task, TaskState::kDead);
   queues_.Forget(task.order);
   SchedulerOf(task).Remove(task.order);
-  --living_;
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);
   host_cpu_.active().Ended(task);
-  by_tid_.erase(task.tid);
-  ended_tasks_.push_back(&task);
+  table_.TaskEnded(task);
   Refresh(*task.process->robot);
 }
 
 void Engine::ProcessEnded(std::size_t index, Moment moment) {
-  Process& process = processes_[index];
+  Process& process = table_.ProcessAt(index);
   if (process.dead) return;
   if (turn_.IsIn(process)) {
     Settle(*turn_.task());
     moment.ns = turn_.task()->reached_ns;
   }
   process.dead = true;
+  table_.ProcessEnded(process);
   process.ended_at_ns = moment.ns;
   const std::vector<Task*> threads = process.robot->tasks;
   for (Task* task : threads) {
@@ -176,7 +120,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   StartThoseAfter(process);
   WakeEveryQueue(moment);
   LeaveDds(process, moment);
-  if (!process.is_client) ended_processes_.push_back(&process);
+  if (!process.is_client) table_.GiveUp(process);
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap
   process.wait_status = *status;

@@ -219,7 +219,7 @@ void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment
 // Those that sent to a process more than it can take at once.
 void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
   if (wait_counts_.for_room() == 0 || hub_.IsFull(number)) return;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     const auto* wait = task.Awaits<awaited::Room>();
     if (wait == nullptr || wait->process != number) continue;
     MakeReady(task, shm::WakeReason::kGo, moment);

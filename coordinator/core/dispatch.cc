@@ -291,7 +291,7 @@ void Engine::StepAside(Task& task) {
 
 void Engine::WakeSpinners() {
   has_spinners_ = false;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (task.Awaits<awaited::OthersRun>() != nullptr) {
       MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
     }

@@ -34,6 +34,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
     : scenario_(scenario),
       options_(options),
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
+      table_([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() = default;
@@ -258,7 +259,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   // What was due may have woken somebody who acts on another virtual CPU first; and more may be due
   // here before the turn begins.
   if (turn.start_ns > cpu.progress_ns || root_.First() != cpu.leaf) return;
-  Task& task = tasks_[static_cast<std::size_t>(turn.thread)];
+  Task& task = TaskAt(turn.thread);
   TCS_CHECK(task.reached_ns <= cpu.progress_ns);  // nobody runs before what has made it ready
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;
@@ -345,7 +346,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
 void Engine::PollUnseen() {
   PollSignals();
   if (unseen_ == 0) return;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
     latest_ns_ = std::max(latest_ns_, task.reached_ns);
     MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
@@ -373,7 +374,7 @@ bool Engine::HasJumpedOver() {
 
 // Threads that never registered are at work: time waits for them.
 bool Engine::StrangersRun() {
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (!process.has_strangers || process.dead) continue;
     for (const pid_t tid : ThreadsOf(process.pid)) {
       if (KnownTask(tid) != nullptr || IsAstray(tid)) continue;
@@ -408,7 +409,7 @@ void Engine::ShowProgress() {
   progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
   progress.coordinating_ns =
       HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ - progress.dynamics_ns;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
   if (shows_++ % kShowsPerFlush == 0) FlushRecords();
@@ -418,13 +419,13 @@ void Engine::ShowProgress() {
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && living_ == 0 && !HasLaunchAhead(); ++turn) {
-    const bool all_dead = std::all_of(processes_.begin(), processes_.end(),
+  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !HasLaunchAhead(); ++turn) {
+    const bool all_dead = std::all_of(table_.processes().begin(), table_.processes().end(),
                                       [](const Process& process) { return process.dead; });
     if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
     PollEvents(kOutsidePollNs, {latest_ns_});
   }
-  return living_ > 0 || HasLaunchAhead();
+  return table_.living() > 0 || HasLaunchAhead();
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
@@ -451,7 +452,7 @@ bool Engine::AwaitOutside() {
 // One step of the run; false at its end.
 bool Engine::Step() {
   ended_links_.clear();
-  if (living_ == 0 && !HasLaunchAhead()) return AwaitDeaths();
+  if (table_.living() == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();
   TakeOwnMessages();

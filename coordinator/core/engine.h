@@ -10,7 +10,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -18,7 +17,7 @@
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
-#include "coordinator/core/task.h"
+#include "coordinator/core/task_table.h"
 #include "coordinator/core/turn.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -408,17 +407,15 @@ class Engine {
   Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
                 std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker = nullptr);
   Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
-  Task& PlaceForTask();
-  Process& PlaceForProcess();
   Task* AddTask(Process& process, pid_t tid, std::int64_t at_ns);
   Task* AddThread(Process& process, pid_t tid, std::int64_t at_ns);
   bool EndThreadsLostInExec(pid_t pid, Moment moment);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
   void LendLevel();
-  Process* LivingProcess(pid_t pid);
-  Task* KnownTask(pid_t tid);
-  Task& TaskAt(int order) { return tasks_[static_cast<std::size_t>(order)]; }
+  Process* LivingProcess(pid_t pid) const { return table_.LivingProcess(pid); }
+  Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
+  Task& TaskAt(int order) { return table_.At(order); }
   void EndTask(Task& task, Moment moment);
 
   // What is written about the run (records.cc).
@@ -482,13 +479,9 @@ class Engine {
   std::deque<Robot> robots_;
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
-  std::deque<Process> processes_;
-  std::deque<Task> tasks_;
+  TaskTable table_;
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
-  std::unordered_map<pid_t, Task*> by_tid_;                  // the living
   std::map<std::pair<std::string, std::string>, int> rows_;  // by group and name
-  std::deque<Task*> ended_tasks_;  // whose places can be had again, the earliest first
-  std::deque<Process*> ended_processes_;
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
@@ -496,7 +489,6 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  int living_ = 0;  // threads that are not dead
   int unseen_ = 0;  // threads in TaskState::kUnseen
   WaitCounts wait_counts_;
   std::map<pid_t, UnknownChild> unknown_children_;  // the living

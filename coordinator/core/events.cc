@@ -107,7 +107,7 @@ void Engine::LetDie(const Process& process) {
 // process's own before others.
 void Engine::LendLevel() {
   std::vector<Task*> own, others;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (turn_.IsOf(task) || task.parked || task.state == TaskState::kDead) continue;
     if (task.may_run || ThreadState(task.tid) != 'R') continue;
     if (IsInUserMode(task.tid)) continue;

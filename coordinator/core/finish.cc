@@ -15,7 +15,7 @@ namespace tcs {
 // waits in the kernel for the last steps of their threads.
 void Engine::Shutdown() {
   header_->shutdown.store(1);
-  for (const Task& task : tasks_) {
+  for (const Task& task : table_.tasks()) {
     if (task.state != TaskState::kDead) LeaveRealTime(task.tid);
   }
   LeaveRealTime(0);
@@ -63,13 +63,15 @@ void Engine::WarnOfEndsThatDidNotMeet() {
   const auto failed = [&](const Process& process) {
     return process.is_client && ended(process) && process.wait_status != 0;
   };
-  if (!report_.error.empty() || std::any_of(processes_.begin(), processes_.end(), failed)) return;
+  if (!report_.error.empty() ||
+      std::any_of(table_.processes().begin(), table_.processes().end(), failed))
+    return;
   for (const std::string& warning : dds::MismatchWarnings(topic_log_.reports())) Warn(warning);
   if (!world_.present()) return;
   for (const std::string& warning : command_input_.Complaints(scenario_)) Warn(warning);
   // Whoever has ended may have listened before.
   const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
-  if (std::any_of(processes_.begin(), processes_.end(), gone)) return;
+  if (std::any_of(table_.processes().begin(), table_.processes().end(), gone)) return;
   for (const SensorChannelSpec& spec : scenario_.sensors) {
     if (IsListenedTo(spec.to)) continue;
     Warn(fmt::format(

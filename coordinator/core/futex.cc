@@ -162,7 +162,7 @@ std::int64_t Engine::CarryOutWake(const Process& process, const TrappedCall& cal
 
 // The thread has said that it ends, but the kernel may not be through with it yet.
 bool Engine::IsEnding(const Task& joiner, pid_t tid) const {
-  return std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
+  return std::any_of(table_.tasks().begin(), table_.tasks().end(), [&](const Task& task) {
     return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
   });
 }

@@ -41,9 +41,9 @@ std::int64_t Engine::GraceOf(const Process& process) {
 
 void Engine::EndClients() {
   BeginGrace();
-  while (living_ > 0 && !IsGraceOver()) {
+  while (table_.living() > 0 && !IsGraceOver()) {
     std::int64_t next_ns = shm::kNeverNs;
-    for (const Process& process : processes_) {
+    for (const Process& process : table_.processes()) {
       if (!process.dead && !process.killed) next_ns = std::min(next_ns, KillTimeOf(process));
     }
     if (next_ns == shm::kNeverNs) break;
@@ -52,10 +52,11 @@ void Engine::EndClients() {
     idle_at_ns_ = -1;
     while (!IsGraceOver() && Step()) {
     }
-    if (living_ > 0 && !IsGraceOver()) KillOverdue();
+    if (table_.living() > 0 && !IsGraceOver()) KillOverdue();
   }
   if (grace_ran_out_) {
-    for (Process& process : processes_) WarnOfKill(process, "the real time that there is for that");
+    for (Process& process : table_.processes())
+      WarnOfKill(process, "the real time that there is for that");
   }
 }
 
@@ -77,7 +78,7 @@ void Engine::BeginGrace() {
   }
   LimitRealTime();
   latest_ns_ = grace_began_ns_;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.dead) continue;
     kill(process.pid, StopSignalOf(process));
     if (ThreadState(process.pid) == 'T') kill(process.pid, SIGCONT);
@@ -91,7 +92,7 @@ void Engine::BeginGrace() {
 
 void Engine::LimitRealTime() {
   std::int64_t longest_ns = 0;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (!process.dead) longest_ns = std::max(longest_ns, GraceOf(process));
   }
   double speed = 0;
@@ -112,7 +113,7 @@ std::int64_t Engine::KillTimeOf(const Process& process) const {
 
 void Engine::KillOverdue() {
   latest_ns_ = end_ns_;
-  for (Process& process : processes_) {
+  for (Process& process : table_.processes()) {
     if (process.dead || process.killed || KillTimeOf(process) > end_ns_) continue;
     WarnOfKill(process, "its stop_grace");
     process.killed = true;

@@ -42,7 +42,7 @@ void Engine::RegisterHandlers() {
 
 Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
   Reactor::Found found = kConcernsAll;
-  found.looks_again = TakeNotifications(processes_[process.index], moment);
+  found.looks_again = TakeNotifications(table_.ProcessAt(process.index), moment);
   return found;
 }
 
@@ -68,7 +68,7 @@ Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment momen
 }
 
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
-  Task& task = tasks_[subject.index];
+  Task& task = TaskAt(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != SubjectOfWait(task, *wait)) return {};
   if (std::exchange(wait->skips_event, false)) return {};

@@ -87,7 +87,7 @@ std::int64_t Engine::FutexUnlock(Task& task, const TrappedCall& call) {
 // Whoever waits for the thread to end, or for a lock that it held, goes on: the kernel's own wake
 // does not reach them.
 void Engine::WakeThoseWaitingFor(Task& ended, Moment moment) {
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     const auto* wait = task.Awaits<awaited::Futex>();
     if (wait == nullptr) continue;
     if (wait->owner == ended.order) {

@@ -110,7 +110,7 @@ void Engine::PassOver(Task& task, Task& first) {
 void Engine::PassOn(Task& first, Moment moment) {
   if (!std::exchange(first.passes_on, false)) return;
   std::vector<EventWaiter> passed_over;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     auto* wait = task.Awaits<awaited::Descriptors>();
     if (wait == nullptr || wait->passed_over_for != first.order) continue;
     wait->passed_over_for = awaited::kNobody;

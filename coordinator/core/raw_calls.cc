@@ -274,7 +274,7 @@ void Engine::ClearRawResult(const Task& task, const TrappedCall& call) {
 
 // The kernel is about to tell it of its children's stops.
 void Engine::ForgetNews(const Process& parent) {
-  for (Process& child : processes_) {
+  for (Process& child : table_.processes()) {
     if (child.parent == parent.pid) child.stop_is_news = child.continue_is_news = false;
   }
 }
@@ -284,10 +284,10 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   task.trap_continues = true;
   const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
   FindUnknownChildren(*task.process);
-  const bool has_living = HasUnknownChild(*task.process) ||
-                          std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
-                            return p.parent == task.process->pid && !p.dead;
-                          });
+  const bool has_living =
+      HasUnknownChild(*task.process) ||
+      std::any_of(table_.processes().begin(), table_.processes().end(),
+                  [&](const Process& p) { return p.parent == task.process->pid && !p.dead; });
   if ((options & WNOHANG) != 0 || !has_living) {
     HoldRaw(task, shm::NotificationKind::kRead);
     return;
@@ -295,13 +295,14 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   pid_t which = 0;  // any
   if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
   if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
-  const bool has_news = std::any_of(processes_.begin(), processes_.end(), [&](const Process& p) {
-    if (p.parent != task.process->pid || p.is_client || (which != 0 && p.pid != which))
-      return false;
-    if (p.dead) return ThreadState(p.pid) == 'Z';
-    return ((options & WUNTRACED) != 0 && p.stop_is_news) ||
-           ((options & WCONTINUED) != 0 && p.continue_is_news);
-  });
+  const bool has_news =
+      std::any_of(table_.processes().begin(), table_.processes().end(), [&](const Process& p) {
+        if (p.parent != task.process->pid || p.is_client || (which != 0 && p.pid != which))
+          return false;
+        if (p.dead) return ThreadState(p.pid) == 'Z';
+        return ((options & WUNTRACED) != 0 && p.stop_is_news) ||
+               ((options & WCONTINUED) != 0 && p.continue_is_news);
+      });
   if (stops) ForgetNews(*task.process);
   if (has_news) return HoldRaw(task, shm::NotificationKind::kRead);
   EnterWait(task, {awaited::Child{which, stops}, shm::kNeverNs, true});

@@ -73,7 +73,7 @@ std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
 Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
   const Borrowed fd(task, number);
   if (fd.fd() < 0) return {};
-  for (Process& process : processes_) {
+  for (Process& process : table_.processes()) {
     if (process.dead) continue;
     for (const auto& [id, timer_fd] : process.timer_fds) {
       if (IsSameFile(timer_fd.get(), fd.fd())) return {&process, id};
@@ -98,8 +98,8 @@ std::int64_t Engine::TimerNow(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
   if (kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
   if (kind.clock == shm::TimerClock::kTime) return task.reached_ns + owner.frozen_ns;
-  const auto known = by_tid_.find(kind.clock_tid);
-  return known == by_tid_.end() ? 0 : known->second->charged_ns;
+  const Task* known = KnownTask(kind.clock_tid);
+  return known == nullptr ? 0 : known->charged_ns;
 }
 
 // Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the

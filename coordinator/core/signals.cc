@@ -42,7 +42,7 @@ bool Engine::PollSignals() {
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
   const std::int64_t now_ns = turn_.lasts() ? WrittenAt() : latest_ns_;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (!task.wait.has_value() || SignalsThatEnd(*task.wait) == 0) continue;
     const Moment moment{std::max(now_ns, task.reached_ns)};
     if (!EndAwait(task, ReadSignalSets(task.tid), moment)) continue;
@@ -70,7 +70,7 @@ bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
 // kernel has it.
 void Engine::WakeForSignals(Process& process, Moment moment) {
   std::uint64_t taken = 0;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
@@ -101,7 +101,7 @@ void Engine::AnswerAhead(Task& task) {
 }
 
 void Engine::WakeSignalled(pid_t receiver, Moment moment) {
-  for (Process& process : processes_) {
+  for (Process& process : table_.processes()) {
     if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
     WakeForSignals(process, moment);
     NoteStops(process, moment);
@@ -114,7 +114,7 @@ void Engine::WakeSignalled(pid_t receiver, Moment moment) {
 void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
-  for (const Task& task : tasks_) {
+  for (const Task& task : table_.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     const SignalSets sets = ReadSignalSets(task.tid);
     const std::uint64_t ignored = sets.blocked | sets.caught;

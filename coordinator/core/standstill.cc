@@ -114,7 +114,7 @@ std::pair<int, std::string> Engine::WhatItAwaits(const Task& task) const {
     return {5, "waits for a lock or a condition that nobody gives it"};
   }
   const bool has_child =
-      std::any_of(processes_.begin(), processes_.end(), [&task](const Process& process) {
+      std::any_of(table_.processes().begin(), table_.processes().end(), [&task](const Process& process) {
         return !process.dead && process.parent == task.process->pid;
       });
   return {7, has_child ? "waits for a signal, as of a child's end" : "waits for a signal"};
@@ -123,7 +123,7 @@ std::pair<int, std::string> Engine::WhatItAwaits(const Task& task) const {
 // Whom time waits for, and what for, one phrase for each program.
 std::vector<std::string> Engine::WhatIsAwaited() const {
   std::vector<std::string> awaited;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.dead) continue;
     std::pair<int, std::string> first{10, {}};
     for (const Task* task : process.robot->tasks) {
@@ -140,7 +140,7 @@ std::vector<std::string> Engine::WhatIsAwaited() const {
 // A program that has a terminal's user to wait for looks as it does without tcs.
 bool Engine::AwaitsTerminal() const {
   return options_.output_directory.empty() &&
-         std::any_of(tasks_.begin(), tasks_.end(), [](const Task& task) {
+         std::any_of(table_.tasks().begin(), table_.tasks().end(), [](const Task& task) {
            const auto* wait = task.Awaits<awaited::Descriptors>();
            return wait != nullptr && wait->has_terminal;
          });
@@ -150,7 +150,7 @@ bool Engine::AwaitsTerminal() const {
 // of a bare clone.
 std::vector<std::string> Engine::ComputingStrangers() const {
   std::vector<std::string> strangers;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.has_strangers && !process.dead) {
       strangers.push_back("a thread of " + NameOf(process));
     }
@@ -181,7 +181,7 @@ void Engine::NoteStandstill(std::int64_t now_ns) {
 // A program alone has ended, and the run goes on for what it has left in the background.
 void Engine::NoteLeftBehind(std::int64_t now_ns) {
   std::vector<std::string> ended, left;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.is_client) {
       if (!process.dead) return;
       ended.push_back(process.name);

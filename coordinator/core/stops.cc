@@ -66,7 +66,7 @@ void Engine::LetGoOn(const Process& process) {
 // a change look at it, and its signal is there.
 void Engine::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment) {
   ++parent.children_changed;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     const auto* wait = task.Awaits<awaited::Child>();
     if (wait == nullptr || task.process != &parent || !wait->MayBe(child)) continue;
     if (wait->stops || !by_stop) MakeReady(task, shm::WakeReason::kGo, moment);
@@ -77,10 +77,10 @@ void Engine::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment mom
 // Nobody says that a process has been stopped from outside.
 void Engine::LookAtStops(Moment moment) {
   if (wait_counts_.for_stops() == 0) return;
-  for (Process& process : processes_) {
+  for (Process& process : table_.processes()) {
     const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
     if (parent == nullptr) continue;
-    const bool awaited = std::any_of(tasks_.begin(), tasks_.end(), [&](const Task& task) {
+    const bool awaited = std::any_of(table_.tasks().begin(), table_.tasks().end(), [&](const Task& task) {
       const auto* wait = task.Awaits<awaited::Child>();
       return wait != nullptr && wait->stops && task.process == parent;
     });

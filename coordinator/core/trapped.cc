@@ -69,7 +69,7 @@ void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
 
 // At the end of a run the kernel carries out all calls, those that wait included.
 void Engine::ReleaseTrapped() {
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (task.state == TaskState::kDead) continue;
     if (task.trap_id != 0) ContinueTrap(task);
     if (task.early_trap.has_value()) LetThrough(*task.early_trap);

@@ -23,7 +23,7 @@ void Engine::FindUnknownChildren(Process& parent) {
   std::erase_if(untaken_children_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
   for (const pid_t pid : ChildrenOf(parent.pid)) {
     if (unknown_children_.contains(pid) || untaken_children_.contains(pid)) continue;
-    const bool known = std::any_of(processes_.begin(), processes_.end(),
+    const bool known = std::any_of(table_.processes().begin(), table_.processes().end(),
                                    [pid](const Process& p) { return p.pid == pid; });
     if (known) continue;
     UniqueFd pidfd(OpenPidfd(pid));
@@ -69,7 +69,7 @@ bool Engine::AwaitsUnknownChildren() const {
 
 bool Engine::UnknownChildrenRun() const {
   return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
-    if (by_tid_.contains(child.first) || IsAstray(child.first)) return false;
+    if (KnownTask(child.first) != nullptr || IsAstray(child.first)) return false;
     const char state = ThreadState(child.first);
     return state == 'R' || state == 'D';
   });

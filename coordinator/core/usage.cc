@@ -17,7 +17,7 @@ std::int64_t Engine::ChargedTo(const Process& process) const {
 
 std::int64_t Engine::ChargedToAllOf(const Process& client) const {
   std::int64_t charged = client.descendants.charged_ns;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     if (process.client != &client || (process.dead && !process.is_client)) continue;
     charged += ChargedTo(process);
   }
@@ -47,7 +47,7 @@ Usage Engine::UsageOf(const Process& process) {
 
 Usage Engine::UsageOfAll(const Process& client) {
   Usage usage = client.descendants;
-  for (const Process& process : processes_) {
+  for (const Process& process : table_.processes()) {
     // The others' that have ended is kept already, and their places may be others'.
     if (process.client != &client || (process.dead && !process.is_client)) continue;
     usage += UsageOf(process);

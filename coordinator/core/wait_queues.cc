@@ -34,7 +34,7 @@ bool Engine::WakeQueue(std::int64_t kind, std::int64_t id, Moment moment) {
 // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are any.
 bool Engine::LookAtKernelWaits(Moment moment) {
   bool found = false;
-  for (Task& task : tasks_) {
+  for (Task& task : table_.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
     MakeReady(task, shm::WakeReason::kGo, moment);
     task.parked = false;
@@ -56,7 +56,7 @@ void Engine::LockRaw(Task& task) {
 // another.
 void Engine::FlushTerminals() {
   for (int turn = 0; turn < 2; ++turn) {
-    for (const Task& task : tasks_) {
+    for (const Task& task : table_.tasks()) {
       const auto* wait = task.Awaits<awaited::Descriptors>();
       if (wait == nullptr || !wait->has_terminal) continue;
       for (const UniqueFd& fd : wait->fds) {
