@@ -53,7 +53,8 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   // Children have no name of their own; their place in the order is the same in every run.
   const bool is_child = maker != nullptr || parent != getpid();
   task->is_further = is_child;
-  task->row = AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
+  task->row =
+      schedule_.AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
   return task;
 }
 
@@ -61,7 +62,8 @@ Task* Engine::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
   ++process.threads;
   Task* task = AddTask(process, tid, at_ns);
   task->is_further = true;
-  task->row = AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
+  task->row =
+      schedule_.AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
   return task;
 }
 

@@ -132,9 +132,10 @@ std::int64_t Engine::WrittenAt() const {
 }
 
 // It may be settled again in the same dispatch.
-void Engine::RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end_ns) {
+void Engine::RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world) {
   const std::uint64_t until_tsc = host_cpu_.stop_tsc();
-  RecordSlice(task.row, start_ns, end_ns, std::exchange(turn_.recorded_tsc, until_tsc), until_tsc);
+  const std::uint64_t since_tsc = std::exchange(turn_.recorded_tsc, until_tsc);
+  schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
 }
 
 void Engine::Settle(Task& task) {
@@ -179,7 +180,7 @@ void Engine::Settle(Task& task) {
   metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
-  TakeReceipts(task, progress + frozen);
+  activations_.TakeReceipts(task, progress + frozen);
   task.trapped_calls += made_unseen_call;
   task.work = WithTrapped(task, slot.work);
   if (IsCallback()) {
@@ -189,8 +190,7 @@ void Engine::Settle(Task& task) {
     task.process->frozen_ns = task.frozen_ns;
     task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
     most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
-    trace_.Slice(task.row, start + frozen, start + task.frozen_ns);
-    RecordRun(task, start, start);
+    RecordRun(task, {start + frozen, start + task.frozen_ns}, {start, start});
     if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
@@ -204,8 +204,7 @@ void Engine::Settle(Task& task) {
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
-  trace_.Slice(task.row, start, busy_until);
-  RecordRun(task, start, busy_until);
+  RecordRun(task, {start, busy_until}, {start, busy_until});
 }
 
 // The thread has a turn for the call that it has made, from when it was there to make it. True once

@@ -24,6 +24,7 @@ constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
 constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
 constexpr std::int64_t kLookEveryNs = 200'000'000;
+constexpr std::uint64_t kLookPause = 50;  // times what the last look took, at the least
 constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
@@ -34,6 +35,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
     : scenario_(scenario),
       options_(options),
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
+      activations_(options.sync == shm::Sync::kCallback),
       table_([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       end_ns_(scenario.duration.ns()) {}
 
@@ -55,7 +57,7 @@ void Engine::SetState(Task& task, TaskState state, bool goes_first) {
   TCS_CHECK(MayFollow(task.state, state));
   TCS_CHECK(task.wait.has_value() == (state == TaskState::kWaiting));
   const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
-  if (ends && task.state != TaskState::kWaiting) NoteIdle(task);
+  if (ends && task.state != TaskState::kWaiting) activations_.Idles(task);
   if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
       more != 0) {
     unseen_ += more;
@@ -120,7 +122,7 @@ void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
   if (outside && reads && !for_messages) NoteLateness(task, moment.ns, goes_first);
   if (waited) {
     ++task.activations;
-    NoteReleased(task, reason, moment.ns);
+    activations_.Released(task, reason, moment.ns);
     task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
   }
   task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
@@ -307,12 +309,12 @@ bool Engine::StepWorld() {
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
-  trace_.Slice(world_row_, now, world_.progress_ns());
-  RecordSlice(world_row_, now, world_.progress_ns(), begun_tsc, ended_tsc);
+  const DispatchLog::Span span{now, world_.progress_ns()};
+  schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
     latest_ns_ = world_.progress_ns();
-    trace_.Instant(world_row_, "sensors", latest_ns_);
+    schedule_.Instant(world_row_, "sensors", latest_ns_);
     ShowDeliverersTheirDeadlines();
     PollEvents(0, {.ns = latest_ns_, .from_outside = true});
   }
@@ -335,8 +337,8 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();
-    trace_.Slice(world_row_, world, world_.progress_ns());
-    RecordSlice(world_row_, world, world_.progress_ns(), begun_tsc, ended_tsc);
+    const DispatchLog::Span span{world, world_.progress_ns()};
+    schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   return std::min(horizon_ns, root_.DynamicsHorizon());
@@ -392,12 +394,14 @@ std::int64_t Engine::FurthestNs() const {
 
 // What need not be looked at in each step.
 void Engine::LookAround() {
-  if (IsInGrace() || __rdtsc() < next_look_tsc_) return;
-  next_look_tsc_ =
-      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+  const std::uint64_t begun_tsc = __rdtsc();
+  if (IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
   if (options_.on_progress) ShowProgress();
   if (options_.on_notice) LookForStandstill();
+  const std::uint64_t now_tsc = __rdtsc();
+  const auto every = static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+  next_look_tsc_ = now_tsc + std::max(every, (now_tsc - begun_tsc) * kLookPause);
 }
 
 void Engine::ShowProgress() {
@@ -478,6 +482,7 @@ RunReport Engine::Run() {
   start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);
   start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
   start_tsc_ = __rdtsc();
+  schedule_.StartAt(start_tsc_, ticks_per_ns_);
   try {
     while (report_.error.empty() && !stop_.asked()) {
       if (!Step()) break;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/calls/futex_table.h"
+#include "coordinator/core/activations.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
@@ -31,8 +32,7 @@
 #include "coordinator/os/strays.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
-#include "coordinator/trace/dispatch_log.h"
-#include "coordinator/trace/schedule_trace.h"
+#include "coordinator/trace/schedule_records.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -422,17 +422,7 @@ class Engine {
   std::string OpenRecords();
   void FlushRecords();
   std::string CloseRecords();
-  int AddRow(const std::string& group, const std::string& name);
-  void NoteReleased(Task& task, shm::WakeReason reason, std::int64_t at_ns);
-  static shm::WorkCounts WithTrapped(const Task& task, const shm::WorkCounts& seen);
-  void NoteNext(Task& task, std::int64_t now_ns, std::int64_t charged_ns,
-                const shm::WorkCounts& work, bool of_timer);
-  void TakeReceipts(Task& task, std::int64_t now_ns);
-  void NoteReceivedRaw(Task& task, bool of_timer);
-  void NoteIdle(Task& task);
-  void RecordSlice(int row, std::int64_t start_ns, std::int64_t end_ns, std::uint64_t since_tsc,
-                   std::uint64_t until_tsc);
-  void RecordRun(const Task& task, std::int64_t start_ns, std::int64_t end_ns);
+  void RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world);
 
   // What clients have used (usage.cc).
   std::int64_t ChargedTo(const Process& process) const;
@@ -472,16 +462,14 @@ class Engine {
   CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
   World world_{command_input_};
   TemporalConsistency root_;
-  ScheduleTrace trace_;
-  ActivationLog activation_log_;
-  DispatchLog dispatch_log_;
+  ScheduleRecords schedule_;
+  Activations activations_;
   int world_row_ = 0;
   std::deque<Robot> robots_;
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
   TaskTable table_;
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
-  std::map<std::pair<std::string, std::string>, int> rows_;  // by group and name
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};

@@ -445,7 +445,7 @@ void Engine::FinishTrappedWait(Task& task, shm::WakeReason reason) {
   const auto* watched = task.Awaits<awaited::Descriptors>();
   if (watched == nullptr) return;
   if (!timed_out) {
-    if (watched->transfers && Receives(task.trapped_call)) NoteReceivedRaw(task, false);
+    if (watched->transfers && Receives(task.trapped_call)) activations_.ReceivedRaw(task, false);
     return;
   }
   task.trap_continues = false;

@@ -143,7 +143,7 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
     shm::NoteSent(Slot(task).receipts);
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
     const bool of_timer = FindTimerFd(task, number).owner != nullptr;
-    if (of_timer || !fd.IsEventFd()) NoteReceivedRaw(task, of_timer);
+    if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
   if (fd.IsNonBlocking() || fd.IsReady(events) || AnswersAtOnce(task, call, fd, transfer)) {
     HoldRaw(task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);

@@ -48,7 +48,7 @@ std::string Engine::Prepare() {
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;
   if (world_.present()) {
-    world_row_ = AddRow("dynamics", "dynamics");
+    world_row_ = schedule_.AddRow("dynamics", "dynamics");
   }
   ns_per_tick_q32_ = CalibrateTsc();
   ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);

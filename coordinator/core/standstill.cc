@@ -113,10 +113,10 @@ std::pair<int, std::string> Engine::WhatItAwaits(const Task& task) const {
     if (wait->names_tid > 0) return {5, fmt::format("waits for thread {}", wait->names_tid)};
     return {5, "waits for a lock or a condition that nobody gives it"};
   }
-  const bool has_child =
-      std::any_of(table_.processes().begin(), table_.processes().end(), [&task](const Process& process) {
-        return !process.dead && process.parent == task.process->pid;
-      });
+  const bool has_child = std::any_of(table_.processes().begin(), table_.processes().end(),
+                                     [&task](const Process& process) {
+                                       return !process.dead && process.parent == task.process->pid;
+                                     });
   return {7, has_child ? "waits for a signal, as of a child's end" : "waits for a signal"};
 }
 

@@ -80,10 +80,11 @@ void Engine::LookAtStops(Moment moment) {
   for (Process& process : table_.processes()) {
     const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
     if (parent == nullptr) continue;
-    const bool awaited = std::any_of(table_.tasks().begin(), table_.tasks().end(), [&](const Task& task) {
-      const auto* wait = task.Awaits<awaited::Child>();
-      return wait != nullptr && wait->stops && task.process == parent;
-    });
+    const bool awaited =
+        std::any_of(table_.tasks().begin(), table_.tasks().end(), [&](const Task& task) {
+          const auto* wait = task.Awaits<awaited::Child>();
+          return wait != nullptr && wait->stops && task.process == parent;
+        });
     if (awaited) NoteStops(process, moment);
   }
 }
