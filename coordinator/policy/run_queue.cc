@@ -13,9 +13,11 @@ std::vector<RunQueue::Ready>::const_iterator RunQueue::Find(Thread thread) const
 bool RunQueue::IsReady(Thread thread) const { return Find(thread) != ready_.end(); }
 
 std::size_t RunQueue::CountOf(Priority priority) const {
-  return static_cast<std::size_t>(
-      std::count_if(ready_.begin(), ready_.end(),
-                    [priority](const Ready& ready) { return ready.priority == priority; }));
+  const auto begin = std::partition_point(
+      ready_.begin(), ready_.end(), [&](const Ready& ready) { return ready.priority > priority; });
+  const auto end = std::partition_point(
+      begin, ready_.end(), [&](const Ready& ready) { return ready.priority == priority; });
+  return static_cast<std::size_t>(end - begin);
 }
 
 bool RunQueue::Precedes(const Ready& one, const Ready& other) {
@@ -80,6 +82,7 @@ void RunQueue::Choose(std::size_t core, std::int64_t progress_ns, bool keep_plac
     if (keep_places && StaysElsewhere(ready.thread, core)) continue;
     const std::int64_t start = std::max(progress_ns, ready.from_ns);
     if (start < turn.start_ns) turn = Turn{ready.thread, start};
+    if (start == progress_ns) return;  // nobody can start earlier
   }
 }
 
@@ -117,7 +120,8 @@ std::int64_t RunQueue::NextToPrecede(std::size_t core) const {
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return next;
   for (const Ready& ready : ready_) {
-    if (!Precedes(ready, *own) || HasTurn(ready.thread)) continue;
+    if (!Precedes(ready, *own)) break;  // nor does anybody behind it
+    if (HasTurn(ready.thread)) continue;
     if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from_ns);
   }
   return next;

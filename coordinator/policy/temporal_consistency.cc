@@ -1,7 +1,6 @@
 #include "coordinator/policy/temporal_consistency.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "shm/check.h"
@@ -16,38 +15,39 @@ constexpr std::int64_t kNoTimeNs = -1;
 }  // namespace
 
 TemporalConsistency::Leaf TemporalConsistency::AddLeaf(int computer) {
-  leaves_.push_back({computer, 0, shm::kNeverNs, kNoTimeNs});
-  FindLeast();
-  return static_cast<Leaf>(leaves_.size() - 1);
+  const auto leaf = static_cast<Leaf>(leaves_.size());
+  leaves_.push_back({computer, 0, shm::kNeverNs, kNoTimeNs, {}});
+  leaves_.back().rank = RankOf(leaf);
+  order_.insert(leaves_.back().rank);
+  return leaf;
 }
 
-bool TemporalConsistency::ActsBefore(Leaf one, Leaf other) const {
-  const auto rank = [this](Leaf leaf) {
-    return std::tuple(At(leaf).next_ns, HasGivenWay(leaf), leaf != acted_last_, leaf);
-  };
-  return rank(one) < rank(other);
+TemporalConsistency::Rank TemporalConsistency::RankOf(Leaf leaf) const {
+  return {At(leaf).next_ns, HasGivenWay(leaf), leaf != acted_last_, leaf};
 }
 
-void TemporalConsistency::FindLeast() {
-  first_ = second_ = -1;
-  for (Leaf leaf = 0; leaf < static_cast<Leaf>(leaves_.size()); ++leaf) {
-    if (first_ < 0 || ActsBefore(leaf, first_)) {
-      second_ = std::exchange(first_, leaf);
-    } else if (second_ < 0 || ActsBefore(leaf, second_)) {
-      second_ = leaf;
-    }
-  }
+// One of its times, or who acted last, has changed.
+void TemporalConsistency::Reorder(Leaf leaf) {
+  Times& times = leaves_[static_cast<std::size_t>(leaf)];
+  const Rank rank = RankOf(leaf);
+  if (rank == times.rank) return;
+  auto node = order_.extract(times.rank);
+  node.value() = times.rank = rank;
+  order_.insert(std::move(node));
 }
 
 void TemporalConsistency::FirstActs() {
-  acted_last_ = first_;
-  leaves_[static_cast<std::size_t>(first_)].gave_way_ns = kNoTimeNs;
+  const Leaf last = acted_last_;
+  acted_last_ = std::get<Leaf>(*order_.begin());
+  leaves_[static_cast<std::size_t>(acted_last_)].gave_way_ns = kNoTimeNs;
+  Reorder(acted_last_);
+  if (last >= 0) Reorder(last);
 }
 
 void TemporalConsistency::GiveWay(Leaf leaf) {
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
   times.gave_way_ns = times.next_ns;
-  FindLeast();
+  Reorder(leaf);
 }
 
 bool TemporalConsistency::HasGivenWay(Leaf leaf) const {
@@ -58,11 +58,10 @@ void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64
   next_ns = std::max(next_ns, EarliestWake());
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
   TCS_CHECK(progress_ns >= times.progress_ns);
-  const bool moved = times.next_ns != next_ns;
   const bool progressed = times.progress_ns != progress_ns;
   times.progress_ns = progress_ns;
   times.next_ns = next_ns;
-  if (moved) FindLeast();
+  Reorder(leaf);
   if (progressed) NoteDrift(progress_ns);
 }
 
@@ -81,16 +80,17 @@ void TemporalConsistency::NoteDrift(std::int64_t progress_ns) {
 }
 
 std::int64_t TemporalConsistency::Least() const {
-  return first_ < 0 ? shm::kNeverNs : At(first_).next_ns;
+  return order_.empty() ? shm::kNeverNs : std::get<0>(*order_.begin());
 }
 
 TemporalConsistency::Leaf TemporalConsistency::First() const {
-  return Least() == shm::kNeverNs ? -1 : first_;
+  return Least() == shm::kNeverNs ? -1 : std::get<Leaf>(*order_.begin());
 }
 
 std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
-  const Leaf other = leaf == first_ ? second_ : first_;
-  return other < 0 ? shm::kNeverNs : At(other).next_ns;
+  auto other = order_.begin();
+  if (other != order_.end() && std::get<Leaf>(*other) == leaf) ++other;
+  return other == order_.end() ? shm::kNeverNs : std::get<0>(*other);
 }
 
 std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
@@ -108,11 +108,10 @@ std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
 }
 
 std::int64_t TemporalConsistency::NextInputFromOutside(Leaf leaf) const {
-  std::int64_t next = shm::kNeverNs;
-  for (const Times& times : leaves_) {
-    if (times.computer != At(leaf).computer) next = std::min(next, times.next_ns);
+  for (const Rank& rank : order_) {
+    if (At(std::get<Leaf>(rank)).computer != At(leaf).computer) return std::get<0>(rank);
   }
-  return next;
+  return shm::kNeverNs;
 }
 
 std::int64_t TemporalConsistency::NextOutput() const {

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <tuple>
 #include <vector>
 
 namespace tcs {
@@ -69,22 +71,26 @@ class TemporalConsistency {
   std::int64_t EarliestWake() const { return furthest_ns_ - drift_bound_ns_; }
 
  private:
+  // Who acts before whom: by time, then those that have not given way, then who acted last, then by
+  // number.
+  using Rank = std::tuple<std::int64_t, bool, bool, Leaf>;
   struct Times {
     int computer;
     std::int64_t progress_ns, next_ns;
     std::int64_t gave_way_ns;  // it gives way to others that can act then
+    Rank rank;                 // as it stands among the others
   };
   const Times& At(Leaf leaf) const { return leaves_[static_cast<std::size_t>(leaf)]; }
-  bool ActsBefore(Leaf one, Leaf other) const;
+  Rank RankOf(Leaf leaf) const;
+  void Reorder(Leaf leaf);
   std::int64_t LeastOther(Leaf leaf) const;
-  void FindLeast();
   void NoteDrift(std::int64_t progress_ns);
 
   std::int64_t drift_bound_ns_, end_ns_;
   std::vector<Times> leaves_;
   bool has_dynamics_ = false;
   std::int64_t dynamics_ns_ = 0, output_ns_ = 0;
-  Leaf first_ = -1, second_ = -1;  // the two that can act soonest
+  std::set<Rank> order_;  // of all leaves, the one that can act soonest first
   Leaf acted_last_ = -1;
   std::int64_t drift_ns_ = 0, furthest_ns_ = 0;
 };
