@@ -51,7 +51,7 @@ bool ProcessTimers::Timer::IsShort() const {
 }
 
 std::int64_t ProcessTimers::Timer::NextOnVirtualCpu() const {
-  return setting.next_ns == shm::kNeverNs ? shm::kNeverNs : setting.next_ns - frozen_ns;
+  return setting.next_ns == shm::kNeverNs ? shm::kNeverNs : setting.next_ns - lead.ns();
 }
 
 std::int64_t ProcessTimers::Timer::CpuTimeLeft(std::int64_t used_ns) const {
@@ -117,12 +117,12 @@ ProcessTimers::Setting ProcessTimers::Get(Id id) const {
   return timer == nullptr ? Setting{} : timer->setting;
 }
 
-void ProcessTimers::Set(Id id, Setting setting, std::int64_t frozen_ns) {
+void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;
   timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
   timer->setting.interval_ns = std::max<std::int64_t>(0, setting.interval_ns);
-  timer->frozen_ns = frozen_ns;
+  timer->lead = lead;
   timer->is_signal_underway = timer->rests = false;
   timer->overruns = timer->accepted_overruns = 0;
   FindNext();
@@ -145,7 +145,7 @@ std::vector<ProcessTimers::RanOut> ProcessTimers::Expire(std::int64_t now_ns) {
   std::vector<RanOut> ran_out;
   for (auto& [id, timer] : timers_) {
     if (timer.IsOnCpuTime()) continue;
-    const std::int64_t clock_ns = now_ns + timer.frozen_ns;
+    const std::int64_t clock_ns = now_ns + timer.lead.ns();
     const std::int64_t count = timer.TakeExpirations(clock_ns);
     if (count == 0) continue;
     if (timer.IsShort()) {
@@ -208,7 +208,7 @@ std::int64_t ProcessTimers::NextLook() const {
   std::int64_t next_ns = shm::kNeverNs;
   if (!has_resting_timers_) return next_ns;
   for (const auto& [id, timer] : timers_) {
-    if (timer.rests) next_ns = std::min(next_ns, timer.seen_ns + kLookNs - timer.frozen_ns);
+    if (timer.rests) next_ns = std::min(next_ns, timer.seen_ns + kLookNs - timer.lead.ns());
   }
   return next_ns;
 }
@@ -263,7 +263,7 @@ void ProcessTimers::AcceptAt(Id id, std::int64_t now_ns) {
   Timer* timer = Find(id);
   if (timer == nullptr || !timer->is_signal_underway) return;
   if (!timer->IsOnCpuTime()) {
-    timer->AddOverruns(timer->TakeExpirations(now_ns + timer->frozen_ns));
+    timer->AddOverruns(timer->TakeExpirations(now_ns + timer->lead.ns()));
   }
   timer->Accept();
   FindNext();

@@ -3,7 +3,7 @@
 // A timer runs on the clock of its process, or on processor time, of the process or of one thread.
 // What is set and read are times of that clock. The instants of Expire, EndRests, NextExpiry and
 // NextLook are the virtual CPU's; the process's clock is ahead of it by what it was ahead
-// (`frozen_ns`, --sync callback) when the timer was set.
+// (its lead, --sync callback) when the timer was set.
 //
 // - All that has run out by an instant runs out at once: a timer without interval is not armed any
 //   more, any other is set ahead to its first time after the instant. The end of all time
@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "shm/layout.h"
+#include "shm/virtual_time.h"
 
 namespace tcs {
 
@@ -83,7 +84,7 @@ class ProcessTimers {
   std::optional<shm::TimerKind> KindOf(Id id) const;
   Setting Get(Id id) const;
   // What it was set to, and its signal's overruns, are forgotten; a signal on its way is not.
-  void Set(Id id, Setting setting, std::int64_t frozen_ns);
+  void Set(Id id, Setting setting, VirtualDuration lead);
 
   // On the process's clock: when the next one runs out, shm::kNeverNs for never.
   std::int64_t NextExpiry() const { return next_expiry_ns_; }
@@ -120,7 +121,7 @@ class ProcessTimers {
   struct Timer {
     shm::TimerKind kind;
     Setting setting;
-    std::int64_t frozen_ns = 0;
+    VirtualDuration lead;             // of the process's clock when it was set
     bool is_signal_underway = false;  // it was not seen accepted yet
     std::int64_t overruns = 0;        // of that signal
     std::int64_t accepted_overruns = 0;

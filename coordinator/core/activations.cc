@@ -34,7 +34,8 @@ void Activations::Released(Task& task, shm::WakeReason reason, std::int64_t at_n
   const std::int64_t due_ns = by_deadline ? task.wait->deadline_ns : process.expired_ns;
   activation.release_ns = std::min(at_ns, due_ns);
   // A program's clock does not go back to the world's.
-  if (has_own_clocks_) activation.release_ns = std::max(activation.release_ns, process.shown_ns);
+  if (has_own_clocks_)
+    activation.release_ns = std::max(activation.release_ns, process.clock.shown().ns());
   activation.start_ns = -1;
   activation.charged_ns = std::max(activation.charged_ns, task.charged_ns);
   if (task.slot >= 0) shm::NoteWoken(task.slot_memory->receipts);
@@ -67,11 +68,11 @@ void Activations::TakeReceipts(Task& task, std::int64_t now_ns) {
 
 void Activations::ReceivedRaw(Task& task, bool of_timer) {
   if (task.slot < 0 || !shm::NoteReceived(task.slot_memory->receipts, task.charged_ns)) return;
-  Next(task, task.reached_ns + task.process->frozen_ns, task.charged_ns, task.work, of_timer);
+  Next(task, OwnNow(task).ns(), task.charged_ns, task.work, of_timer);
 }
 
 void Activations::Idles(Task& task) {
-  const std::int64_t now = task.reached_ns + task.process->frozen_ns;
+  const std::int64_t now = OwnNow(task).ns();
   task.process->expired_ns = shm::kNeverNs;
   if (task.slot < 0) return;  // it never began
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;

@@ -43,8 +43,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
     process.allocation_cost_ns = maker->allocation_cost_ns;
     process.patch_vdso = maker->patch_vdso;
     process.dds_endpoints = maker->dds_endpoints;
-    process.frozen_ns = maker->frozen_ns;
-    process.shown_ns = maker->shown_ns;
+    process.clock = maker->clock.Fork();
   }
   if (process.pidfd) {
     reactor_.Add(process.pidfd.get(), EPOLLIN, {Tag::kProcess, process.index});

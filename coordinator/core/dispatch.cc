@@ -40,13 +40,14 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   shm::ThreadSlot& slot = Slot(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
-  const std::int64_t frozen = task.process->frozen_ns;
+  const ProgramClock& clock = task.process->clock;
+  const std::int64_t now_ns = clock.At(RobotTime(cpu.progress_ns)).ns();
   MeteredThread& metered = task.metered;
   if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
   ClockGrant& grant = task.grant;
-  grant.base_time_ns = cpu.progress_ns + frozen + task.debt_ns;
+  grant.base_time_ns = now_ns + task.debt_ns;
   grant.base_cpu_ns = task.charged_ns;
-  grant.horizon_ns = horizon_ns + frozen;
+  grant.horizon_ns = clock.At(RobotTime(horizon_ns)).ns();
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
@@ -62,7 +63,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
                                                  : ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
-  page.last_shown_ns.store(std::max(last, cpu.progress_ns + frozen), std::memory_order_relaxed);
+  page.last_shown_ns.store(std::max(last, now_ns), std::memory_order_relaxed);
   slot.core = cpu.core;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
@@ -101,7 +102,7 @@ void Engine::GoOnBesideWoken() {
   const std::int64_t allowed = std::max(HorizonFor(*turn_.task(), &idle_until), WrittenAt());
   turn_.LimitTo(allowed);
   ClockGrant& grant = turn_.task()->grant;
-  grant.horizon_ns = turn_.horizon_ns() + turn_.task()->process->frozen_ns;
+  grant.horizon_ns = OwnHorizonNs();
   grant.idle_until_ns = 0;  // it asks
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
@@ -112,7 +113,12 @@ void Engine::GoOnBesideWoken() {
 // Real time until the running thread has to be looked at.
 std::int64_t Engine::NsToLook(Task& task) {
   if (task.slot < 0) return kLookTurnNs;
-  return host_cpu_.NsToLook(task, turn_.horizon_ns() + task.process->frozen_ns);
+  return host_cpu_.NsToLook(task, OwnHorizonNs());
+}
+
+// The turn's horizon, as the thread's own clock shows it.
+std::int64_t Engine::OwnHorizonNs() const {
+  return turn_.task()->process->clock.At(RobotTime(turn_.horizon_ns())).ns();
 }
 
 void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
@@ -156,7 +162,10 @@ void Engine::Settle(Task& task) {
     host_cpu_.ChargeCall(task, task.process->call_cost_ns);
   }
   const shm::ClockReading reading = host_cpu_.ClockOf(task);
-  const std::int64_t frozen = task.process->frozen_ns;
+  ProgramClock& clock = task.process->clock;
+  const auto on_robot = [&clock](std::int64_t own_ns) {
+    return clock.RobotTimeOf(OwnTime(own_ns)).ns();
+  };
   const std::int64_t start = task.cpu->progress_ns;
   // Whom it has woken, however long ago it sent what did, it must not have left behind further than
   // the drift bound: what it has computed beyond is a debt.
@@ -165,11 +174,11 @@ void Engine::Settle(Task& task) {
   }
   StoppedRun run{.start_ns = start,
                  .horizon_ns = turn_.horizon_ns(),
-                 .reached_ns = reading.time_ns - frozen,
-                 .shown_ns = page.last_shown_ns.load() - frozen,
+                 .reached_ns = on_robot(reading.time_ns),
+                 .shown_ns = on_robot(page.last_shown_ns.load()),
                  .is_preempted = turn_.timed_out && !turn_.notified};
   if (turn_.notified && slot.note.kind != shm::NotificationKind::kYield) {
-    run.noted_ns = slot.note.time_ns - frozen;
+    run.noted_ns = on_robot(slot.note.time_ns);
   }
   const auto [progress, debt, ours] = SettleRun(run);
   metered.host_origin_ns += metered.HostNs(ours);
@@ -180,17 +189,19 @@ void Engine::Settle(Task& task) {
   metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
-  activations_.TakeReceipts(task, progress + frozen);
+  activations_.TakeReceipts(task, clock.At(RobotTime(progress)).ns());
   task.trapped_calls += made_unseen_call;
   task.work = WithTrapped(task, slot.work);
   if (IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
-    NoteHeld(*task.process, start, progress - start);
-    task.frozen_ns = frozen + progress - start;
-    task.process->frozen_ns = task.frozen_ns;
-    task.process->shown_ns = std::max(task.process->shown_ns, start + task.frozen_ns);
-    most_frozen_ns_ = std::max(most_frozen_ns_, task.frozen_ns);
-    RecordRun(task, {start + frozen, start + task.frozen_ns}, {start, start});
+    const VirtualTime at = RobotTime(start);
+    const VirtualDuration computed = RobotTime(progress) - at;
+    const ProgramTime begun = clock.At(at);
+    clock.NoteHeld(at, computed);
+    clock.Advance(at, computed);
+    task.lead = clock.lead();
+    most_lead_ = std::max(most_lead_, task.lead);
+    RecordRun(task, {begun.ns(), clock.At(at).ns()}, {start, start});
     if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
     return;
   }
@@ -261,8 +272,7 @@ void Engine::AwaitStop(Task& task) {
       if (GivesUpStart(task, ++starting_turns)) return;
       continue;
     }
-    const Meter::Found found =
-        host_cpu_.Look(task, turn_.horizon_ns() + task.process->frozen_ns, CpuClockOf(task));
+    const Meter::Found found = host_cpu_.Look(task, OwnHorizonNs(), CpuClockOf(task));
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
       turn_.timed_out = true;
@@ -338,7 +348,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   Resume(task);
   turn_.recorded_tsc = host_cpu_.stop_tsc();
   if (task.activation.start_ns < 0) {
-    task.activation.start_ns = task.cpu->progress_ns + task.process->frozen_ns;
+    task.activation.start_ns = task.process->clock.At(RobotTime(task.cpu->progress_ns)).ns();
   }
 }
 

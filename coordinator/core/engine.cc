@@ -86,7 +86,12 @@ bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
   if (!task.wait.has_value()) return false;
   const std::int64_t deadline_ns = task.wait->deadline_ns;
   if (deadline_ns <= now_ns) return true;
-  return IsCallback() && deadline_ns <= task.process->shown_ns - task.frozen_ns;
+  return IsCallback() && OwnDeadlineOf(task) <= task.process->clock.shown();
+}
+
+// When the thread's wait is over, as its process's clock tells it.
+ProgramTime Engine::OwnDeadlineOf(const Task& task) {
+  return ProgramClock::At(RobotTime(task.wait->deadline_ns), task.lead);
 }
 
 RobotScheduler::Wait Engine::WaitOf(const Task& task) const {
@@ -101,7 +106,7 @@ RobotScheduler::Wait Engine::WaitOf(const Task& task) const {
   wait.until_ns = task.wait->deadline_ns;
   if (IsCallback() && wait.until_ns != shm::kNeverNs) {
     wait.is_over = HasRunOut(task, 0);
-    wait.own_until_ns = wait.until_ns + task.frozen_ns - process.frozen_ns;
+    wait.own_until_ns = process.clock.RobotTimeOf(OwnDeadlineOf(task)).ns();
   }
   return wait;
 }
@@ -202,11 +207,6 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   return horizon.run_ns;
 }
 
-// A program's clock stands while it waits, for as long as it is ahead of the world's.
-void Engine::LetWorldCatchUp(Process& process, std::int64_t now_ns) {
-  process.frozen_ns = std::max<std::int64_t>(0, process.shown_ns - now_ns);
-}
-
 // A program that computes for as long as the run is to be, all at one instant of the world's, would
 // have the world stand for ever. Short runs, too, may have long plans computed.
 std::int64_t Engine::MostHeldNs() const {
@@ -214,14 +214,8 @@ std::int64_t Engine::MostHeldNs() const {
 }
 
 std::int64_t Engine::LeftToHoldNs(const Task& task) const {
-  const Process& process = *task.process;
-  const std::int64_t held = process.held_at_ns == task.cpu->progress_ns ? process.held_ns : 0;
-  return std::clamp<std::int64_t>(MostHeldNs() - held, 0, shm::kMaxDispatchNs);
-}
-
-void Engine::NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns) {
-  if (std::exchange(process.held_at_ns, at_ns) != at_ns) process.held_ns = 0;
-  process.held_ns += ns;
+  const VirtualDuration held = task.process->clock.HeldAt(RobotTime(task.cpu->progress_ns));
+  return std::clamp<std::int64_t>(MostHeldNs() - held.ns(), 0, shm::kMaxDispatchNs);
 }
 
 // The thread stays where it is, and the world goes on to the end.
@@ -241,9 +235,9 @@ void Engine::LetWorldGoOnWithout(Task& task) {
 void Engine::PayDebt(Task& task, std::int64_t ns) {
   task.debt_ns -= ns;
   if (IsCallback()) {
-    Process& process = *task.process;
-    task.frozen_ns = process.frozen_ns += ns;
-    process.shown_ns = std::max(process.shown_ns, task.cpu->progress_ns + process.frozen_ns);
+    ProgramClock& clock = task.process->clock;
+    clock.Advance(RobotTime(task.cpu->progress_ns), VirtualDuration::Nanoseconds(ns));
+    task.lead = clock.lead();
     return;
   }
   task.cpu->ComeTo(task.cpu->progress_ns + std::max<std::int64_t>(0, ns));
@@ -265,14 +259,16 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   TCS_CHECK(task.reached_ns <= cpu.progress_ns);  // nobody runs before what has made it ready
   task.cpu = &cpu;
   task.reached_ns = cpu.progress_ns;
-  if (IsCallback()) LetWorldCatchUp(*task.process, cpu.progress_ns);
+  ProgramClock& clock = task.process->clock;
+  if (IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
   TCS_CHECK(IsSafe(task));
   if (IsCallback() && LeftToHoldNs(task) == 0) {
     LetWorldGoOnWithout(task);
     return;
   }
   std::int64_t idle_until = 0;
-  const std::int64_t start = cpu.progress_ns, frozen = task.process->frozen_ns;
+  const std::int64_t start = cpu.progress_ns;
+  const VirtualDuration lead = clock.lead();
   std::int64_t horizon = HorizonFor(task, &idle_until);
   if (horizon <= start && root_.NextInput(cpu.leaf) == start && !root_.HasGivenWay(cpu.leaf)) {
     // At this very instant others may still wake somebody who goes before it.
@@ -290,7 +286,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;
-  robot.scheduler.Stop(cpu.core, advanced, advanced + task.process->frozen_ns - frozen);
+  robot.scheduler.Stop(cpu.core, advanced, advanced + (clock.lead() - lead).ns());
   Requeue(task);
   Refresh(robot);
   TCS_CHECK(IsCallback() || root_.drift_ns() <= scenario_.drift_bound.ns());
@@ -408,7 +404,7 @@ void Engine::ShowProgress() {
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
-  progress.drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
+  progress.drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
   progress.client_ns = client_host_ns_;
   progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
   progress.coordinating_ns =

@@ -80,10 +80,8 @@ class Engine {
   // The loop (engine.cc).
   bool Step();
   bool AwaitDeaths();
-  static void LetWorldCatchUp(Process& process, std::int64_t now_ns);
   std::int64_t MostHeldNs() const;
   std::int64_t LeftToHoldNs(const Task& task) const;
-  static void NoteHeld(Process& process, std::int64_t at_ns, std::int64_t ns);
   void LetWorldGoOnWithout(Task& task);
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
@@ -115,6 +113,7 @@ class Engine {
   // States (engine.cc). Whoever changes what a robot could do next refreshes it.
   static bool IsRunnable(const Task& task);
   bool HasRunOut(const Task& task, std::int64_t now_ns) const;
+  static ProgramTime OwnDeadlineOf(const Task& task);
   RobotScheduler::Wait WaitOf(const Task& task) const;
   void SetState(Task& task, TaskState state, bool goes_first = false);
   void Requeue(Task& task, bool goes_first = false);
@@ -140,6 +139,7 @@ class Engine {
   bool GivesUpStart(Task& task, int turns);
   void AwaitStop(Task& task);
   std::int64_t NsToLook(Task& task);
+  std::int64_t OwnHorizonNs() const;
   void Settle(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
@@ -523,7 +523,7 @@ class Engine {
 
   RunReport report_;
   std::int64_t client_host_ns_ = 0;
-  std::int64_t most_frozen_ns_ = 0;
+  VirtualDuration most_lead_;  // of all programs' clocks
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
   std::uint64_t start_tsc_ = 0;
   int shows_ = 0;

@@ -40,7 +40,7 @@ void Engine::Report(RunReport* report) {
   WarnOfDrops();
   WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();
-  report->drift_ns = std::max(root_.drift_ns(), most_frozen_ns_);
+  report->drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
   report->dynamics_ns = world_.host_ns();
   report->samples = world_.samples();
   report->commands = world_.commands();

@@ -54,7 +54,8 @@ std::int64_t Engine::FutexDeadline(const Task& task, const TrappedCall& call, in
   }
   const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
   const std::int64_t offset = realtime ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
-  *deadline_ns = std::max(now, ns - offset - task.process->frozen_ns);
+  const ProgramTime deadline = OwnTime(ns - offset);
+  *deadline_ns = std::max(now, task.process->clock.RobotTimeOf(deadline).ns());
   return 0;
 }
 

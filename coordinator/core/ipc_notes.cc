@@ -25,7 +25,7 @@ bool Engine::TakeIpcNotes(Task& task) {
   slot.ipc_count.store(0);
   if (count > shm::kMostIpcNotes) return false;
   const std::int64_t origin_ns = header_->realtime_offset_ns;
-  const std::int64_t now_ns = origin_ns + task.reached_ns + task.process->frozen_ns;
+  const std::int64_t now_ns = origin_ns + OwnNow(task).ns();
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::IpcNote note = slot.ipc_notes[i];
     std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again

@@ -82,8 +82,8 @@ awaited::Descriptors Engine::WatchAsAsked(Task& task, const shm::Notification& n
 // From the program's clock to the robot's.
 std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
   if (note.deadline_ns == shm::kNeverNs) return shm::kNeverNs;
-  const std::int64_t deadline_ns = std::max<std::int64_t>(0, note.deadline_ns);
-  return std::max(deadline_ns - task.process->frozen_ns, task.reached_ns);
+  const ProgramTime deadline = OwnTime(std::max<std::int64_t>(0, note.deadline_ns));
+  return std::max(task.process->clock.RobotTimeOf(deadline).ns(), task.reached_ns);
 }
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {

@@ -102,7 +102,7 @@ bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
 }  // namespace
 
 std::int64_t Engine::ReadRawClock(const Task& task, const TrappedCall& call) {
-  const std::int64_t now = task.reached_ns + task.process->frozen_ns;
+  const std::int64_t now = OwnNow(task).ns();
   const std::int64_t real = now + header_->realtime_offset_ns;
   if (call.number == SYS_gettimeofday) {
     return call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real)) ? 0 : -EFAULT;
@@ -131,7 +131,7 @@ std::int64_t Engine::SleepRaw(Task& task, const TrappedCall& call) {
     const bool is_real = shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
     const std::int64_t offset =
         is_real ? header_->realtime_offset_ns : header_->monotonic_offset_ns;
-    until = ToTimeoutNs(request) - offset - task.process->frozen_ns;
+    until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset)).ns();
   }
   const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
   EnterWait(task, {awaited::Time{.remaining_address = remaining_address},

@@ -97,7 +97,9 @@ Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
 std::int64_t Engine::TimerNow(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
   if (kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
-  if (kind.clock == shm::TimerClock::kTime) return task.reached_ns + owner.frozen_ns;
+  if (kind.clock == shm::TimerClock::kTime) {
+    return owner.clock.At(RobotTime(task.reached_ns)).ns();
+  }
   const Task* known = KnownTask(kind.clock_tid);
   return known == nullptr ? 0 : known->charged_ns;
 }

@@ -14,6 +14,7 @@
 
 #include "coordinator/calls/process_timers.h"
 #include "coordinator/core/process_link.h"
+#include "coordinator/core/program_clock.h"
 #include "coordinator/core/task_state.h"
 #include "coordinator/core/usage.h"
 #include "coordinator/core/wait.h"
@@ -48,7 +49,7 @@ struct Task : HostThread {
   std::int64_t reached_ns = 0;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::optional<Wait> wait;                                   // while kWaiting
-  std::int64_t frozen_ns = 0;                                 // its process's when it last stopped
+  VirtualDuration lead;              // of its process's clock when it last stopped
   std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
   std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
   bool passes_on = false;            // others were passed over for it (one_waiter.cc)
@@ -115,12 +116,7 @@ struct Process {
   std::int64_t deadline_ns = 0;  // its client's, under scheduler: edf; 0: none
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
   bool patch_vdso = false, dds_endpoints = false;
-  // --sync callback: how far its clock is ahead of the virtual CPU's, because it computed while the
-  // world stood still. While it waits the world catches up, but its clock never goes back, nor
-  // behind the end of a wait that is over by time.
-  std::int64_t frozen_ns = 0;
-  std::int64_t shown_ns = 0;                  // the furthest that its clock has come
-  std::int64_t held_at_ns = -1, held_ns = 0;  // where and for how long it last held the world up
+  ProgramClock clock;
   ProcessTimers timers;
   std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
   // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
@@ -172,6 +168,11 @@ struct Robot {
   std::vector<VirtualCpu*> cpus;                // by core
   std::vector<Task*> tasks;                     // the living
 };
+
+// What its process's clock shows where the thread is.
+inline ProgramTime OwnNow(const Task& task) {
+  return task.process->clock.At(RobotTime(task.reached_ns));
+}
 
 inline void VirtualCpu::ComeTo(std::int64_t ns) {
   TCS_CHECK(ns >= progress_ns);

@@ -97,7 +97,7 @@ bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
   task.reply[0] = before.next_ns;
   task.reply[1] = before.interval_ns;
   if (note.kind != shm::NotificationKind::kTimerSet) return wrote;
-  timers.Set(id, {note.args[1], note.args[2]}, process.frozen_ns);
+  timers.Set(id, {note.args[1], note.args[2]}, process.clock.lead());
   const auto fd = process.timer_fds.find(id);
   if (fd != process.timer_fds.end()) ForgetExpirations(fd->second.get());
   return wrote;
@@ -117,7 +117,7 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
   NoteAccepted(process);
   const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now_ns);
   for (const ProcessTimers::RanOut& timer : ran_out) {
-    process.shown_ns = std::max(process.shown_ns, timer.clock_ns);
+    process.clock.ComeTo(OwnTime(timer.clock_ns));
     if (timer.is_periodic) process.ended.CountOverruns(timer.count - (IsAwaited(process) ? 1 : 0));
   }
   return TellDescriptors(process, ran_out);
@@ -141,8 +141,7 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   bool wrote = false;
   for (Task* task : robot.tasks) {
     if (HasRunOut(*task, now_ns)) {
-      Process& woken = *task->process;
-      woken.shown_ns = std::max(woken.shown_ns, task->wait->deadline_ns + task->frozen_ns);
+      task->process->clock.ComeTo(OwnDeadlineOf(*task));
       MakeReady(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;

@@ -35,7 +35,7 @@ class ProcessTimersTest : public testing::Test {
   ProcessTimers::Id Armed(const shm::TimerKind& kind, std::int64_t next_ns,
                           std::int64_t interval_ns = 0) {
     const ProcessTimers::Id id = timers_.Create(kind);
-    timers_.Set(id, {next_ns, interval_ns}, 0);
+    timers_.Set(id, {next_ns, interval_ns}, {});
     return id;
   }
 
@@ -95,20 +95,20 @@ TEST_F(ProcessTimersTest, TheEndOfAllTimeNeverComes) {
 
 TEST_F(ProcessTimersTest, SetAnewItRunsOutWhenItIsToNow) {
   const auto id = Armed(kDescriptor, 5 * kMs, kMs);
-  timers_.Set(id, {20 * kMs, 0}, 0);
+  timers_.Set(id, {20 * kMs, 0}, {});
   EXPECT_EQ(CountAt(id, 10 * kMs), 0);
   EXPECT_EQ(timers_.NextExpiry(), 20 * kMs);
-  timers_.Set(id, {0, kMs}, 0);  // not armed
+  timers_.Set(id, {0, kMs}, {});  // not armed
   EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
   EXPECT_EQ(timers_.Get(id).interval_ns, kMs);
-  timers_.Set(id, {-7, -7}, 0);  // what no program asks for
+  timers_.Set(id, {-7, -7}, {});  // what no program asks for
   EXPECT_EQ(timers_.Get(id).next_ns, 0);
   EXPECT_EQ(timers_.Get(id).interval_ns, 0);
 }
 
 TEST_F(ProcessTimersTest, WhatIsNoTimerIsLeftAlone) {
   constexpr ProcessTimers::Id kNone = 77;
-  timers_.Set(kNone, {kMs, kMs}, 0);
+  timers_.Set(kNone, {kMs, kMs}, {});
   timers_.Delete(kNone);
   timers_.Accept(kNone);
   timers_.AcceptAt(kNone, kMs);
@@ -124,14 +124,14 @@ TEST_F(ProcessTimersTest, TheThreeOfSetitimerAreThereWithoutBeingCreated) {
   EXPECT_EQ(timers_.KindOf(ITIMER_VIRTUAL)->signal, SIGVTALRM);
   EXPECT_EQ(timers_.KindOf(ITIMER_PROF)->signal, SIGPROF);
   EXPECT_EQ(timers_.KindOf(ITIMER_PROF)->clock, TimerClock::kProcessCpu);
-  timers_.Set(ITIMER_REAL, {3 * kMs, 0}, 0);
+  timers_.Set(ITIMER_REAL, {3 * kMs, 0}, {});
   EXPECT_EQ(timers_.NextExpiry(), 3 * kMs);
   timers_.Delete(ITIMER_REAL);  // not for them
   EXPECT_EQ(CountAt(ITIMER_REAL, 3 * kMs), 1);
 }
 
 TEST_F(ProcessTimersTest, OneSignalOfSetitimersIsUnderwayAndNotCounted) {
-  timers_.Set(ITIMER_REAL, {kMs, kMs}, 0);
+  timers_.Set(ITIMER_REAL, {kMs, kMs}, {});
   timers_.Expire(5 * kMs);
   timers_.Expire(6 * kMs);
   const auto signals = timers_.TakeSignals();
@@ -222,7 +222,7 @@ TEST_F(ProcessTimersTest, OverrunsAreNoMoreThanAnIntHolds) {
 TEST_F(ProcessTimersTest, SetAnewItsOverrunsAreForgottenAndASignalUnderwayIsNot) {
   const auto id = Armed(kPosix, kMs, kMs);
   timers_.Expire(3 * kMs);
-  timers_.Set(id, {10 * kMs, 0}, 0);
+  timers_.Set(id, {10 * kMs, 0}, {});
   EXPECT_TRUE(timers_.HasSignals());
   SendAll();
   EXPECT_TRUE(timers_.SentSignals().empty());
@@ -256,7 +256,7 @@ TEST_F(ProcessTimersTest, DeletedWithASentSignalNobodyWaitsForItsAcceptance) {
 
 TEST_F(ProcessTimersTest, AnotherProgramKeepsAllButThoseOfTimerCreate) {
   const auto posix = Armed(kPosix, kMs), descriptor = Armed(kDescriptor, 2 * kMs);
-  timers_.Set(ITIMER_REAL, {3 * kMs, 0}, 0);
+  timers_.Set(ITIMER_REAL, {3 * kMs, 0}, {});
   timers_.DeletePosix();
   EXPECT_FALSE(timers_.KindOf(posix).has_value());
   EXPECT_EQ(timers_.Get(descriptor).next_ns, 2 * kMs);
@@ -265,8 +265,8 @@ TEST_F(ProcessTimersTest, AnotherProgramKeepsAllButThoseOfTimerCreate) {
 }
 
 TEST_F(ProcessTimersTest, ThereIsRoomForSoMany) {
-  timers_.Set(ITIMER_REAL, {kMs, 0}, 0);
-  timers_.Set(ITIMER_PROF, {kMs, 0}, 0);
+  timers_.Set(ITIMER_REAL, {kMs, 0}, {});
+  timers_.Set(ITIMER_PROF, {kMs, 0}, {});
   for (std::size_t i = 0; i < ProcessTimers::kMost; ++i) {
     ASSERT_FALSE(timers_.IsFull()) << i;
     timers_.Create(kDescriptor);
@@ -339,7 +339,7 @@ TEST_F(ProcessTimersTest, WhoeverIsToSeeATimerThatRestsIsToldThatItIsBehind) {
   timers_.Expire(kMs);
   EXPECT_FALSE(timers_.IsBehind(id, kMs + 999));
   EXPECT_TRUE(timers_.IsBehind(id, kMs + 1'000));
-  timers_.Set(id, {0, 1'000}, 0);
+  timers_.Set(id, {0, 1'000}, {});
   EXPECT_FALSE(timers_.IsBehind(id, 2 * kMs));
 }
 
@@ -355,7 +355,7 @@ TEST_F(ProcessTimersTest, OthersDoNotRest) {
 TEST_F(ProcessTimersTest, SetAnewItRestsNoMore) {
   const auto id = Armed(kDescriptor, kMs, 1'000);
   timers_.Expire(kMs);
-  timers_.Set(id, {2 * kMs, 0}, 0);
+  timers_.Set(id, {2 * kMs, 0}, {});
   EXPECT_EQ(timers_.NextExpiry(), 2 * kMs);
   EXPECT_EQ(timers_.NextLook(), kNeverNs);
 }
@@ -364,7 +364,7 @@ TEST_F(ProcessTimersTest, SetAnewItRestsNoMore) {
 
 TEST_F(ProcessTimersTest, AFrozenClockIsAheadByWhatItWasWhenTheTimerWasSet) {
   const auto id = timers_.Create(kDescriptor);
-  timers_.Set(id, {10 * kMs, 10 * kMs}, 3 * kMs);
+  timers_.Set(id, {10 * kMs, 10 * kMs}, VirtualDuration::Nanoseconds(3 * kMs));
   EXPECT_EQ(timers_.NextExpiry(), 7 * kMs);
   EXPECT_TRUE(timers_.Expire(7 * kMs - 1).empty());
   const auto ran_out = timers_.Expire(7 * kMs);
@@ -376,13 +376,13 @@ TEST_F(ProcessTimersTest, AFrozenClockIsAheadByWhatItWasWhenTheTimerWasSet) {
 
 TEST_F(ProcessTimersTest, AFrozenClockDoesNotBringTheEndOfAllTimeNearer) {
   const auto id = timers_.Create(kDescriptor);
-  timers_.Set(id, {kNeverNs, 0}, 3 * kMs);
+  timers_.Set(id, {kNeverNs, 0}, VirtualDuration::Nanoseconds(3 * kMs));
   EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
 }
 
 TEST_F(ProcessTimersTest, OnAFrozenClockShortIntervalsRestAndAreAcceptedByItsTime) {
   const auto id = timers_.Create(kPosix);
-  timers_.Set(id, {10 * kMs, 1'000}, 3 * kMs);
+  timers_.Set(id, {10 * kMs, 1'000}, VirtualDuration::Nanoseconds(3 * kMs));
   timers_.Expire(7 * kMs);
   EXPECT_EQ(timers_.NextLook(), 7 * kMs + shm::kShortIntervalNs);
   SendAll();

@@ -127,7 +127,7 @@ TEST_F(ActivationsTest, ReceiptsAreNotBelievedBeyondWhatTheThreadCanHaveHad) {
 
 TEST_F(ActivationsTest, AClockThatIsAheadOfTheWorldsDoesNotGoBack) {
   Activations own(true);
-  process_.shown_ns = 30 * kMs;
+  process_.clock.ComeTo(OwnTime(30 * kMs));
   WaitsFor<awaited::Descriptors>();
   own.Released(task_, shm::WakeReason::kGo, 10 * kMs);
   EXPECT_EQ(task_.activation.release_ns, 30 * kMs);
