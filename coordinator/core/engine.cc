@@ -227,6 +227,7 @@ void Engine::LetWorldGoOnWithout(Task& task) {
                   task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
                   static_cast<double>(task.cpu->progress_ns) * 1e-9));
   host_cpu_.active().Hold(task);
+  task.reached_ns = task.cpu->progress_ns;
   EnterWait(task, {awaited::Nothing{}});
   Refresh(*task.process->robot);
 }
@@ -258,7 +259,6 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   Task& task = TaskAt(turn.thread);
   TCS_CHECK(task.reached_ns <= cpu.progress_ns);  // nobody runs before what has made it ready
   task.cpu = &cpu;
-  task.reached_ns = cpu.progress_ns;
   ProgramClock& clock = task.process->clock;
   if (IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
   TCS_CHECK(IsSafe(task));
@@ -275,6 +275,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     root_.GiveWay(cpu.leaf);
     return;
   }
+  task.reached_ns = cpu.progress_ns;
   root_.FirstActs();
   robot.scheduler.Dispatch(cpu.core, task.order);
   horizon = KeepWorldNear(task, horizon);
