@@ -1,10 +1,13 @@
 #include "coordinator/cli/exec_command.h"
 
+#include <poll.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
@@ -43,6 +46,27 @@ std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
              : "--date: '" + arguments.date + "' is not a day from 1971 to 2099 as 2005-03-18";
 }
 
+// Says warnings as they come, in the order in which they come. The program has the same stderr: so
+// one line at a time, and never one that would have to wait until somebody reads what is there.
+class WarningsAsTheyCome {
+ public:
+  void Take(const std::string& warning) {
+    pollfd terminal{STDERR_FILENO, POLLOUT, 0};
+    waits_ = waits_ || poll(&terminal, 1, 0) != 1 || (terminal.revents & POLLOUT) == 0;
+    if (waits_) return;
+    Say("warning: " + warning);
+    ++said_;
+  }
+  // Those that had to wait.
+  void SayTheRestOf(const std::vector<std::string>& warnings) const {
+    for (std::size_t i = said_; i < warnings.size(); ++i) Say("warning: " + warnings[i]);
+  }
+
+ private:
+  bool waits_ = false;
+  std::size_t said_ = 0;
+};
+
 }  // namespace
 
 int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options) {
@@ -80,8 +104,10 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   if (allocation_cost.has_value()) client.fixed_allocation_cost = *allocation_cost;
   scenario.robots.push_back({"computer", arguments.cores, arguments.speed, {client}});
   options.on_notice = [](const std::string& notice) { Say(notice); };
+  WarningsAsTheyCome warnings;
+  options.on_warning = [&warnings](const std::string& warning) { warnings.Take(warning); };
   const RunReport report = RunScenario(scenario, options);
-  for (const std::string& w : report.warnings) Say("warning: " + w);
+  warnings.SayTheRestOf(report.warnings);
   if (!report.error.empty()) return Fail(report.error);
   return report.interrupted ? InterruptedBy(report.stop_signal) : report.exit_status;
 }

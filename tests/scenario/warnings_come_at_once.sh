@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# What tcsim exec warns of stands where it happened in what the program says on its stderr.
+said=$(timeout 60 "$tcsim" exec -- python3 -c '
+import os, sys, time
+read_end, write_end = os.pipe()
+other_read, other_write = os.pipe()
+print("first", file=sys.stderr)
+if os.fork() == 0:
+    time.sleep(0.2)
+    os.write(write_end, b"x")
+    os._exit(0)
+os.splice(read_end, other_write, 1)
+print("last", file=sys.stderr)
+os.wait()
+' 2>&1 >/dev/null) || fail "status $?: $said"
+[[ $(grep -v 'waiting for one of them$' <<<"$said") == first$'\n'"tcsim: warning: python3 blocked in "*$'\n'last ]] || fail "said: $said"
