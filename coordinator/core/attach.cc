@@ -89,6 +89,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);
   host_cpu_.active().Ended(task);
+  early_connections_.erase(task.tid);
   table_.TaskEnded(task);
   Refresh(*task.process->robot);
 }

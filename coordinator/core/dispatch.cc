@@ -78,6 +78,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
 void Engine::Resume(Task& task) {
   const bool is_at_gate = task.parked;
   host_cpu_.Dispatch(task);
+  if (task.slot < 0) TakeUpRegistration(task);
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {

@@ -399,6 +399,8 @@ class Engine {
   void DetectorEnded();
   void LookAtDetector();
   void Accept(const Listener& listener);
+  const Task* RegistersEarly(int connection);
+  void TakeUpRegistration(const Task& task);
   bool Attach(int connection, Process& client, Moment moment);
   void GiveDdsArea(int connection, pid_t pid);
   void PlaceAtGate(Task& task, std::int64_t at_ns);
@@ -477,6 +479,7 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
+  std::map<pid_t, Connection> early_connections_;  // of threads that are to be dispatched first
   int unseen_ = 0;  // threads in TaskState::kUnseen
   WaitCounts wait_counts_;
   std::map<pid_t, UnknownChild> unknown_children_;  // the living

@@ -56,8 +56,13 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
   const auto found = std::find_if(connections_.begin(), connections_.end(),
                                   [fd](const Connection& one) { return one.fd.get() == fd; });
   if (found == connections_.end()) return {};  // it was cut off
-  const Connection connection = std::move(*found);
+  Connection connection = std::move(*found);
   connections_.erase(found);
+  if (const Task* task = RegistersEarly(fd); task != nullptr) {
+    reactor_.Remove(fd);
+    early_connections_.insert_or_assign(task->tid, std::move(connection));
+    return {};
+  }
   const bool registers = Attach(fd, *connection.client, moment);
   return registers ? kConcernsAll : Reactor::Found{};
 }

@@ -48,6 +48,13 @@ void Send(int connection, shm::AttachReply reply, std::span<const int> fds) {
   sendmsg(connection, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
+pid_t PeerOf(int connection) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size);
+  return peer.pid;
+}
+
 void Refuse(int connection, const char* why) {
   shm::AttachReply reply = NewReply();
   reply.refused = 1;
@@ -120,16 +127,35 @@ void Engine::GiveDdsArea(int connection, pid_t pid) {
   Send(connection, NewReply(), std::span(&fd, 1));
 }
 
+// The thread that wants to register and has still to be dispatched for that; null if that is not
+// so. While the kernel holds the thread whose turn it is, others of the run get the processor, and
+// so come this far. When they do depends on the host, so it must not show.
+const Task* Engine::RegistersEarly(int connection) {
+  shm::AttachHello hello{};
+  const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT | MSG_PEEK);
+  if (n != sizeof hello || hello.wants == shm::AttachWants::kDdsArea) return nullptr;
+  const Task* task = KnownTask(hello.tid);
+  const bool waits_for_dispatch =
+      task != nullptr && !turn_.IsOf(*task) && task->slot < 0 && IsRunnable(*task);
+  return waits_for_dispatch && task->process->pid == PeerOf(connection) ? task : nullptr;
+}
+
+// It is dispatched, and registers now.
+void Engine::TakeUpRegistration(const Task& task) {
+  auto early = early_connections_.extract(task.tid);
+  if (early.empty()) return;
+  const int connection = early.mapped().fd.get();
+  connections_.push_back(std::move(early.mapped()));
+  reactor_.Add(connection, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(connection)});
+}
+
 // True if the running thread has to be stopped.
 bool Engine::Attach(int connection, Process& client, Moment moment) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
   if (n <= 0) return false;  // it has gone
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size);
   if (n != sizeof hello || hello.magic != shm::kMagic || hello.version != shm::kVersion ||
-      hello.pid != peer.pid) {
+      hello.pid != PeerOf(connection)) {
     Refuse(connection, "it comes from another version of tcs");
     return false;
   }

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# While the kernel holds the process whose turn it is, the child that it has just made gets the
+# processor, and comes to register before its own turn: nothing of a fixed run may depend on that.
+out=$(mktemp -d)
+trap 'kill ${writer:-} 2>/dev/null || true; rm -rf "$out"' EXIT
+mkfifo "$out/fifo"
+cat >"$out/scenario.yaml" <<END
+duration: 1s
+robots:
+  robot:
+    cpu: {cores: 2}
+    clients:
+      maker:
+        command:
+          - python3
+          - -c
+          - |
+            import os, sys, time
+            outside = os.open("$out/fifo", os.O_RDWR)
+            read_end, write_end = os.pipe()
+            child = os.fork()
+            if child == 0:
+                time.sleep(0.1)
+                os._exit(0)
+            open("$out/waits", "w").close()
+            os.splice(outside, write_end, 1)
+            os.waitpid(child, 0)
+            time.sleep(0.1)
+      other: {command: [sh, -c, "sleep 0.01; sleep 0.01"]}
+END
+fly() { # NAME: a run; dispatches and activations are printed
+  timeout 40 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" >"$out/said" 2>&1 ||
+    fail "$1: status $?: $(cat "$out/said")"
+  cat "$out/$1/dispatches.csv" "$out/$1/activations.csv"
+}
+exec 7<>"$out/fifo"
+# What the maker takes is there; and is there a while after it has begun to wait for it.
+printf x >&7
+at_once=$(fly at_once)
+rm -f "$out/waits"
+(until [[ -e $out/waits ]]; do sleep 0.05; done; sleep 0.3; printf x >&7) &
+writer=$!
+later=$(fly later)
+diff <(echo "$at_once") <(echo "$later") >"$out/diff" || fail "$(head -20 "$out/diff")"
