@@ -480,7 +480,7 @@ class Engine {
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
   std::map<pid_t, Connection> early_connections_;  // of threads that are to be dispatched first
-  int unseen_ = 0;  // threads in TaskState::kUnseen
+  int unseen_ = 0;                                 // threads in TaskState::kUnseen
   WaitCounts wait_counts_;
   std::map<pid_t, UnknownChild> unknown_children_;  // the living
   std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet

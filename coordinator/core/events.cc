@@ -130,6 +130,9 @@ bool Engine::BlockedInKernel() {
     WakeThoseWaitingFor(task, {task.reached_ns});
     return true;
   }
+  // This process may have waited in the kernel itself for what /proc says, and the thread gone on
+  // meanwhile, to its gate or to another call. Then it has said so.
+  if (state == 'S' && reactor_.HasMore()) return false;
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   if (!stopped && (state != 'S' || task.slot < 0)) {

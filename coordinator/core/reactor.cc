@@ -1,5 +1,6 @@
 #include "coordinator/core/reactor.h"
 
+#include <poll.h>
 #include <sys/epoll.h>
 #include <time.h>
 
@@ -65,6 +66,11 @@ std::size_t Reactor::Wait(std::int64_t timeout_ns) {
   }
   is_full_ = count_ == kAtOnce;
   return count_;
+}
+
+bool Reactor::HasMore() const {
+  pollfd any{epoll_.get(), POLLIN, 0};
+  return poll(&any, 1, 0) > 0;
 }
 
 Reactor::Found Reactor::Handle(Moment moment) {

@@ -73,6 +73,8 @@ class Reactor {
   std::size_t Wait(std::int64_t timeout_ns);
   // True if the kernel may have more at this instant than the last wait took.
   bool IsFull() const { return is_full_; }
+  // True if something has come since that the next wait takes.
+  bool HasMore() const;
   // Has what is queued handled, all of it at that moment.
   Found Handle(Moment moment);
 

@@ -136,6 +136,24 @@ TEST(Reactor, SaysWhetherThereMayBeMore) {
   EXPECT_EQ(std::count(found.begin(), found.end(), true), 100);
 }
 
+TEST(Reactor, SaysWhetherSomethingHasComeSince) {
+  Reactor reactor;
+  std::vector<Seen> seen;
+  reactor.On(Tag::kPipe, Noting(&seen));
+  const Source first;
+  EXPECT_FALSE(reactor.HasMore());
+  ASSERT_TRUE(reactor.Add(first.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, 1}));
+  EXPECT_TRUE(reactor.HasMore());
+  reactor.Wait(0);
+  EXPECT_FALSE(reactor.HasMore());
+  const Source second;
+  ASSERT_TRUE(reactor.Add(second.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, 2}));
+  EXPECT_TRUE(reactor.HasMore());
+  reactor.Handle({});
+  EXPECT_TRUE(reactor.HasMore()) << "what is queued and what has come since are two things";
+  EXPECT_EQ(seen.size(), 1u);
+}
+
 TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
   Reactor reactor;
   const Source source(0);
