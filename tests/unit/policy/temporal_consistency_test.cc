@@ -192,5 +192,13 @@ TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
   EXPECT_EQ(root.ReadSafe(leaf), kNever);
 }
 
+TEST(TemporalConsistency, NoLeafsProgressGoesBack) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto leaf = root.AddLeaf(0);
+  root.Update(leaf, 500, 500);
+  root.Update(leaf, 500, 700);
+  EXPECT_DEATH(root.Update(leaf, 499, 700), "a bug in tcs");
+}
+
 }  // namespace
 }  // namespace tcs

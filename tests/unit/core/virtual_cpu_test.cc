@@ -1,0 +1,20 @@
+#include <gtest/gtest.h>
+
+#include "coordinator/core/task.h"
+
+namespace tcs {
+namespace {
+
+TEST(VirtualCpu, ComesFurtherOnly) {
+  Robot robot("prey", 1.0, RobotScheduler(1, false, [](RobotScheduler::Thread) {
+                return RobotScheduler::Wait{};
+              }));
+  VirtualCpu cpu{.robot = &robot};
+  cpu.ComeTo(500);
+  cpu.ComeTo(500);
+  EXPECT_EQ(cpu.progress_ns, 500);
+  EXPECT_DEATH(cpu.ComeTo(499), "a bug in tcs");
+}
+
+}  // namespace
+}  // namespace tcs
