@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <string>
@@ -67,7 +69,16 @@ TEST(BlockDetector, EndsItsProcessWithItself) {
   EXPECT_EQ(errno, ESRCH);
 }
 
-TEST(BlockDetector, ThatWasNeverStartedEndsNothing) { const BlockDetector detector; }
+TEST(BlockDetector, ThatWasNeverStartedEndsNothing) {
+  const pid_t child = fork();
+  if (child == 0) {
+    for (;;) pause();
+  }
+  { const BlockDetector detector; }
+  EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "a child of somebody else's";
+  kill(child, SIGKILL);
+  EXPECT_EQ(waitpid(child, nullptr, 0), child);
+}
 
 }  // namespace
 }  // namespace tcs
