@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "shm/check.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -57,7 +58,7 @@ void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullpt
 std::size_t Reactor::Wait(std::int64_t timeout_ns) {
   TCS_CHECK(!is_handling_);
   epoll_event events[kAtOnce];
-  const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  const timespec timeout = shm::ToTimespec(timeout_ns);
   const int found = epoll_pwait2(epoll_.get(), events, static_cast<int>(kAtOnce),
                                  timeout_ns < 0 ? nullptr : &timeout, nullptr);
   count_ = found < 0 ? 0 : static_cast<std::size_t>(found);

@@ -10,11 +10,9 @@
 #include <span>
 
 #include "shm/dds_exchange.h"
+#include "shm/dds_guid.h"
 
 namespace tcs::dds {
-
-// In the order of bytes in which DDS sends them: a participant's twelve, then an endpoint's four.
-using Guid = std::array<std::uint8_t, 16>;
 
 // What all GUIDs of a participant have in common.
 using GuidPrefix = std::array<std::uint8_t, 12>;
@@ -23,13 +21,6 @@ inline GuidPrefix PrefixOf(const Guid& guid) {
   GuidPrefix prefix;
   std::copy_n(guid.begin(), prefix.size(), prefix.begin());
   return prefix;
-}
-
-// `bytes` points to 16 of them, as in DdsMessage.
-inline Guid GuidAt(const std::uint8_t* bytes) {
-  Guid guid;
-  std::copy_n(bytes, guid.size(), guid.begin());
-  return guid;
 }
 
 // `message` holds at least a header, at any alignment.

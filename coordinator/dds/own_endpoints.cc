@@ -29,7 +29,7 @@ DdsMessage Announcement(DdsKind kind, const Guid& guid, int domain) {
   DdsMessage header{};
   header.kind = kind;
   header.to = shm::kDdsEverybody;
-  std::copy(guid.begin(), guid.end(), header.subject);
+  PutGuid(guid, header.subject);
   header.lease_ns = INT64_MAX;
   header.domain = static_cast<std::uint32_t>(domain);
   return header;
@@ -125,7 +125,7 @@ void OwnEndpoints::Meet(const Guid& guid, const Remote& remote, std::int64_t now
     }
     DdsMessage header = SampleHeader(own, 0);
     header.to = remote.process;
-    std::copy(guid.begin(), guid.end(), header.other);
+    PutGuid(guid, header.other);
     for (const Kept& kept : own.history) {
       header.source_timestamp_ns = kept.timestamp_ns;
       hub_.SendOwn(header, kept.cdr, now_ns);

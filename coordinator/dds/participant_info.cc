@@ -7,35 +7,24 @@
 namespace tcs::dds {
 namespace {
 
-template <class Gid>
-void SetGuid(Gid* gid, const Guid& guid) {
-  std::copy(guid.begin(), guid.end(), gid->data);
-}
-
-template <class Gid>
-Guid ToGuid(const Gid& gid) {
-  Guid guid;
-  std::copy_n(gid.data, guid.size(), guid.begin());
-  return guid;
-}
-
 template <class Sequence>
 void SetGuids(Sequence* sequence, const std::vector<Guid>& guids) {
   Resize(sequence, guids.size());
-  for (std::size_t i = 0; i < guids.size(); ++i) SetGuid(&sequence->_buffer[i], guids[i]);
+  for (std::size_t i = 0; i < guids.size(); ++i) PutGuid(guids[i], sequence->_buffer[i].data);
 }
 
 template <class Sequence>
 std::vector<Guid> ToGuids(const Sequence& sequence) {
   std::vector<Guid> guids;
-  for (std::size_t i = 0; i < sequence._length; ++i) guids.push_back(ToGuid(sequence._buffer[i]));
+  for (std::size_t i = 0; i < sequence._length; ++i)
+    guids.push_back(GuidAt(sequence._buffer[i].data));
   return guids;
 }
 
 template <class Message>
 std::vector<std::byte> Encode(const ParticipantInfo& info) {
   Owned<Message> message;
-  SetGuid(&message->gid, info.participant);
+  PutGuid(info.participant, message->gid.data);
   Resize(&message->node_entities_info_seq, info.nodes.size());
   for (std::size_t i = 0; i < info.nodes.size(); ++i) {
     auto& node = message->node_entities_info_seq._buffer[i];
@@ -49,7 +38,7 @@ std::vector<std::byte> Encode(const ParticipantInfo& info) {
 
 template <class Message>
 ParticipantInfo ToInfo(const Message& message) {
-  ParticipantInfo info{ToGuid(message.gid), {}};
+  ParticipantInfo info{GuidAt(message.gid.data), {}};
   for (std::size_t i = 0; i < message.node_entities_info_seq._length; ++i) {
     const auto& node = message.node_entities_info_seq._buffer[i];
     info.nodes.push_back({node.node_namespace, node.node_name, ToGuids(node.reader_gid_seq),

@@ -19,8 +19,8 @@ template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   const dds_qos_t& qos = *entity.xqos;
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kEndpoint, NetworkDomain(*entity.e.gv), Guid::Of(entity.e.guid));
-  Guid::Of(entity.c.pp->e.guid).To(message.other);
+      MessageOf(shm::DdsKind::kEndpoint, NetworkDomain(*entity.e.gv), GuidOf(entity.e.guid));
+  PutGuid(GuidOf(entity.c.pp->e.guid), message.other);
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
   }
@@ -32,7 +32,7 @@ void EndHistories(const ddsi_writer& writer) {
   if (writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
   const ddsi_domaingv& gv = *writer.e.gv;
   for (const LateReader& reader : ReadersThatCatchUp(gv.config.domainId, writer.xqos->topic_name)) {
-    SendHistoryEnd(gv, Guid::Of(writer.e.guid), reader.guid, reader.process);
+    SendHistoryEnd(gv, GuidOf(writer.e.guid), reader.guid, reader.process);
   }
 }
 
@@ -40,7 +40,7 @@ void EndHistories(const ddsi_writer& writer) {
 
 void AnnounceParticipant(const ddsi_participant& participant) {
   shm::DdsMessage message = MessageOf(shm::DdsKind::kParticipant, NetworkDomain(*participant.e.gv),
-                                      Guid::Of(participant.e.guid));
+                                      GuidOf(participant.e.guid));
   SetLease(message, participant.lease_duration);
   message.instance = shm::DdsTag(participant.e.gv->config.domainTag);
   Send(message, EncodeParticipant(&participant.plist->qos));
@@ -60,8 +60,8 @@ void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type) {
   if (!MakesTopicsKnown(*topic.e.gv)) return;
   const dds_qos_t& qos = *topic.definition->xqos;
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kTopic, NetworkDomain(*topic.e.gv), Guid::Of(topic.e.guid));
-  Guid::Of(topic.pp->e.guid).To(message.other);
+      MessageOf(shm::DdsKind::kTopic, NetworkDomain(*topic.e.gv), GuidOf(topic.e.guid));
+  PutGuid(GuidOf(topic.pp->e.guid), message.other);
   Send(message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
 }
 

@@ -19,7 +19,7 @@ struct Cover {
   dds_rhc_ops operations;  // first
   const dds_rhc_ops* real;
   ddsi_domaingv* gv;
-  Guid reader;
+  Guid reader{};
   bool has_history;        // transient local
   bool waits_for_history;  // and reliable
   std::mutex mutex;
@@ -45,7 +45,7 @@ bool IsDropped(Cover& cover, const ddsi_guid_t& writer) {
   if (!IsShadow(cover.gv, writer)) return false;
   if (!cover.waits_for_history) return true;
   const std::lock_guard lock(cover.mutex);
-  const auto [place, is_new] = cover.caught_up.try_emplace(Guid::Of(writer));
+  const auto [place, is_new] = cover.caught_up.try_emplace(GuidOf(writer));
   if (is_new) place->second = !HasHistory(*cover.gv, writer);
   return !place->second;
 }
@@ -91,7 +91,7 @@ void CoverHistoryCache(ddsi_rhc* rhc, ddsi_domaingv* gv, const dds_qos_t& qos) {
 }
 
 void NameCover(const ddsi_reader& reader) {
-  if (Cover* cover = CoverOf(reader.rhc)) cover->reader = Guid::Of(reader.e.guid);
+  if (Cover* cover = CoverOf(reader.rhc)) cover->reader = GuidOf(reader.e.guid);
 }
 
 MakingReader::MakingReader() { ++t_making_readers; }
@@ -119,7 +119,7 @@ void EndHistory(const ddsi_reader& reader, const ddsi_guid_t& shadow) {
   Cover* cover = CoverOf(reader.rhc);
   if (cover == nullptr) return;
   const std::lock_guard lock(cover->mutex);
-  cover->caught_up[Guid::Of(shadow)] = true;
+  cover->caught_up[GuidOf(shadow)] = true;
 }
 
 }  // namespace tcs::dds

@@ -32,7 +32,7 @@ State& Get() {
 }
 
 bool IsNudge(const shm::DdsMessage& message) {
-  return message.kind == shm::DdsKind::kHistoryEnd && Guid::FromBytes(message.subject).IsZero();
+  return message.kind == shm::DdsKind::kHistoryEnd && GuidAt(message.subject) == Guid{};
 }
 
 void CloseDomains(State& state) {

@@ -49,13 +49,13 @@ dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags
     Real().ddsi_delete_participant(gv, guid);
     return DDS_RETCODE_PRECONDITION_NOT_MET;
   }
-  AddParticipant(gv, Guid::Of(*guid));
+  AddParticipant(gv, GuidOf(*guid));
   AnnounceParticipant(*made);
   return result;
 }
 
 dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
-  const Guid key = Guid::Of(*guid);
+  const Guid key = GuidOf(*guid);
   const std::uint32_t domain = NetworkDomain(*gv);
   const bool own = IsParticipant(gv, key);
   if (own) RemoveParticipant(gv, key);
@@ -89,7 +89,7 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
 }
 
 dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
-  const Guid key = Guid::Of(*guid);
+  const Guid key = GuidOf(*guid);
   const dds_return_t result = Real().ddsi_delete_writer(gv, guid);
   if (IsWriter(gv, key)) {
     RemoveWriter(gv, key);
@@ -101,7 +101,7 @@ dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
 
 void UpdateWriter(ddsi_writer* writer, const dds_qos_t* qos) {
   Real().ddsi_update_writer_qos(writer, qos);
-  if (IsWriter(writer->e.gv, Guid::Of(writer->e.guid))) AnnounceChange(*writer);
+  if (IsWriter(writer->e.gv, GuidOf(writer->e.guid))) AnnounceChange(*writer);
 }
 
 dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_t* group,
@@ -134,7 +134,7 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
 }
 
 dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
-  const Guid key = Guid::Of(*guid);
+  const Guid key = GuidOf(*guid);
   const dds_return_t result = Real().ddsi_delete_reader(gv, guid);
   if (RemoveReader(gv, key)) {
     ForgetIgnoring(key);
@@ -172,7 +172,7 @@ void UpdateTopic(ddsi_topic* topic, const dds_qos_t* qos) {
 dds_return_t DeleteTopic(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const dds_return_t result = Real().ddsi_delete_topic(gv, guid);
   if (result >= 0 && MakesTopicsKnown(*gv) && !IsShadow(gv, *guid)) {
-    AnnounceGone(shm::DdsKind::kTopic, NetworkDomain(*gv), Guid::Of(*guid));
+    AnnounceGone(shm::DdsKind::kTopic, NetworkDomain(*gv), GuidOf(*guid));
   }
   return result;
 }

@@ -20,7 +20,7 @@ std::mutex& BaseMutex() {
 
 void SetCursor(ddsi_domaingv* gv, const Guid& participant, std::uint32_t id) {
   const Awake awake(gv);
-  const ddsi_guid_t guid = participant.Inner();
+  const ddsi_guid_t guid = InnerOf(participant);
   ddsi_participant* pp = entidx_lookup_participant_guid(gv->entity_index, &guid);
   if (pp == nullptr) return;
   ddsrt_mutex_lock(&pp->e.lock);
@@ -34,7 +34,7 @@ MakingShadow::MakingShadow(const Guid& participant) { t_shadow = &participant; }
 MakingShadow::~MakingShadow() { t_shadow = nullptr; }
 
 void SetNextEntity(ddsi_domaingv* gv, const Guid& participant, const Guid& entity) {
-  SetCursor(gv, participant, entity.Inner().entityid.u >> 8);
+  SetCursor(gv, participant, InnerOf(entity).entityid.u >> 8);
 }
 
 void SetNextEntityOutOfTheWay(ddsi_domaingv* gv, const Guid& participant) {
@@ -47,7 +47,7 @@ dds_return_t MakeParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flag
   if (t_shadow == nullptr) return Real().ddsi_new_participant(guid, gv, flags, plist);
   // The GUID is the base's prefix, to which the next instance number is added.
   const ddsi_guid_prefix_t own = gv->ppguid_base.prefix;
-  gv->ppguid_base.prefix = t_shadow->Inner().prefix;
+  gv->ppguid_base.prefix = InnerOf(*t_shadow).prefix;
   t_next_is_zero = true;
   const dds_return_t result = Real().ddsi_new_participant(guid, gv, flags, plist);
   t_next_is_zero = false;

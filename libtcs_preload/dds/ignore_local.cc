@@ -44,7 +44,7 @@ dds_ignorelocal_kind_t ExchangePolicy(const ddsi_domaingv* gv, const Guid& guid,
     ddsrt_mutex_unlock(&entity.e.qos_lock);
     return before;
   };
-  const ddsi_guid_t inner = guid.Inner();
+  const ddsi_guid_t inner = InnerOf(guid);
   if (ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &inner)) {
     return exchange(*writer);
   }
@@ -95,7 +95,7 @@ OwnMatches::~OwnMatches() {
 
 void OwnMatches::Made(const ddsi_guid_t& inner) {
   if (milder_ == nullptr) return;
-  const Guid guid = Guid::Of(inner);
+  const Guid guid = GuidOf(inner);
   {
     const Awake awake(gv_);
     ExchangePolicy(gv_, guid, DDS_IGNORELOCAL_PROCESS);

@@ -45,7 +45,7 @@ void TellReaders(ddsi_domaingv* gv, const ddsi_guid_t& shadow, const std::vector
   const ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &shadow);
   if (writer == nullptr) return;
   for (const Guid& guid : readers) {
-    const ddsi_guid_t inner = guid.Inner();
+    const ddsi_guid_t inner = InnerOf(guid);
     ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
     if (reader != nullptr) TellReader(*reader, *writer, is_alive);
   }
@@ -72,7 +72,7 @@ dds_return_t AssertLiveliness(dds_entity_t entity) {
   const ddsi_domaingv* gv = DomainOf(domain);
   if (gv == nullptr) return result;
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*gv), Guid::FromBytes(guid.v));
+      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*gv), GuidAt(guid.v));
   Send(message, {});
   return result;
 }

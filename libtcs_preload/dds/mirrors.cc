@@ -45,7 +45,7 @@ constexpr dds_duration_t kTryAgain = DDS_MSECS(1);
 bool StoreIn(ddsi_domaingv* gv, const Guid& guid, const ddsi_guid_t& shadow_guid,
              ddsi_serdata* sample) {
   const Awake awake(gv);
-  const ddsi_guid_t inner = guid.Inner();
+  const ddsi_guid_t inner = InnerOf(guid);
   const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
   const ddsi_writer* shadow = entidx_lookup_writer_guid(gv->entity_index, &shadow_guid);
   return reader == nullptr || shadow == nullptr || StoreAddressed(*reader, *shadow, sample);
@@ -117,7 +117,7 @@ void Mirrors::Handle(const shm::DdsMessage& message, const std::byte* payload) {
 }
 
 void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload) {
-  const Guid guid = Guid::FromBytes(message.subject);
+  const Guid guid = GuidAt(message.subject);
   if ((message.flags & shm::kDdsGone) != 0) {
     RemoveParticipant(guid);
     return;
@@ -136,7 +136,7 @@ void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload)
 }
 
 void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
-  const Guid guid = Guid::FromBytes(message.subject);
+  const Guid guid = GuidAt(message.subject);
   if ((message.flags & shm::kDdsGone) != 0) {
     RemoveEndpoint(guid);
     return;
@@ -147,7 +147,7 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
     MakeEndpoint(guid, endpoint);
     return;
   }
-  endpoint.participant = Guid::FromBytes(message.other);
+  endpoint.participant = GuidAt(message.other);
   endpoint.domain = message.domain;
   endpoint.process = message.from;
   endpoint.payload = std::move(payload);
@@ -156,7 +156,7 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
 }
 
 void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
-  const Guid guid = Guid::FromBytes(message.subject);
+  const Guid guid = GuidAt(message.subject);
   Topic& topic = topics_[guid];
   if ((message.flags & shm::kDdsGone) != 0) {
     EndTopic(topic);
@@ -168,7 +168,7 @@ void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
     topic.payload = std::move(payload);
     topic.what = DecodeEndpoint(topic.payload);
   }
-  topic.participant = Guid::FromBytes(message.other);
+  topic.participant = GuidAt(message.other);
   topic.domain = message.domain;
   MakeTopic(guid, topic);
 }
@@ -320,7 +320,7 @@ void Mirrors::MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic) {
   SetNextEntity(gv, topic.participant, guid);
   const Qos qos(DecodeQos(topic.payload, false));
   const Awake awake(gv);
-  const ddsi_guid_t participant_guid = topic.participant.Inner();
+  const ddsi_guid_t participant_guid = InnerOf(topic.participant);
   ddsi_participant* participant =
       entidx_lookup_participant_guid(gv->entity_index, &participant_guid);
   if (participant == nullptr) return;
@@ -391,7 +391,7 @@ Mirrors::EndpointShadow Mirrors::MakeWriter(ddsi_domaingv* gv, dds_entity_t part
   shadow.entity = dds_create_writer(participant, topic, qos, nullptr);
   dds_guid_t wire;
   if (shadow.entity <= 0 || dds_get_guid(shadow.entity, &wire) != DDS_RETCODE_OK) return shadow;
-  shadow.inner = Guid::FromBytes(wire.v).Inner();
+  shadow.inner = InnerOf(GuidAt(wire.v));
   const Awake awake(gv);
   const ddsi_writer* writer = entidx_lookup_writer_guid(gv->entity_index, &shadow.inner);
   shadow.type = writer != nullptr ? writer->type : nullptr;
@@ -417,7 +417,7 @@ Mirrors::EndpointShadow Mirrors::MakeReader(ddsi_domaingv* gv, const Guid& guid,
 }
 
 void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payload) {
-  const auto found = endpoints_.find(Guid::FromBytes(message.subject));
+  const auto found = endpoints_.find(GuidAt(message.subject));
   if (found == endpoints_.end()) return;
   Endpoint& endpoint = found->second;
   const bool was_not_alive = std::exchange(endpoint.not_alive, false);
@@ -449,9 +449,9 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
     LookAt(gv, endpoint, sample);
   }
 
-  const Guid reader = Guid::FromBytes(message.other);
+  const Guid reader = GuidAt(message.other);
   std::vector<Guid> waiting;
-  if (reader.IsZero()) {
+  if (reader == Guid{}) {
     const Forwarding forwarding;
     Real().dds_forwardcdr(shadow.entity, ddsi_serdata_ref(sample));
     waiting = forwarding.refused();
@@ -488,20 +488,20 @@ void Mirrors::HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample) {
 }
 
 void Mirrors::HandleHistoryEnd(const shm::DdsMessage& message) {
-  const auto found = endpoints_.find(Guid::FromBytes(message.subject));
+  const auto found = endpoints_.find(GuidAt(message.subject));
   if (found == endpoints_.end()) return;
   for (const auto& [domain, shadow] : found->second.shadows) {
     ddsi_domaingv* gv = DomainOf(domain);
     if (gv == nullptr) continue;
     const Awake awake(gv);
-    const ddsi_guid_t inner = Guid::FromBytes(message.other).Inner();
+    const ddsi_guid_t inner = InnerOf(GuidAt(message.other));
     const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
     if (reader != nullptr) EndHistory(*reader, shadow.inner);
   }
 }
 
 void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
-  const Guid guid = Guid::FromBytes(message.subject);
+  const Guid guid = GuidAt(message.subject);
   if (const auto found = participants_.find(guid); found != participants_.end()) {
     if ((message.flags & shm::kDdsGone) != 0) return;
     for (const auto& [domain, shadow] : found->second.shadows) {

@@ -62,7 +62,7 @@ class Mirrors {
     const ddsi_sertype* type = nullptr;
   };
   struct Endpoint {
-    Guid participant;
+    Guid participant{};
     std::uint32_t domain;
     std::uint32_t process;
     Payload payload;
@@ -74,7 +74,7 @@ class Mirrors {
   };
   // Of those that are made known by themselves; without a handle in the program.
   struct Topic {
-    Guid participant;
+    Guid participant{};
     std::uint32_t domain;
     Payload payload;
     DecodedEndpoint what;

@@ -48,7 +48,7 @@ shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& s
   message.to = shm::kDdsEverybody;
   message.lease_ns = INT64_MAX;
   message.domain = domain;
-  subject.To(message.subject);
+  PutGuid(subject, message.subject);
   return message;
 }
 

@@ -28,19 +28,19 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
       message.kind != shm::DdsKind::kTopic) {
     return;
   }
-  const Guid subject = Guid::FromBytes(message.subject);
+  const Guid subject = GuidAt(message.subject);
   State& state = Get();
   const std::lock_guard lock(state.mutex);
   if ((message.flags & shm::kDdsGone) != 0) {
     // A participant takes its endpoints along.
     std::erase_if(state.news, [&](const OwnNews& news) {
-      return Guid::FromBytes(news.message.subject) == subject ||
-             (is_participant && Guid::FromBytes(news.message.other) == subject);
+      return GuidAt(news.message.subject) == subject ||
+             (is_participant && GuidAt(news.message.other) == subject);
     });
     return;
   }
   const auto before = std::ranges::find_if(state.news, [&subject](const OwnNews& news) {
-    return Guid::FromBytes(news.message.subject) == subject;
+    return GuidAt(news.message.subject) == subject;
   });
   OwnNews& news = before != state.news.end() ? *before : state.news.emplace_back();
   news = {message, payload};

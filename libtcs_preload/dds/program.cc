@@ -103,13 +103,13 @@ std::uint32_t NetworkDomain(const ddsi_domaingv& gv) {
 void AddShadow(std::uint32_t domain, const Guid& participant) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  state.shadows.insert({domain, PrefixOf(participant.Inner())});
+  state.shadows.insert({domain, PrefixOf(InnerOf(participant))});
 }
 
 void RemoveShadow(std::uint32_t domain, const Guid& participant) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  state.shadows.erase({domain, PrefixOf(participant.Inner())});
+  state.shadows.erase({domain, PrefixOf(InnerOf(participant))});
 }
 
 bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity) {
@@ -229,7 +229,7 @@ bool LooksAround() {
 bool AddWriter(const ddsi_writer& writer) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  const auto [place, is_new] = state.writers.try_emplace(Guid::Of(writer.e.guid));
+  const auto [place, is_new] = state.writers.try_emplace(GuidOf(writer.e.guid));
   if (!is_new) return false;
   place->second.domain = writer.e.gv->config.domainId;
   place->second.topic = writer.xqos->topic_name;
@@ -316,7 +316,7 @@ namespace {
 Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const Tap& tap,
                             ddsi_serdata* sample, ddsi_tkmap_instance* instance,
                             ddsi_serdata** unneeded, WriterKeeps* keeps) {
-  const auto found = state.writers.find(Guid::Of(writer_guid));
+  const auto found = state.writers.find(GuidOf(writer_guid));
   if (found == state.writers.end() || found->second.domain != tap.domain) {
     const bool is_shadow = state.shadows.contains({tap.domain, PrefixOf(writer_guid)});
     return is_shadow ? Carries::kNo : Carries::kUnknownWriter;
@@ -360,7 +360,7 @@ Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* s
 void AddReader(const ddsi_reader& reader) {
   State& state = Get();
   const std::lock_guard lock(state.mutex);
-  state.readers[Guid::Of(reader.e.guid)] = {reader.e.gv->config.domainId, reader.xqos->topic_name};
+  state.readers[GuidOf(reader.e.guid)] = {reader.e.gv->config.domainId, reader.xqos->topic_name};
 }
 
 bool RemoveReader(const ddsi_domaingv* gv, const Guid& guid) {

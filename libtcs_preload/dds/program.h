@@ -84,7 +84,7 @@ std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic);
 void AddTap(const Tap* tap);
 void RemoveTap(const Tap* tap);
 struct LateReader {
-  Guid guid;
+  Guid guid{};
   std::uint32_t process;
 };
 // Those whose shadow reader is complete; the others hear of a new writer when theirs is.

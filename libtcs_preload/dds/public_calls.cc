@@ -20,7 +20,7 @@ std::vector<std::uint32_t> DomainsThatEndWith(dds_entity_t entity) {
   if (participant <= 0) return {domain};  // it is a domain
   dds_guid_t guid;
   if (participant != entity || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return {};
-  if (!IsLastParticipant(Guid::FromBytes(guid.v))) return {};
+  if (!IsLastParticipant(GuidAt(guid.v))) return {};
   return {domain};
 }
 
@@ -29,7 +29,7 @@ bool IsShadowHandle(dds_entity_t participant) {
   dds_domainid_t domain = 0;
   return dds_get_guid(participant, &guid) == DDS_RETCODE_OK &&
          dds_get_domainid(participant, &domain) == DDS_RETCODE_OK &&
-         IsShadow(domain, Guid::FromBytes(guid.v).Inner());
+         IsShadow(domain, InnerOf(GuidAt(guid.v)));
 }
 
 // What `list` has, but for shadows, as Cyclone's own calls return it.

@@ -28,10 +28,10 @@ struct Carried {
 void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
           const Carried* carried) {
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kSample, NetworkDomain(*tap.gv), Guid::Of(writer));
+      MessageOf(shm::DdsKind::kSample, NetworkDomain(*tap.gv), GuidOf(writer));
   message.to = tap.process;
   if (carried == nullptr) {
-    tap.reader.To(message.other);
+    PutGuid(tap.reader, message.other);
   } else {
     message.keep_last = carried->keeps.last;
     message.instance = carried->instance;
@@ -182,7 +182,7 @@ void SendHistoryEnd(const ddsi_domaingv& gv, const Guid& writer, const Guid& rea
                     std::uint32_t process) {
   shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, NetworkDomain(gv), writer);
   message.to = process;
-  reader.To(message.other);
+  PutGuid(reader, message.other);
   Send(message, {});
 }
 

@@ -18,7 +18,7 @@ struct Tap {
   ddsi_domaingv* gv;
   std::uint32_t domain;
   std::uint32_t process;
-  Guid reader;
+  Guid reader{};
   std::string topic;
   bool is_reliable;
   bool catches_up;   // reliable and transient local: gets what writers have when they meet

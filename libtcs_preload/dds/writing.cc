@@ -28,7 +28,7 @@ std::uint32_t FullReaderOf(const Guid& writer) {
 bool HasRoom(dds_entity_t writer) {
   dds_guid_t wire;
   if (IsDeliverer() || dds_get_guid(writer, &wire) != DDS_RETCODE_OK) return true;
-  const Guid guid = Guid::FromBytes(wire.v);
+  const Guid guid = GuidAt(wire.v);
   const std::optional<std::int64_t> most = MostBlocking(guid);
   if (!most.has_value()) return true;
   const std::int64_t start = TheLink().now();

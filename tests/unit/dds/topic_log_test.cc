@@ -135,7 +135,7 @@ TEST_F(TopicLogTest, DropsCountOnceForEachReaderThatMissesASample) {
   writer.Announce(2, AWriter("rt/scan"), 5);
   shm::DdsMessage sample{};
   const Guid guid = writer.GuidOf(2);
-  std::copy(guid.begin(), guid.end(), sample.subject);
+  PutGuid(guid, sample.subject);
   log_.Dropped(sample, 7);
   log_.Dropped(sample, 8);
   EXPECT_EQ(log_.reports()[0].drops, 0);
