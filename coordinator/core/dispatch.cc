@@ -383,6 +383,8 @@ void Engine::Answer(Task& task) {
   if (task.state == TaskState::kDead || !turn_.HasSpoken()) return;
   const Moment moment{task.reached_ns};
   task.parked = true;
+  // It was found held by the kernel, and has come back at the same instant.
+  if (task.state == TaskState::kUnseen) SetState(task, TaskState::kReady);
   bool finds_more = false;
   if (turn_.notified) {
     task.reply[0] = task.reply[1] = 0;
