@@ -1,5 +1,6 @@
 // What libtcs_allocations.so (allocations/) calls for each allocation and each lock, where they are
 // counted or have a set cost.
+#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/virtual_clock.h"
 
@@ -27,6 +28,14 @@ GuestThread* Counted() {
   return is_counted ? &thread : nullptr;
 }
 
+// What its last call did to others happened before its clock moves on, where only gates hold it.
+void EndLastCall(GuestThread& thread) {
+  const bool is_dispatched = thread.slot->clock.horizon_ns != 0;
+  if (g_header->gates_only == 0 || (!thread.in_call && is_dispatched)) return;
+  AwaitTurn(thread);
+  thread.in_call = false;
+}
+
 // Moves with everything that costs: time itself, where nothing else moves it.
 std::int64_t WhatHasCost(const tcs::shm::ThreadSlot& slot) {
   if (g_header->accounting == tcs::shm::Accounting::kFixed) {
@@ -46,6 +55,7 @@ TCS_EXPORT void tcs_charge_allocation() noexcept {
   thread->slot->work.locks += WorkCounts::kLocksPerAllocation;
   ClockPage& page = thread->slot->clock;
   if (page.allocation_cost_ns == 0) return;
+  EndLastCall(*thread);
   Charge(page, page.allocation_cost_ns);
   NowNs(*thread);
 }
@@ -64,6 +74,7 @@ TCS_EXPORT void tcs_charge_lock() noexcept {
     thread->locks_at = WhatHasCost(*thread->slot);
     return;
   }
+  EndLastCall(*thread);
   // At least something: who waits in such a loop must get on, however little allocations cost.
   const std::int64_t cost_ns = page.allocation_cost_ns / kLocksPerAllocation;
   Charge(page, cost_ns > 0 ? cost_ns : 1);

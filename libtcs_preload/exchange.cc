@@ -78,10 +78,25 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
   }
 }
 
+// False if it is open already.
+bool ShutGate(shm::ThreadSlot& slot) {
+  std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
+  while (gate != shm::kGateOpen) {
+    if (slot.gate.compare_exchange_weak(gate, shm::kGateClosed)) return true;
+  }
+  return false;
+}
+
 // Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
 bool EndWait(GuestThread& thread) {
   shm::ThreadSlot& slot = *thread.slot;
-  slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
+  if (g_header->gates_only != 0) {
+    // The handler may have begun before the thread's turn; what ended the wait may be another
+    // thing.
+    if (!ShutGate(slot)) return false;
+  } else {
+    slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
+  }
   FillRecord(slot, Request{.kind = NotificationKind::kInterrupted});
   Notify(thread);
   WaitAtGate(slot, false);
@@ -101,7 +116,7 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   }
   if (!WaitAtGate(slot, request.interruptible)) {
     EndWait(thread);
-    return Reply{WakeReason::kSignal, {0, 0}};
+    if (g_header->gates_only == 0) return Reply{WakeReason::kSignal, {0, 0}};
   }
   return Reply{slot.wake_reason.load(std::memory_order_relaxed), {slot.reply[0], slot.reply[1]}};
 }
@@ -117,7 +132,10 @@ struct Interrupted {
     shm::ThreadSlot& slot = *thread.slot;
     note = slot.note;
     gate = slot.gate.load();
-    if (gate != shm::kGateOpen && EndWait(thread)) {
+    if (gate != shm::kGateOpen && g_header->gates_only != 0) {
+      EndWait(thread);
+      gate = shm::kGateOpen;
+    } else if (gate != shm::kGateOpen && EndWait(thread)) {
       gate = shm::kGateOpen;
       reason = WakeReason::kSignal;
       reply[0] = reply[1] = 0;
@@ -155,6 +173,10 @@ Reply Exchange(GuestThread& thread, const Request& request) {
   --thread.depth;
   if (waits && reply.reason == WakeReason::kSignal) pthread_testcancel();
   return reply;
+}
+
+void AwaitTurn(GuestThread& thread) {
+  if (!IsShutDown()) Exchange(thread, Request{.kind = NotificationKind::kCall});
 }
 
 void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false); }

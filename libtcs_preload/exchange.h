@@ -31,6 +31,10 @@ struct Reply {
 // interrupted.
 Reply Exchange(GuestThread& thread, const Request& request);
 
+// At the beginning of a call, where nothing but its gate keeps a thread from running on: returns
+// once the coordinator has seen what the thread's last call did to others, and has it dispatched.
+void AwaitTurn(GuestThread& thread);
+
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 

@@ -5,6 +5,7 @@
 
 #include "libtcs_preload/attach.h"
 #include "libtcs_preload/environment.h"
+#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/vdso.h"
@@ -64,6 +65,10 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
 }
 
 void CountCall(GuestThread& thread) {
+  if (g_header->gates_only != 0) {
+    AwaitTurn(thread);
+    thread.in_call = true;
+  }
   ++thread.slot->work.calls;
   shm::ClockPage& page = thread.slot->clock;
   if (page.call_cost_ns != 0) Charge(page, page.call_cost_ns);

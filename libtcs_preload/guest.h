@@ -27,6 +27,7 @@ struct GuestThread {
   std::uint32_t index = 0;
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
+  bool in_call = false;    // since it last waited for its turn (exchange.h)
   bool passes_on = false;  // others wait for what it leaves (fd_wait.h)
   // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;
@@ -62,7 +63,8 @@ inline GuestThread* Current() {
 // Charges a set cost: of a call, or of an allocation.
 void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 
-// Counts an interposed call, and charges it where it has a set cost.
+// Counts an interposed call, and charges it where it has a set cost. Where nothing but its gate
+// keeps the thread from running on, it first waits there until it may.
 void CountCall(GuestThread& thread);
 
 // The same as Current for an interposed call, which it counts where calls are counted.

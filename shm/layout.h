@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 12;
+inline constexpr std::uint32_t kVersion = 13;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -96,6 +96,7 @@ enum class NotificationKind : std::uint32_t {
   kDdsSockets =
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
+  kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
 };
 
 inline constexpr std::int64_t kKeepPolicy = -1;
@@ -284,7 +285,9 @@ struct alignas(64) RunHeader {
   std::atomic<std::uint32_t>
       key_waiters;  // threads that kWakeKey may concern; if none it is spared
   std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
-  std::uint32_t padding;
+  // 1: only their gates keep threads that are not dispatched from running on: each call that the
+  // shim sees begins with kCall.
+  std::uint32_t gates_only;
   std::uint64_t reserved[6];
 };
 static_assert(sizeof(RunHeader) == 128);

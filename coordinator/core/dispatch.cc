@@ -257,10 +257,12 @@ void Engine::AwaitStop(Task& task) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
+    if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(Slot(task));
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : NsToLook(task);
     if (PollWhileRunning(task, asked_ns)) return;
     if (!turn_.timed_out) continue;
     turn_.timed_out = false;
+    if (gates_only_) host_cpu_.detector().Arm();
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
       LowerUnknownThreads();
@@ -338,6 +340,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   // How far it comes in so short a time is the host's: under set costs no further than the call.
   if (task.is_brief && IsFixed()) horizon_ns = task.cpu->progress_ns;
   turn_.Begin(task, horizon_ns);
+  says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     SendTimerSignalsTo(task);

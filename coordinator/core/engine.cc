@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/host/fifo_executor.h"
+#include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "shm/check.h"
@@ -29,6 +31,11 @@ constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
 constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
+std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
+  if (gates_only) return std::make_unique<GateExecutor>();
+  return std::make_unique<FifoExecutor>();
+}
+
 }  // namespace
 
 Engine::Engine(const Scenario& scenario, const RunOptions& options)
@@ -37,6 +44,9 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       root_(scenario.drift_bound.ns(), scenario.duration.ns()),
       activations_(options.sync == shm::Sync::kCallback),
       table_([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
+      gates_only_(!WhyNoRealTime().empty()),
+      executor_(MakeExecutor(gates_only_)),
+      host_cpu_(*executor_),
       end_ns_(scenario.duration.ns()) {}
 
 Engine::~Engine() = default;
@@ -284,6 +294,10 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
+    if (gates_only_) {
+      TakePutOff({latest_ns_});
+      TakeUnannounced({latest_ns_});
+    }
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;

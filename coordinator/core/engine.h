@@ -5,6 +5,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,7 +25,7 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
-#include "coordinator/host/fifo_executor.h"
+#include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
@@ -238,7 +239,8 @@ class Engine {
 
   // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
   // errno.
-  void TrapArrived(int listener, Moment moment);
+  Reactor::Found TrapArrived(int listener, Moment moment);
+  Reactor::Found TakeTrapped(const TrappedCall& call, Moment moment);
   void ExitThread(Task& task, const TrappedCall& call);
   bool HandleTrapped(Task& task, const TrappedCall& call);
   void InterruptTrappedWait(Task& task);
@@ -391,9 +393,10 @@ class Engine {
   Reactor::Found PollEvents(std::int64_t timeout_ns, Moment moment);
   Reactor::Found TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest);
   Reactor::Found WakeReadyAwaiters(Moment moment);
-  // True: what it waits for may be there already, and be found at this very moment.
-  bool TakeNotifications(const Process& process, Moment moment);
-  bool NotificationArrived(Task& task, Moment moment);
+  // They look again where what is waited for may be there already, and be found at this very
+  // moment.
+  Reactor::Found TakeNotifications(const Process& process, Moment moment);
+  Reactor::Found NotificationArrived(Task& task, Moment moment);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
   void DetectorEnded();
@@ -419,6 +422,15 @@ class Engine {
   Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
   Task& TaskAt(int order) { return table_.At(order); }
   void EndTask(Task& task, Moment moment);
+
+  // Where only gates keep threads from running (gates_only.cc).
+  using Late = std::function<Reactor::Found(Moment)>;
+  bool PutOff(const Task* by, Late late);
+  bool PutOffConnection(Connection& connection);
+  void TakeUnannounced(Moment moment);
+  bool MayGoOn(const Task& task);
+  Reactor::Found EndCall(Reactor::Found found);
+  Reactor::Found TakePutOff(Moment moment);
 
   // What is written about the run (records.cc).
   std::string OpenRecords();
@@ -495,9 +507,13 @@ class Engine {
   WaitQueues queues_;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t fds_order_counter_ = 0;
-  FifoExecutor executor_;
-  HostCpu host_cpu_{executor_};
+  bool gates_only_ = false;  // there is no right to real-time priorities
+  std::unique_ptr<Executor> executor_;
+  HostCpu host_cpu_;
   Turn turn_;
+  // Of the running thread, where there are only gates: it says that a call begins, and may go on.
+  bool says_call_ = false, opens_gate_ = false;
+  std::vector<Late> put_off_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
   // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
   std::map<pid_t, std::int64_t> lowered_;

@@ -21,6 +21,9 @@ namespace tcs {
 
 namespace {
 
+// Of what may concern anybody.
+constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
+
 constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
@@ -32,8 +35,9 @@ constexpr int kExitTurns = 20;
 
 }  // namespace
 
-bool Engine::NotificationArrived(Task& task, Moment moment) {
+Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
   if (turn_.IsOf(task)) {
+    if (gates_only_ && MayGoOn(task)) return {.looks_again = true};
     turn_.notified = true;
   } else if (task.state == TaskState::kWaiting &&
              Slot(task).note.kind == shm::NotificationKind::kInterrupted) {
@@ -44,7 +48,9 @@ bool Engine::NotificationArrived(Task& task, Moment moment) {
     task.parked = true;
     host_cpu_.Check(task, CpuClockOf(task));
     const shm::Notification note = Slot(task).note;
-    return Handle(task, note);
+    Reactor::Found found = kConcernsAll;
+    found.looks_again = Handle(task, note);
+    return found;
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
@@ -52,24 +58,25 @@ bool Engine::NotificationArrived(Task& task, Moment moment) {
     task.trap_id = 0;
     task.notified_early = true;
   }
-  return false;
+  return kConcernsAll;
 }
 
 // Of one process, so many at a time: others have their turns, too.
-bool Engine::TakeNotifications(const Process& process, Moment moment) {
+Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) {
   constexpr std::size_t kAtOnce = 64;
-  if (process.link == nullptr) return false;
+  if (process.link == nullptr) return {};
   shm::PipeMessage messages[kAtOnce];
   const ssize_t bytes = read(process.link->incoming_fd(), messages, sizeof messages);
   const std::size_t count = bytes > 0 ? static_cast<std::size_t>(bytes) / sizeof messages[0] : 0;
-  bool looks_again = false;
+  Reactor::Found found;
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
-    if (task != nullptr && task->state != TaskState::kDead) {
-      looks_again |= NotificationArrived(*task, moment);
-    }
+    if (task == nullptr || task->state == TaskState::kDead) continue;
+    found |= PutOff(task, [this, task](Moment at) { return NotificationArrived(*task, at); })
+                 ? Reactor::Found{}
+                 : NotificationArrived(*task, moment);
   }
-  return looks_again;
+  return found;
 }
 
 // Without it the first thread that waits in the kernel would make everybody wait with it.
@@ -121,8 +128,14 @@ void Engine::LendLevel() {
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
+  if (says_call_) return false;  // it waits for us
   Task& task = *turn_.task();
   const char state = ThreadState(task.tid);
+  if (gates_only_ && state == 'R') {
+    // The detector, too, has had a moment of the processor beside it.
+    turn_.held_looks = 0;
+    return false;
+  }
   if (state != 'S' && task.process->threads > 1) LetDie(*task.process);
   if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns && HasExited(task)) {
     Settle(task);
@@ -185,7 +198,7 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
     if (!std::exchange(found.looks_again, false) && !reactor_.IsFull()) break;
     found |= TakeEvents(0, moment, true);
   }
-  return found;
+  return EndCall(found);
 }
 
 // `is_rest`: a further look at an instant, at which the running thread stands as it was found.

@@ -41,9 +41,7 @@ void Engine::RegisterHandlers() {
 }
 
 Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
-  Reactor::Found found = kConcernsAll;
-  found.looks_again = TakeNotifications(table_.ProcessAt(process.index), moment);
-  return found;
+  return TakeNotifications(table_.ProcessAt(process.index), moment);
 }
 
 Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
@@ -58,6 +56,7 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
   if (found == connections_.end()) return {};  // it was cut off
   Connection connection = std::move(*found);
   connections_.erase(found);
+  if (PutOffConnection(connection)) return {};
   if (const Task* task = RegistersEarly(fd); task != nullptr) {
     reactor_.Remove(fd);
     early_connections_.insert_or_assign(task->tid, std::move(connection));
@@ -68,8 +67,12 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 }
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
-  ProcessEnded(process.index, moment);
-  return kConcernsAll;
+  const bool runs = turn_.IsIn(table_.ProcessAt(process.index));
+  const auto end = [this, process](Moment at) {
+    ProcessEnded(process.index, at);
+    return kConcernsAll;
+  };
+  return PutOff(runs ? turn_.task() : nullptr, end) ? Reactor::Found{} : end(moment);
 }
 
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
@@ -94,8 +97,7 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
     std::erase_if(traps_, [listener](const UniqueFd& trap) { return trap.get() == listener; });
     return {};
   }
-  TrapArrived(listener, moment);
-  return kConcernsAll;
+  return TrapArrived(listener, moment);
 }
 
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {

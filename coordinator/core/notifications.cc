@@ -89,7 +89,7 @@ std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& n
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
     if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
-    executor_.Hold(tid);
+    executor_->Hold(tid);
     Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
     InheritScheduling(thread, creator);
     if (note.args[1] >= 0) SetPriority(creator, thread, note.args[1], note.args[2]);
@@ -105,7 +105,7 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
-  executor_.Hold(pid);
+  executor_->Hold(pid);
   InheritScheduling(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
@@ -205,6 +205,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kResumed:
     case Kind::kKernelWait:
     case Kind::kPassOn:  // any stop does it
+    case Kind::kCall:
       break;
   }
   Refresh(robot);

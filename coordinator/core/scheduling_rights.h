@@ -9,6 +9,10 @@
 
 namespace tcs {
 
+// On a robot its programs may have any real-time priority, whatever the limits of a user whom the
+// host does not even let tcsim have one.
+void IgnoreRealTimeLimits();
+
 // Threads by their kernel numbers. True for who has CAP_SYS_NICE; SCHED_DEADLINE is for nobody
 // else.
 bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/core/scheduling_rights.h"
 #include "coordinator/host/fixed_meter.h"
 #include "coordinator/host/measured_meter.h"
 #include "coordinator/os/cpu_claim.h"
@@ -38,13 +39,25 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 std::string Engine::Prepare() {
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  if (std::string error = WhyNoRealTime(); !error.empty()) return error;
+  if (gates_only_ && !IsFixed()) {
+    return WhyNoRealTime() + ", and --accounting fixed runs without it";
+  }
   if (std::string error = world_.Open(scenario_); !error.empty()) return error;
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
   ClientsRunOn(claim_.cpu);
-  if (std::string error = EnterRealTime(claim_.cpu); !error.empty()) return error;
+  if (std::string error = BindTo(claim_.cpu); !error.empty()) return error;
+  if (gates_only_) {
+    IgnoreRealTimeLimits();
+    if (options_.on_notice) {
+      options_.on_notice(
+          "SCHED_FIFO is not permitted here, so that gates keep the threads apart: results are the "
+          "same, and the run takes longer (`tcsim doctor` says more)");
+    }
+  } else {
+    SetLevel(0, Level::kCoordinator);
+  }
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;
   if (world_.present()) {
@@ -81,6 +94,7 @@ std::string Engine::PrepareMemory() {
   header_->realtime_offset_ns =
       options_.date_ns.value_or(IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   header_->coordinator_pid = getpid();
+  header_->gates_only = gates_only_ ? 1 : 0;
   return {};
 }
 
@@ -125,6 +139,15 @@ std::string Engine::PrepareHostCpu() {
     meter = std::make_unique<MeasuredMeter>(rate);
   }
   if (std::string error = host_cpu_.Open(std::move(meter)); !error.empty()) return error;
+  // As with any other process of ours.
+  const UniqueFd pidfd(OpenPidfd(host_cpu_.detector().pid()));
+  const UniqueFd fd(DuplicateFd(pidfd.get(), host_cpu_.detector().fired_fd()));
+  if (!fd && (errno == EPERM || errno == ENOSYS)) {
+    return fmt::format(
+        "pidfd_getfd is refused here ({}), so that tcsim could not see when what programs wait for "
+        "is ready; `tcsim doctor` says how to allow it",
+        strerror(errno));
+  }
   reactor_.Add(host_cpu_.detector().fired_fd(), EPOLLIN, {Tag::kDetector});
   reactor_.Add(host_cpu_.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
   guarded_ = GuardsOf(getpid());

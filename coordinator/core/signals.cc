@@ -90,7 +90,8 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
 // it run before (while the running thread waits for the disk), the kernel would end the call with
 // an error of its own, and the result would be lost.
 void Engine::AnswerAhead(Task& task) {
-  if (turn_.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
+  // Without levels the kernel keeps the signal until the call is answered (os/trap.cc).
+  if (gates_only_ || turn_.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
       task.state != TaskState::kReady) {
     return;
   }

@@ -25,24 +25,36 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
 }
 
 // A trapped call has arrived. That of the running thread stops it like a notification.
-void Engine::TrapArrived(int listener, Moment moment) {
+Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
-  if (!call.has_value()) return;
-  Task* task = KnownTask(call->tid);
+  if (!call.has_value()) return {.stops_running = !gates_only_, .wakes_others = true};
+  const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
+  const Task* by = KnownTask(call->tid);
+  const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
+  return waits && PutOff(by, take) ? Reactor::Found{} : take(moment);
+}
+
+Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
+  constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
+  Task* task = KnownTask(call.tid);
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.
-  const bool ours = task != nullptr && (task->slot >= 0 || call->number == SYS_futex);
-  if (!ours) return HandleStranger(*call, moment);
+  const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
+  if (!ours) {
+    HandleStranger(call, moment);
+    return {.stops_running = !gates_only_, .wakes_others = true};
+  }
   if (turn_.IsOf(*task)) {
-    turn_.trapped = *call;
-    return;
+    turn_.trapped = call;
+    return kConcernsAll;
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
   if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo, moment);
   if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal, moment);
-  task->early_trap = *call;
+  task->early_trap = call;
   task->trap_id = 0;
+  return kConcernsAll;
 }
 
 // The last call of a thread, whichever way it ends: it has no destructors to run any more, and no
@@ -52,6 +64,8 @@ void Engine::ExitThread(Task& task, const TrappedCall& call) {
   EndTask(task, {task.reached_ns});
   WakeThoseWaitingFor(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
+  // Who waits for it looks at a word that the kernel clears.
+  if (gates_only_) executor_->LetKernelFinish(call.tid);
 }
 
 // A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it

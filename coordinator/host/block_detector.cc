@@ -21,7 +21,7 @@ namespace {
 // who may never get the processor again before its death is known.
 [[noreturn]] void Detect(int arm, int fired) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  SetLevel(0, Level::kDetector);
+  if (!SetLevel(0, Level::kDetector)) RunOnlyWhenIdle();
   constexpr int kArm = 0, kFired = 1;
   if (dup2(arm, kArm) == kArm && dup2(fired, kFired) == kFired) {
     close_range(2, ~0u, 0);

@@ -66,12 +66,11 @@ std::string TakeCoordinatorLevel() {
 
 }  // namespace
 
-std::string EnterRealTime(int cpu) {
+std::string BindTo(int cpu) {
   cpu_set_t one;
   CPU_ZERO(&one);
   CPU_SET(static_cast<std::size_t>(cpu), &one);
-  if (sched_setaffinity(0, sizeof one, &one) != 0) return "cannot bind to a CPU";
-  return TakeCoordinatorLevel();
+  return sched_setaffinity(0, sizeof one, &one) == 0 ? "" : "cannot bind to a CPU";
 }
 
 std::string WhyNoRealTime() {
@@ -80,9 +79,14 @@ std::string WhyNoRealTime() {
   return why;
 }
 
-void SetLevel(pid_t tid, Level level) {
+bool SetLevel(pid_t tid, Level level) {
   const sched_param param{static_cast<int>(level)};
-  sched_setscheduler(tid, SCHED_FIFO, &param);
+  return sched_setscheduler(tid, SCHED_FIFO, &param) == 0;
+}
+
+void RunOnlyWhenIdle() {
+  const sched_param param{0};
+  sched_setscheduler(0, SCHED_IDLE, &param);
 }
 
 void LeaveRealTime(pid_t tid) {

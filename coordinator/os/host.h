@@ -30,14 +30,17 @@ enum class Level : int {
 // Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
 std::uint64_t CalibrateTsc();
 
-// Binds the calling process to the CPU and gives it the coordinator's level. Empty on success, else
-// one sentence.
-std::string EnterRealTime(int cpu);
+// Binds the calling process to the CPU. Empty on success, else one sentence.
+std::string BindTo(int cpu);
 
 // Why this process cannot have the coordinator's level; empty if it can. It has it in between.
 std::string WhyNoRealTime();
 
-void SetLevel(pid_t tid, Level level);
+// False where it is not permitted.
+bool SetLevel(pid_t tid, Level level);
+
+// The calling thread runs only when hardly anybody else on its CPU wants to. Everybody may do that.
+void RunOnlyWhenIdle();
 
 // Back to ordinary scheduling.
 void LeaveRealTime(pid_t tid);

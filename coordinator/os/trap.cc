@@ -6,6 +6,7 @@
 #include <linux/filter.h>
 #include <linux/futex.h>
 #include <linux/seccomp.h>
+#include <sched.h>
 #include <stddef.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
@@ -159,16 +160,22 @@ std::vector<sock_filter> Program(const std::vector<pid_t>& guarded) {
 int InstallTrap(const std::vector<pid_t>& guarded) {
   std::vector<sock_filter> program = Program(guarded);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
-  auto install = [&filter] {
+  auto install = [&filter](unsigned more) {
     return static_cast<int>(
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
-                SECCOMP_FILTER_FLAG_NEW_LISTENER | SECCOMP_FILTER_FLAG_SPEC_ALLOW, &filter));
+                SECCOMP_FILTER_FLAG_NEW_LISTENER | SECCOMP_FILTER_FLAG_SPEC_ALLOW | more, &filter));
   };
-  const int listener = install();
-  if (listener >= 0 || errno != EACCES) return listener;
-  // Without rights over others a filter must not outlive a set-uid exec.
-  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  return install();
+  // Without a real-time priority nothing else keeps a thread in its call when a signal comes.
+  const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
+  constexpr unsigned kHoldsSignals = 1u << 5;  // SECCOMP_FILTER_FLAG_WAIT_KILLABLE_RECV, Linux 5.19
+  unsigned more = has_level ? 0 : kHoldsSignals;
+  int listener = install(more);
+  if (listener < 0 && errno == EACCES) {
+    // Without rights over others a filter must not outlive a set-uid exec.
+    prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    listener = install(more);
+  }
+  return listener < 0 && errno == EINVAL && more != 0 ? install(0) : listener;
 }
 
 std::optional<TrappedCall> ReceiveTrapped(int listener) {

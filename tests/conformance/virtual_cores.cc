@@ -78,7 +78,8 @@ void RawCalls() {
   cpu_set_t all;
   memset(&all, 0xff, sizeof all);
   EXPECT(syscall(SYS_sched_setaffinity, 0, sizeof all, &all) == 0, "sched_setaffinity");
-  EXPECT(PriorityOnTheHost() == before && before > 0 && before < 99,
+  const bool has_right = geteuid() == 0;  // tcsim has none without it
+  EXPECT(PriorityOnTheHost() == before && (before > 0 || !has_right) && before < 99,
          "the host's priority was %d and became %d", before, PriorityOnTheHost());
   sched_param after{};
   EXPECT(syscall(SYS_sched_getparam, 0, &after) == 0 && after.sched_priority == 99,

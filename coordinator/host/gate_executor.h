@@ -1,0 +1,31 @@
+// By the threads' own gates, for users who may not have real-time priorities. A thread that waits
+// at its gate runs when that is opened. One that was stopped elsewhere runs on until its next call,
+// which begins at its gate (RunHeader::gates_only); its clock stands still meanwhile.
+#pragma once
+
+#include <time.h>
+
+#include "coordinator/host/executor.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+class GateExecutor final : public Executor {
+ public:
+  void LetRun(pid_t) override {}
+  void Hold(pid_t) override {}
+  // Others may have the processor first. Who computes instead of stopping is not waited for.
+  void LetKernelFinish(pid_t tid) override {
+    const timespec turn{0, kTurnNs};
+    for (int turns = 0; turns < kMostTurns; ++turns) {
+      nanosleep(&turn, nullptr);
+      if (ThreadState(tid) != 'R') return;
+    }
+  }
+
+ private:
+  static constexpr long kTurnNs = 100'000;
+  static constexpr int kMostTurns = 1000;
+};
+
+}  // namespace tcs
