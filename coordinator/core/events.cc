@@ -72,9 +72,11 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task == nullptr || task->state == TaskState::kDead) continue;
-    found |= PutOff(task, [this, task](Moment at) { return NotificationArrived(*task, at); })
-                 ? Reactor::Found{}
-                 : NotificationArrived(*task, moment);
+    const auto arrive = [this, task, tid = task->tid](Moment at) {
+      // It may have ended meanwhile.
+      return KnownTask(tid) == task ? NotificationArrived(*task, at) : Reactor::Found{};
+    };
+    if (!PutOff(task, arrive)) found |= arrive(moment);
   }
   return found;
 }
