@@ -65,14 +65,13 @@ bool Engine::PutOffConnection(Connection& connection) {
 
 // It has said nothing.
 void Engine::TakeUnannounced(Moment moment) {
-  for (auto early = early_connections_.begin(); early != early_connections_.end();) {
-    if (KnownTask(early->first) != nullptr) {
-      ++early;
-      continue;
-    }
-    const Connection connection = std::move(early->second);
-    early = early_connections_.erase(early);
-    Attach(connection.fd.get(), *connection.client, moment);
+  std::vector<pid_t> unknown;
+  for (const auto& [tid, connection] : early_connections_) {
+    if (KnownTask(tid) == nullptr) unknown.push_back(tid);
+  }
+  for (const pid_t tid : unknown) {
+    const auto early = early_connections_.extract(tid);
+    if (!early.empty()) Attach(early.mapped().fd.get(), *early.mapped().client, moment);
   }
 }
 
