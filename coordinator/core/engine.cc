@@ -294,10 +294,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
-    if (gates_only_) {
-      TakePutOff({latest_ns_});
-      TakeUnannounced({latest_ns_});
-    }
+    TakePutOff({latest_ns_});
+    RegisterUnannounced({latest_ns_});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;

@@ -402,7 +402,8 @@ class Engine {
   void DetectorEnded();
   void LookAtDetector();
   void Accept(const Listener& listener);
-  const Task* RegistersEarly(int connection);
+  bool RegistersLater(const Connection& connection, pid_t* tid) const;
+  void RegisterUnannounced(Moment moment);
   void TakeUpRegistration(const Task& task);
   bool Attach(int connection, Process& client, Moment moment);
   void GiveDdsArea(int connection, pid_t pid);
@@ -426,8 +427,6 @@ class Engine {
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
   bool PutOff(const Task* by, Late late);
-  bool PutOffConnection(Connection& connection);
-  void TakeUnannounced(Moment moment);
   bool MayGoOn(const Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
@@ -491,7 +490,7 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;  // of threads that are to be dispatched first
+  std::map<pid_t, Connection> early_connections_;  // of threads that register later
   int unseen_ = 0;                                 // threads in TaskState::kUnseen
   WaitCounts wait_counts_;
   std::map<pid_t, UnknownChild> unknown_children_;  // the living

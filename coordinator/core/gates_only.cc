@@ -4,12 +4,9 @@
 // the dispatched one has come to the end of what it does to others. It says so where its next call
 // begins (kCall): until then its clock stands at the time of its last call, and what it has made
 // ready becomes ready at that time, however late the coordinator looks.
-#include <sys/socket.h>
-
 #include <utility>
 
 #include "coordinator/core/engine.h"
-#include "shm/attach_protocol.h"
 
 namespace tcs {
 
@@ -49,30 +46,6 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
     opens_gate_ = true;
   }
   return found;
-}
-
-// What the maker of a thread that registers has not said yet, it is about to say.
-bool Engine::PutOffConnection(Connection& connection) {
-  if (!gates_only_ || !turn_.lasts()) return false;
-  shm::AttachHello hello{};
-  const ssize_t n = recv(connection.fd.get(), &hello, sizeof hello, MSG_PEEK | MSG_DONTWAIT);
-  if (n != sizeof hello || hello.wants == shm::AttachWants::kDdsArea) return false;
-  if (KnownTask(hello.tid) != nullptr) return false;
-  reactor_.Remove(connection.fd.get());
-  early_connections_.insert_or_assign(hello.tid, std::move(connection));
-  return true;
-}
-
-// It has said nothing.
-void Engine::TakeUnannounced(Moment moment) {
-  std::vector<pid_t> unknown;
-  for (const auto& [tid, connection] : early_connections_) {
-    if (KnownTask(tid) == nullptr) unknown.push_back(tid);
-  }
-  for (const pid_t tid : unknown) {
-    const auto early = early_connections_.extract(tid);
-    if (!early.empty()) Attach(early.mapped().fd.get(), *early.mapped().client, moment);
-  }
 }
 
 }  // namespace tcs

@@ -56,10 +56,9 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
   if (found == connections_.end()) return {};  // it was cut off
   Connection connection = std::move(*found);
   connections_.erase(found);
-  if (PutOffConnection(connection)) return {};
-  if (const Task* task = RegistersEarly(fd); task != nullptr) {
+  if (pid_t tid = 0; RegistersLater(connection, &tid)) {
     reactor_.Remove(fd);
-    early_connections_.insert_or_assign(task->tid, std::move(connection));
+    early_connections_.insert_or_assign(tid, std::move(connection));
     return {};
   }
   const bool registers = Attach(fd, *connection.client, moment);

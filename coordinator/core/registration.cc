@@ -127,17 +127,36 @@ void Engine::GiveDdsArea(int connection, pid_t pid) {
   Send(connection, NewReply(), std::span(&fd, 1));
 }
 
-// The thread that wants to register and has still to be dispatched for that; null if that is not
-// so. While the kernel holds the thread whose turn it is, others of the run get the processor, and
-// so come this far. When they do depends on the host, so it must not show.
-const Task* Engine::RegistersEarly(int connection) {
+// While the kernel holds the thread whose turn it is, others of the run get the processor, and so
+// come as far as here. When they do depends on the host, so it must not show. True if the one that
+// wants to register does it later: at its own first dispatch; or, if its maker runs and has not
+// said yet that it has made it, once it has.
+bool Engine::RegistersLater(const Connection& connection, pid_t* tid) const {
   shm::AttachHello hello{};
-  const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT | MSG_PEEK);
-  if (n != sizeof hello || hello.wants == shm::AttachWants::kDdsArea) return nullptr;
-  const Task* task = KnownTask(hello.tid);
-  const bool waits_for_dispatch =
-      task != nullptr && !turn_.IsOf(*task) && task->slot < 0 && IsRunnable(*task);
-  return waits_for_dispatch && task->process->pid == PeerOf(connection) ? task : nullptr;
+  const ssize_t n = recv(connection.fd.get(), &hello, sizeof hello, MSG_DONTWAIT | MSG_PEEK);
+  if (n != sizeof hello || hello.wants == shm::AttachWants::kDdsArea) return false;
+  *tid = hello.tid;
+  if (const Task* task = KnownTask(hello.tid); task != nullptr) {
+    const bool waits_for_dispatch = !turn_.IsOf(*task) && task->slot < 0 && IsRunnable(*task);
+    return waits_for_dispatch && task->process->pid == PeerOf(connection.fd.get());
+  }
+  if (!turn_.lasts()) return false;
+  const pid_t running = turn_.task()->process->pid;
+  const bool is_of_running =
+      turn_.HasClock() && (hello.pid == running || ParentOf(hello.pid) == running);
+  return gates_only_ || is_of_running;
+}
+
+// Their makers' turn is over, and nothing was said of them.
+void Engine::RegisterUnannounced(Moment moment) {
+  std::vector<pid_t> unknown;
+  for (const auto& [tid, connection] : early_connections_) {
+    if (KnownTask(tid) == nullptr) unknown.push_back(tid);
+  }
+  for (const pid_t tid : unknown) {
+    const auto early = early_connections_.extract(tid);
+    if (!early.empty()) Attach(early.mapped().fd.get(), *early.mapped().client, moment);
+  }
 }
 
 // It is dispatched, and registers now.
