@@ -45,6 +45,10 @@ std::optional<std::array<double, 3>> Vector3(const Json& value) {
 // In as few digits as read back as the same double, and with a point or an exponent: JSON readers
 // of some languages make an integer of what has neither.
 void AppendNumber(double value, std::string& text) {
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
+  }
   const std::size_t begin = text.size();
   fmt::format_to(std::back_inserter(text), "{}", value);
   if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";

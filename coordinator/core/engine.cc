@@ -294,7 +294,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
-    TakePutOff({latest_ns_});
+    if (TakePutOff({latest_ns_}).looks_again) PollEvents(0, {latest_ns_});
     RegisterUnannounced({latest_ns_});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
@@ -368,7 +368,8 @@ void Engine::PollUnseen() {
 
 void Engine::WaitOutside() {
   Beat();
-  const bool unseen = unseen_ > 0 || wait_counts_.for_child() > 0 || wait_counts_.for_signals() > 0;
+  const bool unseen =
+      gates_only_ || unseen_ > 0 || wait_counts_.for_child() > 0 || wait_counts_.for_signals() > 0;
   PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {latest_ns_});
 }
 

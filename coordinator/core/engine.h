@@ -366,6 +366,7 @@ class Engine {
   void AnswerAhead(Task& task);
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
   bool PollSignals();
+  bool HasSignalForTrapped(const Task& task) const;
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
   // Timers (timers.cc); the rules are ProcessTimers'.
@@ -402,6 +403,7 @@ class Engine {
   void DetectorEnded();
   void LookAtDetector();
   void Accept(const Listener& listener);
+  void AddConnection(Connection connection);
   bool RegistersLater(const Connection& connection, pid_t* tid) const;
   void RegisterUnannounced(Moment moment);
   void TakeUpRegistration(const Task& task);

@@ -74,9 +74,13 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
     if (task == nullptr || task->state == TaskState::kDead) continue;
     const auto arrive = [this, task, tid = task->tid](Moment at) {
       // It may have ended meanwhile.
-      return KnownTask(tid) == task ? NotificationArrived(*task, at) : Reactor::Found{};
+      if (KnownTask(tid) != task) return Reactor::Found{};
+      task->is_put_off = false;
+      return NotificationArrived(*task, at);
     };
-    if (!PutOff(task, arrive)) found |= arrive(moment);
+    // One that says so again and again is heard once.
+    if (!task->is_put_off) task->is_put_off = PutOff(task, arrive);
+    if (!task->is_put_off) found |= arrive(moment);
   }
   return found;
 }

@@ -12,7 +12,8 @@ namespace tcs {
 
 // True if what `by` does happens later.
 bool Engine::PutOff(const Task* by, Late late) {
-  if (!gates_only_ || !turn_.lasts() || by == turn_.task()) return false;
+  if (!gates_only_ || (turn_.lasts() && by == turn_.task())) return false;
+  if (!turn_.lasts() && put_off_.empty()) return false;  // nothing came before it
   put_off_.push_back(std::move(late));
   return true;
 }
@@ -38,10 +39,16 @@ bool Engine::MayGoOn(const Task& task) {
 // All events of this instant have been handled. If nobody has to run instead, the running thread
 // goes on with its call.
 Reactor::Found Engine::EndCall(Reactor::Found found) {
-  if (!turn_.lasts() || !std::exchange(says_call_, false)) return found;
-  found |= TakePutOff({WrittenAt()});
+  if (!turn_.lasts() || !says_call_) return found;
+  const Moment moment{WrittenAt()};
+  found |= TakePutOff(moment);
+  while (std::exchange(found.looks_again, false)) found |= TakeEvents(0, moment, true);
+  says_call_ = false;
   if (found.stops_running) {
-    turn_.task()->parked = true;
+    Task& task = *turn_.task();
+    task.parked = true;
+    // It was found held by the kernel, and has come back at the same instant.
+    if (task.state == TaskState::kUnseen) SetState(task, TaskState::kReady);
   } else {
     opens_gate_ = true;
   }

@@ -71,7 +71,9 @@ Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment momen
     ProcessEnded(process.index, at);
     return kConcernsAll;
   };
-  return PutOff(runs ? turn_.task() : nullptr, end) ? Reactor::Found{} : end(moment);
+  if (!PutOff(runs ? turn_.task() : nullptr, end)) return end(moment);
+  reactor_.Remove(table_.ProcessAt(process.index).pidfd.get());  // it is readable for ever
+  return {};
 }
 
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {

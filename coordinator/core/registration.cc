@@ -67,10 +67,14 @@ void Refuse(int connection, const char* why) {
 void Engine::Accept(const Listener& listener) {
   UniqueFd fd(accept4(listener.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!fd) return;
-  const int connection = fd.get();
-  if (connections_.size() == kMostSilent) connections_.pop_front();
-  connections_.push_back({std::move(fd), listener.client});
-  reactor_.Add(connection, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(connection)});
+  AddConnection({std::move(fd), listener.client});
+}
+
+void Engine::AddConnection(Connection connection) {
+  while (connections_.size() >= kMostSilent) connections_.pop_front();
+  const int fd = connection.fd.get();
+  connections_.push_back(std::move(connection));
+  reactor_.Add(fd, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(fd)});
 }
 
 // The thread that registers: known already (a client, an announced child), a further thread of a
@@ -135,10 +139,14 @@ bool Engine::RegistersLater(const Connection& connection, pid_t* tid) const {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection.fd.get(), &hello, sizeof hello, MSG_DONTWAIT | MSG_PEEK);
   if (n != sizeof hello || hello.wants == shm::AttachWants::kDdsArea) return false;
+  if (hello.pid != PeerOf(connection.fd.get()) || early_connections_.contains(hello.tid) ||
+      early_connections_.size() >= kMostSilent) {
+    return false;
+  }
   *tid = hello.tid;
   if (const Task* task = KnownTask(hello.tid); task != nullptr) {
     const bool waits_for_dispatch = !turn_.IsOf(*task) && task->slot < 0 && IsRunnable(*task);
-    return waits_for_dispatch && task->process->pid == PeerOf(connection.fd.get());
+    return waits_for_dispatch && task->process->pid == hello.pid;
   }
   if (!turn_.lasts()) return false;
   const pid_t running = turn_.task()->process->pid;
@@ -163,9 +171,7 @@ void Engine::RegisterUnannounced(Moment moment) {
 void Engine::TakeUpRegistration(const Task& task) {
   auto early = early_connections_.extract(task.tid);
   if (early.empty()) return;
-  const int connection = early.mapped().fd.get();
-  connections_.push_back(std::move(early.mapped()));
-  reactor_.Add(connection, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(connection)});
+  AddConnection(std::move(early.mapped()));
 }
 
 // True if the running thread has to be stopped.

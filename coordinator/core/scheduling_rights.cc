@@ -13,7 +13,7 @@ namespace {
 bool ignores_real_time_limits = false;
 
 bool IsPrivileged(const Credentials& credentials) {
-  return ignores_real_time_limits || (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
+  return (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
 }
 
 bool IsSameOwner(const Credentials& asking, pid_t tid) {
@@ -22,6 +22,7 @@ bool IsSameOwner(const Credentials& asking, pid_t tid) {
 }
 
 rlim_t LimitOf(pid_t tid, __rlimit_resource resource) {
+  if (resource == RLIMIT_RTPRIO && ignores_real_time_limits) return RLIM_INFINITY;
   rlimit limit{};
   return prlimit(tid, resource, nullptr, &limit) == 0 ? limit.rlim_cur : 0;
 }

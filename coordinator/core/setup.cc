@@ -42,6 +42,9 @@ std::string Engine::Prepare() {
   if (gates_only_ && !IsFixed()) {
     return WhyNoRealTime() + ", and --accounting fixed runs without it";
   }
+  if (gates_only_ && !TrapsHoldSignals()) {
+    return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
+  }
   if (std::string error = world_.Open(scenario_); !error.empty()) return error;
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
@@ -52,11 +55,11 @@ std::string Engine::Prepare() {
     IgnoreRealTimeLimits();
     if (options_.on_notice) {
       options_.on_notice(
-          "SCHED_FIFO is not permitted here, so that gates keep the threads apart: results are the "
-          "same, and the run takes longer (`tcsim doctor` says more)");
+          "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
+          "longer (`tcsim doctor` says more)");
     }
   } else {
-    SetLevel(0, Level::kCoordinator);
+    if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = OpenRecords(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;

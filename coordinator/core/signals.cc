@@ -36,21 +36,35 @@ bool Engine::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
 // Nobody says that a signal has come from outside, so those who wait for one are looked at now and
 // then. True if one goes on.
 bool Engine::PollSignals() {
-  const bool awaited = wait_counts_.for_signals() > 0 || wait_counts_.for_stops() > 0;
+  const bool awaited =
+      gates_only_ || wait_counts_.for_signals() > 0 || wait_counts_.for_stops() > 0;
   if (!awaited || __rdtsc() < next_signal_look_tsc_) return false;
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
   bool ended = false;
   const std::int64_t now_ns = turn_.lasts() ? WrittenAt() : latest_ns_;
   for (Task& task : table_.tasks()) {
-    if (!task.wait.has_value() || SignalsThatEnd(*task.wait) == 0) continue;
+    if (!task.wait.has_value()) continue;
     const Moment moment{std::max(now_ns, task.reached_ns)};
-    if (!EndAwait(task, ReadSignalSets(task.tid), moment)) continue;
+    if (HasSignalForTrapped(task)) {
+      WakeForSignals(*task.process, moment);
+    } else if (SignalsThatEnd(*task.wait) == 0 ||
+               !EndAwait(task, ReadSignalSets(task.tid), moment)) {
+      continue;
+    }
     latest_ns_ = moment.ns;
     ended = true;
   }
   LookAtStops({latest_ns_});
   return ended;
+}
+
+// Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
+// that nobody but who looks learns of one from outside. One from inside is told by who sends it.
+bool Engine::HasSignalForTrapped(const Task& task) const {
+  if (!gates_only_ || turn_.lasts() || !task.wait->is_in_trapped_call) return false;
+  const SignalSets sets = ReadSignalSets(task.tid);
+  return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0;
 }
 
 // PollEvents for the running thread, in turns while somebody waits for signals.

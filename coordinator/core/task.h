@@ -79,6 +79,7 @@ struct Task : HostThread {
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
+  bool is_put_off = false;      // has notified, and is heard later (gates_only.cc)
   shm::WorkCounts work{};       // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;

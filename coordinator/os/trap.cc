@@ -155,7 +155,16 @@ std::vector<sock_filter> Program(const std::vector<pid_t>& guarded) {
   return program;
 }
 
+constexpr unsigned kHoldsSignals = 1u << 5;  // SECCOMP_FILTER_FLAG_WAIT_KILLABLE_RECV, Linux 5.19
+
 }  // namespace
+
+bool TrapsHoldSignals() {
+  // Flags come before the filter, which is nowhere.
+  return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
+                 SECCOMP_FILTER_FLAG_NEW_LISTENER | kHoldsSignals, nullptr) != 0 &&
+         errno == EFAULT;
+}
 
 int InstallTrap(const std::vector<pid_t>& guarded) {
   std::vector<sock_filter> program = Program(guarded);
@@ -167,15 +176,12 @@ int InstallTrap(const std::vector<pid_t>& guarded) {
   };
   // Without a real-time priority nothing else keeps a thread in its call when a signal comes.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
-  constexpr unsigned kHoldsSignals = 1u << 5;  // SECCOMP_FILTER_FLAG_WAIT_KILLABLE_RECV, Linux 5.19
-  unsigned more = has_level ? 0 : kHoldsSignals;
-  int listener = install(more);
-  if (listener < 0 && errno == EACCES) {
-    // Without rights over others a filter must not outlive a set-uid exec.
-    prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    listener = install(more);
-  }
-  return listener < 0 && errno == EINVAL && more != 0 ? install(0) : listener;
+  const unsigned more = has_level ? 0 : kHoldsSignals;
+  const int listener = install(more);
+  if (listener >= 0 || errno != EACCES) return listener;
+  // Without rights over others a filter must not outlive a set-uid exec.
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  return install(more);
 }
 
 std::optional<TrappedCall> ReceiveTrapped(int listener) {

@@ -25,6 +25,9 @@ struct TrappedCall {
 // processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
 int InstallTrap(const std::vector<pid_t>& guarded);
 
+// A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
+bool TrapsHoldSignals();
+
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);
 
