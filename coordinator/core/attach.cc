@@ -17,7 +17,7 @@ Task* Engine::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   task.process = &process;
   task.parked = false;
   task.metered.speed = process.robot->speed;
-  task.reached_ns = task.activation.release_ns = std::max(at_ns, EarliestWake());
+  task.reached_ns = task.activation.release_ns = std::max(at_ns, waker_.EarliestWake());
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);
   if (process.deadline_ns > 0) {
@@ -82,7 +82,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
   PassOn(task, moment);
-  LeaveWait(task);
+  waker_.Leave(task);
   SetState(task, TaskState::kDead);
   queues_.Forget(task.order);
   SchedulerOf(task).Remove(task.order);

@@ -203,11 +203,11 @@ bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
   if (deliverer->Awaits<awaited::Messages>() != nullptr) {
     return hub_.DueNs(process.dds_number) <= now_ns;
   }
-  return IsRunnable(*deliverer);
+  return Waker::IsRunnable(*deliverer);
 }
 
 void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
-  if (wait_counts_.for_deliverer() == 0) return;
+  if (waker_.counts().for_deliverer() == 0) return;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
     if (!IsDelivering(process, task->reached_ns)) {
@@ -218,7 +218,7 @@ void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment
 
 // Those that sent to a process more than it can take at once.
 void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
-  if (wait_counts_.for_room() == 0 || hub_.IsFull(number)) return;
+  if (waker_.counts().for_room() == 0 || hub_.IsFull(number)) return;
   for (Task& task : table_.tasks()) {
     const auto* wait = task.Awaits<awaited::Room>();
     if (wait == nullptr || wait->process != number) continue;
@@ -234,7 +234,8 @@ void Engine::ShowDeliverersTheirDeadlines() {
     if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
     const bool inside = turn_.IsOn(*process->robot);
     if (due != shm::kNeverNs && !inside) {
-      NoteLateness(*deliverer, due, SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
+      waker_.NoteLateness(*deliverer, due,
+                          SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
     }
     Refresh(*process->robot);
   }

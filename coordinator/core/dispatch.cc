@@ -129,15 +129,6 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
   ++report_.untold;
 }
 
-// The virtual time of what the running thread has just done to others: the time that its clock
-// showed when it held for the write.
-std::int64_t Engine::WrittenAt() const {
-  const std::int64_t start = turn_.task()->cpu->progress_ns;
-  if (turn_.task()->slot < 0 || IsCallback()) return start;
-  const std::int64_t shown = Slot(*turn_.task()).clock.last_shown_ns.load();
-  return std::clamp(shown, start, std::max(start, turn_.horizon_ns()));
-}
-
 // It may be settled again in the same dispatch.
 void Engine::RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world) {
   const std::uint64_t until_tsc = host_cpu_.stop_tsc();
@@ -211,7 +202,7 @@ void Engine::Settle(Task& task) {
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
-  if (IsRunnable(task)) Requeue(task);
+  if (Waker::IsRunnable(task)) waker_.Requeue(task);
   if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);

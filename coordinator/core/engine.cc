@@ -39,153 +39,34 @@ std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
 }  // namespace
 
 Engine::Engine(const Scenario& scenario, const RunOptions& options)
-    : scenario_(scenario),
-      options_(options),
-      root_(scenario.drift_bound.ns(), scenario.duration.ns()),
-      activations_(options.sync == shm::Sync::kCallback),
-      table_([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
-      gates_only_(!WhyNoRealTime().empty()),
-      executor_(MakeExecutor(gates_only_)),
-      host_cpu_(*executor_),
-      end_ns_(scenario.duration.ns()) {}
+    : run_(scenario, options, !WhyNoRealTime().empty()),
+      activations_(run_.IsCallback()),
+      executor_(MakeExecutor(run_.gates_only)),
+      host_cpu_(*executor_) {
+  TellOfWaits();
+}
 
 Engine::~Engine() = default;
 
-void Engine::Warn(const std::string& text) {
-  if (std::find(report_.warnings.begin(), report_.warnings.end(), text) == report_.warnings.end()) {
-    report_.warnings.push_back(text);
-    if (options_.on_warning) options_.on_warning(text);
-  }
-}
-
-bool Engine::IsRunnable(const Task& task) {
-  return task.state == TaskState::kReady || task.state == TaskState::kHolding ||
-         task.state == TaskState::kStarting;
-}
-
-void Engine::SetState(Task& task, TaskState state, bool goes_first) {
-  TCS_CHECK(MayFollow(task.state, state));
-  TCS_CHECK(task.wait.has_value() == (state == TaskState::kWaiting));
-  const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
-  if (ends && task.state != TaskState::kWaiting) activations_.Idles(task);
-  if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
-      more != 0) {
-    unseen_ += more;
-    header_->kernel_waiters.store(static_cast<std::uint32_t>(unseen_));
-  }
-  task.state = state;
-  Requeue(task, goes_first);
-  // A deliverer that waits for something else must not be waited for: it may need what those hold.
-  if (task.is_deliverer && !IsRunnable(task) && task.Awaits<awaited::Messages>() == nullptr) {
-    ReleaseThoseAwaitingDeliverer(*task.process,
-                                  {turn_.IsOf(task) ? WrittenAt() : task.reached_ns});
-  }
-}
-
-void Engine::Requeue(Task& task, bool goes_first) {
-  if (IsRunnable(task)) {
-    SchedulerOf(task).Enqueue(task.order, task.reached_ns, goes_first);
-  } else {
-    SchedulerOf(task).Dequeue(task.order);
-  }
-}
-
-// Whether a wait is over by time: the world's, or, where others of its process compute while the
-// world stands still, that of the process's own clock.
-bool Engine::HasRunOut(const Task& task, std::int64_t now_ns) const {
-  if (!task.wait.has_value()) return false;
-  const std::int64_t deadline_ns = task.wait->deadline_ns;
-  if (deadline_ns <= now_ns) return true;
-  return IsCallback() && OwnDeadlineOf(task) <= task.process->clock.shown();
-}
-
-// When the thread's wait is over, as its process's clock tells it.
-ProgramTime Engine::OwnDeadlineOf(const Task& task) {
-  return ProgramClock::At(RobotTime(task.wait->deadline_ns), task.lead);
-}
-
-RobotScheduler::Wait Engine::WaitOf(const Task& task) const {
-  const Process& process = *task.process;
-  RobotScheduler::Wait wait{.process = process.index,
-                            .next_expiry_ns = process.timers.NextExpiry()};
-  wait.waits = task.wait.has_value() && task.Awaits<awaited::OthersRun>() == nullptr;
-  if (!wait.waits) return wait;
-  wait.for_input = IsForInput(*task.wait);
-  wait.for_thread = task.Awaits<awaited::Futex>() != nullptr;
-  wait.from_ns = task.reached_ns;
-  wait.until_ns = task.wait->deadline_ns;
-  if (IsCallback() && wait.until_ns != shm::kNeverNs) {
-    wait.is_over = HasRunOut(task, 0);
-    wait.own_until_ns = process.clock.RobotTimeOf(OwnDeadlineOf(task)).ns();
-  }
-  return wait;
-}
-
-void Engine::Refresh(Robot& robot) {
-  robot.scheduler.Assign(robot.next_launch_ns);
-  for (const VirtualCpu* cpu : robot.cpus) {
-    root_.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core));
-  }
-}
-
-void Engine::MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
-  if (task.state == TaskState::kDead) return;
-  const bool waited = task.wait.has_value(), reads = waited && LooksAtOthers(*task.wait);
-  const bool for_messages = task.Awaits<awaited::Messages>() != nullptr;
-  const bool outside = moment.from_outside || (turn_.lasts() && !turn_.IsOn(*task.process->robot));
-  const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
-  if (outside && reads && !for_messages) NoteLateness(task, moment.ns, goes_first);
-  if (waited) {
-    ++task.activations;
-    activations_.Released(task, reason, moment.ns);
-    task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
-  }
-  task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
-  if (waited) {
-    // Where somebody more urgent ran on, the kernel's timer would still have been in time.
-    const bool timed = reason == shm::WakeReason::kDeadline;
-    const std::int64_t released_ns =
-        timed ? std::min(task.wait->deadline_ns, task.reached_ns) : task.reached_ns;
-    SchedulerOf(task).WakeUp(task.order, released_ns, outside);
-  }
-  // Others may have come further: what is due later than its own time it gets then.
-  if (for_messages) {
-    task.messages_until_ns =
-        reason == shm::WakeReason::kDeadline ? task.wait->deadline_ns : task.reached_ns;
-  }
-  if (waited && task.wait->is_in_trapped_call) FinishTrappedWait(task, reason);
-  LeaveWait(task);
-  // Whoever waited for others looks at what they did: that must be all of it.
-  SetState(task, reads && !IsCallback() ? TaskState::kHolding : TaskState::kReady, goes_first);
-  task.hold = shm::NotificationKind::kRead;
-  task.reason = reason;
-  Refresh(*task.process->robot);
-}
-
-// What arrives later than the drift bound allows for (the kernel may take its time) is seen when
-// that is over, not in the past of those who have gone on.
-std::int64_t Engine::EarliestWake() const {
-  if (IsCallback()) return 0;
-  std::int64_t earliest = root_.EarliestWake();
-  if (turn_.lasts()) earliest = std::max(earliest, WrittenAt() - scenario_.drift_bound.ns());
-  return earliest;
-}
-
-// What was sent at `sent_ns` wakes a thread. The core that it runs on at once may have come
-// further.
-void Engine::NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first) {
-  if (IsCallback()) return;
-  sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
-  const std::int64_t late_ns =
-      SchedulerOf(woken).LatenessOf(woken.order, sent_ns, EarliestWake(), goes_first);
-  report_.lateness_ns = std::max(report_.lateness_ns, late_ns);
-}
-
-bool Engine::IsSafe(const Task& task) const {
-  if (task.state != TaskState::kHolding) return true;
-  const VirtualCpu& cpu = *task.cpu;
-  return cpu.progress_ns <= (task.hold == shm::NotificationKind::kRead ? root_.ReadSafe(cpu.leaf)
-                                                                       : root_.WriteSafe(cpu.leaf));
+// Whoever keeps something for a thread that waits.
+void Engine::TellOfWaits() {
+  waker_.Tell({
+      .began_by_signal =
+          [this](Task& task) { EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns}); },
+      .left =
+          [this](Task& task, const Wait& left) {
+            if (const auto* descriptors = left.As<awaited::Descriptors>()) EndWatches(*descriptors);
+            futexes_.Leave(task.order);
+            queues_.Leave(task.order);
+            LeaveLock(task);
+          },
+      .ends_in_trapped_call = [this](Task& task,
+                                     shm::WakeReason reason) { FinishTrappedWait(task, reason); },
+      .deliverer_is_held_up =
+          [this](const Process& process, Moment moment) {
+            ReleaseThoseAwaitingDeliverer(process, moment);
+          },
+  });
 }
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
@@ -271,7 +152,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   task.cpu = &cpu;
   ProgramClock& clock = task.process->clock;
   if (IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
-  TCS_CHECK(IsSafe(task));
+  TCS_CHECK(waker_.IsSafe(task));
   if (IsCallback() && LeftToHoldNs(task) == 0) {
     LetWorldGoOnWithout(task);
     return;
@@ -300,7 +181,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   }
   const std::int64_t advanced = cpu.progress_ns - start;
   robot.scheduler.Stop(cpu.core, advanced, advanced + (clock.lead() - lead).ns());
-  Requeue(task);
+  waker_.Requeue(task);
   Refresh(robot);
   TCS_CHECK(IsCallback() || root_.drift_ns() <= scenario_.drift_bound.ns());
 }
@@ -356,7 +237,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
   PollSignals();
-  if (unseen_ == 0) return;
+  if (waker_.unseen() == 0) return;
   for (Task& task : table_.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
     latest_ns_ = std::max(latest_ns_, task.reached_ns);
@@ -368,8 +249,8 @@ void Engine::PollUnseen() {
 
 void Engine::WaitOutside() {
   Beat();
-  const bool unseen =
-      gates_only_ || unseen_ > 0 || wait_counts_.for_child() > 0 || wait_counts_.for_signals() > 0;
+  const bool unseen = gates_only_ || waker_.unseen() > 0 || waker_.counts().for_child() > 0 ||
+                      waker_.counts().for_signals() > 0;
   PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {latest_ns_});
 }
 
@@ -450,7 +331,8 @@ bool Engine::AwaitOutside() {
     const Reactor::Found found = PollEvents(0, {latest_ns_});
     PollUnseen();
     if (found.wakes_others || root_.Least() != shm::kNeverNs) return true;
-    if (unseen_ == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun()) return false;
+    if (waker_.unseen() == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun())
+      return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
     if (now_ns - idle_since_real_ns_ >= end_ns_ - furthest_ns) return false;

@@ -19,8 +19,8 @@
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
-#include "coordinator/core/task_table.h"
-#include "coordinator/core/turn.h"
+#include "coordinator/core/run_state.h"
+#include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
@@ -90,9 +90,6 @@ class Engine {
   std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
-  std::int64_t EarliestWake() const;
-  void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
-  bool IsSafe(const Task& task) const;
   void PollUnseen();
   bool StrangersRun();
   void WaitOutside();
@@ -111,20 +108,14 @@ class Engine {
   std::pair<int, std::string> WhatItAwaits(const Task& task) const;
   std::string AwaitedDescriptors(const Task& task, const awaited::Descriptors& wait) const;
 
-  // States (engine.cc). Whoever changes what a robot could do next refreshes it.
-  static bool IsRunnable(const Task& task);
-  bool HasRunOut(const Task& task, std::int64_t now_ns) const;
-  static ProgramTime OwnDeadlineOf(const Task& task);
-  RobotScheduler::Wait WaitOf(const Task& task) const;
-  void SetState(Task& task, TaskState state, bool goes_first = false);
-  void Requeue(Task& task, bool goes_first = false);
-  void Refresh(Robot& robot);
-  void MakeReady(Task& task, shm::WakeReason reason, Moment moment);
-
-  // Waits (waits.cc): their one beginning and end.
-  void EnterWait(Task& task, Wait wait);
-  void LeaveWait(Task& task);
-  void ShowObjectWaiters();
+  // The door (waker.h).
+  void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
+  void Refresh(Robot& robot) { waker_.Refresh(robot); }
+  void MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
+    waker_.Wake(task, reason, moment);
+  }
+  void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
+  void TellOfWaits();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -149,7 +140,7 @@ class Engine {
   static Meter::CpuClock CpuClockOf(Task& task) {
     return [&task] { return HostClockOf(task); };
   }
-  std::int64_t WrittenAt() const;
+  std::int64_t WrittenAt() const { return run_.WrittenAt(); }
 
   // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
   static constexpr const char* kWrongIpcNotes = "times of System V objects";
@@ -217,13 +208,6 @@ class Engine {
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
-  static RobotScheduler& SchedulerOf(const Task& task) { return task.process->robot->scheduler; }
-  static const SchedulingParameters& ParametersOf(const Task& task) {
-    return SchedulerOf(task).ParametersOf(task.order);
-  }
-  static RobotScheduler::Priority PriorityOf(const Task& task) {
-    return SchedulerOf(task).PriorityOf(task.order);
-  }
   static std::int64_t MaySchedule(const Task& asking, const Task& task,
                                   const SchedulingParameters& wanted);
   std::int64_t Schedule(const Task& asking, Task& task, const SchedulingParameters& wanted);
@@ -465,25 +449,35 @@ class Engine {
   ClientReport ReportOf(const Launch& launch);
   void WarnOfEndsThatDidNotMeet();
 
-  void Warn(const std::string& text);
-  bool IsInGrace() const { return grace_began_ns_ != shm::kNeverNs; }
+  void Warn(const std::string& text) { run_.Warn(text); }
+  bool IsInGrace() const { return run_.IsInGrace(); }
   bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
-  bool IsFixed() const { return options_.accounting == shm::Accounting::kFixed; }
-  bool IsCallback() const { return options_.sync == shm::Sync::kCallback; }
-  shm::ThreadSlot& Slot(const Task& task) const { return *task.slot_memory; }
+  bool IsFixed() const { return run_.IsFixed(); }
+  bool IsCallback() const { return run_.IsCallback(); }
+  static shm::ThreadSlot& Slot(const Task& task) { return SlotOf(task); }
 
-  const Scenario scenario_;
-  const RunOptions options_;
+  RunState run_;
+  const Scenario& scenario_ = run_.scenario;
+  const RunOptions& options_ = run_.options;
+  RunReport& report_ = run_.report;
+  TaskTable& table_ = run_.table;
+  std::deque<Robot>& robots_ = run_.robots;
+  std::deque<VirtualCpu>& cpus_ = run_.cpus;
+  TemporalConsistency& root_ = run_.root;
+  Turn& turn_ = run_.turn;
+  shm::RunHeader*& header_ = run_.header;
+  const bool& gates_only_ = run_.gates_only;
+  std::int64_t& end_ns_ = run_.end_ns;
+  std::int64_t& latest_ns_ = run_.latest_ns;
+  StopRequest& stop_ = run_.stop;
+  std::int64_t& grace_began_ns_ = run_.grace_began_ns;
   CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
   World world_{command_input_};
-  TemporalConsistency root_;
   ScheduleRecords schedule_;
   Activations activations_;
+  Waker waker_{run_, activations_};
   int world_row_ = 0;
-  std::deque<Robot> robots_;
   std::vector<Launch> launches_;  // of all clients, as in the scenario
-  std::deque<VirtualCpu> cpus_;   // of all robots, by leaf
-  TaskTable table_;
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
@@ -492,9 +486,7 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;  // of threads that register later
-  int unseen_ = 0;                                 // threads in TaskState::kUnseen
-  WaitCounts wait_counts_;
+  std::map<pid_t, Connection> early_connections_;   // of threads that register later
   std::map<pid_t, UnknownChild> unknown_children_;  // the living
   std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet
   std::uint64_t next_signal_look_tsc_ = 0;
@@ -503,15 +495,12 @@ class Engine {
   Reactor reactor_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
-  shm::RunHeader* header_ = nullptr;  // in it
   UniqueFd memfd_, signals_;
   WaitQueues queues_;
   std::uint32_t wait_counter_ = 0;
   std::uint64_t fds_order_counter_ = 0;
-  bool gates_only_ = false;  // there is no right to real-time priorities
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
-  Turn turn_;
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
@@ -530,18 +519,12 @@ class Engine {
   std::uint64_t ns_per_tick_q32_ = 0;
   double ticks_per_ns_ = 1.0;
 
-  std::int64_t end_ns_ = 0;
-  // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
-  std::int64_t latest_ns_ = 0;
-  StopRequest stop_;
   bool reached_end_ = false;
-  std::int64_t grace_began_ns_ = shm::kNeverNs;
   UniqueFd grace_timer_;                                   // of real time:
   bool grace_ran_out_ = false;                             // it has
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
 
-  RunReport report_;
   std::int64_t client_host_ns_ = 0;
   VirtualDuration most_lead_;  // of all programs' clocks
   std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;

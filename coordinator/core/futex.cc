@@ -183,8 +183,7 @@ bool Engine::HoldsToWake(Task& task, const TrappedCall& call, int command) {
   }
   task.early_trap = call;
   task.trap_id = 0;
-  SetState(task, TaskState::kHolding);
-  task.hold = shm::NotificationKind::kWrite;
+  waker_.Hold(task, shm::NotificationKind::kWrite);
   return true;
 }
 

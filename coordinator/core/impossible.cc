@@ -99,7 +99,7 @@ void Engine::Expel(Process& process, const char* what) {
 
 // It waits for nothing any more.
 void Engine::AwaitDeath(Task& task) {
-  LeaveWait(task);
+  waker_.Leave(task);
   EnterWait(task, {awaited::Nothing{}});
   Refresh(*task.process->robot);
 }

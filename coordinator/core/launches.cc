@@ -62,9 +62,10 @@ std::string Engine::PrepareFolders() {
 std::string Engine::StartClients() {
   for (const RobotSpec& robot : scenario_.robots) {
     const auto cores = static_cast<std::uint32_t>(robot.cores);
-    Robot& computer = robots_.emplace_back(
-        robot.name, robot.speed,
-        RobotScheduler(cores, !IsCallback(), [this](int order) { return WaitOf(TaskAt(order)); }));
+    Robot& computer = robots_.emplace_back(robot.name, robot.speed,
+                                           RobotScheduler(cores, !IsCallback(), [this](int order) {
+                                             return waker_.WaitOf(TaskAt(order));
+                                           }));
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = cpus_.emplace_back();
       cpu.robot = &computer;

@@ -128,8 +128,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
   switch (note.kind) {
     case Kind::kRead:
     case Kind::kWrite:
-      SetState(task, TaskState::kHolding);
-      task.hold = note.kind;
+      waker_.Hold(task, note.kind);
       break;
     case Kind::kIdle:
       EnterWait(task, {IdleFor(note), deadline_ns});

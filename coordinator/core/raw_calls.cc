@@ -150,8 +150,7 @@ void Engine::SignalRaw(Task& task) {
 
 void Engine::HoldRaw(Task& task, shm::NotificationKind kind) {
   if (IsCallback()) return;
-  SetState(task, TaskState::kHolding);
-  task.hold = kind;
+  waker_.Hold(task, kind);
 }
 
 // The timeout of a call that waits for descriptors: false if it is not there, or not valid.

@@ -145,7 +145,8 @@ bool Engine::RegistersLater(const Connection& connection, pid_t* tid) const {
   }
   *tid = hello.tid;
   if (const Task* task = KnownTask(hello.tid); task != nullptr) {
-    const bool waits_for_dispatch = !turn_.IsOf(*task) && task->slot < 0 && IsRunnable(*task);
+    const bool waits_for_dispatch =
+        !turn_.IsOf(*task) && task->slot < 0 && Waker::IsRunnable(*task);
     return waits_for_dispatch && task->process->pid == hello.pid;
   }
   if (!turn_.lasts()) return false;
@@ -244,11 +245,11 @@ void Engine::PlaceAtGate(Task& task, std::int64_t at_ns) {
   slot.receipts.count.store(0);
   shm::NoteStarted(slot.receipts);
   slot.gate.store(shm::kGateClosed);
-  LeaveWait(task);
+  waker_.Leave(task);
   task.early_trap.reset();
   task.trap_id = 0;
   task.notified_early = false;
-  task.reached_ns = std::max({task.reached_ns, at_ns, EarliestWake()});
+  task.reached_ns = std::max({task.reached_ns, at_ns, waker_.EarliestWake()});
   SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;

@@ -82,7 +82,7 @@ std::int64_t Engine::Schedule(const Task& asking, Task& task, const SchedulingPa
   const std::int64_t now = std::max(asking.reached_ns, task.reached_ns);
   SchedulerOf(task).SetParameters(task.order, wanted, now);
   FindPriority(task);
-  if (IsRunnable(task)) Requeue(task);
+  if (Waker::IsRunnable(task)) waker_.Requeue(task);
   return 0;
 }
 

@@ -37,7 +37,7 @@ bool Engine::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
 // then. True if one goes on.
 bool Engine::PollSignals() {
   const bool awaited =
-      gates_only_ || wait_counts_.for_signals() > 0 || wait_counts_.for_stops() > 0;
+      gates_only_ || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   if (!awaited || __rdtsc() < next_signal_look_tsc_) return false;
   next_signal_look_tsc_ =
       __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
@@ -69,7 +69,8 @@ bool Engine::HasSignalForTrapped(const Task& task) const {
 
 // PollEvents for the running thread, in turns while somebody waits for signals.
 bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
-  while (wait_counts_.for_signals() + wait_counts_.for_stops() > 0 && timeout_ns > kLookEveryNs) {
+  while (waker_.counts().for_signals() + waker_.counts().for_stops() > 0 &&
+         timeout_ns > kLookEveryNs) {
     if (PollEvents(kLookEveryNs, {}).stops_running) return true;
     if (!turn_.timed_out) return false;
     turn_.timed_out = false;

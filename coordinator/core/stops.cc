@@ -76,7 +76,7 @@ void Engine::ChildChanged(Process& parent, pid_t child, bool by_stop, Moment mom
 
 // Nobody says that a process has been stopped from outside.
 void Engine::LookAtStops(Moment moment) {
-  if (wait_counts_.for_stops() == 0) return;
+  if (waker_.counts().for_stops() == 0) return;
   for (Process& process : table_.processes()) {
     const Process* parent = process.dead ? nullptr : LivingProcess(process.parent);
     if (parent == nullptr) continue;

@@ -140,8 +140,8 @@ void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
   latest_ns_ = now_ns;
   bool wrote = false;
   for (Task* task : robot.tasks) {
-    if (HasRunOut(*task, now_ns)) {
-      task->process->clock.ComeTo(OwnDeadlineOf(*task));
+    if (waker_.HasRunOut(*task, now_ns)) {
+      task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));
       MakeReady(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;
