@@ -81,10 +81,10 @@ void Engine::EndTask(Task& task, Moment moment) {
     process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
-  PassOn(task, moment);
+  shared_events_.PassOn(task, moment);
   waker_.Leave(task);
   SetState(task, TaskState::kDead);
-  queues_.Forget(task.order);
+  objects_.Forget(task);
   SchedulerOf(task).Remove(task.order);
   task.parked = true;
   std::erase(task.process->robot->tasks, &task);
@@ -108,7 +108,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   for (Task* task : threads) {
     if (task->process != &process) continue;
     EndTask(*task, moment);
-    WakeThoseWaitingFor(*task, moment);
+    locks_.WakeThoseWaitingFor(*task, moment);
   }
   KeepUsageOf(process);
   process.timer_fds.clear();
@@ -117,10 +117,10 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
   if (Process* parent = LivingProcess(process.parent); parent != nullptr) {
     parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;
-    ChildChanged(*parent, process.pid, false, moment);
+    stops_.ChildChanged(*parent, process.pid, false, moment);
   }
   StartThoseAfter(process);
-  WakeEveryQueue(moment);
+  objects_.WakeAll(moment);
   LeaveDds(process, moment);
   if (!process.is_client) table_.GiveUp(process);
   const std::optional<int> status = WaitStatusOf(process.pid);

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 #include "coordinator/scenario/own_topics.h"
 
 namespace tcs {
@@ -116,7 +118,7 @@ void Engine::HandleDds(Task& task, const shm::Notification& note, std::int64_t d
       if (!IsDelivering(process, task.reached_ns)) break;
       EnterWait(task, {awaited::Deliverer{}, deadline_ns});
       SchedulerOf(task).SetBlockedOn(task.order, process.deliverer->order);
-      FindPriority(*process.deliverer);
+      inheritance_.Find(*process.deliverer);
   }
 }
 
@@ -239,6 +241,26 @@ void Engine::ShowDeliverersTheirDeadlines() {
     }
     Refresh(*process->robot);
   }
+}
+
+// Others miss a stopped program that speaks DDS when its leases are over. It is stopped as a whole
+// from when a signal that does so is there, though its threads notice one after another.
+void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
+  if (process.dds_number == 0) return;
+  bool stopped = false;
+  for (const Task& task : table_.tasks()) {
+    if (task.process != &process || task.state == TaskState::kDead) continue;
+    const SignalSets sets = ReadSignalSets(task.tid);
+    const std::uint64_t ignored = sets.blocked | sets.caught;
+    stopped |= ThreadState(task.tid) == 'T' ||
+               ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;
+  }
+  if (stopped) {
+    hub_.Stop(process.dds_number, at_ns);
+  } else {
+    hub_.Continue(process.dds_number, at_ns);
+  }
+  ShowDeliverersTheirDeadlines();
 }
 
 // At the dispatch of a deliverer whose wait is over.

@@ -52,13 +52,16 @@ Engine::~Engine() = default;
 void Engine::TellOfWaits() {
   waker_.Tell({
       .began_by_signal =
-          [this](Task& task) { EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns}); },
+          [this](Task& task) {
+            signal_wakes_.EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
+          },
       .left =
           [this](Task& task, const Wait& left) {
-            if (const auto* descriptors = left.As<awaited::Descriptors>()) EndWatches(*descriptors);
-            futexes_.Leave(task.order);
-            queues_.Leave(task.order);
-            LeaveLock(task);
+            if (const auto* descriptors = left.As<awaited::Descriptors>())
+              descriptors_.Leave(*descriptors);
+            words_.table().Leave(task.order);
+            objects_.Leave(task);
+            inheritance_.Leave(task);
           },
       .ends_in_trapped_call = [this](Task& task,
                                      shm::WakeReason reason) { FinishTrappedWait(task, reason); },
@@ -81,7 +84,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (task.process->timers.HasCpuTimers()) {
-    const std::int64_t left = task.process->timers.CpuTimeToExpiry(CpuUsedBy(task));
+    const std::int64_t left = task.process->timers.CpuTimeToExpiry(TimerCalls::CpuUsedBy(task));
     if (left != shm::kNeverNs) limit = std::min(limit, cpu.progress_ns + left);
   }
   limit = std::min(limit, std::max(robot.next_launch_ns, cpu.progress_ns));
@@ -139,7 +142,8 @@ void Engine::PayDebt(Task& task, std::int64_t ns) {
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
-  FireDue(robot, cpu.progress_ns);
+  const Moment due{.ns = cpu.progress_ns, .from_outside = true};
+  if (timers_.FireDue(robot, due.ns)) PollEvents(0, due);
   StartDue(robot, cpu.progress_ns);
   robot.scheduler.EndTurn(cpu.core);
   Refresh(robot);
@@ -236,7 +240,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
-  PollSignals();
+  signals_.Poll();
   if (waker_.unseen() == 0) return;
   for (Task& task : table_.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;

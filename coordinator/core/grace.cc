@@ -87,7 +87,7 @@ void Engine::BeginGrace() {
     const Process* parent = LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }
-  WakeSignalled(0, {.ns = grace_began_ns_, .from_outside = true});
+  signals_.Sent(0, {.ns = grace_began_ns_, .from_outside = true});
 }
 
 void Engine::LimitRealTime() {
@@ -119,7 +119,7 @@ void Engine::KillOverdue() {
     process.killed = true;
     kill(process.pid, SIGKILL);
   }
-  WakeSignalled(0, {end_ns_});
+  signals_.Sent(0, {end_ns_});
 }
 
 void Engine::WarnOfKill(const Process& process, const std::string& within) {

@@ -153,6 +153,14 @@ void Engine::HoldRaw(Task& task, shm::NotificationKind kind) {
   waker_.Hold(task, kind);
 }
 
+// The kernel keeps the order of those who wait for a lock.
+void Engine::LockRaw(Task& task) {
+  task.trap_continues = true;
+  task.expects_kernel = true;
+  task.follow_up = FollowUp::kKernelWaits;
+  HoldRaw(task, shm::NotificationKind::kWrite);
+}
+
 // The timeout of a call that waits for descriptors: false if it is not there, or not valid.
 bool Engine::RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns) {
   const auto in_ms = [](std::uint64_t argument) {
@@ -247,7 +255,7 @@ std::int64_t Engine::PollRaw(Task& task, const TrappedCall& call) {
   }
   const std::int64_t deadline_ns =
       timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
-  awaited::Descriptors watched = Watch(task, waited->data(), waited->size());
+  awaited::Descriptors watched = descriptors_.Watch(task, waited->data(), waited->size());
   watched.signals = RawAwaitedSignals(task, call);
   EnterWait(task, {std::move(watched), deadline_ns, true});
   return 0;
@@ -370,7 +378,7 @@ bool Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_sched_getparam:
     case SYS_sched_getattr:
     case SYS_sched_rr_get_interval:
-      task.trap_result = ScheduleRaw(task, call);
+      task.trap_result = raw_scheduling_.Call(task, call);
       break;
     case SYS_timer_create:
     case SYS_timer_settime:
@@ -383,7 +391,7 @@ bool Engine::HandleRawCall(Task& task, const TrappedCall& call) {
     case SYS_setitimer:
     case SYS_getitimer:
     case SYS_alarm:
-      HandleRawTimer(task, call);
+      raw_timers_.Call(task, call);
       return true;  // it may have written to its descriptor
     case SYS_flock:
     case SYS_fcntl:
@@ -400,7 +408,7 @@ bool Engine::HandleRawCall(Task& task, const TrappedCall& call) {
       task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
       break;
     case SYS_futex_waitv:
-      task.trap_result = FutexWaitForAny(task, call);
+      task.trap_result = words_.WaitForAny(task, call);
       break;
     default:  // SYS_io_uring_setup
       task.trap_result = -ENOSYS;
@@ -417,11 +425,11 @@ void Engine::InterruptTrappedWait(Task& task) {
   task.trap_result = wait.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
   if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
     // A lock is never given up for a signal: the C library would take it for acquired.
-    if (futex->owner != awaited::kNobody || futexes_.ExpectedLock(task.order).has_value()) {
+    if (futex->owner != awaited::kNobody || words_.table().ExpectedLock(task.order).has_value()) {
       task.trap_result = -kRestartAlways;
     }
     if (futex->was_requeued) task.trap_result = -EAGAIN;
-    if (futexes_.WaitsForAny(task.order)) task.trap_result = -kRestart;
+    if (words_.table().WaitsForAny(task.order)) task.trap_result = -kRestart;
   }
   const auto* sleep = wait.As<awaited::Time>();
   if (sleep != nullptr && sleep->remaining_address != 0) {

@@ -142,7 +142,7 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   if (!transfer.reads) {
     shm::NoteSent(Slot(task).receipts);
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
-    const bool of_timer = FindTimerFd(task, number).owner != nullptr;
+    const bool of_timer = raw_timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
   if (fd.IsNonBlocking() || fd.IsReady(events) || AnswersAtOnce(task, call, fd, transfer)) {
@@ -151,11 +151,11 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
   }
   const std::int64_t timeout = fd.SocketTimeout(transfer.reads ? SO_RCVTIMEO : SO_SNDTIMEO);
   const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  awaited::Descriptors watched = Watch(task, &waited, 1);
+  awaited::Descriptors watched = descriptors_.Watch(task, &waited, 1);
   watched.transfers = true;
   watched.takes = watched.fds.size() == 1;
   watched.events = waited.events;
-  GoBehind(task, watched);
+  descriptors_.GoBehind(task, watched);
   EnterWait(task, {std::move(watched),
                    timeout == shm::kNeverNs ? shm::kNeverNs : task.reached_ns + timeout, true});
 }

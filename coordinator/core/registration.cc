@@ -113,7 +113,7 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
   for (Task* task : threads) {
     if (task->process != of || task == first) continue;
     EndTask(*task, moment);
-    WakeThoseWaitingFor(*task, moment);
+    locks_.WakeThoseWaitingFor(*task, moment);
   }
   of->has_strangers = false;
   if (first == nullptr || !by_another) return true;
@@ -220,7 +220,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   task.metered.page = &task.slot_memory->clock;
   if (!turn_.IsOf(task)) host_cpu_.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {  // a new process; or it has executed another program
-    DeletePosixTimers(process);
+    TimerCalls::DeletePosix(process);
     LeaveDds(process, moment);
   }
   PlaceAtGate(task, moment.ns);

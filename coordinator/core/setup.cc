@@ -107,10 +107,10 @@ std::string Engine::PrepareListener() {
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  signals_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
+  signal_fd_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
 
   socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
-  reactor_.Add(signals_.get(), EPOLLIN, {Tag::kSignal});
+  reactor_.Add(signal_fd_.get(), EPOLLIN, {Tag::kSignal});
   return {};
 }
 

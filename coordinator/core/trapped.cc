@@ -16,7 +16,7 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.expects_kernel = false;
   bool looks_again = false;
   if (call.number == SYS_futex) {
-    HandleFutex(task, call);
+    futexes_.Handle(task, call);
   } else {
     looks_again = HandleRawCall(task, call);
   }
@@ -62,7 +62,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
   EndTask(task, {task.reached_ns});
-  WakeThoseWaitingFor(task, {task.reached_ns});
+  locks_.WakeThoseWaitingFor(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
   // Who waits for it looks at a word that the kernel clears.
   if (gates_only_) executor_->LetKernelFinish(call.tid);
@@ -76,7 +76,7 @@ void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
   Process* process = LivingProcess(pid);
   if (process != nullptr && KnownTask(call.tid) == nullptr) {
     process->has_strangers = true;
-    CarryOutWake(*process, call, moment);
+    futexes_.CarryOutWake(*process, call, moment);
   }
   LetThrough(call);
 }

@@ -42,7 +42,7 @@ void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
   // A parent that waits for children of another kind leaves it there.
   untaken_children_.insert(pid);
   Process* parent = LivingProcess(child.parent);
-  if (parent != nullptr) ChildChanged(*parent, pid, false, moment);
+  if (parent != nullptr) stops_.ChildChanged(*parent, pid, false, moment);
 }
 
 bool Engine::HasUnknownChild(const Process& parent) const {

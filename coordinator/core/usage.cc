@@ -7,7 +7,7 @@
 
 namespace tcs {
 
-std::int64_t Engine::ChargedTo(const Process& process) const {
+std::int64_t ChargedTo(const Process& process) {
   std::int64_t charged = process.ended.usage().charged_ns;
   for (const Task* task : process.robot->tasks) {
     if (task->process == &process) charged += task->charged_ns;

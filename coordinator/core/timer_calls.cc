@@ -1,5 +1,5 @@
-// The timers of clients: setitimer, alarm, timerfd and timer_create. What runs out at one instant
-// fires there.
+#include "coordinator/core/timer_calls.h"
+
 #include <signal.h>
 #include <unistd.h>
 
@@ -7,7 +7,6 @@
 #include <cstring>
 #include <utility>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/timer_descriptor.h"
 
@@ -34,13 +33,12 @@ bool IsAwaited(const Process& process) {
 
 }  // namespace
 
-// Our copy of a process's descriptor; none if that is no timer.
-UniqueFd Engine::TimerDescriptorOf(const Process& process, int number) {
+UniqueFd TimerCalls::DescriptorOf(const Process& process, int number) {
   UniqueFd fd(DuplicateFd(process.pidfd.get(), number));
   return fd && IsTimerDescriptor(fd.get()) ? std::move(fd) : UniqueFd();
 }
 
-void Engine::CreateTimer(Task& task, const shm::Notification& note) {
+void TimerCalls::Create(Task& task, const shm::Notification& note) {
   Process& process = *task.process;
   if (process.timers.IsFull()) return;
   shm::TimerKind kind;
@@ -49,35 +47,33 @@ void Engine::CreateTimer(Task& task, const shm::Notification& note) {
   if (kind.signal < 0 || kind.signal > SIGRTMAX) return;
   UniqueFd fd;
   if (note.args[0] >= 0) {
-    fd = TimerDescriptorOf(process, static_cast<int>(note.args[0]));
+    fd = DescriptorOf(process, static_cast<int>(note.args[0]));
     if (!fd) return;
   }
   task.reply[0] = process.timers.Create(kind);
   if (fd) process.timer_fds[task.reply[0]] = std::move(fd);
 }
 
-void Engine::DeleteTimer(Process& process, std::int64_t id) {
+void TimerCalls::Delete(Process& process, std::int64_t id) {
   process.timers.Delete(id);
   process.timer_fds.erase(id);
 }
 
-// A process's timer_create timers end when it executes another program.
-void Engine::DeletePosixTimers(Process& process) {
+void TimerCalls::DeletePosix(Process& process) {
   process.timers.DeletePosix();
   std::erase_if(process.timer_fds,
                 [&](const auto& entry) { return !process.timers.KindOf(entry.first).has_value(); });
 }
 
-// A timer of `process`, by one of its threads, or of its children, which have its descriptors.
-bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& note) {
+bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& note) {
   const std::int64_t id = note.args[0];
   ProcessTimers& timers = process.timers;
   if (note.kind == shm::NotificationKind::kTimerCreate) {
-    CreateTimer(task, note);
+    Create(task, note);
     return false;
   }
   if (note.kind == shm::NotificationKind::kTimerDelete) {
-    DeleteTimer(process, id);
+    Delete(process, id);
     return false;
   }
   if (!timers.KindOf(id).has_value()) return false;
@@ -88,7 +84,7 @@ bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
     } else {
       timers.AcceptAt(id, task.reached_ns);
     }
-    NoteAccepted(process);
+    TimerSignals::NoteAccepted(process);
     task.reply[0] = timers.Overruns(id);
     return wrote;
   }
@@ -104,17 +100,17 @@ bool Engine::SetTimerOf(Process& process, Task& task, const shm::Notification& n
 }
 
 // What has run out by the time of the call is there when it returns.
-bool Engine::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
+bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
   if (!owner.timers.IsBehind(id, asking.reached_ns)) return false;
   const Moment moment{asking.reached_ns};
   const bool wrote = Expire(owner, moment.ns);
-  if (owner.timers.HasSignals()) RouteTimerSignals(owner, moment);
+  if (owner.timers.HasSignals()) signals_.Route(owner, moment);
   return wrote;
 }
 
 // Fires what has run out for one process; true if a descriptor was written to.
-bool Engine::Expire(Process& process, std::int64_t now_ns) {
-  NoteAccepted(process);
+bool TimerCalls::Expire(Process& process, std::int64_t now_ns) {
+  TimerSignals::NoteAccepted(process);
   const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now_ns);
   for (const ProcessTimers::RanOut& timer : ran_out) {
     process.clock.ComeTo(OwnTime(timer.clock_ns));
@@ -123,35 +119,34 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
   return TellDescriptors(process, ran_out);
 }
 
-ProcessTimers::CpuUsed Engine::CpuUsedBy(const Task& task) const {
+ProcessTimers::CpuUsed TimerCalls::CpuUsedBy(const Task& task) {
   return {.process_ns = ChargedTo(*task.process), .tid = task.tid, .thread_ns = task.charged_ns};
 }
 
-// Timers on processor time run out while their process runs; it is told at its next dispatch.
-void Engine::ExpireCpuTimers(const Task& ran) {
+void TimerCalls::ExpireCpu(const Task& ran) {
   Process& process = *ran.process;
   if (!process.timers.HasCpuTimers()) return;
-  NoteAccepted(process);
+  TimerSignals::NoteAccepted(process);
   TellDescriptors(process, process.timers.ExpireCpu(CpuUsedBy(ran)));
 }
 
-void Engine::FireDue(Robot& robot, std::int64_t now_ns) {
+bool TimerCalls::FireDue(Robot& robot, std::int64_t now_ns) {
   const Moment moment{.ns = now_ns, .from_outside = true};
-  latest_ns_ = now_ns;
+  run_.latest_ns = now_ns;
   bool wrote = false;
   for (Task* task : robot.tasks) {
     if (waker_.HasRunOut(*task, now_ns)) {
       task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));
-      MakeReady(*task, shm::WakeReason::kDeadline, moment);
+      waker_.Wake(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;
     if (process.timers.NextExpiry() <= now_ns) {
       process.expired_ns = process.timers.NextExpiry();
       wrote |= Expire(process, now_ns);
     }
-    if (process.timers.HasSignals()) RouteTimerSignals(process, moment);
+    if (process.timers.HasSignals()) signals_.Route(process, moment);
   }
-  if (wrote) PollEvents(0, moment);
+  return wrote;
 }
 
 }  // namespace tcs

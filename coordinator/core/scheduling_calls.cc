@@ -1,12 +1,11 @@
-// What threads ask of their robot's scheduler: policies, priorities, cores; and who is blocked on a
-// lock of whom, so that the owner inherits the priority.
+#include "coordinator/core/scheduling_calls.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <sched.h>
 
 #include <algorithm>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/core/scheduling_rights.h"
 
 namespace tcs {
@@ -42,34 +41,13 @@ SchedulingParameters Wanted(const SchedulingParameters& now, std::int64_t policy
 
 }  // namespace
 
-void Engine::InheritScheduling(Task& task, const Task& creator) {
+void SchedulingCalls::Inherit(Task& task, const Task& creator) {
   SchedulerOf(task).Inherit(task.order, creator.order);
-  FindPriority(task);
+  inheritance_.Find(task);
 }
 
-void Engine::FindPriority(Task& task) {
-  if (SchedulerOf(task).FindEffectivePriority(task.order)) Refresh(*task.process->robot);
-}
-
-// The task waits for a lock of the owner's. A thread of another robot inherits no priority: they
-// are computers apart.
-void Engine::BlockOn(Task& task, const Task* owner) {
-  if (auto* lock = task.Awaits<awaited::Futex>(); lock != nullptr) {
-    lock->owner = owner == nullptr ? awaited::kNobody : owner->order;
-  }
-  const bool inherits = owner != nullptr && owner->process->robot == task.process->robot;
-  SchedulerOf(task).SetBlockedOn(task.order, inherits ? owner->order : RobotScheduler::kNobody);
-}
-
-// The task is blocked on nobody any more, who loses what it inherited.
-void Engine::LeaveLock(Task& task) {
-  const RobotScheduler::Thread owner = SchedulerOf(task).BlockedOn(task.order);
-  BlockOn(task, nullptr);
-  if (owner != RobotScheduler::kNobody) FindPriority(TaskAt(owner));
-}
-
-std::int64_t Engine::MaySchedule(const Task& asking, const Task& task,
-                                 const SchedulingParameters& wanted) {
+std::int64_t SchedulingCalls::MaySchedule(const Task& asking, const Task& task,
+                                          const SchedulingParameters& wanted) {
   if (!IsValid(wanted)) return -EINVAL;
   if (!MaySetScheduling(asking.tid, task.tid, ParametersOf(task), wanted)) return -EPERM;
   if (wanted.policy != SCHED_DEADLINE) return 0;
@@ -77,28 +55,29 @@ std::int64_t Engine::MaySchedule(const Task& asking, const Task& task,
   return SchedulerOf(task).Admits(task.order, wanted.deadline) ? 0 : -EBUSY;
 }
 
-std::int64_t Engine::Schedule(const Task& asking, Task& task, const SchedulingParameters& wanted) {
+std::int64_t SchedulingCalls::Schedule(const Task& asking, Task& task,
+                                       const SchedulingParameters& wanted) {
   if (const std::int64_t error = MaySchedule(asking, task, wanted); error != 0) return error;
   const std::int64_t now = std::max(asking.reached_ns, task.reached_ns);
   SchedulerOf(task).SetParameters(task.order, wanted, now);
-  FindPriority(task);
+  inheritance_.Find(task);
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
   return 0;
 }
 
-std::int64_t Engine::MayPrioritize(const Task& asking, const Task& task, std::int64_t policy,
-                                   std::int64_t priority) {
+std::int64_t SchedulingCalls::MayPrioritize(const Task& asking, const Task& task,
+                                            std::int64_t policy, std::int64_t priority) {
   if (policy != shm::kKeepPolicy && (policy < 0 || policy > INT_MAX)) return -EINVAL;
   return MaySchedule(asking, task, Wanted(ParametersOf(task), policy, priority));
 }
 
-std::int64_t Engine::SetPriority(const Task& asking, Task& task, std::int64_t policy,
-                                 std::int64_t priority) {
+std::int64_t SchedulingCalls::SetPriority(const Task& asking, Task& task, std::int64_t policy,
+                                          std::int64_t priority) {
   if (policy != shm::kKeepPolicy && (policy < 0 || policy > INT_MAX)) return -EINVAL;
   return Schedule(asking, task, Wanted(ParametersOf(task), policy, priority));
 }
 
-std::int64_t Engine::SetAffinity(const Task& asking, Task& task, std::uint64_t cores) {
+std::int64_t SchedulingCalls::SetAffinity(const Task& asking, Task& task, std::uint64_t cores) {
   if (!MaySetAffinity(asking.tid, task.tid)) return -EPERM;
   RobotScheduler& scheduler = SchedulerOf(task);
   const std::uint64_t before = scheduler.CoresOf(task.order);
@@ -111,10 +90,9 @@ std::int64_t Engine::SetAffinity(const Task& asking, Task& task, std::uint64_t c
   return 0;
 }
 
-// `tid` as the program knows it.
-void Engine::HandleScheduling(Task& asking, const shm::Notification& note) {
+void SchedulingCalls::Handle(Task& asking, const shm::Notification& note) {
   const auto tid = static_cast<pid_t>(note.args[0]);
-  Task* task = tid == 0 ? &asking : KnownTask(tid);
+  Task* task = tid == 0 ? &asking : run_.table.Living(tid);
   asking.reply[1] = 0;
   if (task == nullptr || task->process->robot != asking.process->robot) {
     asking.reply[0] = -ESRCH;

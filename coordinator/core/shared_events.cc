@@ -1,9 +1,4 @@
-// One event, one waiter (calls/one_waiter.h): which descriptors offer the same event, and what the
-// kernel has there. So does the kernel with several threads that wait in epoll sets which hold the
-// same descriptor with EPOLLEXCLUSIVE; what that keeps from the others is the first one's for good.
-//
-// A thread that has taken something says so, if others were passed over for it (kPassOn).
-#include "coordinator/calls/one_waiter.h"
+#include "coordinator/core/shared_events.h"
 
 #include <poll.h>
 #include <sys/epoll.h>
@@ -13,8 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/calls/one_waiter.h"
 #include "coordinator/core/borrowed.h"
-#include "coordinator/core/engine.h"
+#include "coordinator/core/descriptor_waits.h"
 #include "coordinator/os/open_files.h"
 
 namespace tcs {
@@ -68,27 +64,26 @@ bool OffersTheSameOnly(const Task& first, const Task& other) {
 
 }  // namespace
 
-// Those for whom an event has come, in one look at the kernel.
-void Engine::WakeAwaiters(const std::vector<Task*>& awaiters, Moment moment) {
+void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
   std::vector<EventWaiter> waiters;
   for (const Task* task : awaiters) waiters.push_back(WaiterOf(*task));
   const std::vector<EventShare> shares =
       ShareEvents(std::move(waiters), [this](int first, int second) {
-        const Task &one = TaskAt(first), &other = TaskAt(second);
+        const Task &one = run_.table.At(first), &other = run_.table.At(second);
         return IsSameFile(DescriptorOf(one), DescriptorOf(other)) || OffersTheSameOnly(one, other);
       });
   for (const EventShare& share : shares) {
     if (share.passed_over_for == kNoThread) continue;
-    PassOver(TaskAt(share.thread), TaskAt(share.passed_over_for));
+    PassOver(run_.table.At(share.thread), run_.table.At(share.passed_over_for));
   }
   for (const EventShare& share : shares) {
-    Task& task = TaskAt(share.thread);
+    Task& task = run_.table.At(share.thread);
     const bool is_woken = share.passed_over_for == kNoThread && task.wait.has_value();
-    if (is_woken) MakeReady(task, shm::WakeReason::kGo, moment);
+    if (is_woken) waker_.Wake(task, shm::WakeReason::kGo, moment);
   }
 }
 
-void Engine::PassOver(Task& task, Task& first) {
+void SharedEvents::PassOver(Task& task, Task& first) {
   awaited::Descriptors& wait = *task.Awaits<awaited::Descriptors>();
   const int fd = DescriptorOf(task);
   if (IsSameFile(DescriptorOf(first), fd)) {
@@ -102,28 +97,27 @@ void Engine::PassOver(Task& task, Task& first) {
   }
   // What is there already comes once more, at once, and is not for it.
   wait.skips_event = HasEvent(task);
-  reactor_.Modify(fd, wait.events | EPOLLET, SubjectOfWait(task, wait));
+  reactor_.Modify(fd, wait.events | EPOLLET, DescriptorWaits::SubjectOf(task, wait));
   wait.is_edge_armed = true;
 }
 
-// The thread has tried what it was woken for: what it has left is for the next.
-void Engine::PassOn(Task& first, Moment moment) {
+void SharedEvents::PassOn(Task& first, Moment moment) {
   if (!std::exchange(first.passes_on, false)) return;
   std::vector<EventWaiter> passed_over;
-  for (Task& task : table_.tasks()) {
+  for (Task& task : run_.table.tasks()) {
     auto* wait = task.Awaits<awaited::Descriptors>();
     if (wait == nullptr || wait->passed_over_for != first.order) continue;
     wait->passed_over_for = awaited::kNobody;
     passed_over.push_back(WaiterOf(task));
   }
-  const Rest rest =
-      PassRestOn(std::move(passed_over), [this](int thread) { return HasEvent(TaskAt(thread)); });
+  const Rest rest = PassRestOn(std::move(passed_over),
+                               [this](int thread) { return HasEvent(run_.table.At(thread)); });
   if (rest.next == kNoThread) return;
   for (const int thread : rest.behind) {
-    TaskAt(thread).Awaits<awaited::Descriptors>()->passed_over_for = rest.next;
+    run_.table.At(thread).Awaits<awaited::Descriptors>()->passed_over_for = rest.next;
   }
-  Task& next = TaskAt(rest.next);
-  MakeReady(next, shm::WakeReason::kGo, moment);
+  Task& next = run_.table.At(rest.next);
+  waker_.Wake(next, shm::WakeReason::kGo, moment);
   next.passes_on = !rest.behind.empty();
   next.reply[1] = next.passes_on ? 1 : 0;
 }
