@@ -77,7 +77,7 @@ void Engine::EndTask(Task& task, Moment moment) {
   KeepUsageOf(task);
   task.cpu_clock_fd.Reset();
   if (task.slot >= 0) {
-    report_.staleness_ns = std::max(report_.staleness_ns, StalenessOf(task));
+    report_.staleness_ns = std::max(report_.staleness_ns, SlotCheck::StalenessOf(task));
     process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;

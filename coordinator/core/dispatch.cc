@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/core/ipc_notes.h"
 #include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
 #include "coordinator/host/starvation_watch.h"
@@ -28,13 +30,6 @@ constexpr std::int64_t kLookTurnNs = 50'000'000;
 constexpr int kStartTurns = 600;
 
 }  // namespace
-
-// The thread's own CPU clock; -1 if it cannot be read any more.
-std::int64_t Engine::HostClockOf(Task& task) {
-  if (task.process->threads == 1) return ProcessCpuClockNs(task.tid);
-  if (!task.cpu_clock_fd) task.cpu_clock_fd.Reset(OpenThreadCpuClock(task.tid));
-  return ReadThreadCpuClock(task.cpu_clock_fd.get());
-}
 
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   shm::ThreadSlot& slot = Slot(task);
@@ -136,11 +131,18 @@ void Engine::RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::S
   schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
 }
 
+// False if the thread cannot have done what it has noted: its process is ended for that.
+bool Engine::TakeIpcNotesOf(Task& task) {
+  const char* what = TakeIpcNotes(task, *memory_);
+  if (what != nullptr) expulsion_.Expel(*task.process, what);
+  return what == nullptr;
+}
+
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
-  if (const char* what = WhatIsImpossible(task); what != nullptr) {
+  if (const char* what = slot_check_.WhatIsImpossible(task); what != nullptr) {
     task.reached_ns = task.cpu->progress_ns;
-    Expel(*task.process, what);
+    expulsion_.Expel(*task.process, what);
     return;
   }
   shm::ThreadSlot& slot = Slot(task);
@@ -194,7 +196,7 @@ void Engine::Settle(Task& task) {
     task.lead = clock.lead();
     most_lead_ = std::max(most_lead_, task.lead);
     RecordRun(task, {begun.ns(), clock.At(at).ns()}, {start, start});
-    if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
+    TakeIpcNotesOf(task);
     return;
   }
   task.cpu->ComeTo(progress);
@@ -203,7 +205,7 @@ void Engine::Settle(Task& task) {
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
-  if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
+  TakeIpcNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
@@ -243,7 +245,7 @@ bool Engine::GivesUpStart(Task& task, int turns) {
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0;
-  StarvationWatch starvation(host_cpu_.stop_tsc(), ticks_per_ns_);
+  StarvationWatch starvation(host_cpu_.stop_tsc(), clock_.rate().ticks_per_ns);
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
@@ -310,10 +312,7 @@ bool Engine::AnswerEarly(Task& task) {
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
-    if (!TakeIpcNotes(task)) {
-      Expel(*task.process, kWrongIpcNotes);
-      return true;
-    }
+    if (!TakeIpcNotesOf(task)) return true;
     const shm::Notification early = Slot(task).note;
     finds_more = Handle(task, early);
   } else {
@@ -400,7 +399,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {
-    if (task.state != TaskState::kDead) AwaitDeath(task);
+    if (task.state != TaskState::kDead) expulsion_.AwaitDeath(task);
     return;
   }
   if (task.spins) StepAside(task);

@@ -291,19 +291,18 @@ void Engine::LookAround() {
   if (options_.on_progress) ShowProgress();
   if (options_.on_notice) LookForStandstill();
   const std::uint64_t now_tsc = __rdtsc();
-  const auto every = static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
-  next_look_tsc_ = now_tsc + std::max(every, (now_tsc - begun_tsc) * kLookPause);
+  next_look_tsc_ =
+      now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
 }
 
 void Engine::ShowProgress() {
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
-  progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
+  progress.real_ns = clock_.RealNs();
   progress.drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
   progress.client_ns = client_host_ns_;
   progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
-  progress.coordinating_ns =
-      HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ - progress.dynamics_ns;
+  progress.coordinating_ns = clock_.CoordinatorNs() - progress.dynamics_ns;
   for (const Process& process : table_.processes()) {
     if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
   }
@@ -371,10 +370,8 @@ RunReport Engine::Run() {
   for (const std::string& warning : scenario_.warnings) Warn(warning);
   report_.error = Prepare();
   if (report_.error.empty()) report_.error = StartClients();
-  start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);
-  start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
-  start_tsc_ = __rdtsc();
-  schedule_.StartAt(start_tsc_, ticks_per_ns_);
+  clock_.Start();
+  schedule_.StartAt(clock_.start_tsc(), clock_.rate().ticks_per_ns);
   try {
     while (report_.error.empty() && !stop_.asked()) {
       if (!Step()) break;
@@ -382,9 +379,8 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     report_.error = error.what();
   }
-  report_.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
-  report_.coordinating_ns = HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ -
-                            (world_.present() ? world_.host_ns() : 0);
+  report_.real_ns = clock_.RealNs();
+  report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
   // First: what clients do at their end is no part of the run.
   if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {

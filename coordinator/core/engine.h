@@ -17,9 +17,12 @@
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/activations.h"
 #include "coordinator/core/coordinator.h"
+#include "coordinator/core/expulsion.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
+#include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_state.h"
+#include "coordinator/core/slot_check.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -133,24 +136,11 @@ class Engine {
   std::int64_t NsToLook(Task& task);
   std::int64_t OwnHorizonNs() const;
   void Settle(Task& task);
+  bool TakeIpcNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
-  static std::int64_t HostClockOf(Task& task);
-  static Meter::CpuClock CpuClockOf(Task& task) {
-    return [&task] { return HostClockOf(task); };
-  }
   std::int64_t WrittenAt() const { return run_.WrittenAt(); }
-
-  // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
-  static constexpr const char* kWrongIpcNotes = "times of System V objects";
-  const char* WhatIsImpossible(const Task& task) const;
-  static const char* WhatIsImpossible(const shm::Notification& note);
-  void Expel(Process& process, const char* what);
-  void AwaitDeath(Task& task);
-  std::int64_t StolenOf(const Task& task) const;
-  std::int64_t StalenessOf(const Task& task) const;
-  bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
   // By the kind of descriptor (handlers.cc).
   void RegisterHandlers();
@@ -501,6 +491,9 @@ class Engine {
   std::uint64_t fds_order_counter_ = 0;
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
+  RunClock clock_;
+  SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
+  Expulsion expulsion_{run_, waker_, host_cpu_};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
@@ -516,8 +509,6 @@ class Engine {
   std::vector<Listener> listeners_;
   std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
   std::string socket_name_;      // of the first; the others' have their numbers in them
-  std::uint64_t ns_per_tick_q32_ = 0;
-  double ticks_per_ns_ = 1.0;
 
   bool reached_end_ = false;
   UniqueFd grace_timer_;                                   // of real time:
@@ -527,8 +518,6 @@ class Engine {
 
   std::int64_t client_host_ns_ = 0;
   VirtualDuration most_lead_;  // of all programs' clocks
-  std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
-  std::uint64_t start_tsc_ = 0;
   int shows_ = 0;
 
   struct Standstill {

@@ -51,7 +51,7 @@ void Engine::Report(RunReport* report) {
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;
-      report->staleness_ns = std::max(report->staleness_ns, StalenessOf(*task));
+      report->staleness_ns = std::max(report->staleness_ns, SlotCheck::StalenessOf(*task));
     }
   }
 }

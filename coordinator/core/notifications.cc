@@ -115,11 +115,11 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
   const Moment moment{task.reached_ns};
   bool looks_again = false;
   if (task.process->expelled) {
-    AwaitDeath(task);
+    expulsion_.AwaitDeath(task);
     return false;
   }
-  if (const char* what = WhatIsImpossible(note); what != nullptr) {
-    Expel(*task.process, what);
+  if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {
+    expulsion_.Expel(*task.process, what);
     return false;
   }
   task.reason = shm::WakeReason::kGo;

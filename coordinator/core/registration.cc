@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/attach_protocol.h"

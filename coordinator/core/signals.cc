@@ -39,8 +39,7 @@ bool Engine::PollSignals() {
   const bool awaited =
       gates_only_ || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   if (!awaited || __rdtsc() < next_signal_look_tsc_) return false;
-  next_signal_look_tsc_ =
-      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
+  next_signal_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEveryNs);
   bool ended = false;
   const std::int64_t now_ns = turn_.lasts() ? WrittenAt() : latest_ns_;
   for (Task& task : table_.tasks()) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/strays.h"

@@ -2,6 +2,7 @@
 // for it.
 #include "coordinator/core/usage.h"
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
@@ -38,7 +39,7 @@ Usage Engine::UsageOf(const Process& process) {
     if (task->process != &process || task->slot < 0) continue;
     usage += {.charged_ns = task->charged_ns,
               .host_cpu_ns = HostCpuOf(*task),
-              .stolen_ns = StolenOf(*task),
+              .stolen_ns = slot_check_.StolenOf(*task),
               .activations = task->activations,
               .work = task->work};
   }
@@ -59,7 +60,7 @@ void Engine::KeepUsageOf(Task& ended) {
   Process& process = *ended.process;
   const Usage usage{
       .charged_ns = ended.charged_ns,
-      .stolen_ns = ended.slot < 0 ? 0 : StolenOf(ended),
+      .stolen_ns = ended.slot < 0 ? 0 : slot_check_.StolenOf(ended),
       .activations = ended.activations,
       .work = ended.work,
   };
