@@ -229,8 +229,8 @@ bool Engine::HasMadeCall(Task& task, int* turns) {
 
 // The thread has not registered in so many turns. True if it is not waited for any more.
 bool Engine::GivesUpStart(Task& task, int turns) {
-  if (NeverRegisters(task)) {
-    Lower(task.tid);
+  if (UnmanagedThreads::NeverRegisters(task)) {
+    unmanaged_.Lower(task.tid);
     EndTask(task, {task.reached_ns});
     return true;
   }
@@ -258,7 +258,7 @@ void Engine::AwaitStop(Task& task) {
     if (gates_only_) host_cpu_.detector().Arm();
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
-      LowerUnknownThreads();
+      unmanaged_.LowerThoseThatCompute(claim_.cpu, host_cpu_.detector().pid());
     }
     if (task.is_brief) {
       if (HasMadeCall(task, &brief_turns)) return;

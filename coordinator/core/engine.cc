@@ -258,24 +258,15 @@ void Engine::WaitOutside() {
 bool Engine::HasJumpedOver() {
   const Reactor::Found found = PollEvents(0, {latest_ns_});
   PollUnseen();
-  if (StrangersRun()) {
+  if (UnmanagedRun()) {
     PollEvents(kUnseenPollNs, {latest_ns_});
     return false;
   }
   return !found.wakes_others;
 }
 
-// Threads that never registered are at work: time waits for them.
-bool Engine::StrangersRun() {
-  for (const Process& process : table_.processes()) {
-    if (!process.has_strangers || process.dead) continue;
-    for (const pid_t tid : ThreadsOf(process.pid)) {
-      if (KnownTask(tid) != nullptr || IsAstray(tid)) continue;
-      if (const char state = ThreadState(tid); state == 'R' || state == 'D') return true;
-    }
-  }
-  return UnknownChildrenRun();
-}
+// Threads or processes that never registered are at work: time waits for them.
+bool Engine::UnmanagedRun() const { return unmanaged_.AnyRuns() || unknown_children_.AnyRuns(); }
 
 std::int64_t Engine::FurthestNs() const {
   std::int64_t furthest_ns = world_.present() ? world_.progress_ns() : 0;
@@ -330,7 +321,7 @@ bool Engine::AwaitOutside() {
     const Reactor::Found found = PollEvents(0, {latest_ns_});
     PollUnseen();
     if (found.wakes_others || root_.Least() != shm::kNeverNs) return true;
-    if (waker_.unseen() == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun())
+    if (waker_.unseen() == 0 && !has_spinners_ && !unknown_children_.AnyCounts() && !UnmanagedRun())
       return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;

@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +22,8 @@
 #include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/slot_check.h"
+#include "coordinator/core/unknown_children.h"
+#include "coordinator/core/unmanaged_threads.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -33,7 +34,6 @@
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
-#include "coordinator/os/strays.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
 #include "coordinator/trace/schedule_records.h"
@@ -94,7 +94,7 @@ class Engine {
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   void PollUnseen();
-  bool StrangersRun();
+  bool UnmanagedRun() const;
   void WaitOutside();
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
@@ -181,20 +181,6 @@ class Engine {
   void NoteStops(Process& process, Moment moment);
   void ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment);
   void LookAtStops(Moment moment);
-
-  // Children that nobody announced (unknown_children.cc).
-  void FindUnknownChildren(Process& parent);
-  void UnknownChildEnded(pid_t pid, Moment moment);
-  bool HasUnknownChild(const Process& parent) const;
-  bool AwaitsUnknownChildren() const;
-  bool UnknownChildrenRun() const;
-
-  // Threads that nobody announced, or that do not end (unknown_threads.cc).
-  void LowerUnknownThreads();
-  void Lower(pid_t tid);
-  bool NeverRegisters(Task& task);
-  bool IsAstray(pid_t tid) const;
-  std::string NameOfMakerOf(pid_t tid);
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
   void HandleScheduling(Task& asking, const shm::Notification& note);
@@ -476,9 +462,7 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;   // of threads that register later
-  std::map<pid_t, UnknownChild> unknown_children_;  // the living
-  std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet
+  std::map<pid_t, Connection> early_connections_;  // of threads that register later
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
@@ -494,18 +478,12 @@ class Engine {
   RunClock clock_;
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   Expulsion expulsion_{run_, waker_, host_cpu_};
+  UnmanagedThreads unmanaged_{run_};
+  UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
-  // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
-  std::map<pid_t, std::int64_t> lowered_;
-  struct UnknownThreads {
-    std::int64_t dispatch = -1;             // in which they were seen,
-    std::map<pid_t, std::int64_t> used_ns;  // and what they had used by then
-  };
-  UnknownThreads unknown_threads_;
-  int most_pids_ = MostPids();
   std::vector<Listener> listeners_;
   std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
   std::string socket_name_;      // of the first; the others' have their numbers in them

@@ -15,6 +15,8 @@ namespace tcs {
 
 namespace {
 
+constexpr int kYieldsBeforeLook = 100;
+
 bool IsTerminal(int fd) {
   struct stat status {};
   return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd) != 0;
@@ -88,7 +90,7 @@ std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& n
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
+    if (KnownTask(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
     executor_->Hold(tid);
     Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
     InheritScheduling(thread, creator);
@@ -107,6 +109,14 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   executor_->Hold(pid);
   InheritScheduling(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
+}
+
+// Equals have their turn.
+bool Engine::Yield(Task& task) {
+  SchedulerOf(task).Yield(task.order);
+  if (++task.yields < kYieldsBeforeLook) return false;
+  task.yields = 0;
+  return unknown_children_.LetRunBeside(*task.process);
 }
 
 bool Engine::Handle(Task& task, const shm::Notification& note) {
@@ -139,7 +149,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitChild:
       EnterWait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
-      FindUnknownChildren(*task.process);
+      unknown_children_.LookFor(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
@@ -170,7 +180,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       HandleScheduling(task, note);
       break;
     case Kind::kStrangers:
-      task.process->has_strangers = true;
+      task.process->has_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
       WakeSignalled(static_cast<pid_t>(note.args[0]), moment);

@@ -131,7 +131,7 @@ std::vector<std::string> Engine::WhatIsAwaited() const {
     }
     if (!first.second.empty()) awaited.push_back(NameOf(process) + ' ' + first.second);
   }
-  for (const auto& [pid, child] : unknown_children_) {
+  for (const auto& [pid, child] : unknown_children_.living()) {
     awaited.push_back(NameOf(pid) + ", which tcs knows nothing of, goes on");
   }
   return awaited;
@@ -151,11 +151,11 @@ bool Engine::AwaitsTerminal() const {
 std::vector<std::string> Engine::ComputingStrangers() const {
   std::vector<std::string> strangers;
   for (const Process& process : table_.processes()) {
-    if (process.has_strangers && !process.dead) {
+    if (process.has_unmanaged_threads && !process.dead) {
       strangers.push_back("a thread of " + NameOf(process));
     }
   }
-  for (const auto& [pid, child] : unknown_children_) {
+  for (const auto& [pid, child] : unknown_children_.living()) {
     strangers.push_back(NameOf(pid));
   }
   return strangers;
@@ -170,7 +170,7 @@ void Engine::NoteStandstill(std::int64_t now_ns) {
   if (now_ns - standstill_.since_ns < kPatienceNs || AwaitsTerminal()) return;
   has_said_standstill_ = true;
   const std::string why =
-      StrangersRun() ? "it waits for what computes without tcs's knowing of it: " +
+      UnmanagedRun() ? "it waits for what computes without tcs's knowing of it: " +
                            Joined(ComputingStrangers())
                      : "nothing can happen any more but from outside; " + Joined(WhatIsAwaited());
   options_.on_notice(
@@ -189,7 +189,7 @@ void Engine::NoteLeftBehind(std::int64_t now_ns) {
       left.push_back(NameOf(process));
     }
   }
-  for (const auto& [pid, child] : unknown_children_) {
+  for (const auto& [pid, child] : unknown_children_.living()) {
     left.push_back(NameOf(pid));
   }
   if (ended.empty() || left.empty()) return;
