@@ -280,7 +280,7 @@ void Engine::LookAround() {
   if (IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
   if (options_.on_progress) ShowProgress();
-  if (options_.on_notice) LookForStandstill();
+  if (options_.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);

@@ -22,6 +22,7 @@
 #include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/slot_check.h"
+#include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/unknown_children.h"
 #include "coordinator/core/unmanaged_threads.h"
 #include "coordinator/core/waker.h"
@@ -100,16 +101,6 @@ class Engine {
   std::int64_t FurthestNs() const;
   void LookAround();
   void ShowProgress();
-
-  // What a user is told who sees nothing happen (standstill.cc).
-  void LookForStandstill();
-  void NoteStandstill(std::int64_t now_ns);
-  void NoteLeftBehind(std::int64_t now_ns);
-  bool AwaitsTerminal() const;
-  std::vector<std::string> WhatIsAwaited() const;
-  std::vector<std::string> ComputingStrangers() const;
-  std::pair<int, std::string> WhatItAwaits(const Task& task) const;
-  std::string AwaitedDescriptors(const Task& task, const awaited::Descriptors& wait) const;
 
   // The door (waker.h).
   void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
@@ -480,6 +471,7 @@ class Engine {
   Expulsion expulsion_{run_, waker_, host_cpu_};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
+  StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
@@ -498,14 +490,7 @@ class Engine {
   VirtualDuration most_lead_;  // of all programs' clocks
   int shows_ = 0;
 
-  struct Standstill {
-    std::int64_t dispatches = -1, at_ns = -1;  // virtual
-    std::int64_t since_ns = 0;                 // real
-  };
-  Standstill standstill_;
   std::uint64_t next_look_tsc_ = 0;
-  std::int64_t alone_since_ns_ = -1;  // real
-  bool has_said_standstill_ = false, has_said_left_behind_ = false;
 };
 
 }  // namespace tcs
