@@ -54,8 +54,9 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.NoteLimits();
   grant.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
-  page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
-                                                 : ChargedTo(*task.process) - task.charged_ns;
+  page.other_cpu_ns = task.process->threads == 1
+                          ? task.process->ended.usage().charged_ns
+                          : UsageBook::ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   page.last_shown_ns.store(std::max(last, now_ns), std::memory_order_relaxed);
@@ -124,13 +125,6 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
   ++report_.untold;
 }
 
-// It may be settled again in the same dispatch.
-void Engine::RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world) {
-  const std::uint64_t until_tsc = host_cpu_.stop_tsc();
-  const std::uint64_t since_tsc = std::exchange(turn_.recorded_tsc, until_tsc);
-  schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
-}
-
 // False if the thread cannot have done what it has noted: its process is ended for that.
 bool Engine::TakeIpcNotesOf(Task& task) {
   const char* what = TakeIpcNotes(task, *memory_);
@@ -179,7 +173,7 @@ void Engine::Settle(Task& task) {
   const std::int64_t charged = reading.cpu_ns - ours;
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
   const std::int64_t host_ns = metered.HostNs(executed);
-  client_host_ns_ += host_ns;
+  report_.client_ns += host_ns;
   metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
@@ -194,8 +188,8 @@ void Engine::Settle(Task& task) {
     clock.NoteHeld(at, computed);
     clock.Advance(at, computed);
     task.lead = clock.lead();
-    most_lead_ = std::max(most_lead_, task.lead);
-    RecordRun(task, {begun.ns(), clock.At(at).ns()}, {start, start});
+    run_.most_lead = std::max(run_.most_lead, task.lead);
+    records_.Ran(task, {begun.ns(), clock.At(at).ns()}, {start, start}, host_cpu_.stop_tsc());
     TakeIpcNotesOf(task);
     return;
   }
@@ -209,7 +203,7 @@ void Engine::Settle(Task& task) {
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
-  RecordRun(task, {start, busy_until}, {start, busy_until});
+  records_.Ran(task, {start, busy_until}, {start, busy_until}, host_cpu_.stop_tsc());
 }
 
 // The thread has a turn for the call that it has made, from when it was there to make it. True once

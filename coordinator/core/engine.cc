@@ -199,12 +199,11 @@ bool Engine::StepWorld() {
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
-  const DispatchLog::Span span{now, world_.progress_ns()};
-  schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
+  records_.Integrated({now, world_.progress_ns()}, {begun_tsc, ended_tsc});
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
     latest_ns_ = world_.progress_ns();
-    schedule_.Instant(world_row_, "sensors", latest_ns_);
+    records_.SentSensors(latest_ns_);
     ShowDeliverersTheirDeadlines();
     PollEvents(0, {.ns = latest_ns_, .from_outside = true});
   }
@@ -227,8 +226,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();
-    const DispatchLog::Span span{world, world_.progress_ns()};
-    schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
+    records_.Integrated({world, world_.progress_ns()}, {begun_tsc, ended_tsc});
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   return std::min(horizon_ns, root_.DynamicsHorizon());
@@ -290,14 +288,15 @@ void Engine::ShowProgress() {
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
   progress.real_ns = clock_.RealNs();
-  progress.drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
-  progress.client_ns = client_host_ns_;
+  progress.drift_ns = run_.DriftNs();
+  progress.client_ns = report_.client_ns;
   progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
   progress.coordinating_ns = clock_.CoordinatorNs() - progress.dynamics_ns;
   for (const Process& process : table_.processes()) {
-    if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
+    if (process.is_client)
+      progress.clients.push_back({process.name, usage_.ChargedToAllOf(process)});
   }
-  if (shows_++ % kShowsPerFlush == 0) FlushRecords();
+  if (shows_++ % kShowsPerFlush == 0) records_.Flush();
   options_.on_progress(progress);
 }
 
@@ -362,7 +361,7 @@ RunReport Engine::Run() {
   report_.error = Prepare();
   if (report_.error.empty()) report_.error = StartClients();
   clock_.Start();
-  schedule_.StartAt(clock_.start_tsc(), clock_.rate().ticks_per_ns);
+  records_.StartAt(clock_);
   try {
     while (report_.error.empty() && !stop_.asked()) {
       if (!Step()) break;
@@ -374,8 +373,8 @@ RunReport Engine::Run() {
   report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
   // First: what clients do at their end is no part of the run.
-  if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {
-    report_.error = error;
+  for (const std::string& error : {records_.Close(), CloseDds()}) {
+    if (report_.error.empty()) report_.error = error;
   }
   RunReport report = report_;
   if (header_ != nullptr) {

@@ -20,11 +20,13 @@
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
 #include "coordinator/core/run_clock.h"
+#include "coordinator/core/run_records.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/slot_check.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/unknown_children.h"
 #include "coordinator/core/unmanaged_threads.h"
+#include "coordinator/core/usage_book.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -37,7 +39,6 @@
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
-#include "coordinator/trace/schedule_records.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -384,21 +385,6 @@ class Engine {
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 
-  // What is written about the run (records.cc).
-  std::string OpenRecords();
-  void FlushRecords();
-  std::string CloseRecords();
-  void RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world);
-
-  // What clients have used (usage.cc).
-  std::int64_t ChargedTo(const Process& process) const;
-  std::int64_t ChargedToAllOf(const Process& client) const;
-  Usage UsageOf(const Process& process);
-  Usage UsageOfAll(const Process& client);
-  std::int64_t HostCpuOf(Task& task);
-  void KeepUsageOf(Task& ended);
-  void KeepUsageOf(Process& ended);
-
   // The last signal and the time to obey it (grace.cc).
   void EndClients();
   void BeginGrace();
@@ -440,10 +426,9 @@ class Engine {
   std::int64_t& grace_began_ns_ = run_.grace_began_ns;
   CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
   World world_{command_input_};
-  ScheduleRecords schedule_;
   Activations activations_;
+  RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
-  int world_row_ = 0;
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
   dds::Hub hub_;
@@ -468,6 +453,7 @@ class Engine {
   HostCpu host_cpu_;
   RunClock clock_;
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
+  UsageBook usage_{table_, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
@@ -486,8 +472,6 @@ class Engine {
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
 
-  std::int64_t client_host_ns_ = 0;
-  VirtualDuration most_lead_;  // of all programs' clocks
   int shows_ = 0;
 
   std::uint64_t next_look_tsc_ = 0;

@@ -96,7 +96,7 @@ Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
 
 std::int64_t Engine::TimerNow(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
-  if (kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
+  if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner);
   if (kind.clock == shm::TimerClock::kTime) {
     return owner.clock.At(RobotTime(task.reached_ns)).ns();
   }

@@ -61,11 +61,8 @@ std::string Engine::Prepare() {
   } else {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
-  if (std::string error = OpenRecords(); !error.empty()) return error;
+  if (std::string error = records_.Open(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;
-  if (world_.present()) {
-    world_row_ = schedule_.AddRow("dynamics", "dynamics");
-  }
   clock_.Calibrate();
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();

@@ -124,7 +124,9 @@ bool Engine::Expire(Process& process, std::int64_t now_ns) {
 }
 
 ProcessTimers::CpuUsed Engine::CpuUsedBy(const Task& task) const {
-  return {.process_ns = ChargedTo(*task.process), .tid = task.tid, .thread_ns = task.charged_ns};
+  return {.process_ns = UsageBook::ChargedTo(*task.process),
+          .tid = task.tid,
+          .thread_ns = task.charged_ns};
 }
 
 // Timers on processor time run out while their process runs; it is told at its next dispatch.
