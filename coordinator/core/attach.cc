@@ -53,7 +53,7 @@ Task* Engine::NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& 
   const bool is_child = maker != nullptr || parent != getpid();
   task->is_further = is_child;
   task->row =
-      schedule_.AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
+      records_.AddRow(robot->name, is_child ? fmt::format("{} #{}", name, task->order) : name);
   return task;
 }
 
@@ -62,7 +62,7 @@ Task* Engine::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
   Task* task = AddTask(process, tid, at_ns);
   task->is_further = true;
   task->row =
-      schedule_.AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
+      records_.AddRow(process.robot->name, fmt::format("{} #{}", process.name, task->order));
   return task;
 }
 
@@ -74,10 +74,10 @@ Task* Engine::NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64
 // What the thread has had and done goes to its process.
 void Engine::EndTask(Task& task, Moment moment) {
   Process& process = *task.process;
-  KeepUsageOf(task);
+  usage_.Keep(task);
   task.cpu_clock_fd.Reset();
   if (task.slot >= 0) {
-    report_.staleness_ns = std::max(report_.staleness_ns, StalenessOf(task));
+    report_.staleness_ns = std::max(report_.staleness_ns, SlotCheck::StalenessOf(task));
     process.link->FreeSlot(task.slot);
   }
   if (process.deliverer == &task) process.deliverer = nullptr;
@@ -110,7 +110,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
     EndTask(*task, moment);
     locks_.WakeThoseWaitingFor(*task, moment);
   }
-  KeepUsageOf(process);
+  UsageBook::Keep(process);
   process.timer_fds.clear();
   reactor_.Remove(process.pidfd.get());
   process.pidfd.Reset();

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/core/ipc_notes.h"
 #include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
 #include "coordinator/host/starvation_watch.h"
@@ -28,13 +30,6 @@ constexpr std::int64_t kLookTurnNs = 50'000'000;
 constexpr int kStartTurns = 600;
 
 }  // namespace
-
-// The thread's own CPU clock; -1 if it cannot be read any more.
-std::int64_t Engine::HostClockOf(Task& task) {
-  if (task.process->threads == 1) return ProcessCpuClockNs(task.tid);
-  if (!task.cpu_clock_fd) task.cpu_clock_fd.Reset(OpenThreadCpuClock(task.tid));
-  return ReadThreadCpuClock(task.cpu_clock_fd.get());
-}
 
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   shm::ThreadSlot& slot = Slot(task);
@@ -59,8 +54,9 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.NoteLimits();
   grant.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
-  page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
-                                                 : ChargedTo(*task.process) - task.charged_ns;
+  page.other_cpu_ns = task.process->threads == 1
+                          ? task.process->ended.usage().charged_ns
+                          : UsageBook::ChargedTo(*task.process) - task.charged_ns;
   page.children_cpu_ns = task.process->children_cpu_ns;
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   page.last_shown_ns.store(std::max(last, now_ns), std::memory_order_relaxed);
@@ -129,18 +125,18 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
   ++report_.untold;
 }
 
-// It may be settled again in the same dispatch.
-void Engine::RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world) {
-  const std::uint64_t until_tsc = host_cpu_.stop_tsc();
-  const std::uint64_t since_tsc = std::exchange(turn_.recorded_tsc, until_tsc);
-  schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
+// False if the thread cannot have done what it has noted: its process is ended for that.
+bool Engine::TakeIpcNotesOf(Task& task) {
+  const char* what = TakeIpcNotes(task, *memory_);
+  if (what != nullptr) expulsion_.Expel(*task.process, what);
+  return what == nullptr;
 }
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
-  if (const char* what = WhatIsImpossible(task); what != nullptr) {
+  if (const char* what = slot_check_.WhatIsImpossible(task); what != nullptr) {
     task.reached_ns = task.cpu->progress_ns;
-    Expel(*task.process, what);
+    expulsion_.Expel(*task.process, what);
     return;
   }
   shm::ThreadSlot& slot = Slot(task);
@@ -177,7 +173,7 @@ void Engine::Settle(Task& task) {
   const std::int64_t charged = reading.cpu_ns - ours;
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
   const std::int64_t host_ns = metered.HostNs(executed);
-  client_host_ns_ += host_ns;
+  report_.client_ns += host_ns;
   metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
@@ -192,9 +188,9 @@ void Engine::Settle(Task& task) {
     clock.NoteHeld(at, computed);
     clock.Advance(at, computed);
     task.lead = clock.lead();
-    most_lead_ = std::max(most_lead_, task.lead);
-    RecordRun(task, {begun.ns(), clock.At(at).ns()}, {start, start});
-    if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
+    run_.most_lead = std::max(run_.most_lead, task.lead);
+    records_.Ran(task, {begun.ns(), clock.At(at).ns()}, {start, start}, host_cpu_.stop_tsc());
+    TakeIpcNotesOf(task);
     return;
   }
   task.cpu->ComeTo(progress);
@@ -203,11 +199,11 @@ void Engine::Settle(Task& task) {
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
-  if (!TakeIpcNotes(task)) Expel(*task.process, kWrongIpcNotes);
+  TakeIpcNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
-  RecordRun(task, {start, busy_until}, {start, busy_until});
+  records_.Ran(task, {start, busy_until}, {start, busy_until}, host_cpu_.stop_tsc());
 }
 
 // The thread has a turn for the call that it has made, from when it was there to make it. True once
@@ -227,8 +223,8 @@ bool Engine::HasMadeCall(Task& task, int* turns) {
 
 // The thread has not registered in so many turns. True if it is not waited for any more.
 bool Engine::GivesUpStart(Task& task, int turns) {
-  if (NeverRegisters(task)) {
-    Lower(task.tid);
+  if (UnmanagedThreads::NeverRegisters(task)) {
+    unmanaged_.Lower(task.tid);
     EndTask(task, {task.reached_ns});
     return true;
   }
@@ -243,7 +239,7 @@ bool Engine::GivesUpStart(Task& task, int turns) {
 // Until the running thread has notified, reached its horizon, or must make room for another one.
 void Engine::AwaitStop(Task& task) {
   int starting_turns = 0, brief_turns = 0;
-  StarvationWatch starvation(host_cpu_.stop_tsc(), ticks_per_ns_);
+  StarvationWatch starvation(host_cpu_.stop_tsc(), clock_.rate().ticks_per_ns);
   for (bool first = true;; first = false) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
@@ -256,7 +252,7 @@ void Engine::AwaitStop(Task& task) {
     if (gates_only_) host_cpu_.detector().Arm();
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
-      LowerUnknownThreads();
+      unmanaged_.LowerThoseThatCompute(claim_.cpu, host_cpu_.detector().pid());
     }
     if (task.is_brief) {
       if (HasMadeCall(task, &brief_turns)) return;
@@ -310,10 +306,7 @@ bool Engine::AnswerEarly(Task& task) {
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
-    if (!TakeIpcNotes(task)) {
-      Expel(*task.process, kWrongIpcNotes);
-      return true;
-    }
+    if (!TakeIpcNotesOf(task)) return true;
     const shm::Notification early = Slot(task).note;
     finds_more = Handle(task, early);
   } else {
@@ -400,7 +393,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {
-    if (task.state != TaskState::kDead) AwaitDeath(task);
+    if (task.state != TaskState::kDead) expulsion_.AwaitDeath(task);
     return;
   }
   if (task.spins) StepAside(task);

@@ -203,12 +203,11 @@ bool Engine::StepWorld() {
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
-  const DispatchLog::Span span{now, world_.progress_ns()};
-  schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
+  records_.Integrated({now, world_.progress_ns()}, {begun_tsc, ended_tsc});
   root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
     latest_ns_ = world_.progress_ns();
-    schedule_.Instant(world_row_, "sensors", latest_ns_);
+    records_.SentSensors(latest_ns_);
     ShowDeliverersTheirDeadlines();
     PollEvents(0, {.ns = latest_ns_, .from_outside = true});
   }
@@ -231,8 +230,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();
-    const DispatchLog::Span span{world, world_.progress_ns()};
-    schedule_.Slice(world_row_, span, span, {begun_tsc, ended_tsc});
+    records_.Integrated({world, world_.progress_ns()}, {begun_tsc, ended_tsc});
     root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
   return std::min(horizon_ns, root_.DynamicsHorizon());
@@ -262,24 +260,15 @@ void Engine::WaitOutside() {
 bool Engine::HasJumpedOver() {
   const Reactor::Found found = PollEvents(0, {latest_ns_});
   PollUnseen();
-  if (StrangersRun()) {
+  if (UnmanagedRun()) {
     PollEvents(kUnseenPollNs, {latest_ns_});
     return false;
   }
   return !found.wakes_others;
 }
 
-// Threads that never registered are at work: time waits for them.
-bool Engine::StrangersRun() {
-  for (const Process& process : table_.processes()) {
-    if (!process.has_strangers || process.dead) continue;
-    for (const pid_t tid : ThreadsOf(process.pid)) {
-      if (KnownTask(tid) != nullptr || IsAstray(tid)) continue;
-      if (const char state = ThreadState(tid); state == 'R' || state == 'D') return true;
-    }
-  }
-  return UnknownChildrenRun();
-}
+// Threads or processes that never registered are at work: time waits for them.
+bool Engine::UnmanagedRun() const { return unmanaged_.AnyRuns() || unknown_children_.AnyRuns(); }
 
 std::int64_t Engine::FurthestNs() const {
   std::int64_t furthest_ns = world_.present() ? world_.progress_ns() : 0;
@@ -293,25 +282,25 @@ void Engine::LookAround() {
   if (IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
   if (options_.on_progress) ShowProgress();
-  if (options_.on_notice) LookForStandstill();
+  if (options_.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
-  const auto every = static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * ticks_per_ns_);
-  next_look_tsc_ = now_tsc + std::max(every, (now_tsc - begun_tsc) * kLookPause);
+  next_look_tsc_ =
+      now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
 }
 
 void Engine::ShowProgress() {
   RunProgress progress;
   progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
-  progress.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
-  progress.drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
-  progress.client_ns = client_host_ns_;
+  progress.real_ns = clock_.RealNs();
+  progress.drift_ns = run_.DriftNs();
+  progress.client_ns = report_.client_ns;
   progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
-  progress.coordinating_ns =
-      HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ - progress.dynamics_ns;
+  progress.coordinating_ns = clock_.CoordinatorNs() - progress.dynamics_ns;
   for (const Process& process : table_.processes()) {
-    if (process.is_client) progress.clients.push_back({process.name, ChargedToAllOf(process)});
+    if (process.is_client)
+      progress.clients.push_back({process.name, usage_.ChargedToAllOf(process)});
   }
-  if (shows_++ % kShowsPerFlush == 0) FlushRecords();
+  if (shows_++ % kShowsPerFlush == 0) records_.Flush();
   options_.on_progress(progress);
 }
 
@@ -335,7 +324,7 @@ bool Engine::AwaitOutside() {
     const Reactor::Found found = PollEvents(0, {latest_ns_});
     PollUnseen();
     if (found.wakes_others || root_.Least() != shm::kNeverNs) return true;
-    if (waker_.unseen() == 0 && !has_spinners_ && !AwaitsUnknownChildren() && !StrangersRun())
+    if (waker_.unseen() == 0 && !has_spinners_ && !unknown_children_.AnyCounts() && !UnmanagedRun())
       return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
@@ -375,10 +364,8 @@ RunReport Engine::Run() {
   for (const std::string& warning : scenario_.warnings) Warn(warning);
   report_.error = Prepare();
   if (report_.error.empty()) report_.error = StartClients();
-  start_real_ns_ = HostClockNs(CLOCK_MONOTONIC);
-  start_cpu_ns_ = HostClockNs(CLOCK_THREAD_CPUTIME_ID);
-  start_tsc_ = __rdtsc();
-  schedule_.StartAt(start_tsc_, ticks_per_ns_);
+  clock_.Start();
+  records_.StartAt(clock_);
   try {
     while (report_.error.empty() && !stop_.asked()) {
       if (!Step()) break;
@@ -386,13 +373,12 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     report_.error = error.what();
   }
-  report_.real_ns = HostClockNs(CLOCK_MONOTONIC) - start_real_ns_;
-  report_.coordinating_ns = HostClockNs(CLOCK_THREAD_CPUTIME_ID) - start_cpu_ns_ -
-                            (world_.present() ? world_.host_ns() : 0);
+  report_.real_ns = clock_.RealNs();
+  report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
   // First: what clients do at their end is no part of the run.
-  if (std::string error = CloseRecords(); !error.empty() && report_.error.empty()) {
-    report_.error = error;
+  for (const std::string& error : {records_.Close(), CloseDds()}) {
+    if (report_.error.empty()) report_.error = error;
   }
   RunReport report = report_;
   if (header_ != nullptr) {

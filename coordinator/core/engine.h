@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "coordinator/core/child_stops.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/descriptor_waits.h"
+#include "coordinator/core/expulsion.h"
 #include "coordinator/core/futex_calls.h"
 #include "coordinator/core/futex_words.h"
 #include "coordinator/core/kernel_object_waits.h"
@@ -27,13 +27,20 @@
 #include "coordinator/core/raw_scheduling.h"
 #include "coordinator/core/raw_timers.h"
 #include "coordinator/core/reactor.h"
+#include "coordinator/core/run_clock.h"
+#include "coordinator/core/run_records.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/scheduling_calls.h"
 #include "coordinator/core/shared_events.h"
 #include "coordinator/core/signal_calls.h"
 #include "coordinator/core/signal_wakes.h"
+#include "coordinator/core/slot_check.h"
+#include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/timer_calls.h"
 #include "coordinator/core/timer_signals.h"
+#include "coordinator/core/unknown_children.h"
+#include "coordinator/core/unmanaged_threads.h"
+#include "coordinator/core/usage_book.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dds/hub.h"
@@ -44,10 +51,8 @@
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
-#include "coordinator/os/strays.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/record/recording.h"
-#include "coordinator/trace/schedule_records.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -105,22 +110,12 @@ class Engine {
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
   void PollUnseen();
-  bool StrangersRun();
+  bool UnmanagedRun() const;
   void WaitOutside();
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
   void ShowProgress();
-
-  // What a user is told who sees nothing happen (standstill.cc).
-  void LookForStandstill();
-  void NoteStandstill(std::int64_t now_ns);
-  void NoteLeftBehind(std::int64_t now_ns);
-  bool AwaitsTerminal() const;
-  std::vector<std::string> WhatIsAwaited() const;
-  std::vector<std::string> ComputingStrangers() const;
-  std::pair<int, std::string> WhatItAwaits(const Task& task) const;
-  std::string AwaitedDescriptors(const Task& task, const awaited::Descriptors& wait) const;
 
   // The door (waker.h).
   void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
@@ -147,24 +142,11 @@ class Engine {
   std::int64_t NsToLook(Task& task);
   std::int64_t OwnHorizonNs() const;
   void Settle(Task& task);
+  bool TakeIpcNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
-  static std::int64_t HostClockOf(Task& task);
-  static Meter::CpuClock CpuClockOf(Task& task) {
-    return [&task] { return HostClockOf(task); };
-  }
   std::int64_t WrittenAt() const { return run_.WrittenAt(); }
-
-  // What shared memory says that cannot be (impossible.cc). Sentences go on after "has ... (".
-  static constexpr const char* kWrongIpcNotes = "times of System V objects";
-  const char* WhatIsImpossible(const Task& task) const;
-  static const char* WhatIsImpossible(const shm::Notification& note);
-  void Expel(Process& process, const char* what);
-  void AwaitDeath(Task& task);
-  std::int64_t StolenOf(const Task& task) const;
-  std::int64_t StalenessOf(const Task& task) const;
-  bool TakeIpcNotes(Task& task);  // ipc_notes.cc
 
   // By the kind of descriptor (handlers.cc).
   void RegisterHandlers();
@@ -192,20 +174,6 @@ class Engine {
   void NoteSpawnedProcess(Task& parent, pid_t pid);
 
   // Children that are stopped and go on (stops.cc).
-
-  // Children that nobody announced (unknown_children.cc).
-  void FindUnknownChildren(Process& parent);
-  void UnknownChildEnded(pid_t pid, Moment moment);
-  bool HasUnknownChild(const Process& parent) const;
-  bool AwaitsUnknownChildren() const;
-  bool UnknownChildrenRun() const;
-
-  // Threads that nobody announced, or that do not end (unknown_threads.cc).
-  void LowerUnknownThreads();
-  void Lower(pid_t tid);
-  bool NeverRegisters(Task& task);
-  bool IsAstray(pid_t tid) const;
-  std::string NameOfMakerOf(pid_t tid);
 
   // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
 
@@ -336,20 +304,6 @@ class Engine {
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 
-  // What is written about the run (records.cc).
-  std::string OpenRecords();
-  void FlushRecords();
-  std::string CloseRecords();
-  void RecordRun(const Task& task, DispatchLog::Span shown, DispatchLog::Span world);
-
-  // What clients have used (usage.cc).
-  std::int64_t ChargedToAllOf(const Process& client) const;
-  Usage UsageOf(const Process& process);
-  Usage UsageOfAll(const Process& client);
-  std::int64_t HostCpuOf(Task& task);
-  void KeepUsageOf(Task& ended);
-  void KeepUsageOf(Process& ended);
-
   // The last signal and the time to obey it (grace.cc).
   void EndClients();
   void BeginGrace();
@@ -389,17 +343,16 @@ class Engine {
   std::int64_t& latest_ns_ = run_.latest_ns;
   StopRequest& stop_ = run_.stop;
   std::int64_t& grace_began_ns_ = run_.grace_began_ns;
-  double& ticks_per_ns_ = run_.ticks_per_ns;
   CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
   World world_{command_input_};
-  ScheduleRecords schedule_;
   Activations activations_;
+  RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
-  int world_row_ = 0;
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   Reactor reactor_;
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
+  RunClock clock_;
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
   SchedulingCalls scheduling_{run_, waker_, inheritance_};
@@ -410,7 +363,11 @@ class Engine {
   SignalWakes signal_wakes_{run_, waker_, host_cpu_.active()};
   ChildStops stops_{run_, waker_, signal_wakes_, host_cpu_.active()};
   SignalCalls signals_{
-      run_, waker_, signal_wakes_, stops_,
+      run_,
+      waker_,
+      signal_wakes_,
+      stops_,
+      clock_,
       [this](const Process& process, std::int64_t at_ns) { NoteWhetherStopped(process, at_ns); }};
   TimerSignals timer_signals_{run_, waker_, signal_wakes_};
   TimerCalls timers_{run_, waker_, timer_signals_};
@@ -425,30 +382,25 @@ class Engine {
   std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;   // of threads that register later
-  std::map<pid_t, UnknownChild> unknown_children_;  // the living
-  std::set<pid_t> untaken_children_;  // those that have ended, and were not waited for yet
+  std::map<pid_t, Connection> early_connections_;  // of threads that register later
 
   CpuClaim claim_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
   UniqueFd memfd_, signal_fd_;
+  SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
+  UsageBook usage_{table_, slot_check_};
+  Expulsion expulsion_{run_, waker_, host_cpu_};
+  UnmanagedThreads unmanaged_{run_};
+  UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
+  StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
-  // Unknown threads that have lost their level; time waits for them until their CPU clocks show it.
-  std::map<pid_t, std::int64_t> lowered_;
-  struct UnknownThreads {
-    std::int64_t dispatch = -1;             // in which they were seen,
-    std::map<pid_t, std::int64_t> used_ns;  // and what they had used by then
-  };
-  UnknownThreads unknown_threads_;
-  int most_pids_ = MostPids();
   std::vector<Listener> listeners_;
   std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
   std::string socket_name_;      // of the first; the others' have their numbers in them
-  std::uint64_t ns_per_tick_q32_ = 0;
 
   bool reached_end_ = false;
   UniqueFd grace_timer_;                                   // of real time:
@@ -456,20 +408,9 @@ class Engine {
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
 
-  std::int64_t client_host_ns_ = 0;
-  VirtualDuration most_lead_;  // of all programs' clocks
-  std::int64_t start_real_ns_ = 0, start_cpu_ns_ = 0;
-  std::uint64_t start_tsc_ = 0;
   int shows_ = 0;
 
-  struct Standstill {
-    std::int64_t dispatches = -1, at_ns = -1;  // virtual
-    std::int64_t since_ns = 0;                 // real
-  };
-  Standstill standstill_;
   std::uint64_t next_look_tsc_ = 0;
-  std::int64_t alone_since_ns_ = -1;  // real
-  bool has_said_standstill_ = false, has_said_left_behind_ = false;
 };
 
 }  // namespace tcs

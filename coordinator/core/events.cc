@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/attach_protocol.h"
@@ -186,7 +187,7 @@ bool Engine::CutsOff(Task& task) {
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
   if (std::exchange(task.is_cut_off, true)) {
-    Expel(*task.process, "a notification that was never sent");
+    expulsion_.Expel(*task.process, "a notification that was never sent");
     return true;
   }
   shm::ThreadSlot& slot = Slot(task);

@@ -29,7 +29,7 @@ ClientReport Engine::ReportOf(const Launch& launch) {
   if (launch.process == nullptr) return client;
   const Process& process = *launch.process;
   client.started_at_ns = process.started_at_ns;
-  client.usage = UsageOfAll(process);
+  client.usage = usage_.UsageOfAll(process);
   client.ended_at_ns = process.ended_at_ns;
   client.wait_status = process.wait_status;
   return client;
@@ -40,18 +40,17 @@ void Engine::Report(RunReport* report) {
   WarnOfDrops();
   WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();
-  report->drift_ns = std::max(root_.drift_ns(), most_lead_.ns());
+  report->drift_ns = run_.DriftNs();
   report->dynamics_ns = world_.host_ns();
   report->samples = world_.samples();
   report->commands = world_.commands();
-  report->client_ns = client_host_ns_;
   report->interrupted = stop_.asked();
   report->stop_signal = stop_.signal();
   for (const Launch& launch : launches_) report->clients.push_back(ReportOf(launch));
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;
-      report->staleness_ns = std::max(report->staleness_ns, StalenessOf(*task));
+      report->staleness_ns = std::max(report->staleness_ns, SlotCheck::StalenessOf(*task));
     }
   }
 }

@@ -106,7 +106,7 @@ void FutexCalls::Handle(Task& task, const TrappedCall& call) {
       task.trap_result = CarryOutWake(*task.process, call, {task.reached_ns});
       // Threads that tcs does not know wait in the kernel.
       task.trap_continues =
-          task.process->has_strangers && task.trap_result < static_cast<int>(call.args[2]);
+          task.process->has_unmanaged_threads && task.trap_result < static_cast<int>(call.args[2]);
       break;
     case FUTEX_REQUEUE:
     case FUTEX_CMP_REQUEUE:

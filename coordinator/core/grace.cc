@@ -83,7 +83,7 @@ void Engine::BeginGrace() {
     kill(process.pid, StopSignalOf(process));
     if (ThreadState(process.pid) == 'T') kill(process.pid, SIGCONT);
   }
-  for (const auto& [pid, child] : unknown_children_) {
+  for (const auto& [pid, child] : unknown_children_.living()) {
     const Process* parent = LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }

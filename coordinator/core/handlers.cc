@@ -86,7 +86,10 @@ Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
 }
 
 Reactor::Found Engine::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
-  UnknownChildEnded(static_cast<pid_t>(child.index), moment);
+  const auto pid = static_cast<pid_t>(child.index);
+  if (Process* parent = unknown_children_.Ended(pid); parent != nullptr) {
+    stops_.ChildChanged(*parent, pid, false, moment);
+  }
   return kConcernsAll;
 }
 

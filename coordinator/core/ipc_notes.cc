@@ -1,13 +1,18 @@
-// What threads have done to System V objects, for everybody to see (shm/ipc_times.h).
-#include <algorithm>
+#include "coordinator/core/ipc_notes.h"
 
-#include "coordinator/core/engine.h"
+#include <algorithm>
+#include <atomic>
+
+#include "coordinator/core/run_state.h"
+#include "shm/ipc_times.h"
 
 namespace tcs {
 
 namespace {
 
 using shm::IpcEvent;
+
+constexpr const char* kWrong = "times of System V objects";
 
 bool IsObject(std::uint64_t object) {
   const auto kind = static_cast<shm::IpcKind>(object >> 32);
@@ -17,23 +22,22 @@ bool IsObject(std::uint64_t object) {
 
 }  // namespace
 
-// False if the thread cannot have done what it has noted.
-bool Engine::TakeIpcNotes(Task& task) {
-  shm::ThreadSlot& slot = Slot(task);
+const char* TakeIpcNotes(Task& task, shm::RunMemory& memory) {
+  shm::ThreadSlot& slot = SlotOf(task);
   const std::uint32_t count = slot.ipc_count.load();
-  if (count == 0) return true;
+  if (count == 0) return nullptr;
   slot.ipc_count.store(0);
-  if (count > shm::kMostIpcNotes) return false;
-  const std::int64_t origin_ns = header_->realtime_offset_ns;
+  if (count > shm::kMostIpcNotes) return kWrong;
+  const std::int64_t origin_ns = memory.header.realtime_offset_ns;
   const std::int64_t now_ns = origin_ns + OwnNow(task).ns();
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::IpcNote note = slot.ipc_notes[i];
     std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
     if (!IsObject(note.object) || note.event > IpcEvent::kRemoved || note.at_ns < origin_ns ||
         note.at_ns - origin_ns > task.grant.most_shown_ns) {
-      return false;
+      return kWrong;
     }
-    shm::IpcPlace* place = shm::TakeIpcPlace(memory_->ipc_times, note.object);
+    shm::IpcPlace* place = shm::TakeIpcPlace(memory.ipc_times, note.object);
     if (place == nullptr) continue;
     if (note.event == IpcEvent::kRemoved) {
       place->object.store(shm::IpcTimes::kRemoved);
@@ -42,7 +46,7 @@ bool Engine::TakeIpcNotes(Task& task) {
     std::atomic<std::int64_t>& at = place->at_ns[static_cast<std::uint32_t>(note.event)];
     at.store(std::max(at.load(), std::min(note.at_ns, now_ns)));
   }
-  return true;
+  return nullptr;
 }
 
 }  // namespace tcs

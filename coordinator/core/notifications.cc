@@ -15,6 +15,8 @@ namespace tcs {
 
 namespace {
 
+constexpr int kYieldsBeforeLook = 100;
+
 // Sleeps, with a mask of their own or without, and waits for signals.
 Wait::What IdleFor(const shm::Notification& note) {
   const auto set = static_cast<std::uint64_t>(note.args[1]);
@@ -33,7 +35,7 @@ std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& n
 
 void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (KnownTask(tid) != nullptr || lowered_.contains(tid)) continue;
+    if (KnownTask(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
     executor_->Hold(tid);
     Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
     scheduling_.Inherit(thread, creator);
@@ -55,17 +57,25 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   scheduling_.Inherit(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
+// Equals have their turn.
+bool Engine::Yield(Task& task) {
+  SchedulerOf(task).Yield(task.order);
+  if (++task.yields < kYieldsBeforeLook) return false;
+  task.yields = 0;
+  return unknown_children_.LetRunBeside(*task.process);
+}
+
 bool Engine::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
   const Moment moment{task.reached_ns};
   bool looks_again = false;
   if (task.process->expelled) {
-    AwaitDeath(task);
+    expulsion_.AwaitDeath(task);
     return false;
   }
-  if (const char* what = WhatIsImpossible(note); what != nullptr) {
-    Expel(*task.process, what);
+  if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {
+    expulsion_.Expel(*task.process, what);
     return false;
   }
   task.reason = shm::WakeReason::kGo;
@@ -85,7 +95,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       break;
     case Kind::kWaitChild:
       EnterWait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
-      FindUnknownChildren(*task.process);
+      unknown_children_.LookFor(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
@@ -116,7 +126,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       scheduling_.Handle(task, note);
       break;
     case Kind::kStrangers:
-      task.process->has_strangers = true;
+      task.process->has_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
       signals_.Sent(static_cast<pid_t>(note.args[0]), moment);

@@ -290,9 +290,9 @@ void Engine::AwaitChildRaw(Task& task, const TrappedCall& call) {
   const std::uint64_t options = call.args[call.number == SYS_wait4 ? 2 : 3];
   task.trap_continues = true;
   const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
-  FindUnknownChildren(*task.process);
+  unknown_children_.LookFor(*task.process);
   const bool has_living =
-      HasUnknownChild(*task.process) ||
+      unknown_children_.AreOf(*task.process) ||
       std::any_of(table_.processes().begin(), table_.processes().end(),
                   [&](const Process& p) { return p.parent == task.process->pid && !p.dead; });
   if ((options & WNOHANG) != 0 || !has_living) {

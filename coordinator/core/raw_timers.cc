@@ -12,6 +12,7 @@
 
 #include "coordinator/core/borrowed.h"
 #include "coordinator/core/client_values.h"
+#include "coordinator/core/usage_book.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
@@ -94,7 +95,7 @@ RawTimers::Found RawTimers::Adopt(const Task& task, int number) {
 
 std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
-  if (kind.clock == shm::TimerClock::kProcessCpu) return ChargedTo(owner);
+  if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner);
   if (kind.clock == shm::TimerClock::kTime) {
     return owner.clock.At(RobotTime(task.reached_ns)).ns();
   }

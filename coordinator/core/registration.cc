@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/attach_protocol.h"
@@ -115,7 +116,7 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
     EndTask(*task, moment);
     locks_.WakeThoseWaitingFor(*task, moment);
   }
-  of->has_strangers = false;
+  of->has_unmanaged_threads = false;
   if (first == nullptr || !by_another) return true;
   of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.

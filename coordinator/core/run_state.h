@@ -17,6 +17,7 @@
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/scenario/scenario.h"
 #include "shm/layout.h"
+#include "shm/virtual_time.h"
 
 namespace tcs {
 
@@ -39,12 +40,16 @@ struct RunState {
   std::int64_t end_ns;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   std::int64_t latest_ns = 0;
+  VirtualDuration most_lead;  // of all programs' clocks
   StopRequest stop;
   std::int64_t grace_began_ns = shm::kNeverNs;
 
   bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
   bool IsInGrace() const { return grace_began_ns != shm::kNeverNs; }
+
+  // The furthest that two leaves, or a program's clock and the world, have been apart.
+  std::int64_t DriftNs() const { return std::max(root.drift_ns(), most_lead.ns()); }
 
   // Each sentence once.
   void Warn(const std::string& text);

@@ -61,13 +61,9 @@ std::string Engine::Prepare() {
   } else {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
-  if (std::string error = OpenRecords(); !error.empty()) return error;
+  if (std::string error = records_.Open(); !error.empty()) return error;
   if (std::string error = PrepareFolders(); !error.empty()) return error;
-  if (world_.present()) {
-    world_row_ = schedule_.AddRow("dynamics", "dynamics");
-  }
-  ns_per_tick_q32_ = CalibrateTsc();
-  ticks_per_ns_ = 4294967296.0 / static_cast<double>(ns_per_tick_q32_);
+  clock_.Calibrate();
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
@@ -134,12 +130,11 @@ std::string Engine::OpenListener() {
 }
 
 std::string Engine::PrepareHostCpu() {
-  const TscRate rate{.ns_per_tick_q32 = ns_per_tick_q32_, .ticks_per_ns = ticks_per_ns_};
   std::unique_ptr<Meter> meter;
   if (IsFixed()) {
     meter = std::make_unique<FixedMeter>();
   } else {
-    meter = std::make_unique<MeasuredMeter>(rate);
+    meter = std::make_unique<MeasuredMeter>(clock_.rate());
   }
   if (std::string error = host_cpu_.Open(std::move(meter)); !error.empty()) return error;
   // As with any other process of ours.

@@ -12,8 +12,7 @@ bool SignalCalls::Poll() {
   const bool awaited =
       run_.gates_only || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   if (!awaited || __rdtsc() < next_look_tsc_) return false;
-  next_look_tsc_ =
-      __rdtsc() + static_cast<std::uint64_t>(static_cast<double>(kLookEveryNs) * run_.ticks_per_ns);
+  next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEveryNs);
   bool ended = false;
   const std::int64_t now_ns = run_.turn.lasts() ? run_.WrittenAt() : run_.latest_ns;
   for (Task& task : run_.table.tasks()) {

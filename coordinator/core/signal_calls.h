@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "coordinator/core/child_stops.h"
+#include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/signal_wakes.h"
 #include "coordinator/core/waker.h"
@@ -23,8 +24,13 @@ class SignalCalls {
 
   // `looked_at`: a signal may have stopped the process or let it go on, at that time.
   SignalCalls(RunState& run, Waker& waker, SignalWakes& wakes, ChildStops& stops,
-              std::function<void(const Process&, std::int64_t)> looked_at)
-      : run_(run), waker_(waker), wakes_(wakes), stops_(stops), looked_at_(std::move(looked_at)) {}
+              const RunClock& clock, std::function<void(const Process&, std::int64_t)> looked_at)
+      : run_(run),
+        waker_(waker),
+        wakes_(wakes),
+        stops_(stops),
+        clock_(clock),
+        looked_at_(std::move(looked_at)) {}
 
   // Somebody has sent one to that process; 0: to whomever.
   void Sent(pid_t receiver, Moment moment);
@@ -37,6 +43,7 @@ class SignalCalls {
   Waker& waker_;
   SignalWakes& wakes_;
   ChildStops& stops_;
+  const RunClock& clock_;
   std::function<void(const Process&, std::int64_t)> looked_at_;
   std::uint64_t next_look_tsc_ = 0;
 };

@@ -76,7 +76,7 @@ struct Task : HostThread {
   std::int64_t charged_ns = 0;
   bool is_cut_off = false;      // it has been told that its connection is not there any more
   UniqueFd cpu_clock_fd;        // where its CPU clock is read, if it is not its process's
-  int yields = 0;               // since it last looked whether strangers wait for their turn
+  int yields = 0;               // since it last looked whether unknown children wait for theirs
   bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   bool is_put_off = false;      // has notified, and is heard later (gates_only.cc)
@@ -134,19 +134,13 @@ struct Process {
   bool has_erred = false;        // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;     // its thread that takes what is for it
   bool dead = false;
-  bool killed = false;         // at the end of its grace
-  bool expelled = false;       // killed, for what it has written into shared memory
-  int threads = 1;             // that ever attached
-  bool has_strangers = false;  // threads that never will
-  bool is_client = false;      // named in the scenario, rather than a child of one
-  int wait_status = 0;         // once dead, of the coordinator's own children
+  bool killed = false;                 // at the end of its grace
+  bool expelled = false;               // killed, for what it has written into shared memory
+  int threads = 1;                     // that ever attached
+  bool has_unmanaged_threads = false;  // threads that never will
+  bool is_client = false;              // named in the scenario, rather than a child of one
+  int wait_status = 0;                 // once dead, of the coordinator's own children
   std::int64_t started_at_ns = 0, ended_at_ns = -1;
-};
-
-// A child that was not announced and has not registered, perhaps never will.
-struct UnknownChild {
-  pid_t parent = 0;
-  UniqueFd pidfd;
 };
 
 struct VirtualCpu {

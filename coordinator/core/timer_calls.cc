@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "coordinator/core/usage_book.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/timer_descriptor.h"
 
@@ -120,7 +121,9 @@ bool TimerCalls::Expire(Process& process, std::int64_t now_ns) {
 }
 
 ProcessTimers::CpuUsed TimerCalls::CpuUsedBy(const Task& task) {
-  return {.process_ns = ChargedTo(*task.process), .tid = task.tid, .thread_ns = task.charged_ns};
+  return {.process_ns = UsageBook::ChargedTo(*task.process),
+          .tid = task.tid,
+          .thread_ns = task.charged_ns};
 }
 
 void TimerCalls::ExpireCpu(const Task& ran) {

@@ -75,7 +75,7 @@ void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
   const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
   Process* process = LivingProcess(pid);
   if (process != nullptr && KnownTask(call.tid) == nullptr) {
-    process->has_strangers = true;
+    process->has_unmanaged_threads = true;
     futexes_.CarryOutWake(*process, call, moment);
   }
   LetThrough(call);

@@ -1,75 +1,67 @@
-// Children of a bare clone, or of the system call itself, that make no call that tcs knows: nobody
-// has announced them, and they do not register. Their parent learns of their end, and time waits
-// while they run.
+#include "coordinator/core/unknown_children.h"
+
 #include <sys/epoll.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr int kYieldsBeforeLook = 100;
-constexpr useconds_t kStrangersTurnUs = 1'000;
+constexpr useconds_t kTurnUs = 1'000;
 
 }  // namespace
 
-// When a thread comes to wait for its children.
-void Engine::FindUnknownChildren(Process& parent) {
-  std::erase_if(untaken_children_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
+void UnknownChildren::LookFor(const Process& parent) {
+  std::erase_if(untaken_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
   for (const pid_t pid : ChildrenOf(parent.pid)) {
-    if (unknown_children_.contains(pid) || untaken_children_.contains(pid)) continue;
+    if (living_.contains(pid) || untaken_.contains(pid)) continue;
     const bool known = std::any_of(table_.processes().begin(), table_.processes().end(),
                                    [pid](const Process& p) { return p.pid == pid; });
     if (known) continue;
     UniqueFd pidfd(OpenPidfd(pid));
     if (!pidfd) continue;
     reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
-    unknown_children_[pid] = {parent.pid, std::move(pidfd)};
+    living_[pid] = {parent.pid, std::move(pidfd)};
   }
 }
 
-void Engine::UnknownChildEnded(pid_t pid, Moment moment) {
-  const auto found = unknown_children_.find(pid);
-  if (found == unknown_children_.end()) return;
-  const UnknownChild child = std::move(found->second);
+Process* UnknownChildren::Ended(pid_t pid) {
+  const auto found = living_.find(pid);
+  if (found == living_.end()) return nullptr;
+  const Child child = std::move(found->second);
   reactor_.Remove(child.pidfd.get());
-  unknown_children_.erase(found);
+  living_.erase(found);
   // A parent that waits for children of another kind leaves it there.
-  untaken_children_.insert(pid);
-  Process* parent = LivingProcess(child.parent);
-  if (parent != nullptr) stops_.ChildChanged(*parent, pid, false, moment);
+  untaken_.insert(pid);
+  return table_.LivingProcess(child.parent);
 }
 
-bool Engine::HasUnknownChild(const Process& parent) const {
-  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
-                     [&](const auto& child) { return child.second.parent == parent.pid; });
-}
-
-// Equals have their turn. Whoever yields again and again may wait for a process that shares its
-// memory and never registers (a sanitizer's that looks for leaks): it gets real time to run in.
-bool Engine::Yield(Task& task) {
-  SchedulerOf(task).Yield(task.order);
-  if (++task.yields < kYieldsBeforeLook) return false;
-  task.yields = 0;
-  FindUnknownChildren(*task.process);
-  if (!UnknownChildrenRun()) return false;
-  usleep(kStrangersTurnUs);
+bool UnknownChildren::LetRunBeside(const Process& parent) {
+  LookFor(parent);
+  if (!AnyRuns()) return false;
+  usleep(kTurnUs);
   return true;
 }
 
-bool Engine::AwaitsUnknownChildren() const {
-  return std::any_of(unknown_children_.begin(), unknown_children_.end(),
-                     [this](const auto& child) { return !IsAstray(child.first); });
+bool UnknownChildren::AreOf(const Process& parent) const {
+  return std::any_of(living_.begin(), living_.end(),
+                     [&](const auto& child) { return child.second.parent == parent.pid; });
 }
 
-bool Engine::UnknownChildrenRun() const {
-  return std::any_of(unknown_children_.begin(), unknown_children_.end(), [&](const auto& child) {
-    if (KnownTask(child.first) != nullptr || IsAstray(child.first)) return false;
+bool UnknownChildren::AnyCounts() const {
+  return std::any_of(living_.begin(), living_.end(),
+                     [this](const auto& child) { return !unmanaged_.IsAstray(child.first); });
+}
+
+bool UnknownChildren::AnyRuns() const {
+  return std::any_of(living_.begin(), living_.end(), [&](const auto& child) {
+    if (table_.Living(child.first) != nullptr || unmanaged_.IsAstray(child.first)) return false;
     const char state = ThreadState(child.first);
     return state == 'R' || state == 'D';
   });

@@ -67,9 +67,4 @@ class EndedThreads {
   bool has_lost_ = false, threads_changed_clocks_ = false;
 };
 
-struct Process;
-
-// What its threads have been charged, those that have ended included.
-std::int64_t ChargedTo(const Process& process);
-
 }  // namespace tcs

@@ -1,13 +1,23 @@
-// What clients have used: they, and all that they have started, however far down and whoever waits
-// for it.
-#include "coordinator/core/usage.h"
+#include "coordinator/core/usage_book.h"
 
-#include "coordinator/core/engine.h"
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
 
-std::int64_t ChargedTo(const Process& process) {
+namespace {
+
+// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
+// no longer be asked.
+std::int64_t HostCpuOf(Task& task) {
+  if (task.metered.host_origin_ns < 0) return 0;
+  const std::int64_t now = HostClockOf(task);
+  return now < 0 ? 0 : now - task.metered.host_origin_ns;
+}
+
+}  // namespace
+
+std::int64_t UsageBook::ChargedTo(const Process& process) {
   std::int64_t charged = process.ended.usage().charged_ns;
   for (const Task* task : process.robot->tasks) {
     if (task->process == &process) charged += task->charged_ns;
@@ -15,7 +25,7 @@ std::int64_t ChargedTo(const Process& process) {
   return charged;
 }
 
-std::int64_t Engine::ChargedToAllOf(const Process& client) const {
+std::int64_t UsageBook::ChargedToAllOf(const Process& client) const {
   std::int64_t charged = client.descendants.charged_ns;
   for (const Process& process : table_.processes()) {
     if (process.client != &client || (process.dead && !process.is_client)) continue;
@@ -24,28 +34,20 @@ std::int64_t Engine::ChargedToAllOf(const Process& client) const {
   return charged;
 }
 
-// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
-// no longer be asked.
-std::int64_t Engine::HostCpuOf(Task& task) {
-  if (task.metered.host_origin_ns < 0) return 0;
-  const std::int64_t now = HostClockOf(task);
-  return now < 0 ? 0 : now - task.metered.host_origin_ns;
-}
-
-Usage Engine::UsageOf(const Process& process) {
+Usage UsageBook::UsageOf(const Process& process) const {
   Usage usage = process.ended.usage();
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     usage += {.charged_ns = task->charged_ns,
               .host_cpu_ns = HostCpuOf(*task),
-              .stolen_ns = StolenOf(*task),
+              .stolen_ns = check_.StolenOf(*task),
               .activations = task->activations,
               .work = task->work};
   }
   return usage;
 }
 
-Usage Engine::UsageOfAll(const Process& client) {
+Usage UsageBook::UsageOfAll(const Process& client) const {
   Usage usage = client.descendants;
   for (const Process& process : table_.processes()) {
     // The others' that have ended is kept already, and their places may be others'.
@@ -55,11 +57,11 @@ Usage Engine::UsageOfAll(const Process& client) {
   return usage;
 }
 
-void Engine::KeepUsageOf(Task& ended) {
+void UsageBook::Keep(Task& ended) const {
   Process& process = *ended.process;
   const Usage usage{
       .charged_ns = ended.charged_ns,
-      .stolen_ns = ended.slot < 0 ? 0 : StolenOf(ended),
+      .stolen_ns = ended.slot < 0 ? 0 : check_.StolenOf(ended),
       .activations = ended.activations,
       .work = ended.work,
   };
@@ -72,8 +74,7 @@ void Engine::KeepUsageOf(Task& ended) {
   process.ended.Add(usage, HostClockOf(ended), ended.metered.host_origin_ns, fallback_ns);
 }
 
-// Its threads' has been kept.
-void Engine::KeepUsageOf(Process& ended) {
+void UsageBook::Keep(Process& ended) {
   ended.ended.Complete(ProcessCpuClockNs(ended.pid));
   if (ended.client != nullptr && !ended.is_client) {
     ended.client->descendants += ended.ended.usage();

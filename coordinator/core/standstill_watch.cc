@@ -1,0 +1,136 @@
+#include "coordinator/core/standstill_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "coordinator/core/wait_text.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::size_t kMostNamed = 3;
+
+double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+std::string NameOf(pid_t pid) {
+  const std::string program = ProgramOf(pid);
+  return fmt::format("{} (pid {})", program.substr(program.rfind('/') + 1), pid);
+}
+
+std::string NameOf(const Process& process) {
+  return process.is_client ? process.name : NameOf(process.pid);
+}
+
+bool HasChild(const TaskTable& table, const Process& parent) {
+  return std::any_of(
+      table.processes().begin(), table.processes().end(),
+      [&parent](const Process& process) { return !process.dead && process.parent == parent.pid; });
+}
+
+// The first few of them, and how many more there are.
+std::string Joined(const std::vector<std::string>& all) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i) {
+    text += (i == 0 ? "" : "; ") + all[i];
+  }
+  if (all.size() > kMostNamed) text += fmt::format("; and {} more", all.size() - kMostNamed);
+  return text;
+}
+
+}  // namespace
+
+// Whom time waits for, and what for, one phrase for each program.
+std::vector<std::string> StandstillWatch::WhatIsAwaited() const {
+  std::vector<std::string> awaited;
+  for (const Process& process : run_.table.processes()) {
+    if (process.dead) continue;
+    const bool has_child = HasChild(run_.table, process);
+    WaitText first{10, {}};
+    for (const Task* task : process.robot->tasks) {
+      if (task->process == &process) first = std::min(first, TextOfWait(*task, has_child));
+    }
+    if (!first.text.empty()) awaited.push_back(NameOf(process) + ' ' + first.text);
+  }
+  for (const auto& [pid, child] : unknown_children_.living()) {
+    awaited.push_back(NameOf(pid) + ", which tcs knows nothing of, goes on");
+  }
+  return awaited;
+}
+
+// A program that has a terminal's user to wait for looks as it does without tcs.
+bool StandstillWatch::AwaitsTerminal() const {
+  return run_.options.output_directory.empty() &&
+         std::any_of(run_.table.tasks().begin(), run_.table.tasks().end(), [](const Task& task) {
+           const auto* wait = task.Awaits<awaited::Descriptors>();
+           return wait != nullptr && wait->has_terminal;
+         });
+}
+
+// Who computes without tcs's knowing of it: a program with threads that never registered, a child
+// of a bare clone.
+std::vector<std::string> StandstillWatch::WhatComputesUnmanaged() const {
+  std::vector<std::string> computing;
+  for (const Process& process : run_.table.processes()) {
+    if (process.has_unmanaged_threads && !process.dead) {
+      computing.push_back("a thread of " + NameOf(process));
+    }
+  }
+  for (const auto& [pid, child] : unknown_children_.living()) {
+    computing.push_back(NameOf(pid));
+  }
+  return computing;
+}
+
+void StandstillWatch::NoteStandstill(std::int64_t now_ns, std::int64_t furthest_ns) {
+  const Standstill now{run_.report.switches, furthest_ns, now_ns};
+  if (now.dispatches != standstill_.dispatches || now.furthest_ns != standstill_.furthest_ns) {
+    standstill_ = now;
+    return;
+  }
+  if (now_ns - standstill_.since_ns < kPatienceNs || AwaitsTerminal()) return;
+  has_said_standstill_ = true;
+  const std::string why =
+      unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
+          ? "it waits for what computes without tcs's knowing of it: " +
+                Joined(WhatComputesUnmanaged())
+          : "nothing can happen any more but from outside; " + Joined(WhatIsAwaited());
+  run_.options.on_notice(
+      fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
+                  Seconds(now.furthest_ns), Seconds(now_ns - standstill_.since_ns), why));
+}
+
+// A program alone has ended, and the run goes on for what it has left in the background.
+void StandstillWatch::NoteLeftBehind(std::int64_t now_ns) {
+  std::vector<std::string> ended, left;
+  for (const Process& process : run_.table.processes()) {
+    if (process.is_client) {
+      if (!process.dead) return;
+      ended.push_back(process.name);
+    } else if (!process.dead) {
+      left.push_back(NameOf(process));
+    }
+  }
+  for (const auto& [pid, child] : unknown_children_.living()) {
+    left.push_back(NameOf(pid));
+  }
+  if (ended.empty() || left.empty()) return;
+  if (alone_since_ns_ < 0) alone_since_ns_ = now_ns;
+  if (now_ns - alone_since_ns_ < kPatienceNs) return;
+  has_said_left_behind_ = true;
+  run_.options.on_notice(
+      fmt::format("{} has ended; the run goes on for what it has left: {}; Ctrl-C "
+                  "ends it, too",
+                  Joined(ended), Joined(left)));
+}
+
+void StandstillWatch::Look(std::int64_t now_ns, std::int64_t furthest_ns) {
+  if (!has_said_left_behind_ && run_.end_ns == shm::kNeverNs) NoteLeftBehind(now_ns);
+  if (!has_said_standstill_) NoteStandstill(now_ns, furthest_ns);
+}
+
+}  // namespace tcs

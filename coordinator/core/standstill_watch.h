@@ -1,0 +1,51 @@
+// Tells a user who sees nothing happen, once: whom the run waits for, and what for. Nothing of this
+// changes what the run does.
+//
+// For the coordinator's thread only. Reads /proc when there is something to tell. Real nanoseconds
+// where not said otherwise.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/core/run_state.h"
+#include "coordinator/core/unknown_children.h"
+#include "coordinator/core/unmanaged_threads.h"
+
+namespace tcs {
+
+class StandstillWatch {
+ public:
+  // Shorter waits for what comes from outside are usual.
+  static constexpr std::int64_t kPatienceNs = 5'000'000'000;
+
+  StandstillWatch(const RunState& run, const UnmanagedThreads& unmanaged,
+                  const UnknownChildren& unknown_children)
+      : run_(run), unmanaged_(unmanaged), unknown_children_(unknown_children) {}
+
+  // It is `now_ns`, and the furthest of all leaves has come to `furthest_ns`, which is virtual. To
+  // be called now and then. What there is to tell goes to RunOptions::on_notice, which must be set.
+  void Look(std::int64_t now_ns, std::int64_t furthest_ns);
+
+ private:
+  // What has not changed since.
+  struct Standstill {
+    std::int64_t dispatches = -1, furthest_ns = -1, since_ns = 0;
+  };
+
+  void NoteStandstill(std::int64_t now_ns, std::int64_t furthest_ns);
+  void NoteLeftBehind(std::int64_t now_ns);
+  bool AwaitsTerminal() const;
+  std::vector<std::string> WhatIsAwaited() const;
+  std::vector<std::string> WhatComputesUnmanaged() const;
+
+  const RunState& run_;
+  const UnmanagedThreads& unmanaged_;
+  const UnknownChildren& unknown_children_;
+  Standstill standstill_;
+  std::int64_t alone_since_ns_ = -1;
+  bool has_said_standstill_ = false, has_said_left_behind_ = false;
+};
+
+}  // namespace tcs

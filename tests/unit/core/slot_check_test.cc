@@ -1,0 +1,112 @@
+#include "coordinator/core/slot_check.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+#include "coordinator/core/task_table.h"
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000, kSecond = 1'000'000'000;
+
+// A thread that was given a clock from 1 s on, with a horizon at 1.01 s, and has stopped.
+class SlotCheckTest : public testing::Test {
+ protected:
+  SlotCheckTest() {
+    task_.process = &process_;
+    task_.slot_memory = slot_.get();
+    task_.metered.page_origin_ns = 5 * kMs;
+    page().host_cpu_origin_ns = 5 * kMs;
+    task_.grant.base_time_ns = kSecond;
+    task_.grant.horizon_ns = kSecond + 10 * kMs;
+    task_.grant.most_idle_ns = kSecond + 4 * kMs;
+    task_.grant.read_safe_ns = kSecond + 7 * kMs;
+    task_.grant.NoteLimits();
+    task_.grant.WriteTo(page());
+    page().last_shown_ns.store(kSecond + 10 * kMs);
+    page().staleness_ns.store(3 * kMs);
+    page().stolen_ns.store(2 * kSecond);
+  }
+  shm::ClockPage& page() { return slot_->clock; }
+  // What is found wrong, or nothing.
+  std::string Measured() { return Found(measured_); }
+  std::string Fixed() { return Found(fixed_); }
+
+  std::string Found(const SlotCheck& check) {
+    const char* what = check.WhatIsImpossible(task_);
+    return what == nullptr ? "" : what;
+  }
+
+  Robot robot_{"robot", 1.0, RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; })};
+  Process process_;
+  std::unique_ptr<shm::ThreadSlot> slot_ = std::make_unique<shm::ThreadSlot>();
+  Task task_;
+  std::int64_t run_ns_ = 2 * kSecond;
+  SlotCheck measured_{false, [this] { return run_ns_; }}, fixed_{true, [this] { return run_ns_; }};
+
+ private:
+  void SetUp() override { process_.robot = &robot_; }
+};
+
+TEST_F(SlotCheckTest, WhatAThreadCanHaveMadeOfItsClockIsPossible) {
+  EXPECT_EQ(Measured(), "");
+  EXPECT_EQ(Fixed(), "");
+}
+
+TEST_F(SlotCheckTest, AClockThatIsNotTheOneGivenIsNot) {
+  page().horizon_ns += 1;
+  EXPECT_EQ(Measured(), "the clock that it was given");
+}
+
+TEST_F(SlotCheckTest, NoClockShowsATimeBeyondItsHorizon) {
+  page().last_shown_ns.store(kSecond + 10 * kMs + 1);
+  EXPECT_EQ(Measured(), "a time beyond what it was given");
+}
+
+TEST_F(SlotCheckTest, NobodySleepsLongerThanItMay) {
+  page().waited_adjust.store(14 * kMs);
+  EXPECT_EQ(Measured(), "");  // what clocks differ by
+  page().waited_adjust.store(14 * kMs + 1);
+  EXPECT_EQ(Measured(), "a sleep beyond what it was allowed");
+}
+
+TEST_F(SlotCheckTest, NothingIsOlderThanWhatCouldBeRead) {
+  page().staleness_ns.store(3 * kMs + 1);
+  EXPECT_EQ(Measured(), "data older than any can be");
+  EXPECT_EQ(SlotCheck::StalenessOf(task_), 0);
+  page().staleness_ns.store(3 * kMs);
+  EXPECT_EQ(SlotCheck::StalenessOf(task_), 3 * kMs);
+}
+
+TEST_F(SlotCheckTest, NoMoreIsStolenThanTimeHasPassed) {
+  run_ns_ = kSecond - 1;  // and a second of slack
+  EXPECT_EQ(Measured(), "more stolen than there was");
+  EXPECT_EQ(measured_.StolenOf(task_), 0);
+  run_ns_ = kSecond;
+  EXPECT_EQ(Measured(), "");
+  EXPECT_EQ(measured_.StolenOf(task_), 2 * kSecond);
+}
+
+TEST_F(SlotCheckTest, OnAFasterRobotTheSameIsMoreOfTheHostsTime) {
+  robot_.speed = 2.0;
+  EXPECT_EQ(Measured(), "more stolen than there was");
+  run_ns_ = 3 * kSecond;
+  EXPECT_EQ(Measured(), "");
+}
+
+TEST_F(SlotCheckTest, AThreadNotifiesOnlyWhatThereIs) {
+  shm::Notification note{};
+  note.kind = shm::NotificationKind::kRead;
+  EXPECT_EQ(SlotCheck::WhatIsImpossible(note), nullptr);
+  note.fd_count = shm::kMaxWaitFds + 1;
+  EXPECT_STREQ(SlotCheck::WhatIsImpossible(note), "a wait for too many descriptors");
+  note.fd_count = 0;
+  note.kind = static_cast<shm::NotificationKind>(0xffff);
+  EXPECT_STREQ(SlotCheck::WhatIsImpossible(note), "a notification of no kind");
+}
+
+}  // namespace
+}  // namespace tcs
