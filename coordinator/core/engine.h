@@ -16,6 +16,7 @@
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/activations.h"
 #include "coordinator/core/coordinator.h"
+#include "coordinator/core/dds_gateway.h"
 #include "coordinator/core/expulsion.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
@@ -29,16 +30,12 @@
 #include "coordinator/core/usage_book.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
-#include "coordinator/dds/hub.h"
-#include "coordinator/dds/own_endpoints.h"
-#include "coordinator/dds/topic_log.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
-#include "coordinator/record/recording.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -293,25 +290,6 @@ class Engine {
   void WakeEveryQueue(Moment moment);
   void FlushTerminals();
 
-  // Programs that speak DDS (dds.cc).
-  std::string OpenDds();
-  std::string CloseDds();
-  dds::Speaker WhoIs(dds::Hub::Number number) const;
-  void WarnOfDrops();
-  void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
-  void TakeOwnMessages();
-  void HandleDds(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
-  void JoinDds(Task& task);
-  void SendDds(Process& process, std::size_t bytes, std::int64_t at_ns);
-  void WarnOfSockets(const Process& process, shm::WhySockets why);
-  void LeaveDds(Process& process, Moment moment);
-  void AwaitMessages(Task& task);
-  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
-  void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
-  void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
-  void ShowDeliverersTheirDeadlines();
-  void HandMessagesOver(Task& task);
-
   // Signals that clients send, and waits for signals (signals.cc).
   void WakeSignalled(pid_t receiver, Moment moment);
   void WakeForSignals(Process& process, Moment moment);
@@ -431,11 +409,7 @@ class Engine {
   Waker waker_{run_, activations_};
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
-  dds::Hub hub_;
-  dds::OwnEndpoints ends_{hub_};
-  dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
-  std::optional<record::Recording> recording_;
-  std::vector<Process*> dds_processes_;                    // that have joined it
+  DdsGateway dds_{run_, waker_, world_};
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
   std::map<pid_t, Connection> early_connections_;  // of threads that register later

@@ -120,28 +120,8 @@ void Engine::WakeSignalled(pid_t receiver, Moment moment) {
     if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
     WakeForSignals(process, moment);
     NoteStops(process, moment);
-    NoteWhetherStopped(process, moment.ns);
+    dds_.NoteWhetherStopped(process, moment.ns);
   }
-}
-
-// Others miss a stopped program that speaks DDS when its leases are over. It is stopped as a whole
-// from when a signal that does so is there, though its threads notice one after another.
-void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
-  if (process.dds_number == 0) return;
-  bool stopped = false;
-  for (const Task& task : table_.tasks()) {
-    if (task.process != &process || task.state == TaskState::kDead) continue;
-    const SignalSets sets = ReadSignalSets(task.tid);
-    const std::uint64_t ignored = sets.blocked | sets.caught;
-    stopped |= ThreadState(task.tid) == 'T' ||
-               ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;
-  }
-  if (stopped) {
-    hub_.Stop(process.dds_number, at_ns);
-  } else {
-    hub_.Continue(process.dds_number, at_ns);
-  }
-  ShowDeliverersTheirDeadlines();
 }
 
 }  // namespace tcs
