@@ -121,7 +121,7 @@ void Engine::ProcessEnded(std::size_t index, Moment moment) {
   }
   StartThoseAfter(process);
   objects_.WakeAll(moment);
-  LeaveDds(process, moment);
+  dds_.Leave(process, moment);
   if (!process.is_client) table_.GiveUp(process);
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap

@@ -328,7 +328,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     TimerSignals::SendTo(task);
-    HandMessagesOver(task);
+    dds_.HandOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;

@@ -67,7 +67,7 @@ void Engine::TellOfWaits() {
                                      shm::WakeReason reason) { FinishTrappedWait(task, reason); },
       .deliverer_is_held_up =
           [this](const Process& process, Moment moment) {
-            ReleaseThoseAwaitingDeliverer(process, moment);
+            dds_.ReleaseThoseAwaitingDeliverer(process, moment);
           },
   });
 }
@@ -208,7 +208,7 @@ bool Engine::StepWorld() {
   if (sent) {
     latest_ns_ = world_.progress_ns();
     records_.SentSensors(latest_ns_);
-    ShowDeliverersTheirDeadlines();
+    dds_.ShowDeliverersTheirDeadlines();
     PollEvents(0, {.ns = latest_ns_, .from_outside = true});
   }
   return true;
@@ -245,7 +245,7 @@ void Engine::PollUnseen() {
     latest_ns_ = std::max(latest_ns_, task.reached_ns);
     MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
     task.parked = false;
-    NoteWhetherStopped(*task.process, latest_ns_);
+    dds_.NoteWhetherStopped(*task.process, latest_ns_);
   }
 }
 
@@ -344,7 +344,7 @@ bool Engine::Step() {
   if (table_.living() == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();
-  TakeOwnMessages();
+  dds_.TakeOwnMessages();
   if (StepWorld()) return true;
   const std::int64_t least = root_.Least();
   if (least >= end_ns_ || least == shm::kNeverNs) {
@@ -377,7 +377,7 @@ RunReport Engine::Run() {
   report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
   Report(&report_);
   // First: what clients do at their end is no part of the run.
-  for (const std::string& error : {records_.Close(), CloseDds()}) {
+  for (const std::string& error : {records_.Close(), dds_.records().Close()}) {
     if (report_.error.empty()) report_.error = error;
   }
   RunReport report = report_;

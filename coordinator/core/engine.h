@@ -16,6 +16,7 @@
 #include "coordinator/core/activations.h"
 #include "coordinator/core/child_stops.h"
 #include "coordinator/core/coordinator.h"
+#include "coordinator/core/dds_gateway.h"
 #include "coordinator/core/descriptor_waits.h"
 #include "coordinator/core/expulsion.h"
 #include "coordinator/core/futex_calls.h"
@@ -43,16 +44,12 @@
 #include "coordinator/core/usage_book.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
-#include "coordinator/dds/hub.h"
-#include "coordinator/dds/own_endpoints.h"
-#include "coordinator/dds/topic_log.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
-#include "coordinator/record/recording.h"
 #include "shm/clock_page.h"
 
 namespace tcs {
@@ -233,25 +230,6 @@ class Engine {
 
   // Kernel objects that cannot be polled (wait_queues.cc).
 
-  // Programs that speak DDS (dds.cc).
-  std::string OpenDds();
-  std::string CloseDds();
-  dds::Speaker WhoIs(dds::Hub::Number number) const;
-  void WarnOfDrops();
-  void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
-  void TakeOwnMessages();
-  void HandleDds(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
-  void JoinDds(Task& task);
-  void SendDds(Process& process, std::size_t bytes, std::int64_t at_ns);
-  void WarnOfSockets(const Process& process, shm::WhySockets why);
-  void LeaveDds(Process& process, Moment moment);
-  void AwaitMessages(Task& task);
-  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
-  void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
-  void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
-  void ShowDeliverersTheirDeadlines();
-  void HandMessagesOver(Task& task);
-
   // Signals that clients send, and waits for signals (signals.cc).
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
@@ -355,6 +333,7 @@ class Engine {
   RunClock clock_;
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
+  DdsGateway dds_{run_, waker_, world_, inheritance_};
   SchedulingCalls scheduling_{run_, waker_, inheritance_};
   RawScheduling raw_scheduling_{run_, scheduling_};
   FutexWords words_{run_, waker_};
@@ -362,24 +341,20 @@ class Engine {
   FutexCalls futexes_{run_, waker_, words_, locks_};
   SignalWakes signal_wakes_{run_, waker_, host_cpu_.active()};
   ChildStops stops_{run_, waker_, signal_wakes_, host_cpu_.active()};
-  SignalCalls signals_{
-      run_,
-      waker_,
-      signal_wakes_,
-      stops_,
-      clock_,
-      [this](const Process& process, std::int64_t at_ns) { NoteWhetherStopped(process, at_ns); }};
+  SignalCalls signals_{run_,
+                       waker_,
+                       signal_wakes_,
+                       stops_,
+                       clock_,
+                       [this](const Process& process, std::int64_t at_ns) {
+                         dds_.NoteWhetherStopped(process, at_ns);
+                       }};
   TimerSignals timer_signals_{run_, waker_, signal_wakes_};
   TimerCalls timers_{run_, waker_, timer_signals_};
   RawTimers raw_timers_{run_, timers_};
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   KernelObjectWaits objects_{run_, waker_};
-  dds::Hub hub_;
-  dds::OwnEndpoints ends_{hub_};
-  dds::TopicLog topic_log_{[this](dds::Hub::Number number) { return WhoIs(number); }};
-  std::optional<record::Recording> recording_;
-  std::vector<Process*> dds_processes_;                    // that have joined it
   std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
   std::deque<Connection> connections_;
   std::map<pid_t, Connection> early_connections_;  // of threads that register later

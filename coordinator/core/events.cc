@@ -171,7 +171,7 @@ bool Engine::BlockedInKernel() {
   if (stopped) {
     const Moment moment{WrittenAt()};
     stops_.Look(*task.process, moment);
-    NoteWhetherStopped(*task.process, moment.ns);
+    dds_.NoteWhetherStopped(*task.process, moment.ns);
     return true;
   }
   Warn(fmt::format(

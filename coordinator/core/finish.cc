@@ -37,7 +37,7 @@ ClientReport Engine::ReportOf(const Launch& launch) {
 
 void Engine::Report(RunReport* report) {
   report->virtual_ns = reached_end_ ? end_ns_ : FurthestNs();
-  WarnOfDrops();
+  dds_.records().WarnOfDrops();
   WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();
   report->drift_ns = run_.DriftNs();
@@ -65,7 +65,8 @@ void Engine::WarnOfEndsThatDidNotMeet() {
   if (!report_.error.empty() ||
       std::any_of(table_.processes().begin(), table_.processes().end(), failed))
     return;
-  for (const std::string& warning : dds::MismatchWarnings(topic_log_.reports())) Warn(warning);
+  for (const std::string& warning : dds::MismatchWarnings(dds_.records().topics().reports()))
+    Warn(warning);
   if (!world_.present()) return;
   for (const std::string& warning : command_input_.Complaints(scenario_)) Warn(warning);
   // Whoever has ended may have listened before.

@@ -65,9 +65,7 @@ void Engine::BeginGrace() {
   if (turn_.lasts()) Settle(*turn_.task());  // the dynamics have failed beside it
   turn_.End();
   root_.EndDynamics();
-  hub_.Observe(nullptr);
-  topic_log_.Tell(nullptr);
-  recording_.reset();
+  dds_.records().Stop();
   for (const int fd : world_.command_fds()) reactor_.Remove(fd);
   for (VirtualCpu& cpu : cpus_) {
     if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));

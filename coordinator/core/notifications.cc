@@ -149,7 +149,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsSync:
     case Kind::kDdsRoom:
     case Kind::kDdsSockets:
-      HandleDds(task, note, deadline_ns);
+      dds_.Handle(task, note, deadline_ns);
       break;
     case Kind::kQueueNotifies:
       header_->queues_notify.store(1);

@@ -127,7 +127,7 @@ bool Engine::EndThreadsLostInExec(pid_t pid, Moment moment) {
 
 void Engine::GiveDdsArea(int connection, pid_t pid) {
   const Process* process = LivingProcess(pid);
-  const int fd = process == nullptr ? -1 : hub_.AreaOf(process->dds_number);
+  const int fd = process == nullptr ? -1 : dds_.AreaOf(*process);
   if (fd < 0) return Refuse(connection, "it has not joined");
   Send(connection, NewReply(), std::span(&fd, 1));
 }
@@ -222,7 +222,7 @@ bool Engine::Attach(int connection, Process& client, Moment moment) {
   if (!turn_.IsOf(task)) host_cpu_.active().HoldUnknown(task);
   if (hello.tid == hello.pid) {  // a new process; or it has executed another program
     TimerCalls::DeletePosix(process);
-    LeaveDds(process, moment);
+    dds_.Leave(process, moment);
   }
   PlaceAtGate(task, moment.ns);
   shm::AttachReply reply = NewReply();

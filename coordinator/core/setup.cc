@@ -67,7 +67,7 @@ std::string Engine::Prepare() {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
-  if (std::string error = OpenDds(); !error.empty()) return error;
+  if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {

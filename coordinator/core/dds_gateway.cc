@@ -1,91 +1,37 @@
-// Programs that speak DDS: who has joined, what they send each other, and the thread of each that
-// takes what is for it (shm/dds_exchange.h).
+#include "coordinator/core/dds_gateway.h"
+
 #include <dds/version.h>
 #include <errno.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/scenario/own_topics.h"
 
 namespace tcs {
 
-std::string Engine::OpenDds() {
-  const std::string& directory = options_.output_directory;
-  if (!directory.empty()) {
-    std::error_code ignored;  // of an earlier run into the same folder
-    std::filesystem::remove(directory + "/topics.json", ignored);
-    std::filesystem::remove_all(directory + "/bag", ignored);
-    hub_.Observe(&topic_log_);
-  }
-  if (options_.record) {
-    recording_.emplace(topic_log_, ends_, header_->realtime_offset_ns);
-    topic_log_.Tell(&*recording_);
-    if (std::string error = recording_->Open(directory + "/bag"); !error.empty()) {
-      topic_log_.Tell(nullptr);
-      recording_.reset();
-      return error;
-    }
-  }
-  world_.OpenDds(ends_, header_->realtime_offset_ns);
-  if (recording_.has_value()) recording_->ReadNewTopics(0);
+std::string DdsGateway::Open() {
+  if (std::string error = records_.Open(); !error.empty()) return error;
+  world_.OpenDds(ends_, run_.header->realtime_offset_ns);
+  records_.ReadNewTopics(0);
   return {};
 }
 
-std::string Engine::CloseDds() {
-  const std::vector<dds::TopicReport>& topics = topic_log_.reports();
-  std::string error;
-  if (!topics.empty()) {
-    error = dds::WriteTopics(topics, options_.output_directory + "/topics.json");
-  }
-  if (recording_.has_value()) {
-    if (std::string missing = recording_->Close(); error.empty()) error = std::move(missing);
-  }
-  return error;
-}
-
-void Engine::WarnOfDrops() {
-  const dds::Hub::Drops& drops = hub_.drops();
-  const auto say = [this](std::uint64_t count, const char* what) {
-    if (count > 0) Warn(fmt::format("{} DDS samples {}", count, what));
-  };
-  say(drops.lost,
-      "were dropped, because a program has stopped taking what is sent to it and 256 MiB were "
-      "waiting: look for a listener that never returns");
-  say(drops.unreliable,
-      "that no reader was promised (best effort) were dropped, because 1 MiB was waiting for a "
-      "program that takes more slowly: tcsim topics says of which topics");
-  say(drops.replaced,
-      "were replaced by later ones of writers that keep the last, because 1 MiB was waiting for a "
-      "program that takes more slowly: tcsim topics says of which topics");
-  if (!topic_log_.is_whole()) {
-    Warn(fmt::format(
-        "the programs have made more than {} different writers and readers of DDS "
-        "topics: topics.json{} of the first ones only; do names or QoS have a counter "
-        "in them?",
-        dds::TopicLog::kMostEnds, recording_.has_value() ? " and bag/ tell" : " tells"));
-  }
-}
-
-dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
+dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
   if (number == shm::kDdsCoordinator) return {"tcsim", ""};
-  for (const Process* process : dds_processes_) {
+  for (const Process* process : joined_) {
     if (process->dds_number == number) return {process->name, process->robot->name};
   }
   return {};
 }
 
-// What is from before anything that can still be sent.
-void Engine::TakeOwnMessages() {
-  const std::int64_t until = std::min(root_.Least(), end_ns_);
+void DdsGateway::TakeOwnMessages() {
+  const std::int64_t until = std::min(run_.root.Least(), run_.end_ns);
   if (hub_.OwnDueNs() > until) return;
-  if (world_.speaks_dds() && WorldGoesOn()) {
+  if (world_.present() && world_.speaks_dds() && !run_.IsInGrace()) {
     world_.TakeDdsCommands(until);
   } else {
     while (ends_.Take(until).has_value()) {
@@ -94,47 +40,53 @@ void Engine::TakeOwnMessages() {
   ShowDeliverersTheirDeadlines();
 }
 
-void Engine::HandleDds(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
+void DdsGateway::Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
   Process& process = *task.process;
   switch (note.kind) {
     case shm::NotificationKind::kDdsJoin:
-      JoinDds(task);
+      Join(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      SendDds(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
+      Send(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
       break;
     case shm::NotificationKind::kDdsRoom: {
       const auto receiver = static_cast<dds::Hub::Number>(note.args[0]);
-      if (hub_.IsFull(receiver)) EnterWait(task, {awaited::Room{receiver}, deadline_ns});
+      if (hub_.IsFull(receiver)) waker_.Wait(task, {awaited::Room{receiver}, deadline_ns});
       break;
     }
     case shm::NotificationKind::kDdsSockets:
       WarnOfSockets(process, static_cast<shm::WhySockets>(note.args[0]));
       break;
     default:
-      if (!IsDelivering(process, task.reached_ns)) break;
-      EnterWait(task, {awaited::Deliverer{}, deadline_ns});
-      SchedulerOf(task).SetBlockedOn(task.order, process.deliverer->order);
-      inheritance_.Find(*process.deliverer);
+      AwaitDeliverer(task, deadline_ns);
   }
 }
 
+// The deliverer inherits the priority of the threads that wait for it.
+void DdsGateway::AwaitDeliverer(Task& task, std::int64_t deadline_ns) {
+  Process& process = *task.process;
+  if (!IsDelivering(process, task.reached_ns)) return;
+  waker_.Wait(task, {awaited::Deliverer{}, deadline_ns});
+  PriorityInheritance::BlockOn(task, process.deliverer);
+  inheritance_.Find(*process.deliverer);
+}
+
 // What is wrong is said once of each process: it may send as often as it likes.
-void Engine::SendDds(Process& process, std::size_t bytes, std::int64_t at_ns) {
+void DdsGateway::Send(Process& process, std::size_t bytes, std::int64_t at_ns) {
   const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns);
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
-    Warn(fmt::format("{} {}", process.name, wrong));
+    run_.Warn(fmt::format("{} {}", process.name, wrong));
   }
-  if (recording_.has_value()) recording_->ReadNewTopics(at_ns);
+  records_.ReadNewTopics(at_ns);
   ShowDeliverersTheirDeadlines();
 }
 
 // It says so itself on its stderr, which is a file here that nobody may look into.
-void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
-  if (options_.output_directory.empty()) return;
+void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
+  if (run_.options.output_directory.empty()) return;
   const char* reason = "libtcs_dds.so cannot be loaded into it";
   const char* mend = "see its .err.log";
   switch (why) {
@@ -153,32 +105,31 @@ void Engine::WarnOfSockets(const Process& process, shm::WhySockets why) {
     case shm::WhySockets::kNoLibraryOfOurs:
       break;
   }
-  const std::string topics = NamesOfOwnTopics(scenario_);
+  const std::string topics = NamesOfOwnTopics(run_.scenario);
   const std::string missed = topics.empty()
                                  ? "programs whose DDS is in shared memory"
                                  : "the scenario's topics in shared memory (" + topics + ")";
   const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
-  Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
-                   process.name, reason, missed, mend, other_way));
+  run_.Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
+                        process.name, reason, missed, mend, other_way));
 }
 
-void Engine::JoinDds(Task& task) {
+void DdsGateway::Join(Task& task) {
   Process& process = *task.process;
-  LeaveDds(process, {task.reached_ns});
+  Leave(process, {task.reached_ns});
   process.dds_number = hub_.Join(task.reached_ns);
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
-  task.reply[1] = scenario_.drift_bound.ns();
-  if (process.dds_number != 0) dds_processes_.push_back(&process);
+  task.reply[1] = run_.scenario.drift_bound.ns();
+  if (process.dds_number != 0) joined_.push_back(&process);
 }
 
-// It has died, or executes another program.
-void Engine::LeaveDds(Process& process, Moment moment) {
+void DdsGateway::Leave(Process& process, Moment moment) {
   if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
     deliverer->is_deliverer = false;
     ReleaseThoseAwaitingDeliverer(process, moment);
   }
   if (process.dds_number == 0) return;
-  std::erase(dds_processes_, &process);
+  std::erase(joined_, &process);
   const std::uint32_t number = std::exchange(process.dds_number, 0);
   hub_.Leave(number, moment.ns);
   ReleaseThoseAwaitingRoom(number, moment);
@@ -186,7 +137,7 @@ void Engine::LeaveDds(Process& process, Moment moment) {
 }
 
 // The deliverer has nothing more to hand over, and waits until something is due.
-void Engine::AwaitMessages(Task& task) {
+void DdsGateway::AwaitMessages(Task& task) {
   Process& process = *task.process;
   if (process.deliverer != &task) {
     process.deliverer = &task;
@@ -194,12 +145,12 @@ void Engine::AwaitMessages(Task& task) {
   }
   hub_.CameBack(process.dds_number);
   ReleaseThoseAwaitingRoom(process.dds_number, {task.reached_ns});
-  EnterWait(task, {awaited::Messages{}, hub_.DueNs(process.dds_number)});
+  waker_.Wait(task, {awaited::Messages{}, hub_.DueNs(process.dds_number)});
   ReleaseThoseAwaitingDeliverer(process, {task.reached_ns});
 }
 
 // Whether what is due at `now_ns` is being handed over, or is about to be.
-bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
+bool DdsGateway::IsDelivering(const Process& process, std::int64_t now_ns) const {
   const Task* deliverer = process.deliverer;
   if (deliverer == nullptr) return false;
   if (deliverer->Awaits<awaited::Messages>() != nullptr) {
@@ -208,47 +159,47 @@ bool Engine::IsDelivering(const Process& process, std::int64_t now_ns) const {
   return Waker::IsRunnable(*deliverer);
 }
 
-void Engine::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
+void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
   if (waker_.counts().for_deliverer() == 0) return;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
     if (!IsDelivering(process, task->reached_ns)) {
-      MakeReady(*task, shm::WakeReason::kGo, moment);
+      waker_.Wake(*task, shm::WakeReason::kGo, moment);
     }
   }
 }
 
 // Those that sent to a process more than it can take at once.
-void Engine::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
+void DdsGateway::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
   if (waker_.counts().for_room() == 0 || hub_.IsFull(number)) return;
-  for (Task& task : table_.tasks()) {
+  for (Task& task : run_.table.tasks()) {
     const auto* wait = task.Awaits<awaited::Room>();
     if (wait == nullptr || wait->process != number) continue;
-    MakeReady(task, shm::WakeReason::kGo, moment);
+    waker_.Wake(task, shm::WakeReason::kGo, moment);
   }
 }
 
-void Engine::ShowDeliverersTheirDeadlines() {
-  for (const Process* process : dds_processes_) {
+void DdsGateway::ShowDeliverersTheirDeadlines() {
+  for (const Process* process : joined_) {
     Task* deliverer = process->deliverer;
     if (deliverer == nullptr || deliverer->Awaits<awaited::Messages>() == nullptr) continue;
     const std::int64_t due = hub_.DueNs(process->dds_number);
     if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
-    const bool inside = turn_.IsOn(*process->robot);
+    const bool inside = run_.turn.IsOn(*process->robot);
     if (due != shm::kNeverNs && !inside) {
       waker_.NoteLateness(*deliverer, due,
                           SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
     }
-    Refresh(*process->robot);
+    waker_.Refresh(*process->robot);
   }
 }
 
-// Others miss a stopped program that speaks DDS when its leases are over. It is stopped as a whole
-// from when a signal that does so is there, though its threads notice one after another.
-void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
+// It is stopped as a whole from when a signal that does so is there, though its threads notice one
+// after another.
+void DdsGateway::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
-  for (const Task& task : table_.tasks()) {
+  for (const Task& task : run_.table.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
     const SignalSets sets = ReadSignalSets(task.tid);
     const std::uint64_t ignored = sets.blocked | sets.caught;
@@ -263,8 +214,7 @@ void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   ShowDeliverersTheirDeadlines();
 }
 
-// At the dispatch of a deliverer whose wait is over.
-void Engine::HandMessagesOver(Task& task) {
+void DdsGateway::HandOver(Task& task) {
   const std::int64_t until = std::exchange(task.messages_until_ns, -1);
   if (until < 0) return;
   const std::size_t bytes =
