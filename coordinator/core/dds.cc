@@ -31,7 +31,7 @@ std::string Engine::OpenDds() {
       return error;
     }
   }
-  world_.OpenDds(ends_, header_->realtime_offset_ns);
+  world_.Begin(header_->realtime_offset_ns);
   if (recording_.has_value()) recording_->ReadNewTopics(0);
   return {};
 }
@@ -83,11 +83,9 @@ dds::Speaker Engine::WhoIs(dds::Hub::Number number) const {
 void Engine::TakeOwnMessages() {
   const std::int64_t until = std::min(root_.Least(), end_ns_);
   if (hub_.OwnDueNs() > until) return;
-  if (world_.speaks_dds() && WorldGoesOn()) {
-    world_.TakeDdsCommands(until);
-  } else {
-    while (ends_.Take(until).has_value()) {
-    }
+  if (WorldGoesOn()) world_.ReceiveUntold(until);
+  // What was for none of the channels, or is from after their end.
+  while (ends_.Take(until).has_value()) {
   }
   ShowDeliverersTheirDeadlines();
 }

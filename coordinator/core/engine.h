@@ -474,8 +474,7 @@ class Engine {
 
   const Scenario scenario_;
   const RunOptions options_;
-  CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
-  World world_{command_input_};
+  World world_{[this](const std::string& text) { Warn(text); }};
   TemporalConsistency root_;
   ScheduleRecords schedule_;
   Activations activations_;

@@ -68,7 +68,9 @@ void Engine::BeginGrace() {
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);
   recording_.reset();
-  for (const int fd : world_.command_fds()) reactor_.Remove(fd);
+  for (const int fd : world_.command_fds()) {
+    if (fd >= 0) reactor_.Remove(fd);
+  }
   for (VirtualCpu& cpu : cpus_) {
     if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
   }

@@ -78,10 +78,11 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   const YamlValue& to = map.Require("to", "to: \"127.0.0.1:47010\"");
-  channel.to = endpoints->Load(to);
-  if (channel.to.host == kAnyAddress) {
+  const UdpEndpoint endpoint = endpoints->Load(to);
+  if (endpoint.host == kAnyAddress) {
     to.Fail("has the address 0.0.0.0, to which nothing can be sent; name one, like 127.0.0.1");
   }
+  channel.to = endpoint;
   return channel;
 }
 
@@ -93,7 +94,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
   channel.name = entry.key;
   channel.body = FindBody(map.Require("body", "body: predator"), scenario);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  channel.listen = endpoints->Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
+  channel.from = endpoints->Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
   return channel;
 }
 
@@ -150,14 +151,12 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
                            ? "carries nothing; add the key sensors or commands"
                            : "has both sensors and commands; make two channels of it");
     }
-    if (is_dds && sensors != nullptr) {
-      scenario->dds_sensors.push_back(LoadDdsSensors(entry, *sensors, *scenario, &topics));
-    } else if (is_dds) {
-      scenario->dds_commands.push_back(LoadDdsCommands(entry, *commands, *scenario, &topics));
-    } else if (sensors != nullptr) {
-      scenario->sensors.push_back(LoadSensors(entry, *sensors, *scenario, &endpoints));
+    if (sensors != nullptr) {
+      scenario->sensors.push_back(is_dds ? LoadDdsSensors(entry, *sensors, *scenario, &topics)
+                                         : LoadSensors(entry, *sensors, *scenario, &endpoints));
     } else {
-      scenario->commands.push_back(LoadCommands(entry, *commands, *scenario, &endpoints));
+      scenario->commands.push_back(is_dds ? LoadDdsCommands(entry, *commands, *scenario, &topics)
+                                          : LoadCommands(entry, *commands, *scenario, &endpoints));
     }
   }
 }
