@@ -8,8 +8,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "shm/virtual_time.h"
@@ -46,6 +48,10 @@ class Outlet {
   // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
   virtual std::string WhyUnheard() const { return {}; }
 };
+
+// An end that has been opened, or why it was not: one sentence.
+template <class End>
+using Opened = std::variant<std::unique_ptr<End>, std::string>;
 
 // Who is given what comes in. Channels are numbered as the scenario lists those of commands.
 class CommandSink {

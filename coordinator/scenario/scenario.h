@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -88,6 +89,16 @@ struct UdpEndpoint {
   std::uint16_t port = 0;
 };
 
+// Of a UNIX socket: a file, or a name in the abstract namespace, which has no file.
+struct UnixName {
+  static constexpr std::size_t kLongest = 107;  // as the kernel has it
+
+  std::string name;  // an absolute path; without the '@' of an abstract one
+  bool is_abstract = false;
+
+  std::string Text() const { return is_abstract ? "@" + name : name; }
+};
+
 // The coordinator's end of a DDS topic.
 struct DdsTopicSpec {
   std::string topic;  // ROS 2's name: "/odom"
@@ -106,8 +117,8 @@ struct DdsCommandEnd {
 };
 
 // What carries a channel: an alternative for each transport (coordinator/channel/).
-using SensorEnd = std::variant<UdpEndpoint, DdsSensorEnd>;    // where readings are sent
-using CommandEnd = std::variant<UdpEndpoint, DdsCommandEnd>;  // where commands come in
+using SensorEnd = std::variant<UdpEndpoint, UnixName, DdsSensorEnd>;    // where readings are sent
+using CommandEnd = std::variant<UdpEndpoint, UnixName, DdsCommandEnd>;  // where commands come in
 
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
 // `latency` later.

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 
-#include "coordinator/channel/json/json_codec.h"
+#include "coordinator/channel/json/json_channel.h"
+#include "coordinator/channel/udp/udp_socket.h"
 
 namespace tcs {
 namespace {
@@ -14,56 +18,56 @@ std::string NameOf(const UdpEndpoint& endpoint) {
   return fmt::format("{}:{}", endpoint.host, endpoint.port);
 }
 
+class UdpSender final : public DatagramSender {
+ public:
+  UdpSender(UdpSocket socket, UdpEndpoint to) : socket_(std::move(socket)), to_(std::move(to)) {}
+
+  void Send(const std::string& datagram) override { (void)socket_.SendTo(to_, datagram); }
+  std::string WhyUnheard() const override {
+    if (IsListenedTo(to_)) return {};
+    return fmt::format(
+        "nobody listens on {}, so that its samples are lost; let a client bind that port",
+        NameOf(to_));
+  }
+
+ private:
+  UdpSocket socket_;
+  UdpEndpoint to_;
+};
+
+class UdpReceiver final : public DatagramReceiver {
+ public:
+  UdpReceiver(UdpSocket socket, UdpEndpoint from)
+      : socket_(std::move(socket)), from_(std::move(from)) {}
+
+  int fd() const override { return socket_.fd(); }
+  std::optional<std::string> Receive() override {
+    auto received = socket_.Receive();
+    auto* datagram = std::get_if<std::optional<Datagram>>(&received);
+    if (datagram == nullptr || !datagram->has_value()) return std::nullopt;
+    return std::move((*datagram)->payload);
+  }
+  std::string Where() const override { return "on " + NameOf(from_); }
+
+ private:
+  UdpSocket socket_;
+  UdpEndpoint from_;
+};
+
 }  // namespace
 
-std::variant<std::unique_ptr<Outlet>, SocketError> UdpOutlet::Open(const UdpEndpoint& to) {
+Opened<Outlet> OpenUdpOutlet(const UdpEndpoint& to) {
   auto socket = UdpSocket::ForSending();
-  if (auto* error = std::get_if<SocketError>(&socket)) return std::move(*error);
-  return std::unique_ptr<Outlet>(new UdpOutlet(std::move(std::get<UdpSocket>(socket)), to));
+  if (const auto* error = std::get_if<SocketError>(&socket)) return error->message;
+  return std::make_unique<JsonOutlet>(
+      std::make_unique<UdpSender>(std::move(std::get<UdpSocket>(socket)), to));
 }
 
-bool UdpOutlet::Send(const Reading& reading, VirtualTime arrives) {
-  on_the_way_.Add(EncodeReading(reading), arrives);
-  return false;
-}
-
-// A full or absent receiver loses the datagram, as on a network.
-bool UdpOutlet::HandOver(VirtualTime now) {
-  return on_the_way_.Arrive(
-      now, [this](const std::string& datagram) { (void)socket_.SendTo(to_, datagram); });
-}
-
-std::string UdpOutlet::WhyUnheard() const {
-  if (IsListenedTo(to_)) return {};
-  return fmt::format(
-      "nobody listens on {}, so that its samples are lost; let a client bind that port",
-      NameOf(to_));
-}
-
-std::variant<std::unique_ptr<Inlet>, SocketError> UdpInlet::Open(const UdpEndpoint& from,
-                                                                 std::size_t channel) {
+Opened<Inlet> OpenUdpInlet(const UdpEndpoint& from, std::size_t channel) {
   auto socket = UdpSocket::Bind(from);
-  if (auto* error = std::get_if<SocketError>(&socket)) return std::move(*error);
-  return std::unique_ptr<Inlet>(
-      new UdpInlet(std::move(std::get<UdpSocket>(socket)), from, channel));
-}
-
-void UdpInlet::Receive(VirtualTime now, CommandSink& sink) {
-  for (;;) {
-    auto received = socket_.Receive();
-    const auto* datagram = std::get_if<std::optional<Datagram>>(&received);
-    if (datagram == nullptr || !datagram->has_value()) return;
-    const auto wrench = DecodeCommand((*datagram)->payload);
-    if (const auto* error = std::get_if<DecodeError>(&wrench)) {
-      sink.Refuse(channel_, "the command datagram " + error->message);
-    } else {
-      sink.Take(channel_, now, std::get<Wrench>(wrench));
-    }
-  }
-}
-
-Inlet::Place UdpInlet::PlaceOf(std::size_t) const {
-  return {"on " + NameOf(from_), "send its commands there"};
+  if (const auto* error = std::get_if<SocketError>(&socket)) return error->message;
+  return std::make_unique<JsonInlet>(
+      std::make_unique<UdpReceiver>(std::move(std::get<UdpSocket>(socket)), from), channel);
 }
 
 }  // namespace tcs
