@@ -33,6 +33,8 @@ class DdsGateway {
   // sentence.
   [[nodiscard]] std::string Open();
   DdsRecords& records() { return records_; }
+  // The coordinator's own, for the world's channels on DDS.
+  dds::OwnEndpoints& ends() { return ends_; }
   const DdsRecords& records() const { return records_; }
   // The world, if there is one, takes what is for it, as far as nothing can come before that any
   // more.

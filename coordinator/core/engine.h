@@ -321,8 +321,7 @@ class Engine {
   std::int64_t& latest_ns_ = run_.latest_ns;
   StopRequest& stop_ = run_.stop;
   std::int64_t& grace_began_ns_ = run_.grace_began_ns;
-  CommandInput command_input_{[this](const std::string& text) { Warn(text); }};
-  World world_{command_input_};
+  World world_{[this](const std::string& text) { Warn(text); }};
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "coordinator/channel/udp_socket.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/dds/topics_table.h"
 #include "coordinator/os/descendants.h"
@@ -68,17 +67,11 @@ void Engine::WarnOfEndsThatDidNotMeet() {
   for (const std::string& warning : dds::MismatchWarnings(dds_.records().topics().reports()))
     Warn(warning);
   if (!world_.present()) return;
-  for (const std::string& warning : command_input_.Complaints(scenario_)) Warn(warning);
+  for (const std::string& warning : world_.CommandComplaints()) Warn(warning);
   // Whoever has ended may have listened before.
   const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
   if (std::any_of(table_.processes().begin(), table_.processes().end(), gone)) return;
-  for (const SensorChannelSpec& spec : scenario_.sensors) {
-    if (IsListenedTo(spec.to)) continue;
-    Warn(fmt::format(
-        "channel {}: nobody listens on {}:{}, so that its samples are lost; let a client "
-        "bind that port",
-        spec.name, spec.to.host, spec.to.port));
-  }
+  for (const std::string& warning : world_.SensorComplaints()) Warn(warning);
 }
 
 }  // namespace tcs

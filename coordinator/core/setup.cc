@@ -45,7 +45,7 @@ std::string Engine::Prepare() {
   if (gates_only_ && !TrapsHoldSignals()) {
     return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
   }
-  if (std::string error = world_.Open(scenario_); !error.empty()) return error;
+  if (std::string error = world_.Open(scenario_, dds_.ends()); !error.empty()) return error;
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
@@ -70,8 +70,10 @@ std::string Engine::Prepare() {
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareListener(); !error.empty()) return error;
-  for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
-    reactor_.Add(world_.command_fds()[i], EPOLLIN, {Tag::kCommand, static_cast<std::uint32_t>(i)});
+  std::uint32_t inlet = 0;
+  for (const int fd : world_.command_fds()) {
+    if (fd >= 0) reactor_.Add(fd, EPOLLIN, {Tag::kCommand, inlet});
+    ++inlet;
   }
   return PrepareHostCpu();
 }

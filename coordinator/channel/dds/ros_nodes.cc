@@ -1,4 +1,4 @@
-#include "coordinator/core/ros_nodes.h"
+#include "coordinator/channel/dds/ros_nodes.h"
 
 #include <algorithm>
 #include <utility>

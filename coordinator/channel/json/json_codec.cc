@@ -1,4 +1,4 @@
-#include "coordinator/channel/json_codec.h"
+#include "coordinator/channel/json/json_codec.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace tcs {
@@ -26,8 +27,7 @@ std::string Quote(const std::string& text) {
 }
 
 DecodeError Mistake(const std::string& what) {
-  return DecodeError{"the command datagram " + what + "; send an object like " +
-                     std::string(kExample)};
+  return DecodeError{what + "; send an object like " + std::string(kExample)};
 }
 
 // Three finite numbers; none if `value` is anything else.
@@ -66,30 +66,30 @@ void AppendList(std::span<const double> values, std::string& text) {
 }  // namespace
 
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
-std::string EncodeSensorDatagram(VirtualTime time, std::span<const NamedBodyState> bodies) {
+std::string EncodeReading(const Reading& reading) {
   // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
-  std::string datagram = R"({"time":)";
-  AppendNumber(static_cast<double>(time.ns()) / 1e9, datagram);
-  datagram += R"(,"frame_id":"world","bodies":{)";
-  for (const NamedBodyState& body : bodies) {
-    if (&body != &bodies.front()) datagram += ',';
-    datagram += Json(body.name).dump() + R"(:{"position":)";
-    AppendList(body.state.position_m, datagram);
-    datagram += R"(,"orientation":)";
-    AppendList(body.state.orientation_xyzw, datagram);
-    datagram += R"(,"linear_velocity":)";
-    AppendList(body.state.linear_velocity_mps, datagram);
-    datagram += R"(,"angular_velocity":)";
-    AppendList(body.state.angular_velocity_radps, datagram);
-    datagram += '}';
+  std::string text = R"({"time":)";
+  AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
+  text += R"(,"frame_id":"world","bodies":{)";
+  for (const BodyReading& body : reading.bodies) {
+    if (&body != &reading.bodies.front()) text += ',';
+    text += Json(body.name).dump() + R"(:{"position":)";
+    AppendList(body.state.position_m, text);
+    text += R"(,"orientation":)";
+    AppendList(body.state.orientation_xyzw, text);
+    text += R"(,"linear_velocity":)";
+    AppendList(body.state.linear_velocity_mps, text);
+    text += R"(,"angular_velocity":)";
+    AppendList(body.state.angular_velocity_radps, text);
+    text += '}';
   }
-  return datagram += "}}";
+  return text += "}}";
 }
 
-std::variant<Wrench, DecodeError> DecodeCommandDatagram(std::string_view datagram) {
+std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
   Json command;
   try {
-    command = Json::parse(datagram);
+    command = Json::parse(text);
   } catch (const Json::parse_error& error) {
     return Mistake("is not valid JSON at byte " + std::to_string(error.byte));
   } catch (const Json::out_of_range&) {
