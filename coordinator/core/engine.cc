@@ -44,6 +44,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       executor_(MakeExecutor(run_.gates_only)),
       host_cpu_(*executor_) {
   TellOfWaits();
+  TellOfEnds();
 }
 
 Engine::~Engine() = default;
@@ -65,6 +66,28 @@ void Engine::TellOfWaits() {
       .deliverer_is_held_up =
           [this](const Process& process, Moment moment) {
             dds_.ReleaseThoseAwaitingDeliverer(process, moment);
+          },
+  });
+}
+
+void Engine::TellOfEnds() {
+  deaths_.Tell({
+      .settle = [this](Task& task) { Settle(task); },
+      .thread_ends = [this](Task& task, Moment moment) { PassOn(task, moment); },
+      .thread_has_ended =
+          [this](Task& task) {
+            queues_.Forget(task.order);
+            registration_.Forget(task);
+          },
+      .wake_those_waiting_for = [this](Task& task,
+                                       Moment moment) { WakeThoseWaitingFor(task, moment); },
+      .child_has_ended = [this](Process& parent, pid_t child,
+                                Moment moment) { ChildChanged(parent, child, false, moment); },
+      .process_has_ended =
+          [this](Process& process, Moment moment) {
+            StartThoseAfter(process);
+            WakeEveryQueue(moment);
+            dds_.Leave(process, moment);
           },
   });
 }
@@ -176,7 +199,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   } else {
     Dispatch(task, horizon, idle_until);
     if (TakePutOff({latest_ns_}).looks_again) PollEvents(0, {latest_ns_});
-    RegisterUnannounced({latest_ns_});
+    registration_.RegisterUnannounced({latest_ns_});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;
@@ -336,7 +359,7 @@ bool Engine::AwaitOutside() {
 
 // One step of the run; false at its end.
 bool Engine::Step() {
-  ended_links_.clear();
+  deaths_.DropLinks();
   if (table_.living() == 0 && !HasLaunchAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();

@@ -15,16 +15,21 @@
 
 #include "coordinator/calls/futex_table.h"
 #include "coordinator/core/activations.h"
+#include "coordinator/core/births.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/dds_gateway.h"
+#include "coordinator/core/deaths.h"
 #include "coordinator/core/expulsion.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
+#include "coordinator/core/registration.h"
+#include "coordinator/core/registration_sockets.h"
 #include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_records.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/slot_check.h"
 #include "coordinator/core/standstill_watch.h"
+#include "coordinator/core/trap_listeners.h"
 #include "coordinator/core/unknown_children.h"
 #include "coordinator/core/unmanaged_threads.h"
 #include "coordinator/core/usage_book.h"
@@ -50,18 +55,7 @@ class Engine {
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
   std::string PrepareMemory();
-  std::string PrepareListener();
-  // Where a client and its descendants register.
-  struct Listener {
-    UniqueFd fd;
-    Process* client;
-  };
-  // Somebody who has not said yet what it wants.
-  struct Connection {
-    UniqueFd fd;
-    Process* client;  // that its listener is for
-  };
-  std::string OpenListener();
+  std::string PrepareSignals();
   std::string PrepareHostCpu();
 
   // When the clients start (launches.cc).
@@ -108,6 +102,7 @@ class Engine {
   }
   void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
   void TellOfWaits();
+  void TellOfEnds();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -332,29 +327,12 @@ class Engine {
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
-  void Accept(const Listener& listener);
-  void AddConnection(Connection connection);
-  bool RegistersLater(const Connection& connection, pid_t* tid) const;
-  void RegisterUnannounced(Moment moment);
-  void TakeUpRegistration(const Task& task);
-  bool Attach(int connection, Process& client, Moment moment);
-  void GiveDdsArea(int connection, pid_t pid);
-  void PlaceAtGate(Task& task, std::int64_t at_ns);
-  Task* TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
-  void ProcessEnded(std::size_t index, Moment moment);
-  Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker = nullptr);
-  Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
-  Task* AddTask(Process& process, pid_t tid, std::int64_t at_ns);
-  Task* AddThread(Process& process, pid_t tid, std::int64_t at_ns);
-  bool EndThreadsLostInExec(pid_t pid, Moment moment);
   bool HasExited(const Task& task) const;
   void LetDie(const Process& process);
   void LendLevel();
   Process* LivingProcess(pid_t pid) const { return table_.LivingProcess(pid); }
   Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
   Task& TaskAt(int order) { return table_.At(order); }
-  void EndTask(Task& task, Moment moment);
 
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
@@ -410,9 +388,6 @@ class Engine {
   std::vector<Launch> launches_;  // of all clients, as in the scenario
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
   DdsGateway dds_{run_, waker_, world_};
-  std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
-  std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;  // of threads that register later
   std::uint64_t next_signal_look_tsc_ = 0;
 
   CpuClaim claim_;
@@ -429,6 +404,15 @@ class Engine {
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   UsageBook usage_{table_, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
+  Births births_{run_, waker_, reactor_, records_};
+  Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
+  TrapListeners traps_{reactor_};
+  RegistrationSockets sockets_{reactor_};
+  Registration registration_{{run_, waker_, reactor_, host_cpu_, sockets_, births_, deaths_, dds_},
+                             [this](Process& process, Moment moment) {
+                               DeletePosixTimers(process);
+                               dds_.Leave(process, moment);
+                             }};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
@@ -436,9 +420,6 @@ class Engine {
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
-  std::vector<Listener> listeners_;
-  std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
-  std::string socket_name_;      // of the first; the others' have their numbers in them
 
   bool reached_end_ = false;
   UniqueFd grace_timer_;                                   // of real time:

@@ -146,8 +146,7 @@ bool Engine::BlockedInKernel() {
   if (state != 'S' && task.process->threads > 1) LetDie(*task.process);
   if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns && HasExited(task)) {
     Settle(task);
-    EndTask(task, {task.reached_ns});
-    WakeThoseWaitingFor(task, {task.reached_ns});
+    deaths_.EndAndWake(task, {task.reached_ns});
     return true;
   }
   // This process may have waited in the kernel itself for what /proc says, and the thread gone on

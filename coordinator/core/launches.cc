@@ -144,7 +144,7 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
   preload = WithOurLibraries(
       client.environment.contains("LD_PRELOAD") ? preload : options_.user_preload,
       options_.preload_library + (counts_allocations ? ":" + options_.allocation_library : ""));
-  const std::string socket_name = OpenListener();
+  const std::string socket_name = sockets_.Open();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;
   request.fixed_layout = IsFixed();
@@ -158,25 +158,13 @@ std::string Engine::Start(Launch& launch, std::int64_t at_ns) {
   const pid_t pid = spawned.pid;
   if (pid < 0) return client.name + " cannot be started: " + strerror(errno);
   if (spawned.trap) {
-    const int trap = spawned.trap.get();
-    reactor_.Add(trap, EPOLLIN, {Tag::kTrap, static_cast<std::uint32_t>(trap)});
-    traps_.push_back(std::move(spawned.trap));
+    traps_.Add(std::move(spawned.trap));
   } else {
     Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
          "): threads wait for each other in real time");
   }
-  Task* task = NewTask(pid, getpid(), launch.robot, client.name, client.priority,
-                       client.deadline.ns(), at_ns);
-  launch.process = task->process;
-  launch.process->started_at_ns = task->reached_ns;
-  launch.process->is_client = true;
-  launch.process->client = launch.process;
-  launch.process->spec = &client;
-  listeners_.back().client = launch.process;
-  launch.process->call_cost_ns = client.fixed_call_cost.ns();
-  launch.process->allocation_cost_ns = client.fixed_allocation_cost.ns();
-  launch.process->patch_vdso = client.patch_vdso;
-  launch.process->dds_endpoints = client.dds == DdsTransport::kEndpoints;
+  launch.process = births_.AddClient(pid, *launch.robot, client, at_ns).process;
+  sockets_.AssignTo(*launch.process);
   return {};
 }
 

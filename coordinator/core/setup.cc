@@ -7,8 +7,6 @@
 #include <sys/epoll.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -69,7 +67,7 @@ std::string Engine::Prepare() {
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
-  if (std::string error = PrepareListener(); !error.empty()) return error;
+  if (std::string error = PrepareSignals(); !error.empty()) return error;
   for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
     reactor_.Add(world_.command_fds()[i], EPOLLIN, {Tag::kCommand, static_cast<std::uint32_t>(i)});
   }
@@ -80,6 +78,7 @@ std::string Engine::PrepareMemory() {
   SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
   if (!memory.fd) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
   memfd_ = std::move(memory.fd);
+  registration_.ShareMemory(memfd_.get());
   memory_ = new (memory.at) shm::RunMemory{};
   header_ = &memory_->header;
   header_->magic = shm::kMagic;
@@ -97,7 +96,7 @@ std::string Engine::PrepareMemory() {
   return {};
 }
 
-std::string Engine::PrepareListener() {
+std::string Engine::PrepareSignals() {
   sigset_t blocked;
   sigemptyset(&blocked);
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
@@ -105,28 +104,8 @@ std::string Engine::PrepareListener() {
   signal(SIGPIPE, SIG_IGN);
   signals_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
 
-  socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
   reactor_.Add(signals_.get(), EPOLLIN, {Tag::kSignal});
   return {};
-}
-
-// Where the next client and its descendants register. Its name, or nothing if it cannot be made.
-std::string Engine::OpenListener() {
-  const auto client = static_cast<std::uint32_t>(listeners_.size());
-  const std::string name = fmt::format("{}.{}", socket_name_, client);
-  const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (listener < 0) return {};
-  listeners_.push_back({UniqueFd(listener), nullptr});
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  memcpy(address.sun_path + 1, name.data(), name.size());
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(listener, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-      listen(listener, 256) != 0) {
-    return {};
-  }
-  reactor_.Add(listener, EPOLLIN, {Tag::kListener, client});
-  return name;
 }
 
 std::string Engine::PrepareHostCpu() {

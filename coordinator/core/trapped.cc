@@ -61,8 +61,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  EndTask(task, {task.reached_ns});
-  WakeThoseWaitingFor(task, {task.reached_ns});
+  deaths_.EndAndWake(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
   // Who waits for it looks at a word that the kernel clears.
   if (gates_only_) executor_->LetKernelFinish(call.tid);
