@@ -85,7 +85,7 @@ void Engine::TellOfEnds() {
                                 Moment moment) { ChildChanged(parent, child, false, moment); },
       .process_has_ended =
           [this](Process& process, Moment moment) {
-            StartThoseAfter(process);
+            if (process.is_client) launches_.ClientHasEnded(process);
             WakeEveryQueue(moment);
             dds_.Leave(process, moment);
           },
@@ -163,7 +163,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
   FireDue(robot, cpu.progress_ns);
-  StartDue(robot, cpu.progress_ns);
+  launches_.StartDue(robot, cpu.progress_ns);
   robot.scheduler.EndTurn(cpu.core);
   Refresh(robot);
   const RobotScheduler::Turn turn = robot.scheduler.Next(cpu.core);
@@ -326,13 +326,13 @@ void Engine::ShowProgress() {
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !HasLaunchAhead(); ++turn) {
+  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !launches_.AreAhead(); ++turn) {
     const bool all_dead = std::all_of(table_.processes().begin(), table_.processes().end(),
                                       [](const Process& process) { return process.dead; });
     if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
     PollEvents(kOutsidePollNs, {latest_ns_});
   }
-  return table_.living() > 0 || HasLaunchAhead();
+  return table_.living() > 0 || launches_.AreAhead();
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
@@ -360,7 +360,7 @@ bool Engine::AwaitOutside() {
 // One step of the run; false at its end.
 bool Engine::Step() {
   deaths_.DropLinks();
-  if (table_.living() == 0 && !HasLaunchAhead()) return AwaitDeaths();
+  if (table_.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();
@@ -382,7 +382,10 @@ bool Engine::Step() {
 RunReport Engine::Run() {
   for (const std::string& warning : scenario_.warnings) Warn(warning);
   report_.error = Prepare();
-  if (report_.error.empty()) report_.error = StartClients();
+  if (report_.error.empty()) {
+    MakeRobots();
+    report_.error = launches_.Begin();
+  }
   clock_.Start();
   records_.StartAt(clock_);
   try {

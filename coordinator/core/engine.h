@@ -20,6 +20,7 @@
 #include "coordinator/core/dds_gateway.h"
 #include "coordinator/core/deaths.h"
 #include "coordinator/core/expulsion.h"
+#include "coordinator/core/launches.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
 #include "coordinator/core/registration.h"
@@ -58,21 +59,7 @@ class Engine {
   std::string PrepareSignals();
   std::string PrepareHostCpu();
 
-  // When the clients start (launches.cc).
-  struct Launch {
-    const ClientSpec* spec;
-    Robot* robot;
-    std::int64_t start_ns;  // never: it waits for another one to end
-    Process* process;       // once started
-  };
-  std::string PrepareFolders();
-  std::string StartClients();
-  std::string Start(Launch& launch, std::int64_t at_ns);
-  void StartDue(Robot& robot, std::int64_t now_ns);
-  void FindNextLaunch(Robot& robot);
-  bool HasLaunchAhead() const;
-  void StartThoseAfter(const Process& ended);
-  void WarnOfNeverStarted();
+  void MakeRobots();
 
   // The loop (engine.cc).
   bool Step();
@@ -355,7 +342,8 @@ class Engine {
   // The end (finish.cc).
   void Shutdown();
   void Report(RunReport* report);
-  ClientReport ReportOf(const Launch& launch);
+  ClientReport ReportOf(const Launches::Launch& launch);
+  void WarnOfNeverStarted();
   void WarnOfEndsThatDidNotMeet();
 
   void Warn(const std::string& text) { run_.Warn(text); }
@@ -385,7 +373,6 @@ class Engine {
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
-  std::vector<Launch> launches_;  // of all clients, as in the scenario
   FutexTable futexes_{[this](int order) { return PriorityOf(TaskAt(order)); }};
   DdsGateway dds_{run_, waker_, world_};
   std::uint64_t next_signal_look_tsc_ = 0;
@@ -413,6 +400,7 @@ class Engine {
                                DeletePosixTimers(process);
                                dds_.Leave(process, moment);
                              }};
+  Launches launches_{run_, waker_, births_, sockets_, traps_, guarded_};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};

@@ -23,7 +23,17 @@ void Engine::Shutdown() {
   KillDescendants();
 }
 
-ClientReport Engine::ReportOf(const Launch& launch) {
+// Of those that were never started, the ones that waited for another client.
+void Engine::WarnOfNeverStarted() {
+  if (!report_.error.empty() || stop_.asked()) return;
+  for (const Launches::Launch& launch : launches_.all()) {
+    if (launch.process != nullptr || launch.start_ns != shm::kNeverNs) continue;
+    Warn(fmt::format("{} was never started: it is to start after {}, which has not ended",
+                     launch.spec->name, launch.spec->after));
+  }
+}
+
+ClientReport Engine::ReportOf(const Launches::Launch& launch) {
   ClientReport client;
   client.name = launch.spec->name;
   if (launch.process == nullptr) return client;
@@ -46,7 +56,8 @@ void Engine::Report(RunReport* report) {
   report->commands = world_.commands();
   report->interrupted = stop_.asked();
   report->stop_signal = stop_.signal();
-  for (const Launch& launch : launches_) report->clients.push_back(ReportOf(launch));
+  for (const Launches::Launch& launch : launches_.all())
+    report->clients.push_back(ReportOf(launch));
   for (const Robot& robot : robots_) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;

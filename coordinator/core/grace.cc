@@ -70,10 +70,7 @@ void Engine::BeginGrace() {
   for (VirtualCpu& cpu : cpus_) {
     if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
   }
-  for (Robot& robot : robots_) {
-    robot.next_launch_ns = shm::kNeverNs;
-    Refresh(robot);
-  }
+  launches_.Stop();
   LimitRealTime();
   latest_ns_ = grace_began_ns_;
   for (const Process& process : table_.processes()) {

@@ -15,6 +15,7 @@
 #include <new>
 #include <utility>
 
+#include "coordinator/core/client_folders.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/scheduling_rights.h"
 #include "coordinator/host/fixed_meter.h"
@@ -60,7 +61,7 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
-  if (std::string error = PrepareFolders(); !error.empty()) return error;
+  if (std::string error = PrepareFolders(scenario_, options_); !error.empty()) return error;
   clock_.Calibrate();
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
@@ -106,6 +107,23 @@ std::string Engine::PrepareSignals() {
 
   reactor_.Add(signals_.get(), EPOLLIN, {Tag::kSignal});
   return {};
+}
+
+void Engine::MakeRobots() {
+  for (const RobotSpec& spec : scenario_.robots) {
+    const auto cores = static_cast<std::uint32_t>(spec.cores);
+    Robot& robot = robots_.emplace_back(spec.name, spec.speed,
+                                        RobotScheduler(cores, !IsCallback(), [this](int order) {
+                                          return waker_.WaitOf(TaskAt(order));
+                                        }));
+    for (std::uint32_t core = 0; core < cores; ++core) {
+      VirtualCpu& cpu = cpus_.emplace_back();
+      cpu.robot = &robot;
+      cpu.core = core;
+      cpu.leaf = root_.AddLeaf(static_cast<int>(robots_.size()));
+      robot.cpus.push_back(&cpu);
+    }
+  }
 }
 
 std::string Engine::PrepareHostCpu() {
