@@ -300,27 +300,14 @@ void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
-  if (options_.on_progress) ShowProgress();
+  if (options_.on_progress) {
+    if (shows_++ % kShowsPerFlush == 0) records_.Flush();
+    options_.on_progress(reporter_.Now());
+  }
   if (options_.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
-}
-
-void Engine::ShowProgress() {
-  RunProgress progress;
-  progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
-  progress.real_ns = clock_.RealNs();
-  progress.drift_ns = run_.DriftNs();
-  progress.client_ns = report_.client_ns;
-  progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
-  progress.coordinating_ns = clock_.CoordinatorNs() - progress.dynamics_ns;
-  for (const Process& process : table_.processes()) {
-    if (process.is_client)
-      progress.clients.push_back({process.name, usage_.ChargedToAllOf(process)});
-  }
-  if (shows_++ % kShowsPerFlush == 0) records_.Flush();
-  options_.on_progress(progress);
 }
 
 // All threads have said that they end; the kernel is about to end their processes. False once that
@@ -329,7 +316,7 @@ bool Engine::AwaitDeaths() {
   for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !launches_.AreAhead(); ++turn) {
     const bool all_dead = std::all_of(table_.processes().begin(), table_.processes().end(),
                                       [](const Process& process) { return process.dead; });
-    if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
+    if (all_dead || grace_.IsOver() || (stop_.asked() && !IsInGrace())) return false;
     PollEvents(kOutsidePollNs, {latest_ns_});
   }
   return table_.living() > 0 || launches_.AreAhead();
@@ -395,9 +382,7 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     report_.error = error.what();
   }
-  report_.real_ns = clock_.RealNs();
-  report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
-  Report(&report_);
+  reporter_.Conclude(reached_end_ ? end_ns_ : FurthestNs());
   // First: what clients do at their end is no part of the run.
   for (const std::string& error : {records_.Close(), dds_.records().Close()}) {
     if (report_.error.empty()) report_.error = error;

@@ -20,6 +20,7 @@
 #include "coordinator/core/dds_gateway.h"
 #include "coordinator/core/deaths.h"
 #include "coordinator/core/expulsion.h"
+#include "coordinator/core/grace.h"
 #include "coordinator/core/launches.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
@@ -27,6 +28,7 @@
 #include "coordinator/core/registration_sockets.h"
 #include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_records.h"
+#include "coordinator/core/run_reporter.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/slot_check.h"
 #include "coordinator/core/standstill_watch.h"
@@ -79,7 +81,6 @@ class Engine {
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
-  void ShowProgress();
 
   // The door (waker.h).
   void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
@@ -328,23 +329,10 @@ class Engine {
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 
-  // The last signal and the time to obey it (grace.cc).
+  // The end (end.cc).
   void EndClients();
   void BeginGrace();
-  void LimitRealTime();
-  void KillOverdue();
-  bool IsGraceOver() const { return grace_ran_out_ || stop_.insists(); }
-  int StopSignalOf(const Process& process) const;
-  static std::int64_t GraceOf(const Process& process);
-  std::int64_t KillTimeOf(const Process& process) const;
-  void WarnOfKill(const Process& process, const std::string& within);
-
-  // The end (finish.cc).
   void Shutdown();
-  void Report(RunReport* report);
-  ClientReport ReportOf(const Launches::Launch& launch);
-  void WarnOfNeverStarted();
-  void WarnOfEndsThatDidNotMeet();
 
   void Warn(const std::string& text) { run_.Warn(text); }
   bool IsInGrace() const { return run_.IsInGrace(); }
@@ -404,14 +392,15 @@ class Engine {
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
+  Grace grace_{run_, reactor_, unknown_children_,
+               [this](Moment moment) { WakeSignalled(0, moment); }};
+  RunReporter reporter_{run_, {clock_, world_, command_input_, usage_, launches_, dds_.records()}};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
   std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
 
   bool reached_end_ = false;
-  UniqueFd grace_timer_;                                   // of real time:
-  bool grace_ran_out_ = false;                             // it has
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
 

@@ -108,8 +108,7 @@ Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
 }
 
 Reactor::Found Engine::OnGraceRanOut(Subject, std::uint32_t, Moment) {
-  grace_timer_.Reset();
-  grace_ran_out_ = true;
+  grace_.RanOut();
   return {.stops_running = true};
 }
 
