@@ -100,8 +100,8 @@ void Deaths::Reap(Process& process) {
   const std::optional<int> status = WaitStatusOf(process.pid);
   if (!status.has_value()) return;  // its parent's to reap
   process.wait_status = *status;
-  // Of several threads the last may still be at what Engine::LetDie says: those are reaped at the
-  // run's end, when nobody here is at a real-time priority any more.
+  // Of several threads the last may still be at what HeldThreads::LetDie says: those are reaped at
+  // the run's end, when nobody here is at a real-time priority any more.
   if (process.threads == 1) waitpid(process.pid, nullptr, WNOHANG);
   if (process.index == 0) {
     run_.report.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);

@@ -1,7 +1,7 @@
-// The coordinator's state and its parts: the loop and the choice of who acts (engine.cc), set-up
-// (setup.cc) and end (finish.cc), the dispatch of a thread and its charge (dispatch.cc), what
-// clients say (notifications.cc), their timers (timers.cc) and signals (signals.cc), and what the
-// kernel says (events.cc).
+// The engine: its parts, how they are set up and told of each other (setup.cc), the loop and the
+// choice of who acts (engine.cc), the dispatch of a thread and its charge (dispatch.cc), what the
+// kernel says meanwhile (events.cc, handlers.cc), what clients say (notifications.cc), and the end
+// (end.cc).
 #pragma once
 
 #include <deque>
@@ -21,6 +21,7 @@
 #include "coordinator/core/deaths.h"
 #include "coordinator/core/expulsion.h"
 #include "coordinator/core/grace.h"
+#include "coordinator/core/held_threads.h"
 #include "coordinator/core/launches.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/reactor.h"
@@ -315,9 +316,6 @@ class Engine {
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
-  bool HasExited(const Task& task) const;
-  void LetDie(const Process& process);
-  void LendLevel();
   Process* LivingProcess(pid_t pid) const { return table_.LivingProcess(pid); }
   Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
   Task& TaskAt(int order) { return table_.At(order); }
@@ -375,6 +373,7 @@ class Engine {
   std::uint64_t fds_order_counter_ = 0;
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
+  HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   UsageBook usage_{table_, slot_check_};
