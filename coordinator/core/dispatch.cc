@@ -74,11 +74,11 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
 void Engine::Resume(Task& task) {
   const bool is_at_gate = task.parked;
   host_cpu_.Dispatch(task);
-  if (task.slot < 0) TakeUpRegistration(task);
+  if (task.slot < 0) registration_.LetRegister(task);
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
-      ContinueTrap(task);
+      guard_.Continue(task);
     } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
       task.handed_lock = 0;
     }
@@ -225,7 +225,7 @@ bool Engine::HasMadeCall(Task& task, int* turns) {
 bool Engine::GivesUpStart(Task& task, int turns) {
   if (UnmanagedThreads::NeverRegisters(task)) {
     unmanaged_.Lower(task.tid);
-    EndTask(task, {task.reached_ns});
+    deaths_.End(task, {task.reached_ns});
     return true;
   }
   if (turns < kStartTurns) return false;

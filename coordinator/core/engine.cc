@@ -44,6 +44,7 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
       executor_(MakeExecutor(run_.gates_only)),
       host_cpu_(*executor_) {
   TellOfWaits();
+  TellOfEnds();
 }
 
 Engine::~Engine() = default;
@@ -63,11 +64,34 @@ void Engine::TellOfWaits() {
             objects_.Leave(task);
             inheritance_.Leave(task);
           },
-      .ends_in_trapped_call = [this](Task& task,
-                                     shm::WakeReason reason) { FinishTrappedWait(task, reason); },
+      .ends_in_trapped_call =
+          [this](Task& task, shm::WakeReason reason) { trapped_waits_.Finish(task, reason); },
       .deliverer_is_held_up =
           [this](const Process& process, Moment moment) {
             dds_.ReleaseThoseAwaitingDeliverer(process, moment);
+          },
+  });
+}
+
+void Engine::TellOfEnds() {
+  deaths_.Tell({
+      .settle = [this](Task& task) { Settle(task); },
+      .thread_ends = [this](Task& task, Moment moment) { shared_events_.PassOn(task, moment); },
+      .thread_has_ended =
+          [this](Task& task) {
+            objects_.Forget(task);
+            registration_.Forget(task);
+          },
+      .wake_those_waiting_for = [this](Task& task,
+                                       Moment moment) { locks_.WakeThoseWaitingFor(task, moment); },
+      .child_has_ended = [this](
+                             Process& parent, pid_t child,
+                             Moment moment) { stops_.ChildChanged(parent, child, false, moment); },
+      .process_has_ended =
+          [this](Process& process, Moment moment) {
+            if (process.is_client) launches_.ClientHasEnded(process);
+            objects_.WakeAll(moment);
+            dds_.Leave(process, moment);
           },
   });
 }
@@ -144,7 +168,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
   const Moment due{.ns = cpu.progress_ns, .from_outside = true};
   if (timers_.FireDue(robot, due.ns)) PollEvents(0, due);
-  StartDue(robot, cpu.progress_ns);
+  launches_.StartDue(robot, cpu.progress_ns);
   robot.scheduler.EndTurn(cpu.core);
   Refresh(robot);
   const RobotScheduler::Turn turn = robot.scheduler.Next(cpu.core);
@@ -180,7 +204,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   } else {
     Dispatch(task, horizon, idle_until);
     if (TakePutOff({latest_ns_}).looks_again) PollEvents(0, {latest_ns_});
-    RegisterUnannounced({latest_ns_});
+    registration_.RegisterUnannounced({latest_ns_});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;
@@ -281,39 +305,26 @@ void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
-  if (options_.on_progress) ShowProgress();
+  if (options_.on_progress) {
+    if (shows_++ % kShowsPerFlush == 0) records_.Flush();
+    options_.on_progress(reporter_.Now());
+  }
   if (options_.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
 }
 
-void Engine::ShowProgress() {
-  RunProgress progress;
-  progress.virtual_ns = world_.present() ? world_.progress_ns() : root_.Least();
-  progress.real_ns = clock_.RealNs();
-  progress.drift_ns = run_.DriftNs();
-  progress.client_ns = report_.client_ns;
-  progress.dynamics_ns = world_.present() ? world_.host_ns() : 0;
-  progress.coordinating_ns = clock_.CoordinatorNs() - progress.dynamics_ns;
-  for (const Process& process : table_.processes()) {
-    if (process.is_client)
-      progress.clients.push_back({process.name, usage_.ChargedToAllOf(process)});
-  }
-  if (shows_++ % kShowsPerFlush == 0) records_.Flush();
-  options_.on_progress(progress);
-}
-
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !HasLaunchAhead(); ++turn) {
+  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !launches_.AreAhead(); ++turn) {
     const bool all_dead = std::all_of(table_.processes().begin(), table_.processes().end(),
                                       [](const Process& process) { return process.dead; });
-    if (all_dead || IsGraceOver() || (stop_.asked() && !IsInGrace())) return false;
+    if (all_dead || grace_.IsOver() || (stop_.asked() && !IsInGrace())) return false;
     PollEvents(kOutsidePollNs, {latest_ns_});
   }
-  return table_.living() > 0 || HasLaunchAhead();
+  return table_.living() > 0 || launches_.AreAhead();
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
@@ -340,8 +351,8 @@ bool Engine::AwaitOutside() {
 
 // One step of the run; false at its end.
 bool Engine::Step() {
-  ended_links_.clear();
-  if (table_.living() == 0 && !HasLaunchAhead()) return AwaitDeaths();
+  deaths_.DropLinks();
+  if (table_.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();
@@ -363,7 +374,10 @@ bool Engine::Step() {
 RunReport Engine::Run() {
   for (const std::string& warning : scenario_.warnings) Warn(warning);
   report_.error = Prepare();
-  if (report_.error.empty()) report_.error = StartClients();
+  if (report_.error.empty()) {
+    MakeRobots();
+    report_.error = launches_.Begin();
+  }
   clock_.Start();
   records_.StartAt(clock_);
   try {
@@ -373,9 +387,7 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     report_.error = error.what();
   }
-  report_.real_ns = clock_.RealNs();
-  report_.coordinating_ns = clock_.CoordinatorNs() - (world_.present() ? world_.host_ns() : 0);
-  Report(&report_);
+  reporter_.Conclude(reached_end_ ? end_ns_ : FurthestNs());
   // First: what clients do at their end is no part of the run.
   for (const std::string& error : {records_.Close(), dds_.records().Close()}) {
     if (report_.error.empty()) report_.error = error;

@@ -1,7 +1,7 @@
-// The coordinator's state and its parts: the loop and the choice of who acts (engine.cc), set-up
-// (setup.cc) and end (finish.cc), the dispatch of a thread and its charge (dispatch.cc), what
-// clients say (notifications.cc), their timers (timers.cc) and signals (signals.cc), and what the
-// kernel says (events.cc).
+// The engine: its parts, how they are set up and told of each other (setup.cc), the loop and the
+// choice of who acts (engine.cc), the dispatch of a thread and its charge (dispatch.cc), what the
+// kernel says meanwhile (events.cc, handlers.cc), what clients say (notifications.cc), and the end
+// (end.cc).
 #pragma once
 
 #include <deque>
@@ -14,22 +14,36 @@
 #include <vector>
 
 #include "coordinator/core/activations.h"
+#include "coordinator/core/births.h"
 #include "coordinator/core/child_stops.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/dds_gateway.h"
+#include "coordinator/core/deaths.h"
 #include "coordinator/core/descriptor_waits.h"
 #include "coordinator/core/expulsion.h"
 #include "coordinator/core/futex_calls.h"
 #include "coordinator/core/futex_words.h"
+#include "coordinator/core/grace.h"
+#include "coordinator/core/guarded_calls.h"
+#include "coordinator/core/held_threads.h"
 #include "coordinator/core/kernel_object_waits.h"
+#include "coordinator/core/launches.h"
 #include "coordinator/core/lock_futexes.h"
 #include "coordinator/core/moment.h"
 #include "coordinator/core/priority_inheritance.h"
+#include "coordinator/core/raw_calls.h"
+#include "coordinator/core/raw_child_waits.h"
+#include "coordinator/core/raw_polls.h"
 #include "coordinator/core/raw_scheduling.h"
 #include "coordinator/core/raw_timers.h"
+#include "coordinator/core/raw_times.h"
+#include "coordinator/core/raw_transfers.h"
 #include "coordinator/core/reactor.h"
+#include "coordinator/core/registration.h"
+#include "coordinator/core/registration_sockets.h"
 #include "coordinator/core/run_clock.h"
 #include "coordinator/core/run_records.h"
+#include "coordinator/core/run_reporter.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/scheduling_calls.h"
 #include "coordinator/core/shared_events.h"
@@ -39,6 +53,8 @@
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/timer_calls.h"
 #include "coordinator/core/timer_signals.h"
+#include "coordinator/core/trap_listeners.h"
+#include "coordinator/core/trapped_waits.h"
 #include "coordinator/core/unknown_children.h"
 #include "coordinator/core/unmanaged_threads.h"
 #include "coordinator/core/usage_book.h"
@@ -64,35 +80,10 @@ class Engine {
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
   std::string PrepareMemory();
-  std::string PrepareListener();
-  // Where a client and its descendants register.
-  struct Listener {
-    UniqueFd fd;
-    Process* client;
-  };
-  // Somebody who has not said yet what it wants.
-  struct Connection {
-    UniqueFd fd;
-    Process* client;  // that its listener is for
-  };
-  std::string OpenListener();
+  std::string PrepareSignals();
   std::string PrepareHostCpu();
 
-  // When the clients start (launches.cc).
-  struct Launch {
-    const ClientSpec* spec;
-    Robot* robot;
-    std::int64_t start_ns;  // never: it waits for another one to end
-    Process* process;       // once started
-  };
-  std::string PrepareFolders();
-  std::string StartClients();
-  std::string Start(Launch& launch, std::int64_t at_ns);
-  void StartDue(Robot& robot, std::int64_t now_ns);
-  void FindNextLaunch(Robot& robot);
-  bool HasLaunchAhead() const;
-  void StartThoseAfter(const Process& ended);
-  void WarnOfNeverStarted();
+  void MakeRobots();
 
   // The loop (engine.cc).
   bool Step();
@@ -112,7 +103,6 @@ class Engine {
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
-  void ShowProgress();
 
   // The door (waker.h).
   void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
@@ -122,6 +112,7 @@ class Engine {
   }
   void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
   void TellOfWaits();
+  void TellOfEnds();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -180,42 +171,18 @@ class Engine {
   Reactor::Found TakeTrapped(const TrappedCall& call, Moment moment);
   void ExitThread(Task& task, const TrappedCall& call);
   bool HandleTrapped(Task& task, const TrappedCall& call);
-  void InterruptTrappedWait(Task& task);
-  void FinishTrappedWait(Task& task, shm::WakeReason reason);
   void HandleStranger(const TrappedCall& call, Moment moment);
   void ReleaseTrapped();
 
   // Those that could be about tcsim's own processes (guarded_calls.cc).
-  bool IsGuarded(pid_t pid) const;
-  bool MeansGuarded(pid_t caller, pid_t receiver) const;
-  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal) const;
-  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
-  void LetThrough(const TrappedCall& call) const;
-  void ContinueTrap(const Task& task) const;
 
   // Those other than futex (raw_calls.cc).
-  bool HandleRawCall(Task& task, const TrappedCall& call);
-  std::int64_t ReadRawClock(const Task& task, const TrappedCall& call);
-  std::int64_t SleepRaw(Task& task, const TrappedCall& call);
-  void SignalRaw(Task& task);
-  void HoldRaw(Task& task, shm::NotificationKind kind);
-  std::int64_t PollRaw(Task& task, const TrappedCall& call);
-  bool RawTimeout(Task& task, const TrappedCall& call, std::int64_t* ns);
-  static std::optional<std::vector<shm::WaitFd>> RawWaitFds(const Task& task,
-                                                            const TrappedCall& call);
-  static std::uint64_t RawAwaitedSignals(const Task& task, const TrappedCall& call);
-  void ClearRawResult(const Task& task, const TrappedCall& call);
-  void ForgetNews(const Process& parent);
-  void AwaitChildRaw(Task& task, const TrappedCall& call);
 
   // Those to the robot's scheduler (raw_scheduling.cc).
 
   // Those that transfer data (raw_transfers.cc).
-  void TransferRaw(Task& task, const TrappedCall& call);
-  static bool Receives(const TrappedCall& call);
 
   // Locks of files (wait_queues.cc).
-  void LockRaw(Task& task);
 
   // Timers (raw_timers.cc).
 
@@ -251,29 +218,9 @@ class Engine {
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
-  void Accept(const Listener& listener);
-  void AddConnection(Connection connection);
-  bool RegistersLater(const Connection& connection, pid_t* tid) const;
-  void RegisterUnannounced(Moment moment);
-  void TakeUpRegistration(const Task& task);
-  bool Attach(int connection, Process& client, Moment moment);
-  void GiveDdsArea(int connection, pid_t pid);
-  void PlaceAtGate(Task& task, std::int64_t at_ns);
-  Task* TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
-  void ProcessEnded(std::size_t index, Moment moment);
-  Task* NewTask(pid_t pid, pid_t parent, Robot* robot, const std::string& name, int priority,
-                std::int64_t deadline_ns, std::int64_t at_ns, const Process* maker = nullptr);
-  Task* NewChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
-  Task* AddTask(Process& process, pid_t tid, std::int64_t at_ns);
-  Task* AddThread(Process& process, pid_t tid, std::int64_t at_ns);
-  bool EndThreadsLostInExec(pid_t pid, Moment moment);
-  bool HasExited(const Task& task) const;
-  void LetDie(const Process& process);
-  void LendLevel();
   Process* LivingProcess(pid_t pid) const { return table_.LivingProcess(pid); }
   Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
   Task& TaskAt(int order) { return table_.At(order); }
-  void EndTask(Task& task, Moment moment);
 
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
@@ -282,22 +229,10 @@ class Engine {
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 
-  // The last signal and the time to obey it (grace.cc).
+  // The end (end.cc).
   void EndClients();
   void BeginGrace();
-  void LimitRealTime();
-  void KillOverdue();
-  bool IsGraceOver() const { return grace_ran_out_ || stop_.insists(); }
-  int StopSignalOf(const Process& process) const;
-  static std::int64_t GraceOf(const Process& process);
-  std::int64_t KillTimeOf(const Process& process) const;
-  void WarnOfKill(const Process& process, const std::string& within);
-
-  // The end (finish.cc).
   void Shutdown();
-  void Report(RunReport* report);
-  ClientReport ReportOf(const Launch& launch);
-  void WarnOfEndsThatDidNotMeet();
 
   void Warn(const std::string& text) { run_.Warn(text); }
   bool IsInGrace() const { return run_.IsInGrace(); }
@@ -325,10 +260,10 @@ class Engine {
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
-  std::vector<Launch> launches_;  // of all clients, as in the scenario
   Reactor reactor_;
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
+  HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
@@ -354,31 +289,52 @@ class Engine {
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   KernelObjectWaits objects_{run_, waker_};
-  std::vector<std::unique_ptr<ProcessLink>> ended_links_;  // until nobody can look there any more
-  std::deque<Connection> connections_;
-  std::map<pid_t, Connection> early_connections_;  // of threads that register later
+  GuardedCalls guard_;
+
+  // Who takes part: how threads and processes come, and how they go.
+  SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
+  UsageBook usage_{table_, slot_check_};
+  Expulsion expulsion_{run_, waker_, host_cpu_};
+  Births births_{run_, waker_, reactor_, records_};
+  Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
+  TrapListeners traps_{reactor_};
+  RegistrationSockets sockets_{reactor_};
+  Registration registration_{{run_, waker_, reactor_, host_cpu_, sockets_, births_, deaths_, dds_},
+                             [this](Process& process, Moment moment) {
+                               TimerCalls::DeletePosix(process);
+                               dds_.Leave(process, moment);
+                             }};
+  Launches launches_{run_, waker_, births_, sockets_, traps_, guard_.guarded()};
+  UnmanagedThreads unmanaged_{run_};
+  UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
+  Grace grace_{run_, reactor_, unknown_children_,
+               [this](Moment moment) { signals_.Sent(0, moment); }};
+
+  // Calls that are made raw.
+  RawTimes raw_times_{run_, waker_};
+  RawPolls raw_polls_{waker_, descriptors_};
+  RawTransfers raw_transfers_{waker_, activations_, descriptors_, raw_timers_};
+  RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
+  RawCalls raw_calls_{waker_,
+                      {raw_times_, raw_timers_, raw_polls_, raw_transfers_, raw_child_waits_,
+                       raw_scheduling_, words_},
+                      [this](Task& task) { return Yield(task); },
+                      [this](Task& task, const TrappedCall& call) { ExitThread(task, call); }};
+  TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
+
+  // What users are told.
+  StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
+  RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records()}};
 
   CpuClaim claim_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
   UniqueFd memfd_, signal_fd_;
-  SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
-  UsageBook usage_{table_, slot_check_};
-  Expulsion expulsion_{run_, waker_, host_cpu_};
-  UnmanagedThreads unmanaged_{run_};
-  UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
-  StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   // Of the running thread, where there are only gates: it says that a call begins, and may go on.
   bool says_call_ = false, opens_gate_ = false;
   std::vector<Late> put_off_;
-  std::vector<pid_t> guarded_;  // tcsim's own processes, this one and the detector among them
-  std::vector<Listener> listeners_;
-  std::vector<UniqueFd> traps_;  // of clients, where their calls and their children's arrive
-  std::string socket_name_;      // of the first; the others' have their numbers in them
 
   bool reached_end_ = false;
-  UniqueFd grace_timer_;                                   // of real time:
-  bool grace_ran_out_ = false;                             // it has
   std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
   bool has_spinners_ = false;                              // threads that stepped aside
 

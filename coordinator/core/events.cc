@@ -96,42 +96,6 @@ void Engine::LookAtDetector() {
   if (host_cpu_.detector().IsDying()) DetectorEnded();
 }
 
-// The thread is gone, though it said nothing (the first one's pthread_exit, or the system call
-// itself), and its process goes on.
-bool Engine::HasExited(const Task& task) const {
-  const std::vector<pid_t> threads = ThreadsOf(task.process->pid);
-  return std::any_of(threads.begin(), threads.end(),
-                     [&](pid_t tid) { return tid != task.tid && !IsDying(tid); });
-}
-
-// The others of a process that ends as a whole are at nobody's turn any more, and have to get it
-// over with: one that the kernel kept from its last step, where it removes its entry in /proc,
-// would make whoever reaps the process wait for that in the kernel, spinning, and at a real-time
-// priority for ever.
-void Engine::LetDie(const Process& process) {
-  for (Task* task : process.robot->tasks) {
-    if (task->process != &process || task->may_run || !IsDying(task->tid)) continue;
-    host_cpu_.active().LetRun(*task);
-  }
-}
-
-// The running thread may wait in the kernel for what another one had there when it was preempted:
-// the map of their process's memory, say. That one has to get on with it, and which one it is
-// nobody can see: so those that were preempted in the kernel get the active level in turns, the
-// process's own before others.
-void Engine::LendLevel() {
-  std::vector<Task*> own, others;
-  for (Task& task : table_.tasks()) {
-    if (turn_.IsOf(task) || task.parked || task.state == TaskState::kDead) continue;
-    if (task.may_run || ThreadState(task.tid) != 'R') continue;
-    if (IsInUserMode(task.tid)) continue;
-    (task.process == turn_.task()->process ? own : others).push_back(&task);
-  }
-  const std::vector<Task*>& able = own.empty() ? others : own;
-  if (able.empty()) return;
-  host_cpu_.active().Lend(*able[static_cast<std::size_t>(turn_.held_looks) % able.size()]);
-}
-
 // The running thread does not run. True if others get their turn; otherwise it is waited for: it is
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
@@ -143,11 +107,11 @@ bool Engine::BlockedInKernel() {
     turn_.held_looks = 0;
     return false;
   }
-  if (state != 'S' && task.process->threads > 1) LetDie(*task.process);
-  if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns && HasExited(task)) {
+  if (state != 'S' && task.process->threads > 1) held_.LetDie(*task.process);
+  if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns &&
+      HeldThreads::HasExited(task)) {
     Settle(task);
-    EndTask(task, {task.reached_ns});
-    locks_.WakeThoseWaitingFor(task, {task.reached_ns});
+    deaths_.EndAndWake(task, {task.reached_ns});
     return true;
   }
   // This process may have waited in the kernel itself for what /proc says, and the thread gone on
@@ -156,7 +120,7 @@ bool Engine::BlockedInKernel() {
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
   if (!stopped && (state != 'S' || task.slot < 0)) {
-    if (state == 'D') LendLevel();
+    if (state == 'D') held_.LendLevel();
     return false;
   }
   // Where others would go on without it, it gets a moment to come back: the world must not pass a

@@ -1,17 +1,13 @@
-// The end of a run for the clients that still live. Each gets a signal, and a grace of virtual time
-// in which it may write what it has and exit; then it is killed. The results stand already: the
-// world has stopped, and nothing of this is recorded.
+#include "coordinator/core/grace.h"
+
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/epoll.h>
 #include <sys/timerfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
-#include <string>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "shm/time_values.h"
 
@@ -26,105 +22,98 @@ constexpr double kMostRealFactor = 2.0;
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+std::int64_t GraceOf(const Process& process) {
+  if (process.client == nullptr) return ClientSpec{}.stop_grace.ns();
+  const ClientSpec& client = *process.client->spec;
+  return client.stop_signal == SIGKILL ? 0 : client.stop_grace.ns();
+}
+
 }  // namespace
 
 // What a program alone is asked with is what its user has sent.
-int Engine::StopSignalOf(const Process& process) const {
-  if (options_.output_directory.empty() && stop_.asked()) return stop_.signal();
+int Grace::StopSignalOf(const Process& process) const {
+  if (run_.options.output_directory.empty() && run_.stop.asked()) return run_.stop.signal();
   return process.client == nullptr ? SIGTERM : process.client->spec->stop_signal;
 }
 
-std::int64_t Engine::GraceOf(const Process& process) {
-  if (process.client == nullptr) return ClientSpec{}.stop_grace.ns();
-  return process.client->spec->stop_signal == SIGKILL ? 0 : process.client->spec->stop_grace.ns();
-}
-
-void Engine::EndClients() {
-  BeginGrace();
-  while (table_.living() > 0 && !IsGraceOver()) {
-    std::int64_t next_ns = shm::kNeverNs;
-    for (const Process& process : table_.processes()) {
-      if (!process.dead && !process.killed) next_ns = std::min(next_ns, KillTimeOf(process));
-    }
-    if (next_ns == shm::kNeverNs) break;
-    end_ns_ = next_ns;
-    root_.EndAt(end_ns_);
-    idle_at_ns_ = -1;
-    while (!IsGraceOver() && Step()) {
-    }
-    if (table_.living() > 0 && !IsGraceOver()) KillOverdue();
-  }
-  if (grace_ran_out_) {
-    for (Process& process : table_.processes())
-      WarnOfKill(process, "the real time that there is for that");
-  }
-}
-
-void Engine::BeginGrace() {
-  grace_began_ns_ = report_.virtual_ns;
-  if (turn_.lasts()) Settle(*turn_.task());  // the dynamics have failed beside it
-  turn_.End();
-  root_.EndDynamics();
-  dds_.records().Stop();
-  for (const int fd : world_.command_fds()) {
-    if (fd >= 0) reactor_.Remove(fd);
-  }
-  for (VirtualCpu& cpu : cpus_) {
-    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
-  }
-  for (Robot& robot : robots_) {
-    robot.next_launch_ns = shm::kNeverNs;
-    Refresh(robot);
-  }
+void Grace::Begin() {
   LimitRealTime();
-  latest_ns_ = grace_began_ns_;
-  for (const Process& process : table_.processes()) {
+  run_.latest_ns = run_.grace_began_ns;
+  for (const Process& process : run_.table.processes()) {
     if (process.dead) continue;
     kill(process.pid, StopSignalOf(process));
     if (ThreadState(process.pid) == 'T') kill(process.pid, SIGCONT);
   }
   for (const auto& [pid, child] : unknown_children_.living()) {
-    const Process* parent = LivingProcess(child.parent);
+    const Process* parent = run_.table.LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }
-  signals_.Sent(0, {.ns = grace_began_ns_, .from_outside = true});
+  signalled_({.ns = run_.grace_began_ns, .from_outside = true});
 }
 
-void Engine::LimitRealTime() {
+bool Grace::GoOnToNextKill() {
+  if (run_.table.living() == 0 || IsOver()) return false;
+  std::int64_t next_ns = shm::kNeverNs;
+  for (const Process& process : run_.table.processes()) {
+    if (!process.dead && !process.killed) next_ns = std::min(next_ns, KillTimeOf(process));
+  }
+  if (next_ns == shm::kNeverNs) return false;
+  run_.end_ns = next_ns;
+  run_.root.EndAt(next_ns);
+  return true;
+}
+
+void Grace::LimitRealTime() {
   std::int64_t longest_ns = 0;
-  for (const Process& process : table_.processes()) {
+  for (const Process& process : run_.table.processes()) {
     if (!process.dead) longest_ns = std::max(longest_ns, GraceOf(process));
   }
   double speed = 0;
-  for (const Robot& robot : robots_) speed += robot.speed * static_cast<double>(robot.cpus.size());
+  for (const Robot& robot : run_.robots) {
+    speed += robot.speed * static_cast<double>(robot.cpus.size());
+  }
   const double computing_ns = kMostRealFactor * speed * static_cast<double>(longest_ns);
   std::int64_t limit_ns = kLeastRealNs + static_cast<std::int64_t>(std::min(computing_ns, 1e18));
-  if (stop_.asked()) limit_ns = std::min(limit_ns, kMostRealIfAskedNs);
-  grace_timer_.Reset(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK));
+  if (run_.stop.asked()) limit_ns = std::min(limit_ns, kMostRealIfAskedNs);
+  timer_.Reset(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK));
   itimerspec when{};
   when.it_value = shm::ToTimespec(limit_ns);
-  timerfd_settime(grace_timer_.get(), 0, &when, nullptr);
-  reactor_.Add(grace_timer_.get(), EPOLLIN, {Tag::kGraceRanOut});
+  timerfd_settime(timer_.get(), 0, &when, nullptr);
+  reactor_.Add(timer_.get(), EPOLLIN, {Tag::kGraceRanOut});
 }
 
-std::int64_t Engine::KillTimeOf(const Process& process) const {
-  return shm::AddSaturated(grace_began_ns_, GraceOf(process));
+void Grace::RanOut() {
+  timer_.Reset();
+  ran_out_ = true;
 }
 
-void Engine::KillOverdue() {
-  latest_ns_ = end_ns_;
-  for (Process& process : table_.processes()) {
-    if (process.dead || process.killed || KillTimeOf(process) > end_ns_) continue;
+std::int64_t Grace::KillTimeOf(const Process& process) const {
+  return shm::AddSaturated(run_.grace_began_ns, GraceOf(process));
+}
+
+void Grace::KillOverdue() {
+  if (run_.table.living() == 0 || IsOver()) return;
+  run_.latest_ns = run_.end_ns;
+  for (Process& process : run_.table.processes()) {
+    if (process.dead || process.killed || KillTimeOf(process) > run_.end_ns) continue;
     WarnOfKill(process, "its stop_grace");
     process.killed = true;
     kill(process.pid, SIGKILL);
   }
-  signals_.Sent(0, {end_ns_});
+  signalled_({run_.end_ns});
 }
 
-void Engine::WarnOfKill(const Process& process, const std::string& within) {
+// If there was no time for their graces: all that is left is killed.
+void Grace::WarnOfThoseLeft() {
+  if (!ran_out_) return;
+  for (const Process& process : run_.table.processes()) {
+    WarnOfKill(process, "the real time that there is for that");
+  }
+}
+
+void Grace::WarnOfKill(const Process& process, const std::string& within) {
   if (process.dead || process.killed || !process.is_client || GraceOf(process) == 0) return;
-  Warn(fmt::format(
+  run_.Warn(fmt::format(
       "{} was killed: after SIG{} it did not end within {} ({:.3f} s), and what it had "
       "not written is lost",
       process.name, sigabbrev_np(StopSignalOf(process)), within, Seconds(GraceOf(process))));

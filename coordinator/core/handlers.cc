@@ -45,30 +45,19 @@ Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
 }
 
 Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
-  Accept(listeners_[listener.index]);
+  sockets_.Accept(listener.index);
   return {};
 }
 
 Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment moment) {
-  const auto fd = static_cast<int>(subject.index);
-  const auto found = std::find_if(connections_.begin(), connections_.end(),
-                                  [fd](const Connection& one) { return one.fd.get() == fd; });
-  if (found == connections_.end()) return {};  // it was cut off
-  Connection connection = std::move(*found);
-  connections_.erase(found);
-  if (pid_t tid = 0; RegistersLater(connection, &tid)) {
-    reactor_.Remove(fd);
-    early_connections_.insert_or_assign(tid, std::move(connection));
-    return {};
-  }
-  const bool registers = Attach(fd, *connection.client, moment);
+  const bool registers = registration_.Heard(static_cast<int>(subject.index), moment);
   return registers ? kConcernsAll : Reactor::Found{};
 }
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   const bool runs = turn_.IsIn(table_.ProcessAt(process.index));
   const auto end = [this, process](Moment at) {
-    ProcessEnded(process.index, at);
+    deaths_.ProcessEnded(process.index, at);
     return kConcernsAll;
   };
   if (!PutOff(runs ? turn_.task() : nullptr, end)) return end(moment);
@@ -96,9 +85,7 @@ Reactor::Found Engine::OnUnknownChildEnd(Subject child, std::uint32_t, Moment mo
 Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment moment) {
   const auto listener = static_cast<int>(subject.index);
   if ((events & EPOLLIN) == 0) {
-    // Nobody is left whose calls could arrive here.
-    reactor_.Remove(listener);
-    std::erase_if(traps_, [listener](const UniqueFd& trap) { return trap.get() == listener; });
+    traps_.Close(listener);
     return {};
   }
   return TrapArrived(listener, moment);
@@ -121,8 +108,7 @@ Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
 }
 
 Reactor::Found Engine::OnGraceRanOut(Subject, std::uint32_t, Moment) {
-  grace_timer_.Reset();
-  grace_ran_out_ = true;
+  grace_.RanOut();
   return {.stops_running = true};
 }
 

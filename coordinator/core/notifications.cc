@@ -37,7 +37,7 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
     if (KnownTask(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
     executor_->Hold(tid);
-    Task& thread = *AddThread(*creator.process, tid, creator.reached_ns);
+    Task& thread = births_.AddThread(*creator.process, tid, creator.reached_ns);
     scheduling_.Inherit(thread, creator);
     if (note.args[1] >= 0) scheduling_.SetPriority(creator, thread, note.args[1], note.args[2]);
     if (note.args[3] != 0)
@@ -54,7 +54,7 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   executor_->Hold(pid);
-  scheduling_.Inherit(*NewChild(pid, of.pid, of, parent.reached_ns), parent);
+  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
 // Equals have their turn.

@@ -7,8 +7,6 @@
 #include <sys/epoll.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -17,6 +15,7 @@
 #include <new>
 #include <utility>
 
+#include "coordinator/core/client_folders.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/core/scheduling_rights.h"
 #include "coordinator/host/fixed_meter.h"
@@ -62,14 +61,14 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
-  if (std::string error = PrepareFolders(); !error.empty()) return error;
+  if (std::string error = PrepareFolders(scenario_, options_); !error.empty()) return error;
   clock_.Calibrate();
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
-  if (std::string error = PrepareListener(); !error.empty()) return error;
+  if (std::string error = PrepareSignals(); !error.empty()) return error;
   std::uint32_t inlet = 0;
   for (const int fd : world_.command_fds()) {
     if (fd >= 0) reactor_.Add(fd, EPOLLIN, {Tag::kCommand, inlet});
@@ -82,6 +81,7 @@ std::string Engine::PrepareMemory() {
   SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
   if (!memory.fd) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
   memfd_ = std::move(memory.fd);
+  registration_.ShareMemory(memfd_.get());
   memory_ = new (memory.at) shm::RunMemory{};
   header_ = &memory_->header;
   header_->magic = shm::kMagic;
@@ -99,7 +99,7 @@ std::string Engine::PrepareMemory() {
   return {};
 }
 
-std::string Engine::PrepareListener() {
+std::string Engine::PrepareSignals() {
   sigset_t blocked;
   sigemptyset(&blocked);
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
@@ -107,28 +107,25 @@ std::string Engine::PrepareListener() {
   signal(SIGPIPE, SIG_IGN);
   signal_fd_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
 
-  socket_name_ = fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC));
   reactor_.Add(signal_fd_.get(), EPOLLIN, {Tag::kSignal});
   return {};
 }
 
-// Where the next client and its descendants register. Its name, or nothing if it cannot be made.
-std::string Engine::OpenListener() {
-  const auto client = static_cast<std::uint32_t>(listeners_.size());
-  const std::string name = fmt::format("{}.{}", socket_name_, client);
-  const int listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (listener < 0) return {};
-  listeners_.push_back({UniqueFd(listener), nullptr});
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  memcpy(address.sun_path + 1, name.data(), name.size());
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (bind(listener, reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-      listen(listener, 256) != 0) {
-    return {};
+void Engine::MakeRobots() {
+  for (const RobotSpec& spec : scenario_.robots) {
+    const auto cores = static_cast<std::uint32_t>(spec.cores);
+    Robot& robot = robots_.emplace_back(spec.name, spec.speed,
+                                        RobotScheduler(cores, !IsCallback(), [this](int order) {
+                                          return waker_.WaitOf(TaskAt(order));
+                                        }));
+    for (std::uint32_t core = 0; core < cores; ++core) {
+      VirtualCpu& cpu = cpus_.emplace_back();
+      cpu.robot = &robot;
+      cpu.core = core;
+      cpu.leaf = root_.AddLeaf(static_cast<int>(robots_.size()));
+      robot.cpus.push_back(&cpu);
+    }
   }
-  reactor_.Add(listener, EPOLLIN, {Tag::kListener, client});
-  return name;
 }
 
 std::string Engine::PrepareHostCpu() {
@@ -150,8 +147,9 @@ std::string Engine::PrepareHostCpu() {
   }
   reactor_.Add(host_cpu_.detector().fired_fd(), EPOLLIN, {Tag::kDetector});
   reactor_.Add(host_cpu_.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
-  guarded_ = GuardsOf(getpid());
-  guarded_.insert(guarded_.end(), {getpid(), host_cpu_.detector().pid()});
+  std::vector<pid_t> own = GuardsOf(getpid());
+  own.insert(own.end(), {getpid(), host_cpu_.detector().pid()});
+  guard_.Guard(std::move(own));
   return {};
 }
 

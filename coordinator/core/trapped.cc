@@ -18,7 +18,7 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   if (call.number == SYS_futex) {
     futexes_.Handle(task, call);
   } else {
-    looks_again = HandleRawCall(task, call);
+    looks_again = raw_calls_.Handle(task, call);
   }
   Refresh(*task.process->robot);
   return looks_again;
@@ -61,8 +61,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
 // signals to handle.
 void Engine::ExitThread(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
-  EndTask(task, {task.reached_ns});
-  locks_.WakeThoseWaitingFor(task, {task.reached_ns});
+  deaths_.EndAndWake(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
   // Who waits for it looks at a word that the kernel clears.
   if (gates_only_) executor_->LetKernelFinish(call.tid);
@@ -78,19 +77,19 @@ void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
     process->has_unmanaged_threads = true;
     futexes_.CarryOutWake(*process, call, moment);
   }
-  LetThrough(call);
+  guard_.LetThrough(call);
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.
 void Engine::ReleaseTrapped() {
   for (Task& task : table_.tasks()) {
     if (task.state == TaskState::kDead) continue;
-    if (task.trap_id != 0) ContinueTrap(task);
-    if (task.early_trap.has_value()) LetThrough(*task.early_trap);
+    if (task.trap_id != 0) guard_.Continue(task);
+    if (task.early_trap.has_value()) guard_.LetThrough(*task.early_trap);
     task.trap_id = 0;
     task.early_trap.reset();
   }
-  if (turn_.trapped.has_value()) LetThrough(*turn_.trapped);
+  if (turn_.trapped.has_value()) guard_.LetThrough(*turn_.trapped);
   turn_.trapped.reset();
 }
 

@@ -1,0 +1,32 @@
+// One exchange of shm/attach_protocol.h, as the coordinator has its part in it. Whoever can connect
+// can say anything: who it is the kernel says.
+//
+// For the coordinator's thread only. None of this waits: a client that does not read has lost the
+// answer.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+// What it wants, as far as it has said so; nothing if that is not a hello.
+std::optional<shm::AttachHello> PeekHello(int connection);
+
+struct Said {
+  bool has_gone = false;
+  // Nothing: it speaks another protocol, or for somebody else.
+  std::optional<shm::AttachHello> hello;
+};
+Said TakeHello(int connection);
+
+void Accept(int connection, std::uint32_t slot, std::span<const int> fds);
+// `why` is for the user, after the program's name and pid.
+void Refuse(int connection, const char* why);
+
+}  // namespace tcs

@@ -1,0 +1,49 @@
+// The orderly end of a run, once it has concluded.
+#include "coordinator/core/engine.h"
+#include "coordinator/os/descendants.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+// The clients that still live get their grace (grace.h), in which the loop goes on for them.
+void Engine::EndClients() {
+  BeginGrace();
+  while (grace_.GoOnToNextKill()) {
+    idle_at_ns_ = -1;
+    while (!grace_.IsOver() && Step()) {
+    }
+    grace_.KillOverdue();
+  }
+  grace_.WarnOfThoseLeft();
+}
+
+// The world stops, and nothing is recorded any more.
+void Engine::BeginGrace() {
+  grace_began_ns_ = report_.virtual_ns;
+  if (turn_.lasts()) Settle(*turn_.task());  // the dynamics have failed beside it
+  turn_.End();
+  root_.EndDynamics();
+  dds_.records().Stop();
+  for (const int fd : world_.command_fds()) {
+    if (fd >= 0) reactor_.Remove(fd);
+  }
+  for (VirtualCpu& cpu : cpus_) {
+    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
+  }
+  launches_.Stop();
+  grace_.Begin();
+}
+
+// Whoever is left now is killed. None may keep the processor meanwhile, nor this process, which
+// waits in the kernel for the last steps of their threads.
+void Engine::Shutdown() {
+  header_->shutdown.store(1);
+  for (const Task& task : table_.tasks()) {
+    if (task.state != TaskState::kDead) LeaveRealTime(task.tid);
+  }
+  LeaveRealTime(0);
+  // Everything that descends from this process and lost its parent is ours to end and to reap, too.
+  KillDescendants();
+}
+
+}  // namespace tcs

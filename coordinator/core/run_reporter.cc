@@ -1,0 +1,99 @@
+#include "coordinator/core/run_reporter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coordinator/core/slot_check.h"
+#include "coordinator/dds/topics_table.h"
+
+namespace tcs {
+
+std::int64_t RunReporter::CoordinatingNs() const {
+  return from_.clock.CoordinatorNs() - (from_.world.present() ? from_.world.host_ns() : 0);
+}
+
+RunProgress RunReporter::Now() const {
+  const World& world = from_.world;
+  RunProgress progress;
+  progress.virtual_ns = world.present() ? world.progress_ns() : run_.root.Least();
+  progress.real_ns = from_.clock.RealNs();
+  progress.drift_ns = run_.DriftNs();
+  progress.client_ns = run_.report.client_ns;
+  progress.dynamics_ns = world.present() ? world.host_ns() : 0;
+  progress.coordinating_ns = CoordinatingNs();
+  for (const Process& process : run_.table.processes()) {
+    if (!process.is_client) continue;
+    progress.clients.push_back({process.name, from_.usage.ChargedToAllOf(process)});
+  }
+  return progress;
+}
+
+ClientReport RunReporter::ReportOf(const Launches::Launch& launch) const {
+  ClientReport client;
+  client.name = launch.spec->name;
+  if (launch.process == nullptr) return client;
+  const Process& process = *launch.process;
+  client.started_at_ns = process.started_at_ns;
+  client.usage = from_.usage.UsageOfAll(process);
+  client.ended_at_ns = process.ended_at_ns;
+  client.wait_status = process.wait_status;
+  return client;
+}
+
+void RunReporter::Conclude(std::int64_t virtual_ns) {
+  RunReport& report = run_.report;
+  report.real_ns = from_.clock.RealNs();
+  report.coordinating_ns = CoordinatingNs();
+  report.virtual_ns = virtual_ns;
+  from_.dds_records.WarnOfDrops();
+  WarnOfNeverStarted();
+  WarnOfEndsThatDidNotMeet();
+  report.drift_ns = run_.DriftNs();
+  report.dynamics_ns = from_.world.host_ns();
+  report.samples = from_.world.samples();
+  report.commands = from_.world.commands();
+  report.interrupted = run_.stop.asked();
+  report.stop_signal = run_.stop.signal();
+  for (const Launches::Launch& launch : from_.launches.all()) {
+    report.clients.push_back(ReportOf(launch));
+  }
+  for (const Robot& robot : run_.robots) {
+    for (const Task* task : robot.tasks) {
+      if (task->slot < 0) continue;
+      report.staleness_ns = std::max(report.staleness_ns, SlotCheck::StalenessOf(*task));
+    }
+  }
+}
+
+// Of those that were never started, the ones that waited for another client.
+void RunReporter::WarnOfNeverStarted() {
+  if (!run_.report.error.empty() || run_.stop.asked()) return;
+  for (const Launches::Launch& launch : from_.launches.all()) {
+    if (launch.process != nullptr || launch.start_ns != shm::kNeverNs) continue;
+    run_.Warn(fmt::format("{} was never started: it is to start after {}, which has not ended",
+                          launch.spec->name, launch.spec->after));
+  }
+}
+
+// A robot that was out of reach of its programs, or they of it, has done nothing of what it was run
+// for, and neither status nor summary would say so. Who failed has said why.
+void RunReporter::WarnOfEndsThatDidNotMeet() {
+  const auto ended = [](const Process& process) { return process.ended_at_ns >= 0; };
+  const auto failed = [&](const Process& process) {
+    return process.is_client && ended(process) && process.wait_status != 0;
+  };
+  if (!run_.report.error.empty() ||
+      std::any_of(run_.table.processes().begin(), run_.table.processes().end(), failed))
+    return;
+  for (const std::string& warning : dds::MismatchWarnings(from_.dds_records.topics().reports()))
+    run_.Warn(warning);
+  if (!from_.world.present()) return;
+  for (const std::string& warning : from_.world.CommandComplaints()) run_.Warn(warning);
+  // Whoever has ended may have listened before.
+  const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
+  if (std::any_of(run_.table.processes().begin(), run_.table.processes().end(), gone)) return;
+  for (const std::string& warning : from_.world.SensorComplaints()) run_.Warn(warning);
+}
+
+}  // namespace tcs

@@ -1,0 +1,48 @@
+// How a run is going, for people who watch, and what it reports at its end.
+//
+// For the coordinator's thread only; changes nothing but RunState::report.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/core/coordinator.h"
+#include "coordinator/core/dds_records.h"
+#include "coordinator/core/launches.h"
+#include "coordinator/core/run_clock.h"
+#include "coordinator/core/run_state.h"
+#include "coordinator/core/usage_book.h"
+#include "coordinator/core/world.h"
+
+namespace tcs {
+
+class RunReporter {
+ public:
+  // All that it reads. They outlive it.
+  struct Sources {
+    const RunClock& clock;
+    const World& world;
+    const UsageBook& usage;
+    const Launches& launches;
+    const DdsRecords& dds_records;
+  };
+
+  RunReporter(RunState& run, const Sources& from) : run_(run), from_(from) {}
+
+  RunProgress Now() const;
+
+  // The run is over, at `virtual_ns`: its figures, and warnings of what cannot have been meant.
+  // What clients do from now on is no part of it.
+  void Conclude(std::int64_t virtual_ns);
+
+ private:
+  // Of the processor that the run has had, what was the coordinator's own.
+  std::int64_t CoordinatingNs() const;
+  ClientReport ReportOf(const Launches::Launch& launch) const;
+  void WarnOfNeverStarted();
+  void WarnOfEndsThatDidNotMeet();
+
+  RunState& run_;
+  const Sources from_;
+};
+
+}  // namespace tcs
