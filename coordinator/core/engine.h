@@ -61,8 +61,9 @@ class Engine {
   std::string PrepareMemory();
   std::string PrepareSignals();
   std::string PrepareHostCpu();
-
   void MakeRobots();
+  void TellOfWaits();
+  void TellOfEnds();
 
   // The loop (engine.cc).
   bool Step();
@@ -90,8 +91,6 @@ class Engine {
     waker_.Wake(task, reason, moment);
   }
   void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
-  void TellOfWaits();
-  void TellOfEnds();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -375,9 +374,11 @@ class Engine {
   HostCpu host_cpu_;
   HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
+  // What is believed of a client, what it has used, and how it is ended for what it writes.
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   UsageBook usage_{table_, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
+  // Threads and processes that come and go.
   Births births_{run_, waker_, reactor_, records_};
   Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
   TrapListeners traps_{reactor_};
@@ -390,6 +391,7 @@ class Engine {
   Launches launches_{run_, waker_, births_, sockets_, traps_, guarded_};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
+  // What users are told, and the end.
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   Grace grace_{run_, reactor_, unknown_children_,
                [this](Moment moment) { WakeSignalled(0, moment); }};
