@@ -49,7 +49,7 @@ std::optional<shm::AttachHello> PeekHello(int connection) {
   return hello;
 }
 
-Said TakeHello(int connection) {
+TakenHello TakeHello(int connection) {
   shm::AttachHello hello{};
   const ssize_t n = recv(connection, &hello, sizeof hello, MSG_DONTWAIT);
   if (n <= 0) return {.has_gone = true};

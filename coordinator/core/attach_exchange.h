@@ -18,12 +18,12 @@ namespace tcs {
 // What it wants, as far as it has said so; nothing if that is not a hello.
 std::optional<shm::AttachHello> PeekHello(int connection);
 
-struct Said {
+struct TakenHello {
   bool has_gone = false;
   // Nothing: it speaks another protocol, or for somebody else.
   std::optional<shm::AttachHello> hello;
 };
-Said TakeHello(int connection);
+TakenHello TakeHello(int connection);
 
 void Accept(int connection, std::uint32_t slot, std::span<const int> fds);
 // `why` is for the user, after the program's name and pid.

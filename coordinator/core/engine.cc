@@ -1,11 +1,8 @@
 // The loop: advance the dynamics, choose the least advanced virtual CPU, let it act.
 #include "coordinator/core/engine.h"
 
-#include <errno.h>
 #include <fmt/format.h>
-#include <sched.h>
 #include <time.h>
-#include <unistd.h>
 #include <x86intrin.h>
 
 #include <algorithm>
@@ -48,53 +45,6 @@ Engine::Engine(const Scenario& scenario, const RunOptions& options)
 }
 
 Engine::~Engine() = default;
-
-// Whoever keeps something for a thread that waits.
-void Engine::TellOfWaits() {
-  waker_.Tell({
-      .began_by_signal =
-          [this](Task& task) {
-            signal_wakes_.EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
-          },
-      .left =
-          [this](Task& task, const Wait& left) {
-            if (const auto* descriptors = left.As<awaited::Descriptors>())
-              descriptors_.Leave(*descriptors);
-            words_.table().Leave(task.order);
-            objects_.Leave(task);
-            inheritance_.Leave(task);
-          },
-      .ends_in_trapped_call =
-          [this](Task& task, shm::WakeReason reason) { trapped_waits_.Finish(task, reason); },
-      .deliverer_is_held_up =
-          [this](const Process& process, Moment moment) {
-            dds_.ReleaseThoseAwaitingDeliverer(process, moment);
-          },
-  });
-}
-
-void Engine::TellOfEnds() {
-  deaths_.Tell({
-      .settle = [this](Task& task) { Settle(task); },
-      .thread_ends = [this](Task& task, Moment moment) { shared_events_.PassOn(task, moment); },
-      .thread_has_ended =
-          [this](Task& task) {
-            objects_.Forget(task);
-            registration_.Forget(task);
-          },
-      .wake_those_waiting_for = [this](Task& task,
-                                       Moment moment) { locks_.WakeThoseWaitingFor(task, moment); },
-      .child_has_ended = [this](
-                             Process& parent, pid_t child,
-                             Moment moment) { stops_.ChildChanged(parent, child, false, moment); },
-      .process_has_ended =
-          [this](Process& process, Moment moment) {
-            if (process.is_client) launches_.ClientHasEnded(process);
-            objects_.WakeAll(moment);
-            dds_.Leave(process, moment);
-          },
-  });
-}
 
 // `idle_until`: the thread may sleep that far without asking, for nothing else happens here before.
 std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {

@@ -82,8 +82,9 @@ class Engine {
   std::string PrepareMemory();
   std::string PrepareSignals();
   std::string PrepareHostCpu();
-
   void MakeRobots();
+  void TellOfWaits();
+  void TellOfEnds();
 
   // The loop (engine.cc).
   bool Step();
@@ -111,8 +112,6 @@ class Engine {
     waker_.Wake(task, reason, moment);
   }
   void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
-  void TellOfWaits();
-  void TellOfEnds();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -295,6 +294,7 @@ class Engine {
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   UsageBook usage_{table_, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
+  // Threads and processes that come and go.
   Births births_{run_, waker_, reactor_, records_};
   Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
   TrapListeners traps_{reactor_};

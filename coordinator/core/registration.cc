@@ -61,13 +61,13 @@ void Registration::LetRegister(const Task& dispatched) {
 // True if the running thread has to be stopped.
 bool Registration::Register(const Connection& connection, Moment moment) {
   const int fd = connection.fd.get();
-  const Said said = TakeHello(fd);
-  if (said.has_gone) return false;
-  if (!said.hello.has_value()) {
+  const TakenHello taken = TakeHello(fd);
+  if (taken.has_gone) return false;
+  if (!taken.hello.has_value()) {
     Refuse(fd, "it comes from another version of tcs");
     return false;
   }
-  const shm::AttachHello& hello = *said.hello;
+  const shm::AttachHello& hello = *taken.hello;
   if (hello.wants == shm::AttachWants::kDdsArea) {
     GiveDdsArea(fd, hello.pid);
     return false;

@@ -39,9 +39,9 @@ TEST_F(AttachExchangeTest, NobodySpeaksForAnotherProcess) {
   hello_.pid = getppid();
   Say();
   EXPECT_FALSE(PeekHello(ours_.get()).has_value());
-  const Said said = TakeHello(ours_.get());
-  EXPECT_FALSE(said.has_gone);
-  EXPECT_FALSE(said.hello.has_value());
+  const TakenHello taken = TakeHello(ours_.get());
+  EXPECT_FALSE(taken.has_gone);
+  EXPECT_FALSE(taken.hello.has_value());
 }
 
 TEST_F(AttachExchangeTest, AnotherVersionIsNotUnderstood) {
