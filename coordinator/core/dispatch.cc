@@ -308,11 +308,11 @@ bool Engine::AnswerEarly(Task& task) {
     task.reply[0] = task.reply[1] = 0;
     if (!TakeIpcNotesOf(task)) return true;
     const shm::Notification early = Slot(task).note;
-    finds_more = Handle(task, early);
+    finds_more = notifications_.Handle(task, early);
   } else {
     const TrappedCall early = *task.early_trap;
     task.early_trap.reset();
-    finds_more = HandleTrapped(task, early);
+    finds_more = trapped_.Handle(task, early);
   }
   if (finds_more) PollEvents(0, moment);
   return true;
@@ -357,7 +357,7 @@ void Engine::EndTurn(Task& task) {
 void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const Moment stop{task.cpu->progress_ns};
   TimerCalls::ExpireCpu(task);
-  if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call, looks_again);
+  if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
   task.process->timers.EndRests(stop.ns);
   if (turn_.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
@@ -376,9 +376,9 @@ void Engine::Answer(Task& task) {
   if (turn_.notified) {
     task.reply[0] = task.reply[1] = 0;
     const shm::Notification note = Slot(task).note;
-    finds_more = Handle(task, note);
+    finds_more = notifications_.Handle(task, note);
   } else {
-    finds_more = HandleTrapped(task, *turn_.trapped);
+    finds_more = trapped_.Handle(task, *turn_.trapped);
   }
   // What is there already ends the wait here and now.
   if (finds_more) PollEvents(0, moment);

@@ -21,6 +21,7 @@
 #include "coordinator/core/deaths.h"
 #include "coordinator/core/descriptor_waits.h"
 #include "coordinator/core/expulsion.h"
+#include "coordinator/core/follow_ups.h"
 #include "coordinator/core/futex_calls.h"
 #include "coordinator/core/futex_words.h"
 #include "coordinator/core/grace.h"
@@ -30,6 +31,7 @@
 #include "coordinator/core/launches.h"
 #include "coordinator/core/lock_futexes.h"
 #include "coordinator/core/moment.h"
+#include "coordinator/core/notifications.h"
 #include "coordinator/core/priority_inheritance.h"
 #include "coordinator/core/raw_calls.h"
 #include "coordinator/core/raw_child_waits.h"
@@ -50,10 +52,12 @@
 #include "coordinator/core/signal_calls.h"
 #include "coordinator/core/signal_wakes.h"
 #include "coordinator/core/slot_check.h"
+#include "coordinator/core/spawns.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/timer_calls.h"
 #include "coordinator/core/timer_signals.h"
 #include "coordinator/core/trap_listeners.h"
+#include "coordinator/core/trapped_calls.h"
 #include "coordinator/core/trapped_waits.h"
 #include "coordinator/core/unknown_children.h"
 #include "coordinator/core/unmanaged_threads.h"
@@ -150,63 +154,14 @@ class Engine {
   Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
 
-  // Notifications (notifications.cc). True: as TakeNotifications.
-  bool Handle(Task& task, const shm::Notification& note);
-  static std::int64_t WaitDeadlineOf(const Task& task, const shm::Notification& note);
-
-  // Those who wait to take from the same descriptor (one_waiter.cc).
-
-  bool Yield(Task& task);  // as Handle
-  void NoteSpawnedThread(Task& creator, const shm::Notification& note);
-  void NoteSpawnedProcess(Task& parent, pid_t pid);
-
-  // Children that are stopped and go on (stops.cc).
-
-  // The robot's scheduler, as threads set it (scheduling.cc). Results: 0, or negative for an errno.
-
-  // System calls that the kernel hands over (trapped.cc). Results as the kernel's: negative for an
-  // errno.
+  // System calls that the kernel hands over (trapped.cc).
   Reactor::Found TrapArrived(int listener, Moment moment);
   Reactor::Found TakeTrapped(const TrappedCall& call, Moment moment);
-  void ExitThread(Task& task, const TrappedCall& call);
-  bool HandleTrapped(Task& task, const TrappedCall& call);
-  void HandleStranger(const TrappedCall& call, Moment moment);
-  void ReleaseTrapped();
-
-  // Those that could be about tcsim's own processes (guarded_calls.cc).
-
-  // Those other than futex (raw_calls.cc).
-
-  // Those to the robot's scheduler (raw_scheduling.cc).
-
-  // Those that transfer data (raw_transfers.cc).
-
-  // Locks of files (wait_queues.cc).
-
-  // Timers (raw_timers.cc).
-
-  // Others that they concern (follow_ups.cc).
-  void DoFollowUp(Task& task, Moment call, bool last);
-
-  // Those that are (futex.cc).
-
-  // Several at once, and from a condition to its lock (futex_queues.cc).
-
-  // Those that are locks with an owner (lock_futex.cc).
-
-  // Kernel objects that cannot be polled (wait_queues.cc).
-
-  // Signals that clients send, and waits for signals (signals.cc).
-  bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
-
-  // Timers (timers.cc); the rules are ProcessTimers'.
-  // True: it has written to a timer descriptor.
-
-  // Their signals (timer_signals.cc).
 
   // Events (events.cc). `timeout_ns` is real; negative: none. What is found happens at `moment`, or
   // at the time that the running thread has come to.
   Reactor::Found PollEvents(std::int64_t timeout_ns, Moment moment);
+  bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
   Reactor::Found TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest);
   Reactor::Found WakeReadyAwaiters(Moment moment);
   // They look again where what is waited for may be there already, and be found at this very
@@ -318,9 +273,18 @@ class Engine {
   RawCalls raw_calls_{waker_,
                       {raw_times_, raw_timers_, raw_polls_, raw_transfers_, raw_child_waits_,
                        raw_scheduling_, words_},
-                      [this](Task& task) { return Yield(task); },
-                      [this](Task& task, const TrappedCall& call) { ExitThread(task, call); }};
+                      [this](Task& task) { return notifications_.Yield(task); },
+                      [this](Task& task, const TrappedCall& call) { trapped_.Exit(task, call); }};
   TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
+  TrappedCalls trapped_{run_, waker_, futexes_, raw_calls_, guard_, deaths_, *executor_};
+  FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_};
+
+  // What they notify.
+  Spawns spawns_{run_, *executor_, births_, scheduling_, unmanaged_};
+  Notifications notifications_{run_,
+                               waker_,
+                               {expulsion_, descriptors_, unknown_children_, timers_, spawns_,
+                                scheduling_, signals_, objects_, dds_}};
 
   // What users are told.
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};

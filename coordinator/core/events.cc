@@ -50,7 +50,7 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     host_cpu_.Check(task, CpuClockOf(task));
     const shm::Notification note = Slot(task).note;
     Reactor::Found found = kConcernsAll;
-    found.looks_again = Handle(task, note);
+    found.looks_again = notifications_.Handle(task, note);
     return found;
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from

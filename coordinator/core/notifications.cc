@@ -1,4 +1,5 @@
-// What clients say. Everything in a notification is untrusted: it is a copy, and it is checked.
+#include "coordinator/core/notifications.h"
+
 #include <sys/epoll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -27,55 +27,31 @@ Wait::What IdleFor(const shm::Notification& note) {
 }  // namespace
 
 // From the program's clock to the robot's.
-std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
+std::int64_t Notifications::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
   if (note.deadline_ns == shm::kNeverNs) return shm::kNeverNs;
   const ProgramTime deadline = OwnTime(std::max<std::int64_t>(0, note.deadline_ns));
   return std::max(task.process->clock.RobotTimeOf(deadline).ns(), task.reached_ns);
 }
 
-void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
-  for (const pid_t tid : ThreadsOf(creator.process->pid)) {
-    if (KnownTask(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
-    executor_->Hold(tid);
-    Task& thread = births_.AddThread(*creator.process, tid, creator.reached_ns);
-    scheduling_.Inherit(thread, creator);
-    if (note.args[1] >= 0) scheduling_.SetPriority(creator, thread, note.args[1], note.args[2]);
-    if (note.args[3] != 0)
-      scheduling_.SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
-  }
-}
-
-// Only a child of its own: with CLONE_PARENT its parent's. It has not been waited for, so that its
-// number is nobody else's.
-void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
-  Process& of = *parent.process;
-  if (pid <= 0 || LivingProcess(pid) != nullptr || KnownTask(pid) != nullptr) return;
-  if (ThreadState(pid) == 'X' || ThreadState(pid) == 'Z') return;
-  const pid_t actual = ParentOf(pid);
-  if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
-  executor_->Hold(pid);
-  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached_ns), parent);
-}
-
 // Equals have their turn.
-bool Engine::Yield(Task& task) {
+bool Notifications::Yield(Task& task) {
   SchedulerOf(task).Yield(task.order);
   if (++task.yields < kYieldsBeforeLook) return false;
   task.yields = 0;
-  return unknown_children_.LetRunBeside(*task.process);
+  return parts_.unknown_children.LetRunBeside(*task.process);
 }
 
-bool Engine::Handle(Task& task, const shm::Notification& note) {
+bool Notifications::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
   const Moment moment{task.reached_ns};
   bool looks_again = false;
   if (task.process->expelled) {
-    expulsion_.AwaitDeath(task);
+    parts_.expulsion.AwaitDeath(task);
     return false;
   }
   if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {
-    expulsion_.Expel(*task.process, what);
+    parts_.expulsion.Expel(*task.process, what);
     return false;
   }
   task.reason = shm::WakeReason::kGo;
@@ -87,20 +63,20 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       waker_.Hold(task, note.kind);
       break;
     case Kind::kIdle:
-      EnterWait(task, {IdleFor(note), deadline_ns});
+      waker_.Wait(task, {IdleFor(note), deadline_ns});
       break;
     case Kind::kWaitFds:
-      EnterWait(task, {descriptors_.WatchAsAsked(task, note), deadline_ns});
+      waker_.Wait(task, {parts_.descriptors.WatchAsAsked(task, note), deadline_ns});
       looks_again = true;
       break;
     case Kind::kWaitChild:
-      EnterWait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
-      unknown_children_.LookFor(*task.process);
+      waker_.Wait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
+      parts_.unknown_children.LookFor(*task.process);
       // It has looked, and found none; but since then one may have ended. One that it does not wait
       // for stays there, so a look at who is there would never let it wait.
       if (std::exchange(task.children_looked, task.process->children_changed) !=
           task.process->children_changed) {
-        MakeReady(task, shm::WakeReason::kGo, moment);
+        waker_.Wake(task, shm::WakeReason::kGo, moment);
       }
       break;
     case Kind::kTimerCreate:
@@ -108,14 +84,10 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kTimerGet:
     case Kind::kTimerDelete:
     case Kind::kTimerOverrun:
-      looks_again = timers_.Handle(*task.process, task, note);
+      looks_again = parts_.timers.Handle(*task.process, task, note);
       break;
     case Kind::kSpawned:
-      if (note.args[0] == 0) {
-        NoteSpawnedThread(task, note);
-      } else {
-        NoteSpawnedProcess(task, static_cast<pid_t>(note.args[0]));
-      }
+      parts_.spawns.Handle(task, note);
       break;
     case Kind::kYield:
       looks_again = Yield(task);
@@ -123,22 +95,22 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kPriority:
     case Kind::kPriorityGet:
     case Kind::kAffinity:
-      scheduling_.Handle(task, note);
+      parts_.scheduling.Handle(task, note);
       break;
     case Kind::kStrangers:
       task.process->has_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
-      signals_.Sent(static_cast<pid_t>(note.args[0]), moment);
+      parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);
       break;
     case Kind::kWaitKey:
-      objects_.Wait(task, note, deadline_ns);
+      parts_.objects.Wait(task, note, deadline_ns);
       break;
     case Kind::kWakeKey:
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (objects_.Wake(note.args[0], note.args[1], moment) &&
+      if (parts_.objects.Wake(note.args[0], note.args[1], moment) &&
           ParametersOf(task).policy == SCHED_OTHER) {
         SchedulerOf(task).Yield(task.order);
       }
@@ -149,10 +121,10 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsSync:
     case Kind::kDdsRoom:
     case Kind::kDdsSockets:
-      dds_.Handle(task, note, deadline_ns);
+      parts_.dds.Handle(task, note, deadline_ns);
       break;
     case Kind::kQueueNotifies:
-      header_->queues_notify.store(1);
+      run_.header->queues_notify.store(1);
       break;
     case Kind::kNone:
     case Kind::kHorizon:
@@ -163,7 +135,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kCall:
       break;
   }
-  Refresh(robot);
+  waker_.Refresh(robot);
   return looks_again;
 }
 

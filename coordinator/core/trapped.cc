@@ -6,24 +6,6 @@
 
 namespace tcs {
 
-bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
-  task.trap_id = call.id;
-  task.trap_listener = call.listener;
-  task.trap_result = 0;
-  task.trap_continues = false;
-  task.follow_up = FollowUp::kNone;
-  task.brief_done = false;
-  task.expects_kernel = false;
-  bool looks_again = false;
-  if (call.number == SYS_futex) {
-    futexes_.Handle(task, call);
-  } else {
-    looks_again = raw_calls_.Handle(task, call);
-  }
-  Refresh(*task.process->robot);
-  return looks_again;
-}
-
 // A trapped call has arrived. That of the running thread stops it like a notification.
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
@@ -41,7 +23,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
-    HandleStranger(call, moment);
+    trapped_.HandleUnmanaged(call, moment);
     return {.stops_running = !gates_only_, .wakes_others = true};
   }
   if (turn_.IsOf(*task)) {
@@ -55,42 +37,6 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   task->early_trap = call;
   task->trap_id = 0;
   return kConcernsAll;
-}
-
-// The last call of a thread, whichever way it ends: it has no destructors to run any more, and no
-// signals to handle.
-void Engine::ExitThread(Task& task, const TrappedCall& call) {
-  task.trap_id = 0;
-  deaths_.EndAndWake(task, {task.reached_ns});
-  ContinueTrapped(call.listener, call.id);
-  // Who waits for it looks at a word that the kernel clears.
-  if (gates_only_) executor_->LetKernelFinish(call.tid);
-}
-
-// A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
-// has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
-// here.
-void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
-  const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
-  Process* process = LivingProcess(pid);
-  if (process != nullptr && KnownTask(call.tid) == nullptr) {
-    process->has_unmanaged_threads = true;
-    futexes_.CarryOutWake(*process, call, moment);
-  }
-  guard_.LetThrough(call);
-}
-
-// At the end of a run the kernel carries out all calls, those that wait included.
-void Engine::ReleaseTrapped() {
-  for (Task& task : table_.tasks()) {
-    if (task.state == TaskState::kDead) continue;
-    if (task.trap_id != 0) guard_.Continue(task);
-    if (task.early_trap.has_value()) guard_.LetThrough(*task.early_trap);
-    task.trap_id = 0;
-    task.early_trap.reset();
-  }
-  if (turn_.trapped.has_value()) guard_.LetThrough(*turn_.trapped);
-  turn_.trapped.reset();
 }
 
 }  // namespace tcs
