@@ -15,6 +15,7 @@ constexpr char kSeparators[] = ": ";
 
 char g_own_libraries[4096];  // of LD_PRELOAD, what is tcs's: "/there/libtcs_preload.so"
 char g_socket_entry[256];
+char g_aliases_entry[4096];  // empty: there are none
 bool g_remembered = false;
 
 const char* Find(char* const* envp, const char* name) {
@@ -107,10 +108,18 @@ void RememberEnvironment(char** envp) {
   }
   const char* socket = Find(envp, shm::kSocketVariable);
   if (socket != nullptr && strlen(socket) < sizeof g_socket_entry) strcpy(g_socket_entry, socket);
+  const char* aliases = Find(envp, shm::kAliasesVariable);
+  if (aliases != nullptr && strlen(aliases) < sizeof g_aliases_entry) {
+    strcpy(g_aliases_entry, aliases);
+  }
   g_remembered = true;
 }
 
 bool EnvironmentRemembered() { return g_remembered; }
+
+const char* AliasLines() {
+  return g_aliases_entry[0] == '\0' ? "" : g_aliases_entry + sizeof shm::kAliasesVariable;
+}
 
 const char* SocketName() {
   return g_socket_entry[0] == '\0' ? nullptr : g_socket_entry + sizeof shm::kSocketVariable;
@@ -121,20 +130,24 @@ char* const* WithShim(char* const* envp, EnvironmentCopy& storage) {
   if (!CanReadStrings(envp)) return envp;  // the kernel says what is wrong with it
   const char* preload = Find(envp, kPreload);
   const char* socket = Find(envp, shm::kSocketVariable);
+  const char* aliases = Find(envp, shm::kAliasesVariable);
+  const bool has_aliases =
+      g_aliases_entry[0] == '\0' || (aliases != nullptr && strcmp(aliases, g_aliases_entry) == 0);
   WriteEntry(preload == nullptr ? nullptr : preload + sizeof kPreload, storage.preload,
              sizeof storage.preload);
   if (preload != nullptr && socket != nullptr && strcmp(preload, storage.preload) == 0 &&
-      strcmp(socket, g_socket_entry) == 0) {
+      strcmp(socket, g_socket_entry) == 0 && has_aliases) {
     return envp;
   }
   std::size_t n = 0;
   for (; envp != nullptr && envp[0] != nullptr; ++envp) {
-    if (envp[0] == preload || envp[0] == socket) continue;
+    if (envp[0] == preload || envp[0] == socket || envp[0] == aliases) continue;
     if (n == EnvironmentCopy::kMaxEntries) break;
     storage.entries[n++] = envp[0];
   }
   storage.entries[n++] = storage.preload;
   storage.entries[n++] = g_socket_entry;
+  if (g_aliases_entry[0] != '\0') storage.entries[n++] = g_aliases_entry;
   storage.entries[n] = nullptr;
   return storage.entries;
 }

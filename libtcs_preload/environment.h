@@ -7,10 +7,13 @@
 
 namespace tcs::preload {
 
-// Copies tcs's part of LD_PRELOAD and TCS_SOCKET out of `envp`. Called once, before the program
-// runs.
+// Copies tcs's part of LD_PRELOAD, TCS_SOCKET and TCS_ALIASES out of `envp`. Called once, before
+// the program runs.
 void RememberEnvironment(char** envp);
 bool EnvironmentRemembered();
+
+// The lines of TCS_ALIASES (shm/attach_protocol.h); empty where there are none.
+const char* AliasLines();
 
 // The coordinator's socket (shm/attach_protocol.h), or null where there is none.
 const char* SocketName();
@@ -20,7 +23,7 @@ const char* SocketName();
 // Entries beyond kMaxEntries are dropped, and libraries that do not fit.
 struct EnvironmentCopy {
   static constexpr std::size_t kMaxEntries = 2048;
-  char* entries[kMaxEntries + 3];
+  char* entries[kMaxEntries + 4];
   char preload[4096];
 };
 char* const* WithShim(char* const* envp, EnvironmentCopy& storage);

@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdarg.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -21,6 +20,7 @@
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
+#include "libtcs_preload/terminals.h"
 #include "libtcs_preload/transfer.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -31,14 +31,11 @@ namespace {
 
 constexpr std::size_t kMostBuffers = 1024;  // above it the kernel says EINVAL
 
+using tcs::shm::kNeverNs;
+
 // A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
 // that there is room again.
 constexpr auto kBacklogs = tcs::shm::WaitKey::kBacklogs;
-
-bool IsTerminal(int fd) {
-  char settings[64];  // the kernel's termios is smaller
-  return RawSyscall(SYS_ioctl, fd, TCGETS, Arg(settings)) == 0;
-}
 
 // TCP would keep what MSG_MORE announces more for until a timer of the host's runs out.
 int WithoutMore(int fd, int flags) {
@@ -53,6 +50,17 @@ bool Takes(int flags) { return (flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0; }
 struct Reads {
   bool dont_wait = false, socket = false, takes = true;
 };
+
+// A terminal that is set to give up at the deadline, and then reads nothing.
+template <class Take>
+ssize_t ReadTerminal(GuestThread& t, int fd, std::int64_t deadline, Take take) {
+  if (AwaitFd(t, fd, POLLIN, deadline) == FdState::kFailed) return errno == EAGAIN ? 0 : -1;
+  const ssize_t result = take();
+  const int error = errno;
+  PassOn(t);
+  errno = error;
+  return result;
+}
 
 // `at_once` returns what the kernel answers without waiting, or -EAGAIN.
 template <class AtOnce, class Call>
@@ -72,12 +80,18 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     return take();
   }
   bool ready = PollNow(fd, POLLIN);
-  std::int64_t deadline = tcs::shm::kNeverNs;
+  std::int64_t deadline = kNeverNs;
   if (!ready) {
     if (!any_socket || !WantsMore(fd)) {
       if (const long answer = at_once(); answer != -EAGAIN) return ToErrno(answer);
     }
     if (reads.socket) deadline = SocketDeadline(*t, fd, SO_RCVTIMEO);
+    const std::int64_t timeout = any_socket ? kNeverNs : ReadTimeoutOf(fd);
+    if (timeout == 0) {
+      HoldForRead(*t);
+      return take();
+    }
+    if (timeout != kNeverNs) return ReadTerminal(*t, fd, DeadlineAfter(*t, timeout), take);
   }
   for (;; ready = false) {
     const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline);
@@ -113,12 +127,14 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  if (!AreSound(iov, count) || IsNonBlocking(fd)) return ToErrno(whole());
-  Rest rest(iov, count);
-  if (rest.bytes() == 0) return ToErrno(whole());
-  const long result = TransferAll(
-      *t, fd, POLLOUT, SO_SNDTIMEO, rest,
-      [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
+  const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
+  Rest rest(iov, at_once ? 0 : count);
+  const long result =
+      rest.bytes() == 0
+          ? whole()
+          : TransferAll(
+                *t, fd, POLLOUT, SO_SNDTIMEO, rest,
+                [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
   }

@@ -6,8 +6,11 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <termios.h>
 
+#include "libtcs_preload/aliases.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
@@ -53,7 +56,26 @@ auto Opening(int folder, const char* path, int flags, bool cancellable, Call cal
   return result;
 }
 
+// A device of the robot's. What has come while nobody had it open is not there, as at a real port.
+int OpenDevice(int folder, const char* file, int flags, mode_t mode) {
+  GuestThread* t = Enter();
+  if (t != nullptr) HoldForRead(*t);
+  const long fd = RawSyscall(SYS_openat, folder, Arg(file), flags, static_cast<long>(mode));
+  if (fd >= 0 && t != nullptr) RawSyscall(SYS_ioctl, fd, TCFLSH, TCIFLUSH);
+  return static_cast<int>(ToErrno(fd));
+}
+
+FILE* OfDevice(FILE* stream) {
+  GuestThread* t = Enter();
+  if (stream == nullptr || t == nullptr) return stream;
+  HoldForRead(*t);
+  RawSyscall(SYS_ioctl, fileno(stream), TCFLSH, TCIFLUSH);
+  return stream;
+}
+
 int OpenAt(int folder, const char* path, int flags, mode_t mode) {
+  const char* file = FileOf(path);
+  if (file != path) return OpenDevice(folder, file, flags, mode);
   if (Current() != nullptr) pthread_testcancel();
   return static_cast<int>(ToErrno(Opening(folder, path, flags, true, [&] {
     return RawSyscall(SYS_openat, folder, Arg(path), flags, static_cast<long>(mode));
@@ -114,20 +136,28 @@ TCS_EXPORT int creat(const char* path, mode_t mode) {
 TCS_EXPORT int creat64(const char* path, mode_t mode) { return creat(path, mode); }
 
 TCS_EXPORT FILE* fopen(const char* path, const char* mode) {
+  if (const char* file = FileOf(path); file != path) return OfDevice(TCS_REAL(fopen)(file, mode));
   return Opening(AT_FDCWD, path, FlagsOf(mode), false, [&] { return TCS_REAL(fopen)(path, mode); });
 }
 
 TCS_EXPORT FILE* fopen64(const char* path, const char* mode) {
+  if (const char* file = FileOf(path); file != path) return OfDevice(TCS_REAL(fopen64)(file, mode));
   return Opening(AT_FDCWD, path, FlagsOf(mode), false,
                  [&] { return TCS_REAL(fopen64)(path, mode); });
 }
 
 TCS_EXPORT FILE* freopen(const char* path, const char* mode, FILE* stream) {
+  if (const char* file = FileOf(path); file != path) {
+    return OfDevice(TCS_REAL(freopen)(file, mode, stream));
+  }
   return Opening(AT_FDCWD, path, FlagsOf(mode), false,
                  [&] { return TCS_REAL(freopen)(path, mode, stream); });
 }
 
 TCS_EXPORT FILE* freopen64(const char* path, const char* mode, FILE* stream) {
+  if (const char* file = FileOf(path); file != path) {
+    return OfDevice(TCS_REAL(freopen64)(file, mode, stream));
+  }
   return Opening(AT_FDCWD, path, FlagsOf(mode), false,
                  [&] { return TCS_REAL(freopen64)(path, mode, stream); });
 }

@@ -12,6 +12,8 @@
 namespace tcs::shm {
 
 inline constexpr char kSocketVariable[] = "TCS_SOCKET";
+// Files that programs find under another name, a line each: the file, a space, the name.
+inline constexpr char kAliasesVariable[] = "TCS_ALIASES";
 
 enum class AttachWants : std::uint32_t {
   kSlot = 0,  // of a further thread

@@ -47,6 +47,8 @@ class Outlet {
   // At the run's end: why nothing of what was sent has reached anybody, and how to mend that, as a
   // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
   virtual std::string WhyUnheard() const { return {}; }
+  // The same of readings that did not go out, whoever was there to hear them.
+  virtual std::string WhatWasLost() const { return {}; }
 };
 
 // An end that has been opened, or why it was not: one sentence.
@@ -60,6 +62,8 @@ class CommandSink {
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   // Something that is no command; `why` is a sentence.
   virtual void Refuse(std::size_t channel, const std::string& why) = 0;
+  // Something that the user should know at once: a sentence.
+  virtual void Note(const std::string& sentence) = 0;
 
  protected:
   ~CommandSink() = default;
@@ -72,6 +76,9 @@ class Inlet {
 
   // Readable once something has come in; -1: it is asked again and again.
   virtual int fd() const = 0;
+  // True for one end of a terminal. What a program writes to the other end is not there at once,
+  // but when it is received: so that is done whenever one has written to a terminal.
+  virtual bool IsTerminal() const { return false; }
   // Gives away what has come in by `now`, in the order of sending.
   virtual void Receive(VirtualTime now, CommandSink& sink) = 0;
 

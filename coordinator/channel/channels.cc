@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "coordinator/channel/dds/dds_channels.h"
+#include "coordinator/channel/pty/pty_channel.h"
 #include "coordinator/channel/udp/udp_channel.h"
 #include "coordinator/channel/unix/unix_channel.h"
 
@@ -23,10 +24,12 @@ Either(Cases...) -> Either<Cases...>;
 
 std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   std::unique_ptr<DdsChannels> dds = DdsChannels::For(scenario, ends);
+  auto serial = std::make_unique<PtyChannels>();
   for (const SensorChannelSpec& spec : scenario.sensors) {
     auto outlet =
         std::visit(Either{[](const UdpEndpoint& to) { return OpenUdpOutlet(to); },
                           [](const UnixName& to) { return OpenUnixOutlet(to); },
+                          [&](const SerialPort& to) { return serial->OutletOn(to, spec.period); },
                           [&](const DdsSensorEnd&) { return Opened<Outlet>(dds->OutletOf(spec)); }},
                    spec.to);
     if (auto* error = std::get_if<std::string>(&outlet)) return std::move(*error);
@@ -37,6 +40,7 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
     auto inlet = std::visit(
         Either{[i](const UdpEndpoint& from) { return OpenUdpInlet(from, i); },
                [i](const UnixName& from) { return OpenUnixInlet(from, i); },
+               [&](const SerialPort& from) { return serial->InletOn(from, i); },
                [](const DdsCommandEnd&) { return Opened<Inlet>(std::unique_ptr<Inlet>()); }},
         scenario.commands[i].from);
     if (auto* error = std::get_if<std::string>(&inlet)) return std::move(*error);
@@ -44,6 +48,9 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
     inlet_of.push_back(own == nullptr ? dds_commands.get() : own.get());
     if (own != nullptr) inlets.push_back(std::move(own));
   }
+  for (auto& inlet : serial->OtherInlets()) inlets.push_back(std::move(inlet));
+  aliases = serial->Aliases();
+  transports.push_back(std::move(serial));
   if (dds == nullptr) return {};
   clock = dds->Clock();
   inlets.push_back(std::move(dds_commands));

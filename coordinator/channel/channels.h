@@ -19,12 +19,21 @@ class Transport {
   virtual void Begin(VirtualDuration realtime_offset) = 0;
 };
 
+// A file that a robot's programs find under another name.
+struct FileAlias {
+  std::string robot;
+  std::string name;  // that they open
+  std::string file;  // that is opened instead
+};
+
 struct Channels {
   std::vector<std::unique_ptr<Transport>> transports;  // outlive the rest
   std::vector<std::unique_ptr<Outlet>> outlets;        // of the scenario's sensors, in their order
   std::unique_ptr<Outlet> clock;                       // if the scenario has one
   std::vector<std::unique_ptr<Inlet>> inlets;          // each of one channel or more
   std::vector<Inlet*> inlet_of;                        // the scenario's commands, in their order
+
+  std::vector<FileAlias> aliases;
 
   // Claims what the channels need of the host, ports for example. Empty on success, else one
   // sentence. The scenario and the endpoints outlive this.

@@ -23,6 +23,7 @@ class Borrowed {
   bool IsReady(short events) const;
   bool IsEventFd() const;
   bool IsTimer() const;
+  bool IsTerminal() const;
   // As the shim does it for what it reads itself: what TCP's sender waits for must not wait for a
   // timer of the host's. Nothing happens to other descriptors.
   void AcknowledgeAtOnce() const;

@@ -242,7 +242,9 @@ class Engine {
   RawTimers raw_timers_{run_, timers_};
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
-  KernelObjectWaits objects_{run_, waker_};
+  KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
+                               if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.ns);
+                             }};
   GuardedCalls guard_;
 
   // Who takes part: how threads and processes come, and how they go.
@@ -259,7 +261,7 @@ class Engine {
                                TimerCalls::DeletePosix(process);
                                dds_.Leave(process, moment);
                              }};
-  Launches launches_{run_, waker_, births_, sockets_, traps_, guard_.guarded()};
+  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, guard_.guarded()};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
   Grace grace_{run_, reactor_, unknown_children_,

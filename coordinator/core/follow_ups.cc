@@ -26,6 +26,9 @@ void FollowUps::Do(Task& task, Moment call, bool last) {
     case FollowUp::kKernelWaits:
       objects_.LookAtKernelWaits(call);
       break;
+    case FollowUp::kTerminals:
+      objects_.FlushTerminals(call);
+      break;
     case FollowUp::kContinued:
       if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {
         signal_wakes_.WakeForSignals(*parent, call);

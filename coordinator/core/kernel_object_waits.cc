@@ -15,7 +15,7 @@ void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, std::int
 
 bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) {
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
-    FlushTerminals();
+    FlushTerminals(moment);
     return false;
   }
   if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) {
@@ -44,7 +44,7 @@ bool KernelObjectWaits::LookAtKernelWaits(Moment moment) {
 // What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
 // own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
 // another.
-void KernelObjectWaits::FlushTerminals() {
+void KernelObjectWaits::FlushTerminals(Moment moment) {
   for (int turn = 0; turn < 2; ++turn) {
     for (const Task& task : run_.table.tasks()) {
       const auto* wait = task.Awaits<awaited::Descriptors>();
@@ -55,6 +55,7 @@ void KernelObjectWaits::FlushTerminals() {
       }
     }
   }
+  terminals_written_(moment);
 }
 
 void KernelObjectWaits::WakeAll(Moment moment) {

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "coordinator/calls/wait_queues.h"
 #include "coordinator/core/run_state.h"
@@ -15,7 +17,9 @@ namespace tcs {
 
 class KernelObjectWaits {
  public:
-  KernelObjectWaits(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
+  // `terminals_written`: what was written to terminals until that moment can be read.
+  KernelObjectWaits(RunState& run, Waker& waker, std::function<void(Moment)> terminals_written)
+      : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
 
   // As the notification kWaitKey says.
   void Wait(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
@@ -33,11 +37,13 @@ class KernelObjectWaits {
   // any.
   bool LookAtKernelWaits(Moment moment);
 
- private:
-  void FlushTerminals();
+  // Something was written to a terminal.
+  void FlushTerminals(Moment moment);
 
+ private:
   RunState& run_;
   Waker& waker_;
+  std::function<void(Moment)> terminals_written_;
   WaitQueues objects_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
+#include "shm/attach_protocol.h"
 
 namespace tcs {
 
@@ -105,6 +106,9 @@ std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
   const std::string socket_name = sockets_.Open();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;
+  if (const std::string aliases = world_.AliasesOf(launch.robot->name); !aliases.empty()) {
+    request.environment[shm::kAliasesVariable] = aliases;
+  }
   Spawned spawned = Spawn(request);
   if (spawned.pid < 0) return client.name + " cannot be started: " + strerror(errno);
   if (spawned.trap) {

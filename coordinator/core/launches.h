@@ -16,6 +16,7 @@
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/trap_listeners.h"
 #include "coordinator/core/waker.h"
+#include "coordinator/core/world.h"
 #include "coordinator/scenario/scenario.h"
 
 namespace tcs {
@@ -31,12 +32,13 @@ class Launches {
 
   // The processes in `guarded` are tcsim's own. All of these outlive this.
   Launches(RunState& run, Waker& waker, Births& births, RegistrationSockets& sockets,
-           TrapListeners& traps, const std::vector<pid_t>& guarded)
+           TrapListeners& traps, const World& world, const std::vector<pid_t>& guarded)
       : run_(run),
         waker_(waker),
         births_(births),
         sockets_(sockets),
         traps_(traps),
+        world_(world),
         guarded_(guarded) {}
 
   // Of all clients, once their robots are there; then starts those that start at 0. Empty on
@@ -64,6 +66,7 @@ class Launches {
   Births& births_;
   RegistrationSockets& sockets_;
   TrapListeners& traps_;
+  const World& world_;
   const std::vector<pid_t>& guarded_;
   std::vector<Launch> launches_;
 };

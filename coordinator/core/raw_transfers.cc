@@ -139,6 +139,7 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   }
   if (!transfer.reads) {
     shm::NoteSent(SlotOf(task).receipts);
+    if (waker_.counts().for_objects() > 0 && fd.IsTerminal()) task.follow_up = FollowUp::kTerminals;
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
     const bool of_timer = timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);

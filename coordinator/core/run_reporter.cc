@@ -90,10 +90,11 @@ void RunReporter::WarnOfEndsThatDidNotMeet() {
     run_.Warn(warning);
   if (!from_.world.present()) return;
   for (const std::string& warning : from_.world.CommandComplaints()) run_.Warn(warning);
+  for (const std::string& warning : from_.world.LossesOfSensors()) run_.Warn(warning);
   // Whoever has ended may have listened before.
   const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
   if (std::any_of(run_.table.processes().begin(), run_.table.processes().end(), gone)) return;
-  for (const std::string& warning : from_.world.SensorComplaints()) run_.Warn(warning);
+  for (const std::string& warning : from_.world.UnheardSensors()) run_.Warn(warning);
 }
 
 }  // namespace tcs

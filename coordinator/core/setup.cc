@@ -69,6 +69,7 @@ std::string Engine::Prepare() {
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
+  if (world_.has_terminals()) waker_.AwaitTerminals();
   std::uint32_t inlet = 0;
   for (const int fd : world_.command_fds()) {
     if (fd >= 0) reactor_.Add(fd, EPOLLIN, {Tag::kCommand, inlet});

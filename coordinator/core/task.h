@@ -32,7 +32,7 @@
 namespace tcs {
 
 // Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
-enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued };
+enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued, kTerminals };
 
 struct ClientSpec;
 struct Process;

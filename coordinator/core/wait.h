@@ -139,6 +139,8 @@ class WaitCounts {
   int for_deliverer() const { return for_deliverer_; }
   // For what others have to tell of: kernel objects, and what is written to terminals.
   int for_objects() const { return for_objects_; }
+  // Somebody who is no thread waits for what is written to terminals, all the time.
+  void EnteredForTerminals() { ++for_objects_; }
 
  private:
   void Count(const Wait& wait, int by);

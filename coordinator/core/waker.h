@@ -71,6 +71,12 @@ class Waker {
   // further.
   void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
 
+  // The world waits for what is written to terminals, as long as the run lasts.
+  void AwaitTerminals() {
+    counts_.EnteredForTerminals();
+    ShowObjectWaiters();
+  }
+
   const WaitCounts& counts() const { return counts_; }
   int unseen() const { return unseen_; }  // threads in TaskState::kUnseen
 

@@ -58,6 +58,9 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
     sensors_.Add(std::move(bodies), {.period = spec.period, .latency = spec.latency},
                  *channels_.outlets[i]);
   }
+  for (const auto& inlet : channels_.inlets) {
+    if (inlet->IsTerminal()) terminals_.push_back(inlet.get());
+  }
   FindNextStop();
   return {};
 }
@@ -119,6 +122,7 @@ bool World::Advance(std::int64_t limit_ns) {
   WriteCsv();
   const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
                                  [this](int body) { return dynamics_->Read(body); });
+  if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
   FindNextStop();
   return sent;
 }
@@ -169,13 +173,38 @@ std::vector<std::string> World::CommandComplaints() const {
   return complaints;
 }
 
-std::vector<std::string> World::SensorComplaints() const {
-  std::vector<std::string> complaints;
+std::vector<std::string> World::UnheardSensors() const {
+  return OfSensors([](const Outlet& outlet) { return outlet.WhyUnheard(); });
+}
+
+std::vector<std::string> World::LossesOfSensors() const {
+  return OfSensors([](const Outlet& outlet) { return outlet.WhatWasLost(); });
+}
+
+std::vector<std::string> World::OfSensors(
+    const std::function<std::string(const Outlet&)>& what) const {
+  std::vector<std::string> sentences;
   for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
-    const std::string why = channels_.outlets[i]->WhyUnheard();
-    if (!why.empty()) complaints.push_back("channel " + scenario_.sensors[i].name + ": " + why);
+    const std::string text = what(*channels_.outlets[i]);
+    if (!text.empty()) sentences.push_back("channel " + scenario_.sensors[i].name + ": " + text);
   }
-  return complaints;
+  return sentences;
+}
+
+std::string World::AliasesOf(const std::string& robot) const {
+  std::string text;
+  for (const FileAlias& alias : channels_.aliases) {
+    if (alias.robot == robot) text += alias.file + " " + alias.name + "\n";
+  }
+  return text;
+}
+
+void World::ReceiveFromTerminals(std::int64_t now_ns) {
+  if (terminals_.empty()) return;
+  const Spent spent(&host_ns_);
+  for (Inlet* terminal : terminals_) {
+    terminal->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
+  }
 }
 
 void World::ReceiveUntold(std::int64_t now_ns) {

@@ -52,18 +52,26 @@ class World {
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
   // Applies what has been sent by `now_ns` to where no descriptor tells of it.
   void ReceiveUntold(std::int64_t now_ns);
+  // Takes what has been written to terminals, at `now_ns`.
+  bool has_terminals() const { return !terminals_.empty(); }
+  void ReceiveFromTerminals(std::int64_t now_ns);
+
+  // The files that the robot's programs find under other names, as shm::kAliasesVariable has them.
+  std::string AliasesOf(const std::string& robot) const;
 
   // Of the coordinator's processor time, what physics and channels took.
   std::int64_t host_ns() const { return host_ns_; }
   std::int64_t commands() const { return commands_.taken(); }
   std::int64_t samples() const { return sensors_.samples(); }
-  // At the run's end, a sentence each: channels of commands where nothing of use came in, and of
-  // sensors that nobody can have heard.
+  // At the run's end, a sentence each: channels of commands where nothing of use came in, sensors
+  // that nobody can have heard, and those that left readings out.
   std::vector<std::string> CommandComplaints() const;
-  std::vector<std::string> SensorComplaints() const;
+  std::vector<std::string> UnheardSensors() const;
+  std::vector<std::string> LossesOfSensors() const;
 
  private:
   void WriteCsv();
+  std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
@@ -82,6 +90,7 @@ class World {
   std::unique_ptr<Dynamics::Checkpoint> checkpoint_;
   std::vector<TimedCommand> since_checkpoint_;
   Channels channels_;
+  std::vector<Inlet*> terminals_;
   Sensors sensors_;
   Commands commands_;
   std::ofstream csv_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
@@ -15,33 +16,47 @@ namespace {
 constexpr double kLowestRate = 1e-3;
 constexpr double kHighestRate = 1e6;
 
-enum class ChannelType { kUdpJson, kUnixJson, kDds };
+enum class ChannelType { kUdpJson, kUnixJson, kPty, kDds };
 
 ChannelType LoadType(const YamlValue& value) {
   const std::string text = value.AsText();
   if (text == "udp_json") return ChannelType::kUdpJson;
   if (text == "unix_json") return ChannelType::kUnixJson;
+  if (text == "pty") return ChannelType::kPty;
   if (text == "dds") return ChannelType::kDds;
   value.Fail("is the unknown '" + text + "'; " +
-             Suggest(text, {"udp_json", "unix_json", "dds"}, "types"));
+             Suggest(text, {"udp_json", "unix_json", "pty", "dds"}, "types"));
 }
 
 // What is taken by the channels so far.
 struct Ends {
   UdpEndpoints udp;
   UnixNames unix_names;
+  SerialPorts serial;
   DdsTopics topics;
 };
+
+// Those that the type brings along; `socket` says where a socket is.
+void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* keys) {
+  switch (type) {
+    case ChannelType::kUdpJson:
+    case ChannelType::kUnixJson:
+      keys->push_back(socket);
+      break;
+    case ChannelType::kPty:
+      keys->insert(keys->end(), SerialPorts::Keys().begin(), SerialPorts::Keys().end());
+      break;
+    case ChannelType::kDds:
+      keys->insert(keys->end(), {"message", "topic", "domain", "qos"});
+      break;
+  }
+}
 
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
   std::vector<std::string> keys = {"bodies", "rate", "latency"};
-  if (type == ChannelType::kDds) {
-    keys.insert(keys.end(), {"message", "topic", "domain", "qos"});
-  } else {
-    keys.push_back("to");
-  }
+  AddKeys(type, "to", &keys);
   map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
@@ -55,6 +70,9 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
     case ChannelType::kUnixJson:
       channel.to = ends->unix_names.Load(map.Require("to", "to: eyes.sock"));
       break;
+    case ChannelType::kPty:
+      channel.to = ends->serial.Load(map, false, scenario);
+      break;
     case ChannelType::kDds:
       channel.to = LoadDdsSensorEnd(map, channel, &ends->topics);
       break;
@@ -66,11 +84,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
                                 ChannelType type, const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
   std::vector<std::string> keys = {"body", "latency"};
-  if (type == ChannelType::kDds) {
-    keys.insert(keys.end(), {"message", "topic", "domain", "qos"});
-  } else {
-    keys.push_back("listen");
-  }
+  AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
@@ -82,6 +96,9 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
       break;
     case ChannelType::kUnixJson:
       channel.from = ends->unix_names.Load(map.Require("listen", "listen: hands.sock"));
+      break;
+    case ChannelType::kPty:
+      channel.from = ends->serial.Load(map, true, scenario);
       break;
     case ChannelType::kDds:
       channel.from = LoadDdsCommandEnd(map, &ends->topics);
@@ -113,7 +130,7 @@ std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario) {
 }
 
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario) {
-  Ends ends{{}, UnixNames(variables), {}};
+  Ends ends{{}, UnixNames(variables), {}, {}};
   if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &ends.topics);
   if (const YamlValue* ros = top.Find("ros")) scenario->ros = LoadRosRelease(*ros);
   const YamlValue* channels = top.Find("channels");

@@ -99,6 +99,15 @@ struct UnixName {
   std::string Text() const { return is_abstract ? "@" + name : name; }
 };
 
+// A serial device of a robot's, on a line that takes time.
+struct SerialPort {
+  std::string robot;
+  std::string path;  // that its programs open, absolute: "/dev/ttyUSB0"
+  int baud = 115'200;
+  int frame_bits = 10;  // of a byte, with start, parity and stop: 8N1
+  int fifo = 1;         // bytes of a line that the program gets at a time
+};
+
 // The coordinator's end of a DDS topic.
 struct DdsTopicSpec {
   std::string topic;  // ROS 2's name: "/odom"
@@ -117,8 +126,10 @@ struct DdsCommandEnd {
 };
 
 // What carries a channel: an alternative for each transport (coordinator/channel/).
-using SensorEnd = std::variant<UdpEndpoint, UnixName, DdsSensorEnd>;    // where readings are sent
-using CommandEnd = std::variant<UdpEndpoint, UnixName, DdsCommandEnd>;  // where commands come in
+using SensorEnd =
+    std::variant<UdpEndpoint, UnixName, SerialPort, DdsSensorEnd>;  // where readings are sent
+using CommandEnd =
+    std::variant<UdpEndpoint, UnixName, SerialPort, DdsCommandEnd>;  // where commands come in
 
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
 // `latency` later.

@@ -28,6 +28,7 @@ class Commands final : public CommandSink {
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Refuse(std::size_t channel, const std::string& why) override;
+  void Note(const std::string& sentence) override { warn_(sentence); }
 
   // Of all channels, what acted.
   std::int64_t taken() const { return taken_; }
