@@ -42,9 +42,8 @@ class World {
   // Advances to the earliest of `limit_ns` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
   bool Advance(std::int64_t limit_ns);
-  // Integrates to `to_ns`, at most the next stop, though commands for times from `settled_ns` on
-  // may still come. One that does is applied at its time: everything since is taken back and done
-  // again.
+  // Goes on to `to_ns`, at most the next stop, though commands for times from `settled_ns` on may
+  // still come. One that does is applied at its time.
   void Lead(std::int64_t settled_ns, std::int64_t to_ns);
 
   const std::vector<int>& command_fds() const { return command_fds_; }
@@ -70,6 +69,7 @@ class World {
   void Sample(Sensor& sensor);
   bool SendDue(Sensor& sensor);
   void FindNextStop();
+  void Settle(std::int64_t settled_ns);
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
   CommandInput& input_;
@@ -78,15 +78,6 @@ class World {
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
   // Commands for earlier times do not come any more.
   std::int64_t settled_ns_ = 0;
-  // Where the dynamics lead: the state from which commands can be applied, and those that came
-  // since.
-  struct TimedCommand {
-    std::int64_t at_ns;
-    int body;
-    Wrench wrench;
-  };
-  std::unique_ptr<Dynamics::Checkpoint> checkpoint_;
-  std::vector<TimedCommand> since_checkpoint_;
   std::vector<Sensor> sensors_;
   std::vector<UdpSocket> command_sockets_;
   std::vector<int> command_fds_;
@@ -95,6 +86,8 @@ class World {
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
+  std::vector<int> all_bodies_;
+  std::vector<BodyState> states_;  // memory of WriteCsv and Sample
   std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
 };
 
