@@ -63,6 +63,13 @@ std::int64_t DdsChannels::NextOutputNs() const {
   return next;
 }
 
+void DdsChannels::AddDueBodies(std::int64_t now_ns, std::vector<int>* bodies) const {
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.next_ns > now_ns) continue;
+    bodies->insert(bodies->end(), sensor.spec->bodies.begin(), sensor.spec->bodies.end());
+  }
+}
+
 int DdsChannels::WriteDue(std::int64_t now_ns, const std::function<BodyState(int body)>& read) {
   int written = 0;
   const std::int64_t stamp_ns = now_ns + realtime_offset_ns_;

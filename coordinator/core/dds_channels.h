@@ -28,6 +28,8 @@ class DdsChannels {
   std::int64_t NextSampleNs() const;
   std::int64_t NextOutputNs() const;
 
+  // Adds the bodies of all samples that are due at `now_ns`.
+  void AddDueBodies(std::int64_t now_ns, std::vector<int>* bodies) const;
   // Writes what is due at `now_ns`; `read` says how a body is. Returns how many samples there were.
   int WriteDue(std::int64_t now_ns, const std::function<BodyState(int body)>& read);
 

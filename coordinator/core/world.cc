@@ -151,10 +151,24 @@ bool World::SendDue(Sensor& sensor) {
   return sent;
 }
 
+// All that is read now at once: what many bodies need is integrated side by side.
+void World::IntegrateDue() {
+  due_.clear();
+  if (csv_.is_open() && next_csv_ns_ <= progress_ns_) due_ = all_bodies_;
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.next_ns > progress_ns_) continue;
+    due_.insert(due_.end(), sensor.spec.bodies.begin(), sensor.spec.bodies.end());
+  }
+  if (dds_.has_value()) dds_->AddDueBodies(progress_ns_, &due_);
+  states_.resize(due_.size());
+  dynamics_->Read(dynamics_->Now(), due_, states_);
+}
+
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
   progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
   Settle(progress_ns_);
+  IntegrateDue();
   WriteCsv();
   bool sent = false;
   for (Sensor& sensor : sensors_) {

@@ -70,6 +70,7 @@ class World {
   bool SendDue(Sensor& sensor);
   void FindNextStop();
   void Settle(std::int64_t settled_ns);
+  void IntegrateDue();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
   CommandInput& input_;
@@ -86,7 +87,7 @@ class World {
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
-  std::vector<int> all_bodies_;
+  std::vector<int> all_bodies_, due_;
   std::vector<BodyState> states_;  // memory of WriteCsv and Sample
   std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
 };
