@@ -14,8 +14,8 @@ constexpr double kShortestS = 1e-9;
 double Square(double x) { return x * x; }
 
 // The greatest among the bodies, of coordinates or of speeds.
-double ErrorOf(const IslandStep& step, const std::vector<double>& middle_rate, double h,
-               std::size_t bodies) {
+double ErrorOf(const IslandStep& step, const std::vector<double>& middle_rate, double h) {
+  const std::size_t bodies = step.wrenches.size();
   const auto error = [&](std::size_t i) {
     return step.to[i] - (step.from[i] + h * middle_rate[i]);
   };
@@ -37,31 +37,31 @@ double ErrorOf(const IslandStep& step, const std::vector<double>& middle_rate, d
 
 }  // namespace
 
-void RungeKutta3::Take(SimbodyLanes& lanes, std::span<IslandStep* const> steps) {
-  Begin(lanes, steps);
+void RungeKutta3::Take(SimbodyRates& rates, std::span<IslandStep* const> steps) {
+  Begin(rates, steps);
   while (!open_.empty()) {
-    TryOnce(lanes);
-    std::erase_if(open_, [&](std::size_t i) { return Judge(attempts_[i], lanes.body_count()); });
+    TryOnce(rates);
+    std::erase_if(open_, [&](std::size_t i) { return Judge(attempts_[i]); });
   }
   lanes_.clear();
   for (IslandStep* step : steps) {
-    NormaliseQuaternions(step->to, lanes.body_count());
+    NormaliseQuaternions(step->to, static_cast<int>(step->wrenches.size()));
     step->to_rate.resize(step->to.size());
-    lanes_.push_back({step->to.data(), step->wrenches, step->to_rate.data()});
+    lanes_.push_back({step->island, step->to.data(), step->wrenches, step->to_rate.data()});
   }
-  lanes.Evaluate(lanes_);
+  rates.Evaluate(lanes_);
 }
 
-void RungeKutta3::Begin(SimbodyLanes& lanes, std::span<IslandStep* const> steps) {
-  const std::size_t size = lanes.state_size();
+void RungeKutta3::Begin(SimbodyRates& rates, std::span<IslandStep* const> steps) {
   if (attempts_.size() < steps.size()) attempts_.resize(steps.size());
   open_.clear();
   lanes_.clear();
   for (std::size_t i = 0; i < steps.size(); ++i) {
     IslandStep& step = *steps[i];
+    const std::size_t size = step.from.size();
     step.to.resize(size);
     step.from_rate.resize(size);
-    lanes_.push_back({step.from.data(), step.wrenches, step.from_rate.data()});
+    lanes_.push_back({step.island, step.from.data(), step.wrenches, step.from_rate.data()});
     Attempt& attempt = attempts_[i];
     attempt.step = &step;
     const double limit_s = step.limit.seconds();
@@ -72,35 +72,36 @@ void RungeKutta3::Begin(SimbodyLanes& lanes, std::span<IslandStep* const> steps)
     attempt.end_rate.resize(size);
     open_.push_back(i);
   }
-  lanes.Evaluate(lanes_);
+  rates.Evaluate(lanes_);
 }
 
-void RungeKutta3::TryOnce(SimbodyLanes& lanes) {
-  const std::size_t size = lanes.state_size();
+void RungeKutta3::TryOnce(SimbodyRates& rates) {
   lanes_.clear();
   for (const std::size_t index : open_) {
     Attempt& attempt = attempts_[index];
     const IslandStep& step = *attempt.step;
-    for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t k = 0; k < step.from.size(); ++k) {
       attempt.state[k] = step.from[k] + attempt.length_s / 2 * step.from_rate[k];
     }
-    lanes_.push_back({attempt.state.data(), step.wrenches, attempt.middle_rate.data()});
+    lanes_.push_back(
+        {step.island, attempt.state.data(), step.wrenches, attempt.middle_rate.data()});
   }
-  lanes.Evaluate(lanes_);
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    Attempt& attempt = Tried(i);
+  rates.Evaluate(lanes_);
+  lanes_.clear();
+  for (const std::size_t index : open_) {
+    Attempt& attempt = attempts_[index];
     const IslandStep& step = *attempt.step;
-    for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t k = 0; k < step.from.size(); ++k) {
       attempt.state[k] =
           step.from[k] + attempt.length_s * (2 * attempt.middle_rate[k] - step.from_rate[k]);
     }
-    lanes_[i].rate = attempt.end_rate.data();
+    lanes_.push_back({step.island, attempt.state.data(), step.wrenches, attempt.end_rate.data()});
   }
-  lanes.Evaluate(lanes_);
-  for (std::size_t i = 0; i < open_.size(); ++i) {
-    Attempt& attempt = Tried(i);
+  rates.Evaluate(lanes_);
+  for (const std::size_t index : open_) {
+    Attempt& attempt = attempts_[index];
     IslandStep& step = *attempt.step;
-    for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t k = 0; k < step.from.size(); ++k) {
       step.to[k] =
           step.from[k] + attempt.length_s / 6 *
                              (step.from_rate[k] + 4 * attempt.middle_rate[k] + attempt.end_rate[k]);
@@ -109,10 +110,10 @@ void RungeKutta3::TryOnce(SimbodyLanes& lanes) {
 }
 
 // Whether the attempt is good enough; else it is made shorter.
-bool RungeKutta3::Judge(Attempt& attempt, int bodies) const {
+bool RungeKutta3::Judge(Attempt& attempt) const {
   IslandStep& step = *attempt.step;
   const double h = attempt.length_s;
-  const double error = ErrorOf(step, attempt.middle_rate, h, static_cast<std::size_t>(bodies));
+  const double error = ErrorOf(step, attempt.middle_rate, h);
   const double promised_s = kSafety * h * std::cbrt(accuracy_ / error);  // infinite without error
   if (error <= accuracy_) {
     step.length_s = h;

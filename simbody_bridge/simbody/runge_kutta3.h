@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
-#include "simbody_bridge/simbody/lanes.h"
+#include "simbody_bridge/simbody/rates.h"
 
 namespace tcs {
 
@@ -17,9 +17,9 @@ class RungeKutta3 {
   // mean square over a body's coordinates or speeds.
   explicit RungeKutta3(double accuracy) : accuracy_(accuracy) {}
 
-  // Takes steps of islands that `lanes` can evaluate. Throws std::runtime_error where no step is
-  // short enough for the accuracy.
-  void Take(SimbodyLanes& lanes, std::span<IslandStep* const> steps);
+  // Takes steps of different islands that `rates` can evaluate. Throws std::runtime_error where no
+  // step is short enough for the accuracy.
+  void Take(SimbodyRates& rates, std::span<IslandStep* const> steps);
 
  private:
   struct Attempt {
@@ -28,15 +28,14 @@ class RungeKutta3 {
     bool is_limited;  // shorter than error control has it
     std::vector<double> state, middle_rate, end_rate;
   };
-  void Begin(SimbodyLanes& lanes, std::span<IslandStep* const> steps);
-  void TryOnce(SimbodyLanes& lanes);
-  bool Judge(Attempt& attempt, int bodies) const;
-  Attempt& Tried(std::size_t i) { return attempts_[open_[i]]; }
+  void Begin(SimbodyRates& rates, std::span<IslandStep* const> steps);
+  void TryOnce(SimbodyRates& rates);
+  bool Judge(Attempt& attempt) const;
 
   const double accuracy_;
   std::vector<Attempt> attempts_;  // those that count are as many as there are steps
   std::vector<std::size_t> open_;  // the attempts that have not succeeded yet
-  std::vector<SimbodyLanes::Lane> lanes_;
+  std::vector<SimbodyRates::Lane> lanes_;
 };
 
 }  // namespace tcs

@@ -13,7 +13,8 @@ struct PhysicsRow {
   int bodies = 0;
   // Microseconds for each body and sample, medians.
   double bare_us = 0, changing_us = 0, same_us = 0;
-  Spread changing, same;        // to the same round's bare Simbody
+  // To the same round's bare Simbody; unlike: changing, and no two bodies alike.
+  Spread changing, unlike, same;
   double steps_per_sample = 0;  // and body, with commands that change
 };
 

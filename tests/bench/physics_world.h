@@ -26,6 +26,13 @@ inline WorldSpec PhysicsWorld(int bodies) {
   return world;
 }
 
+inline WorldSpec PhysicsWorldOfUnlikeBodies(int bodies) {
+  WorldSpec world = PhysicsWorld(bodies);
+  double more_kg = 0;
+  for (BodySpec& body : world.bodies) body.mass_kg += more_kg += 0.001;
+  return world;
+}
+
 // Another one after each sample.
 inline Wrench ChangingWrench(int sample) {
   return {.force_n = {1.0 * (sample % 5) - 2, 0, 0},

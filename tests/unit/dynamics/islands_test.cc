@@ -215,6 +215,35 @@ TEST_P(EveryMethodsIslands, MoveABodyAsIfItWereAlone) {
   }
 }
 
+// Whether many of them or few are integrated at once.
+TEST(Islands, OfUnlikeBodiesMoveAsIfTheyWereAlone) {
+  constexpr int kBodies = 6;
+  std::mt19937_64 random(5);
+  WorldSpec world = BusyWorld({});
+  world.bodies.resize(kBodies, world.bodies[0]);
+  for (int i = 0; i < kBodies; ++i) world.bodies[static_cast<std::size_t>(i)].mass_kg += i % 4;
+  const auto commands = RandomCommands(200, kBodies, 3'000'000, random);
+  auto all = MakeDynamics(world);
+  ApplyAll(commands, *all);
+  const std::int64_t end_ns = commands.back().at_ns;
+  for (std::int64_t ns = 0; ns < end_ns; ns += 10'000'000) {
+    all->AdvanceTo(At(ns));
+    if (random() % 2 == 0) (void)StatesAt(*all, ns, static_cast<int>(1 + random() % kBodies));
+  }
+  all->AdvanceTo(At(end_ns));
+  const auto states = StatesAt(*all, end_ns, kBodies);
+  for (int body = 0; body < kBodies; ++body) {
+    WorldSpec part = world;
+    part.bodies = {world.bodies[static_cast<std::size_t>(body)]};
+    auto alone = MakeDynamics(part);
+    for (const TimedCommand& command : commands) {
+      if (command.body == body) alone->Apply(0, command.wrench, At(command.at_ns));
+    }
+    alone->AdvanceTo(At(end_ns));
+    EXPECT_TRUE(SameBits(alone->Read(0), states[static_cast<std::size_t>(body)])) << body;
+  }
+}
+
 TEST(Islands, ThatAreDeclaredTogetherMoveAlikeWithinTheAccuracy) {
   WorldSpec world = BusyWorld({.accuracy = 1e-8});
   EXPECT_EQ(MakeDynamics(world)->island_count(), 2);
