@@ -1,24 +1,30 @@
-// The engine-neutral interface to the physics: a leaf of the scheduler tree that moves only when it
-// is told to.
+// The engine-neutral interface to the physics: where bodies are at a time, given what was commanded
+// until then.
 //
 // Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w.
 // Positions, orientations, velocities and wrenches are expressed in the world frame; a body's
 // position is its centre of mass. Ownership: the implementation owns the engine; values are copied
 // in and out. Not thread-safe: one thread, the coordinator's, calls it.
 //
+// Lazy: time is a number, which costs nothing to advance. Bodies are integrated when somebody reads
+// them, each island (bodies that can touch or pull each other) by itself.
+//
+// Determinism: a body's motion is a function of the world, of the commands to the bodies of its
+// island, and of the times of those that changed something. It does not depend on how far time was
+// advanced in one go, on what was read and when, on the order of calls, on other islands, nor on
+// how much had to be taken back: the same commands give bitwise the same states (same build, same
+// kind of processor).
+//
 // Errors: a violated precondition is a bug of ours and aborts. A world or a wrench without physical
 // meaning, or an integration that cannot be completed, throws DynamicsError with one sentence. A
-// call other than AdvanceTo that throws has changed nothing; after AdvanceTo has thrown, only
-// Restore and destruction are meaningful.
-//
-// Determinism: two instances given the same world and the same calls compute bitwise the same
-// states (same build, same kind of processor). AdvanceTo's targets belong to "the same calls": each
-// one ends an integration step, so other targets on the way give states that differ within the
-// integrator's accuracy. Read and Save change nothing.
+// call that throws has changed nothing. An integration is attempted again by the next Read, and
+// succeeds where a command has come in between that keeps the body out of it.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -38,6 +44,8 @@ struct BodyState {
 struct Wrench {
   std::array<double, 3> force_n{};  // at the centre of mass
   std::array<double, 3> torque_nm{};
+
+  bool operator==(const Wrench&) const = default;
 };
 
 struct BodySpec {
@@ -74,11 +82,12 @@ enum class IntegratorKind {
 struct IntegratorSpec {
   EngineKind engine = EngineKind::kSimbody;
   IntegratorKind kind = IntegratorKind::kRungeKutta3;  // Simbody alone has a choice
-  // Steps of this length, counted from the last stop (an AdvanceTo target or the time of a
-  // command); the last step before a stop is shorter where the length does not fit. 0: what the
-  // engine does by itself: Simbody controls its error by `accuracy`, ODE takes kOdeStep.
+  // Steps of this length, counted from the last command that changed something. 0: what the engine
+  // does by itself: Simbody controls its error by `accuracy`, ODE takes kOdeStep. Between the ends
+  // of steps of a set length the state is what a step shortened to end there gives; between those
+  // of steps that the engine chooses, a cubic through both ends and their derivatives.
   VirtualDuration fixed_step{};
-  double accuracy = 1e-3;  // relative error of one of Simbody's steps, between 0 and 1
+  double accuracy = 1e-5;  // relative error of one of Simbody's steps, between 0 and 1
 };
 
 // Gazebo's, too.
@@ -90,6 +99,9 @@ struct WorldSpec {
   bool has_region = false;
   RegionSpec region;
   IntegratorSpec integrator;
+  // Bodies (by index) that are integrated as one system. Others are islands of one body each: free
+  // bodies cannot touch or pull each other.
+  std::vector<std::vector<int>> together;
 };
 
 class DynamicsError : public std::runtime_error {
@@ -99,33 +111,54 @@ class DynamicsError : public std::runtime_error {
 
 class Dynamics {
  public:
-  // An engine's saved state; restore it into the Dynamics it came from, any number of times.
+  // A saved state; restore it into the Dynamics it came from, any number of times.
   class Checkpoint {
    public:
     virtual ~Checkpoint() = default;
   };
 
+  // What was done since the beginning, that included which was taken back.
+  struct Work {
+    std::int64_t steps = 0;       // of the engine
+    std::int64_t changes = 0;     // steps that began with other wrenches than the one before ended
+    std::int64_t taken_back = 0;  // commands that changed what had been integrated already
+  };
+
   virtual ~Dynamics() = default;
 
-  virtual VirtualTime Now() const = 0;
+  // How many systems the bodies were divided into.
+  virtual int island_count() const = 0;
 
-  // Integrates to exactly `t` >= Now(), never beyond, in pieces at the times of pending commands.
+  // No command for an earlier time comes any more, nor is an earlier state read.
+  virtual VirtualTime Now() const = 0;
+  // To `t` >= Now(). Integrates nothing.
   virtual void AdvanceTo(VirtualTime t) = 0;
 
   // From `t` >= Now() on, `wrench` acts on body `body` (index into WorldSpec::bodies) until a later
   // command replaces it. Commands for one instant apply in the order they were given; the last one
-  // stays. A command for Now() acts from the next AdvanceTo on and does not change what Read says.
+  // stays. What was read for later times was read as if this command had not been given. One that
+  // leaves things as they are costs nothing.
   virtual void Apply(int body, const Wrench& wrench, VirtualTime t) = 0;
 
-  // The state at Now().
-  virtual BodyState Read(int body) const = 0;
+  // The states of `bodies` at `t` >= Now(), given the commands so far; `states` has as many
+  // elements. A command for `t` itself does not change them. Reading many at once is faster than
+  // one by one.
+  virtual void Read(VirtualTime t, std::span<const int> bodies, std::span<BodyState> states) = 0;
+  // The state of one at Now().
+  BodyState Read(int body) {
+    BodyState state;
+    Read(Now(), {&body, 1}, {&state, 1});
+    return state;
+  }
 
-  // A checkpoint holds the state, the acting wrenches, the pending commands and, of an engine that
-  // chooses its steps, the next one's size: after Restore the same calls compute bitwise what they
-  // computed in the run that was saved, with every integrator, fixed or error-controlled, and also
-  // after an AdvanceTo that threw.
-  virtual std::unique_ptr<Checkpoint> Save() = 0;
+  // A checkpoint holds what a run goes on from: after Restore the same calls compute bitwise what
+  // they computed in the run that was saved. It costs less than a step. With `reuse`, an earlier
+  // checkpoint of this Dynamics, its memory is used again.
+  virtual std::unique_ptr<Checkpoint> Save(std::unique_ptr<Checkpoint> reuse) = 0;
+  std::unique_ptr<Checkpoint> Save() { return Save(nullptr); }
   virtual void Restore(const Checkpoint& checkpoint) = 0;
+
+  virtual const Work& work() const = 0;
 };
 
 // On the engine that world.integrator names. Throws DynamicsError for a world that it refuses.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <numeric>
 #include <utility>
 
 #include "coordinator/os/file_errors.h"
@@ -44,6 +45,8 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
+  all_bodies_.resize(scenario.world->bodies.size());
+  std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
   commands_.Open(scenario_.commands);
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
   if (channels_.clock != nullptr) {
@@ -104,8 +107,10 @@ void World::WriteCsv() {
   const std::int64_t now = progress_ns_;
   if (!csv_.is_open() || now < next_csv_ns_) return;
   next_csv_ns_ += scenario_.csv_period.ns();
-  for (std::size_t i = 0; i < scenario_.world->bodies.size(); ++i) {
-    const BodyState s = dynamics_->Read(static_cast<int>(i));
+  states_.resize(all_bodies_.size());
+  dynamics_->Read(dynamics_->Now(), all_bodies_, states_);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const BodyState& s = states_[i];
     csv_text_ += fmt::format(
         "{:.9f},{},{},{},{},{}\n", static_cast<double>(now) * 1e-9, scenario_.world->bodies[i].name,
         fmt::join(s.position_m, ","), fmt::join(s.orientation_xyzw, ","),
@@ -114,11 +119,20 @@ void World::WriteCsv() {
   if (csv_text_.size() > kCsvAtOnce) FlushCsv();
 }
 
+// All that is read now at once: what many bodies need is integrated side by side.
+void World::IntegrateDue() {
+  due_.clear();
+  if (csv_.is_open() && next_csv_ns_ <= progress_ns_) due_ = all_bodies_;
+  sensors_.AddDueBodies(VirtualTime::FromNanoseconds(progress_ns_), &due_);
+  states_.resize(due_.size());
+  dynamics_->Read(dynamics_->Now(), due_, states_);
+}
+
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
-  checkpoint_.reset();
-  progress_ns_ = settled_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
+  progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
+  Settle(progress_ns_);
+  IntegrateDue();
   WriteCsv();
   const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
                                  [this](int body) { return dynamics_->Read(body); });
@@ -127,28 +141,19 @@ bool World::Advance(std::int64_t limit_ns) {
   return sent;
 }
 
+// The dynamics integrate what somebody reads, and nobody does before the next stop.
 void World::Lead(std::int64_t settled_ns, std::int64_t to_ns) {
-  const Spent spent(&host_ns_);
-  settled_ns_ = settled_ns;
-  // Where they lead already, what was saved before is from before all that can still come.
-  if (progress_ns_ <= settled_ns || checkpoint_ == nullptr) {
-    since_checkpoint_.clear();
-    checkpoint_ = to_ns > settled_ns ? dynamics_->Save() : nullptr;
-  }
+  Settle(settled_ns);
   progress_ns_ = to_ns;
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
+}
+
+void World::Settle(std::int64_t settled_ns) {
+  settled_ns_ = settled_ns;
+  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(settled_ns));
 }
 
 void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
-  if (checkpoint_ != nullptr) since_checkpoint_.push_back({at_ns, body, wrench});
-  if (at_ns >= progress_ns_) {
-    return dynamics_->Apply(body, wrench, VirtualTime::FromNanoseconds(at_ns));
-  }
-  dynamics_->Restore(*checkpoint_);
-  for (const TimedCommand& command : since_checkpoint_) {
-    dynamics_->Apply(command.body, command.wrench, VirtualTime::FromNanoseconds(command.at_ns));
-  }
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
+  dynamics_->Apply(body, wrench, VirtualTime::FromNanoseconds(at_ns));
 }
 
 std::vector<int> World::command_fds() const {

@@ -41,9 +41,8 @@ class World {
   // Advances to the earliest of `limit_ns` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
   bool Advance(std::int64_t limit_ns);
-  // Integrates to `to_ns`, at most the next stop, though commands for times from `settled_ns` on
-  // may still come. One that does is applied at its time: everything since is taken back and done
-  // again.
+  // Goes on to `to_ns`, at most the next stop, though commands for times from `settled_ns` on may
+  // still come. One that does is applied at its time.
   void Lead(std::int64_t settled_ns, std::int64_t to_ns);
 
   // Where commands come in, by number: to be read from when they are readable.
@@ -73,6 +72,8 @@ class World {
   void WriteCsv();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
+  void Settle(std::int64_t settled_ns);
+  void IntegrateDue();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
   Scenario scenario_;
@@ -80,15 +81,6 @@ class World {
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
   // Commands for earlier times do not come any more.
   std::int64_t settled_ns_ = 0;
-  // Where the dynamics lead: the state from which commands can be applied, and those that came
-  // since.
-  struct TimedCommand {
-    std::int64_t at_ns;
-    int body;
-    Wrench wrench;
-  };
-  std::unique_ptr<Dynamics::Checkpoint> checkpoint_;
-  std::vector<TimedCommand> since_checkpoint_;
   Channels channels_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
@@ -96,6 +88,8 @@ class World {
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
+  std::vector<int> all_bodies_, due_;
+  std::vector<BodyState> states_;  // memory of WriteCsv and IntegrateDue
   std::int64_t host_ns_ = 0;
 };
 

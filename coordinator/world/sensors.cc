@@ -20,6 +20,13 @@ VirtualTime Sensors::NextArrival() const {
   return next;
 }
 
+void Sensors::AddDueBodies(VirtualTime now, std::vector<int>* bodies) const {
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.next > now) continue;
+    for (const Body& body : sensor.bodies) bodies->push_back(body.index);
+  }
+}
+
 bool Sensors::Act(VirtualTime now, const Read& read) {
   bool went_out = false;
   for (Sensor& sensor : sensors_) {

@@ -39,6 +39,8 @@ class Sensors {
   VirtualTime NextStop() const;
   VirtualTime NextArrival() const;
 
+  // Appends the bodies that samples are due of. One may be there more than once.
+  void AddDueBodies(VirtualTime now, std::vector<int>* bodies) const;
   // Takes the samples that are due, and has arrived what is due. True if something went out.
   bool Act(VirtualTime now, const Read& read);
 

@@ -18,6 +18,7 @@ namespace {
 constexpr char kWork[] = "work";
 constexpr char kPlanning[] = "planning";
 constexpr char kDds[] = "dds";
+constexpr char kPhysics[] = "physics";
 constexpr int kRounds = 7;
 constexpr int kDdsRounds = 3;  // each of which takes a minute or two
 
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
   std::optional<int> asked_rounds;
   std::vector<std::string> only;
   bool json = false, quick = false;
-  std::vector<std::string> names{kWork, kPlanning, kDds};
+  std::vector<std::string> names{kWork, kPlanning, kDds, kPhysics};
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
 
   CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
     if (rows) results.planning = *rows;
     complete = complete && rows.has_value();
   }
+  if (Wanted(only, kPhysics)) results.physics = tcs::bench::MeasurePhysics(rounds, quick);
   fmt::print("{}", json ? ToJson(results) : ToTables(results));
   return complete ? 0 : 1;
 }

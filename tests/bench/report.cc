@@ -81,6 +81,35 @@ std::string DdsTable(const DdsRows& dds) {
   return text;
 }
 
+std::string PhysicsTable(const PhysicsRows& physics) {
+  static constexpr char kLine[] = "{:>6}{:>10}{:>13}{:>7}  {:<11}{:>7}{:>10}{:>7}  {:<13}{:>6}\n";
+  const auto two_digits = [](double ratio) { return fmt::format("{:.2f}", ratio); };
+  const auto span = [](const Spread& spread) {
+    return fmt::format("{:.2f}-{:.2f}", spread.lowest, spread.highest);
+  };
+  std::string text = fmt::format(kLine, "bodies", "bare µs", "changing µs", "ratio", "goal <= 5",
+                                 "unlike", "same µs", "ratio", "goal <= 1.2", "steps");
+  for (const PhysicsRow& row : physics.rows) {
+    text +=
+        fmt::format(kLine, row.bodies, Brief(row.bare_us), Brief(row.changing_us),
+                    two_digits(row.changing.median), span(row.changing),
+                    two_digits(row.unlike.median), Brief(row.same_us), two_digits(row.same.median),
+                    span(row.same), two_digits(row.steps_per_sample));
+  }
+  text += fmt::format(
+      "Microseconds of processor time for each body and sample at 100 Hz, for {:g} virtual s; "
+      "medians of {} round{}.\n"
+      "Bare Simbody: one system that stops at each sample. Changing: each body has another "
+      "command\n"
+      "0.5 ms after each sample (unlike: the ratio where no two bodies have the same mass); same: "
+      "it\n"
+      "is the same again. Steps: of a body between two samples, with commands that change.\n"
+      "A sample of one body at 1 kHz that nothing changes for: {} µs (goal <= 50).\n",
+      physics.virtual_s, physics.rounds, physics.rounds == 1 ? "" : "s",
+      Brief(physics.sample_at_1khz_us));
+  return text;
+}
+
 Json ToJson(const Spread& spread) {
   return {{"median", spread.median}, {"lowest", spread.lowest}, {"highest", spread.highest}};
 }
@@ -124,6 +153,7 @@ std::string ToTables(const Results& results) {
                                  results.rounds == 1 ? "" : "s"));
   }
   if (results.dds.has_value()) tables.push_back(DdsTable(*results.dds));
+  if (results.physics.has_value()) tables.push_back(PhysicsTable(*results.physics));
   return fmt::format("{}", fmt::join(tables, "\n"));
 }
 
@@ -144,6 +174,23 @@ std::string ToJson(const Results& results) {
                    {"own_clocks", ToJson(dds->own_clocks)},
                    {"real_seconds_per_100000", ToJson(dds->real_s)},
                    {"cpu_seconds_per_100000", ToJson(dds->cpu_s)}};
+  }
+  if (const auto& physics = results.physics; physics.has_value()) {
+    Json& to = json["physics"];
+    to = {{"rounds", physics->rounds},
+          {"virtual_seconds", physics->virtual_s},
+          {"sample_at_1khz_us", physics->sample_at_1khz_us},
+          {"rows", Json::array()}};
+    for (const PhysicsRow& row : physics->rows) {
+      to["rows"].push_back({{"bodies", row.bodies},
+                            {"bare_us", row.bare_us},
+                            {"changing_us", row.changing_us},
+                            {"same_us", row.same_us},
+                            {"changing_ratio", ToJson(row.changing)},
+                            {"unlike_ratio", ToJson(row.unlike)},
+                            {"same_ratio", ToJson(row.same)},
+                            {"steps_per_sample", row.steps_per_sample}});
+    }
   }
   return json.dump(2) + "\n";
 }

@@ -7,6 +7,7 @@
 
 #include "tests/bench/call_ratios.h"
 #include "tests/bench/dds_rows.h"
+#include "tests/bench/physics_rows.h"
 #include "tests/bench/under_load.h"
 
 namespace tcs::bench {
@@ -16,6 +17,7 @@ struct Results {
   std::vector<CallRow> calls;
   std::vector<LoadRow> work, planning;
   std::optional<DdsRows> dds;
+  std::optional<PhysicsRows> physics;
 };
 
 std::string ToTables(const Results& results);

@@ -40,15 +40,15 @@ TEST(FixedSteps, OfOdeAreAMillisecondUnlessToldOtherwise) {
   EXPECT_NEAR(dynamics->Read(0).position_m[0], FallAsComputed(kOde, 1, 0.001, 100), 1e-14);
 }
 
-TEST(FixedSteps, LeaveAShorterStepBeforeAStop) {
+TEST(FixedSteps, GiveBetweenTheirEndsWhatAShorterStepGives) {
   auto world = OneBody(
       {.kind = IntegratorKind::kExplicitEuler, .fixed_step = VirtualDuration::Milliseconds(10)});
   world.gravity_mps2 = {1, 0, 0};
   auto dynamics = MakeDynamics(world);
   dynamics->AdvanceTo(AtMs(14));  // steps of 10 and 4: x = 0 + 0.010 * 0.004
   EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.004, 1e-15);
-  dynamics->AdvanceTo(AtMs(24));  // counted from the stop: one step of 10
-  EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.004 + 0.014 * 0.010, 1e-15);
+  dynamics->AdvanceTo(AtMs(24));  // of 10, 10 and 4, whoever looked at 14
+  EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.010 + 0.020 * 0.004, 1e-15);
 
   // The same on ODE, which takes the new velocity for the step.
   world.integrator.engine = EngineKind::kOde;
@@ -56,8 +56,26 @@ TEST(FixedSteps, LeaveAShorterStepBeforeAStop) {
   dynamics->AdvanceTo(AtMs(14));
   EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.010 + 0.014 * 0.004, 1e-15);
   dynamics->AdvanceTo(AtMs(24));
-  EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.010 + 0.014 * 0.004 + 0.024 * 0.010,
+  EXPECT_NEAR(dynamics->Read(0).position_m[0], 0.010 * 0.010 + 0.020 * 0.010 + 0.024 * 0.004,
               1e-15);
+}
+
+TEST(FixedSteps, AreCountedFromACommandThatChangesSomething) {
+  auto world = OneBody(
+      {.kind = IntegratorKind::kExplicitEuler, .fixed_step = VirtualDuration::Milliseconds(10)});
+  world.gravity_mps2 = {1, 0, 0};
+  for (const EngineKind engine : {EngineKind::kSimbody, EngineKind::kOde}) {
+    world.integrator.engine = engine;
+    auto dynamics = MakeDynamics(world);
+    dynamics->Apply(0, {}, AtMs(7));  // changes nothing
+    dynamics->Apply(0, {.force_n = {0, 1, 0}, .torque_nm = {}}, AtMs(14));
+    dynamics->AdvanceTo(AtMs(24));  // steps of 10 and 4, then of 10
+    const bool explicit_euler = engine == EngineKind::kSimbody;
+    EXPECT_NEAR(dynamics->Read(0).position_m[0],
+                explicit_euler ? 0.010 * 0.004 + 0.014 * 0.010
+                               : 0.010 * 0.010 + 0.014 * 0.004 + 0.024 * 0.010,
+                1e-15);
+  }
 }
 
 TEST(FixedSteps, HalvedShowTheOrderOfTheMethod) {
@@ -91,7 +109,7 @@ TEST_P(EveryIntegrator, FreeFallFollowsTheClosedForm) {
   const double fall = 5 * 0.5 - 9.81 * 0.5 * 0.5 / 2;
   EXPECT_NEAR(state.position_m[0], 1 + 4 * 0.5, 1e-12);
   EXPECT_NEAR(state.position_m[1], 2, 1e-12);
-  EXPECT_NEAR(state.position_m[2], 3 + fall, IsFirstOrder(GetParam()) ? 3e-3 : 1e-12);
+  EXPECT_NEAR(state.position_m[2], 3 + fall, IsFirstOrder(GetParam()) ? 2e-2 : 1e-12);
   EXPECT_NEAR(state.linear_velocity_mps[0], 4, 1e-12);
   EXPECT_NEAR(state.linear_velocity_mps[2], 5 - 9.81 * 0.5, 1e-12);
 }
@@ -135,9 +153,10 @@ TEST_P(EveryIntegrator, AWallReturnsABodyWithItsEnergy) {
     furthest = std::max(furthest, dynamics->Read(0).position_m[0]);
   }
   const BodyState state = dynamics->Read(0);
-  const bool explicit_euler = IsExplicitEuler(GetParam());
-  EXPECT_NEAR(furthest, 10 + 1.0 / 5, explicit_euler ? 2e-3 : 5e-4);
-  EXPECT_NEAR(state.linear_velocity_mps[0], -1, explicit_euler ? 1e-2 : 1e-3);
+  // The methods that know no curve: as good as `accuracy` makes them.
+  const bool rough = IsFirstOrder(GetParam()) && GetParam().engine == EngineKind::kSimbody;
+  EXPECT_NEAR(furthest, 10 + 1.0 / 5, rough ? 5e-3 : 5e-4);
+  EXPECT_NEAR(state.linear_velocity_mps[0], -1, rough ? 5e-2 : 1e-3);
   EXPECT_NEAR(state.linear_velocity_mps[1], -0.25, 1e-12);
 }
 
@@ -169,7 +188,7 @@ TEST_P(BothEngines, ADampedWallTakesEnergyButNeverPulls) {
   const double velocity = dynamics->Read(0).linear_velocity_mps[1];
   EXPECT_GT(velocity, 0.2);
   EXPECT_LT(velocity, 0.7);
-  EXPECT_EQ(velocity, fastest) << "it was pulled back on its way in";
+  EXPECT_NEAR(velocity, fastest, 1e-6) << "it was pulled back on its way in";
 }
 
 TEST_P(BothEngines, ATorqueAboutAPrincipalAxisTurnsWithThatMoment) {

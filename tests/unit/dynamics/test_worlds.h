@@ -140,7 +140,7 @@ inline bool SameBits(const BodyState& a, const BodyState& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-inline std::vector<BodyState> ReadAll(const Dynamics& dynamics, int bodies) {
+inline std::vector<BodyState> ReadAll(Dynamics& dynamics, int bodies) {
   std::vector<BodyState> states;
   for (int i = 0; i < bodies; ++i) states.push_back(dynamics.Read(i));
   return states;

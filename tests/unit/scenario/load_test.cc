@@ -124,7 +124,7 @@ TEST_F(LoadTest, DynamicsMayBeAllDefaults) {
       "robots: {r: {clients: {c: {command: [sh]}}}}\n");
   ASSERT_TRUE(scenario.world);
   EXPECT_EQ(scenario.world->integrator.kind, IntegratorKind::kRungeKutta3);
-  EXPECT_EQ(scenario.world->integrator.accuracy, 1e-3);
+  EXPECT_EQ(scenario.world->integrator.accuracy, 1e-5);
   EXPECT_FALSE(scenario.world->has_region);
 }
 

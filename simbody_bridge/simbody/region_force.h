@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
-#include "simbody_bridge/simbody.h"
+#include "simbody_bridge/simbody/simbody.h"
 
 namespace tcs {
 

@@ -1,4 +1,4 @@
-#include "simbody_bridge/region_force.h"
+#include "simbody_bridge/simbody/region_force.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simbody_bridge/make_integrator.h"
+#include "simbody_bridge/simbody/make_integrator.h"
 
 namespace tcs {
 namespace {
@@ -25,6 +25,7 @@ std::shared_ptr<SimTK::Integrator> MakeIntegrator(const IntegratorSpec& spec,
                                                   const SimTK::System& system) {
   auto integrator = MakeMethod(spec.kind, system);
   integrator->setAccuracy(spec.accuracy);
+  integrator->setReturnEveryInternalStep(true);
   if (spec.fixed_step > VirtualDuration{}) {
     // Twice the step: the stops alone decide the lengths, exact in nanoseconds. With the step
     // itself the rounding of seconds would now and then leave a sliver that costs a step of its

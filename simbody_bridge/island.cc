@@ -1,0 +1,187 @@
+#include "simbody_bridge/island.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "simbody_bridge/require.h"
+
+namespace tcs {
+namespace {
+
+// The first step after a change: where changes come at a rate, the next one most likely ends it,
+// and what lies beyond would be thrown away.
+constexpr std::int64_t kIntervalsAhead = 2;
+constexpr VirtualDuration kLeastAhead = VirtualDuration::Milliseconds(1);
+
+bool IsEarlier(VirtualTime t, const Island::Command& command) { return t < command.at; }
+
+}  // namespace
+
+Island::Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work)
+    : index_(index), engine_(engine), work_(work) {
+  IslandStart start = engine.StartOf(index);
+  frontier_.state = std::move(start.state);
+  frontier_.try_s = start.try_s;
+  frontier_.wrenches.resize(static_cast<std::size_t>(bodies));
+}
+
+// What acts on the body after all commands for `t` and before.
+const Wrench& Island::ActingAfter(VirtualTime t, int place) const {
+  auto command = std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier);
+  while (command != commands_.begin()) {
+    --command;
+    if (command->place == place) return command->wrench;
+  }
+  return Origin().wrenches[static_cast<std::size_t>(place)];
+}
+
+void Island::Apply(int place, const Wrench& wrench, VirtualTime t) {
+  Require(t >= Origin().at, "a command cannot act before what is settled");
+  const bool changes = !(ActingAfter(t, place) == wrench);
+  // Kept even where it changes nothing: an earlier command may still come.
+  commands_.insert(std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier),
+                   {t, place, wrench});
+  if (changes && used_ > 0 && t <= legs_[used_ - 1].to) TakeBackTo(t);
+}
+
+void Island::TakeBackTo(VirtualTime t) {
+  ++work_.taken_back;
+  while (used_ > 0 && legs_[used_ - 1].start.at >= t) {
+    --used_;
+    std::swap(frontier_, legs_[used_].start);
+  }
+  if (used_ > 0) FindFrontier();
+}
+
+void Island::Settle(VirtualTime t) {
+  std::size_t past = 0;
+  const auto end_of = [this](std::size_t leg) {
+    return leg + 1 < used_ ? legs_[leg + 1].start.at : frontier_.at;
+  };
+  while (past < used_ && end_of(past) <= t) ++past;
+  if (past == 0) return;
+  const auto at = [this](std::size_t leg) {
+    return legs_.begin() + static_cast<std::ptrdiff_t>(leg);
+  };
+  std::rotate(legs_.begin(), at(past), at(used_));
+  used_ -= past;
+  const VirtualTime origin = Origin().at;
+  const auto is_earlier = [](const Command& command, VirtualTime of) { return command.at < of; };
+  commands_.erase(commands_.begin(),
+                  std::lower_bound(commands_.begin(), commands_.end(), origin, is_earlier));
+}
+
+std::size_t Island::CommandsUntil(VirtualTime t) const {
+  const auto later = std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier);
+  return static_cast<std::size_t>(later - commands_.begin());
+}
+
+IslandStep* Island::NextStepTo(VirtualTime t) {
+  if (t <= frontier_.at) return nullptr;
+  if (used_ == legs_.size()) legs_.emplace_back();
+  Leg& leg = legs_[used_];
+  leg.start = frontier_;
+  Depart(&leg);
+  return &leg.step;
+}
+
+// The commands for the very instant take effect.
+void Island::Depart(Leg* leg) {
+  const Node& start = leg->start;
+  IslandStep& step = leg->step;
+  step.island = index_;
+  step.from = start.state;
+  step.wrenches = start.wrenches;
+  step.try_s = start.try_s;
+  step.limit = engine_.LongestStep(index_);
+  leg->changed_at = start.changed_at;
+  for (const Command& command : commands_) {
+    if (command.at > start.at) break;
+    if (command.at == start.at) {
+      step.wrenches[static_cast<std::size_t>(command.place)] = command.wrench;
+    }
+  }
+  if (step.wrenches == start.wrenches) return;
+  ++work_.changes;
+  leg->changed_at = start.at;
+  if (engine_.has_set_steps()) return;
+  if (const VirtualDuration interval = start.at - start.changed_at; interval > VirtualDuration{}) {
+    step.limit = std::min(step.limit, std::max(interval * kIntervalsAhead, kLeastAhead));
+  }
+}
+
+void Island::Took() {
+  Leg& leg = legs_[used_];
+  const IslandStep& step = leg.step;
+  VirtualDuration length = step.limit;
+  if (step.length_s != step.limit.seconds()) {
+    length =
+        VirtualDuration::Nanoseconds(static_cast<std::int64_t>(std::floor(step.length_s * 1e9)));
+    if (length <= VirtualDuration{}) throw std::runtime_error("the integrator makes no progress");
+  }
+  leg.to = leg.start.at + length;
+  ++used_;
+  ++work_.steps;
+  FindFrontier();
+}
+
+// When something changes between a leg's start and the end of its step; Never() if nothing does.
+VirtualTime Island::ChangeWithin(const Leg& leg) {
+  auto command = std::upper_bound(commands_.begin(), commands_.end(), leg.start.at, IsEarlier);
+  if (command == commands_.end() || command->at > leg.to) return VirtualTime::Never();
+  scratch_ = leg.step.wrenches;
+  while (command != commands_.end() && command->at <= leg.to) {
+    const VirtualTime at = command->at;
+    for (; command != commands_.end() && command->at == at; ++command) {
+      scratch_[static_cast<std::size_t>(command->place)] = command->wrench;
+    }
+    if (!(scratch_ == leg.step.wrenches)) return at;
+  }
+  return VirtualTime::Never();
+}
+
+void Island::FindFrontier() {
+  const Leg& leg = legs_[used_ - 1];
+  frontier_.at = std::min(leg.to, ChangeWithin(leg));
+  StateOf(leg, frontier_.at, &frontier_.state);
+  frontier_.wrenches = leg.step.wrenches;
+  frontier_.try_s = leg.step.next_try_s;
+  frontier_.changed_at = leg.changed_at;
+}
+
+void Island::StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state) {
+  const VirtualDuration after = t - leg.start.at;
+  if (after == VirtualDuration{}) {
+    *state = leg.step.from;
+  } else if (after.seconds() == leg.step.length_s) {
+    *state = leg.step.to;
+  } else {
+    engine_.Within(leg.step, after, state);
+  }
+}
+
+void Island::StateAt(VirtualTime t, std::vector<double>* state) {
+  Require(t >= Origin().at && t <= frontier_.at, "a state is read where it is known");
+  if (t == frontier_.at) {
+    *state = frontier_.state;
+    return;
+  }
+  std::size_t leg = used_ - 1;
+  while (legs_[leg].start.at > t) --leg;
+  StateOf(legs_[leg], t, state);
+}
+
+void Island::Save(Saved* saved) const {
+  saved->origin = Origin();
+  saved->commands = commands_;
+}
+
+// Steps are taken anew: they lead where they led before.
+void Island::Restore(const Saved& saved) {
+  used_ = 0;
+  frontier_ = saved.origin;
+  commands_ = saved.commands;
+}
+
+}  // namespace tcs

@@ -1,0 +1,89 @@
+// One island in time: the steps that it has taken and the commands to its bodies.
+//
+// The steps are the engine's natural ones. A change (an instant whose commands leave other wrenches
+// acting than before it) ends the step that covers it: the island goes on from the state within
+// that step at that instant. Whether the change was known when the step was taken does not matter:
+// a step that went past it is cut where the change is, and what came after it is forgotten. So the
+// island's motion is a function of its changes alone, and to take something back costs nothing but
+// the steps that have to be taken anew.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+class Island {
+ public:
+  // The engine and `work` outlive this.
+  Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work);
+
+  // A command for `t`, not before the time that was settled last.
+  void Apply(int place, const Wrench& wrench, VirtualTime t);
+  // Neither a command for a time before `t` comes any more nor is a state before it asked for.
+  void Settle(VirtualTime t);
+
+  // The step to take on the way to the state at `t`; none: the state is known. It is valid until
+  // the next call. Once it has been taken, Took.
+  IslandStep* NextStepTo(VirtualTime t);
+  VirtualTime StepStart() const { return frontier_.at; }
+  void Took();
+
+  // Of a time since the one settled last, up to which no step is left to take.
+  void StateAt(VirtualTime t, std::vector<double>* state);
+
+  // How many commands have taken effect by `t` and not been worked off.
+  std::size_t CommandsUntil(VirtualTime t) const;
+
+  // All that the island goes on from. Of a default one vectors grow at the first use, and not
+  // again.
+  struct Command {
+    VirtualTime at;
+    int place;
+    Wrench wrench;
+  };
+  // Where a step begins.
+  struct Node {
+    VirtualTime at;
+    std::vector<double> state;
+    std::vector<Wrench> wrenches;  // that acted until then
+    double try_s = 0;
+    VirtualTime changed_at;  // the last change before
+  };
+  struct Saved {
+    Node origin;
+    std::vector<Command> commands;
+  };
+  void Save(Saved* saved) const;
+  void Restore(const Saved& saved);
+
+ private:
+  struct Leg {
+    Node start;
+    IslandStep step;
+    VirtualTime to;          // the step's end, in whole nanoseconds
+    VirtualTime changed_at;  // the last change up to its start
+  };
+
+  const Node& Origin() const { return used_ > 0 ? legs_.front().start : frontier_; }
+  const Wrench& ActingAfter(VirtualTime t, int place) const;
+  void TakeBackTo(VirtualTime t);
+  void Depart(Leg* leg);
+  VirtualTime ChangeWithin(const Leg& leg);
+  void FindFrontier();
+  void StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state);
+
+  const int index_;
+  IslandEngine& engine_;
+  Dynamics::Work& work_;
+  // In the order in which they take effect, from the first leg's start on.
+  std::vector<Command> commands_;
+  std::vector<Leg> legs_;  // those that count are the first `used_`; the others are memory to use
+  std::size_t used_ = 0;
+  Node frontier_;                // where the next leg begins; Origin() where there is no leg
+  std::vector<Wrench> scratch_;  // of ChangeWithin
+};
+
+}  // namespace tcs

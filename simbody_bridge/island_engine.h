@@ -1,0 +1,69 @@
+// What a physics engine does for the islands of a world: steps, as functions of a state and of what
+// acts. The engine keeps no time, knows no commands, and relies on nothing that it remembers from
+// an earlier step: equal steps lead to equal states, bitwise, whatever was computed in between.
+// That is what islands can be taken back by, and integrated in any order.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+// A step of one island, before and after it is taken. States are coordinates and speeds in the
+// engine's own order. The engine resizes what it writes; vectors are used again.
+struct IslandStep {
+  int island = 0;
+  std::vector<double> from;
+  std::vector<Wrench> wrenches;  // acting, one for each body of the island
+  VirtualDuration limit;         // the step is no longer than this, and more than 0
+  double try_s = 0;              // the length that the engine tries first, within the limit
+
+  std::vector<double> to;
+  double length_s = 0;                     // exactly limit.seconds() if it is as long as that
+  double next_try_s = 0;                   // for the next step
+  std::vector<double> from_rate, to_rate;  // derivatives, of an engine that interpolates
+};
+
+// Where an island starts.
+struct IslandStart {
+  std::vector<double> state;
+  double try_s = 0;
+};
+
+class IslandEngine {
+ public:
+  virtual ~IslandEngine() = default;
+
+  virtual IslandStart StartOf(int island) = 0;
+  // The `limit` of a step that nothing else limits.
+  virtual VirtualDuration LongestStep(int island) const = 0;
+  // Steps are as long as their limit, always: nothing else may limit them.
+  virtual bool has_set_steps() const = 0;
+
+  // Takes a step. Throws what the engine throws where it cannot; the next one may be taken then.
+  virtual void Take(IslandStep& step) = 0;
+  // Several, of different islands. Leads bitwise to where each of them alone would.
+  virtual void TakeAll(std::span<IslandStep* const> steps) {
+    for (IslandStep* step : steps) Take(*step);
+  }
+  // The state `after` the beginning of a step that was taken, before its end.
+  virtual void Within(const IslandStep& step, VirtualDuration after,
+                      std::vector<double>* state) = 0;
+
+  // How a body is in a state of its island; `place` counts the island's bodies.
+  virtual BodyState Read(int island, int place, std::span<const double> state) const = 0;
+};
+
+// Which bodies each island has: those of world.together, and the others alone. Throws DynamicsError
+// where a body is named twice, or is none.
+std::vector<std::vector<int>> IslandsOf(const WorldSpec& world);
+
+// The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if
+// the engine refuses it all the same.
+std::unique_ptr<IslandEngine> MakeEngine(const WorldSpec& world,
+                                         const std::vector<std::vector<int>>& islands);
+
+}  // namespace tcs

@@ -1,0 +1,97 @@
+#include "simbody_bridge/ode/ode_engine.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <deque>
+
+#include "simbody_bridge/ode/ode_library.h"
+#include "simbody_bridge/ode/ode_world.h"
+
+namespace tcs {
+namespace {
+
+// The island's state: its bodies', one after the other.
+constexpr std::size_t kNumbers = sizeof(BodyState) / sizeof(double);
+static_assert(kNumbers == 13, "BodyState has padding or a new member");
+
+BodyState Normalised(BodyState state) {
+  auto& q = state.orientation_xyzw;
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (double& component : q) component /= norm;
+  return state;
+}
+
+class OdeEngine : public IslandEngine {
+ public:
+  OdeEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
+      : step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
+                                                              : kOdeStep) {
+    for (const std::vector<int>& members : islands) {
+      WorldSpec part = world;
+      part.bodies.clear();
+      for (const int body : members) {
+        part.bodies.push_back(world.bodies[static_cast<std::size_t>(body)]);
+      }
+      islands_.emplace_back(part);
+      starts_.emplace_back();
+      for (const BodySpec& body : part.bodies) starts_.back().push_back(Normalised(body.initial));
+    }
+  }
+
+  IslandStart StartOf(int island) override {
+    IslandStart start;
+    ToState(starts_[static_cast<std::size_t>(island)], &start.state);
+    return start;
+  }
+  VirtualDuration LongestStep(int /*island*/) const override { return step_; }
+  bool has_set_steps() const override { return true; }
+
+  void Take(IslandStep& step) override {
+    step.length_s = step.limit.seconds();
+    Step(step, step.length_s, &step.to);
+  }
+
+  // What a step gives that is shortened to end there.
+  void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
+    Step(step, after.seconds(), state);
+  }
+
+  BodyState Read(int /*island*/, int place, std::span<const double> state) const override {
+    BodyState body;
+    const double* numbers = &state[kNumbers * static_cast<std::size_t>(place)];
+    std::memcpy(static_cast<void*>(&body), numbers, sizeof body);
+    return body;
+  }
+
+ private:
+  static void ToState(const std::vector<BodyState>& bodies, std::vector<double>* state) {
+    state->resize(kNumbers * bodies.size());
+    if (!bodies.empty())
+      std::memcpy(state->data(), bodies.data(), bodies.size() * sizeof(BodyState));
+  }
+
+  void Step(const IslandStep& step, double seconds, std::vector<double>* state) {
+    bodies_.resize(step.wrenches.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      bodies_[i] = Read(step.island, static_cast<int>(i), step.from);
+    }
+    islands_[static_cast<std::size_t>(step.island)].Step(seconds, step.wrenches, &bodies_);
+    ToState(bodies_, state);
+  }
+
+  const VirtualDuration step_;
+  std::deque<OdeWorld> islands_;
+  std::vector<std::vector<BodyState>> starts_;
+  std::vector<BodyState> bodies_;  // memory of Step
+};
+
+}  // namespace
+
+std::unique_ptr<IslandEngine> MakeOdeEngine(const WorldSpec& world,
+                                            const std::vector<std::vector<int>>& islands) {
+  OpenOde();
+  return std::make_unique<OdeEngine>(world, islands);
+}
+
+}  // namespace tcs

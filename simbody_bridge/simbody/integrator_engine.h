@@ -1,0 +1,15 @@
+// Simbody as an engine of islands, by the integrators that it brings: one for each island.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+// `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
+std::unique_ptr<IslandEngine> MakeIntegratorEngine(const WorldSpec& world,
+                                                   const std::vector<std::vector<int>>& islands);
+
+}  // namespace tcs

@@ -1,0 +1,16 @@
+// Simbody as an engine of islands, side by side: it gives their derivatives, and the steps are
+// Runge-Kutta 3's.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+// `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
+std::unique_ptr<IslandEngine> MakeLanesEngine(const WorldSpec& world,
+                                              const std::vector<std::vector<int>>& islands);
+
+}  // namespace tcs

@@ -1,0 +1,50 @@
+// An island as Simbody knows it: what does not change while time advances. All state is in
+// SimTK::State objects, or in their continuous part alone, an array of all coordinates and then all
+// speeds.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/simbody/simbody.h"
+
+namespace tcs {
+
+// Of a free body: a quaternion and a position, an angular and a linear velocity.
+inline constexpr std::size_t kFreeBodyCoordinates = 7, kFreeBodySpeeds = 6, kFreeBodyNumbers = 13;
+
+class SimbodyModel {
+ public:
+  // With the world's bodies of these indices. `world` has passed CheckWorld. Throws what Simbody
+  // throws if it still refuses it.
+  SimbodyModel(const WorldSpec& world, const std::vector<int>& bodies);
+  SimbodyModel(const SimbodyModel&) = delete;
+  SimbodyModel& operator=(const SimbodyModel&) = delete;
+
+  const SimTK::System& system() const { return system_; }
+  int body_count() const { return static_cast<int>(bodies_.size()); }
+
+  // A state of the system, in which nothing of the bodies is set yet.
+  const SimTK::State& blank_state() const { return blank_state_; }
+  void SetBody(SimTK::State& state, int body, const BodyState& value) const;
+  void SetWrench(SimTK::State& state, int body, const Wrench& wrench) const;
+
+ private:
+  void AddBody(const BodySpec& body);
+
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_{system_};
+  SimTK::GeneralForceSubsystem forces_{system_};
+  SimTK::Force::DiscreteForces wrenches_{forces_, matter_};
+  std::vector<SimTK::MobilizedBody::Free> bodies_;
+  SimTK::State blank_state_;
+};
+
+// How a body is in the continuous part of a state of `body_count` free bodies.
+BodyState ReadBody(std::span<const double> continuous, int body_count, int body);
+void WriteBody(const BodyState& value, int body_count, int body, std::span<double> continuous);
+// Makes the orientations' quaternions unit length again.
+void NormaliseQuaternions(std::span<double> continuous, int body_count);
+
+}  // namespace tcs
