@@ -1,5 +1,5 @@
 // What a thread waits for, as one value: a kind, with what belongs to that kind only, and what all
-// kinds have. Engine::EnterWait and Engine::LeaveWait (waits.cc) begin and end it, so nothing of a
+// kinds have. Waker::Wait and Waker::Leave (waker.h) begin and end it, so nothing of a
 // wait outlives it.
 //
 // Nothing combines but what is here: every wait may end by its deadline, and a wait for descriptors
