@@ -115,13 +115,15 @@ std::map<std::string, std::string> HashPrograms(const Scenario& scenario) {
 
 // Where an address is not this machine's loopback, a network of its own does not have it.
 bool NeedsHostNetwork(const Scenario& scenario) {
-  const auto is_local = [](const UdpEndpoint& endpoint) {
-    return endpoint.host.rfind("127.", 0) == 0 || endpoint.host == "0.0.0.0";
+  const auto is_elsewhere = [](const auto& end) {
+    const auto* endpoint = std::get_if<UdpEndpoint>(&end);
+    return endpoint != nullptr && endpoint->host.rfind("127.", 0) != 0 &&
+           endpoint->host != "0.0.0.0";
   };
-  return !std::all_of(scenario.sensors.begin(), scenario.sensors.end(),
-                      [&](const SensorChannelSpec& channel) { return is_local(channel.to); }) ||
-         !std::all_of(scenario.commands.begin(), scenario.commands.end(),
-                      [&](const CommandChannelSpec& channel) { return is_local(channel.listen); });
+  return std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
+                     [&](const SensorChannelSpec& channel) { return is_elsewhere(channel.to); }) ||
+         std::any_of(scenario.commands.begin(), scenario.commands.end(),
+                     [&](const CommandChannelSpec& channel) { return is_elsewhere(channel.from); });
 }
 
 RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scenario) {

@@ -15,7 +15,7 @@ namespace tcs {
 
 std::string DdsGateway::Open() {
   if (std::string error = records_.Open(); !error.empty()) return error;
-  world_.OpenDds(ends_, run_.header->realtime_offset_ns);
+  world_.Begin(run_.header->realtime_offset_ns);
   records_.ReadNewTopics(0);
   return {};
 }
@@ -31,11 +31,9 @@ dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
 void DdsGateway::TakeOwnMessages() {
   const std::int64_t until = std::min(run_.root.Least(), run_.end_ns);
   if (hub_.OwnDueNs() > until) return;
-  if (world_.present() && world_.speaks_dds() && !run_.IsInGrace()) {
-    world_.TakeDdsCommands(until);
-  } else {
-    while (ends_.Take(until).has_value()) {
-    }
+  if (world_.present() && !run_.IsInGrace()) world_.ReceiveUntold(until);
+  // What was for none of the channels, or is from after their end.
+  while (ends_.Take(until).has_value()) {
   }
   ShowDeliverersTheirDeadlines();
 }
@@ -70,9 +68,8 @@ void DdsGateway::AwaitDeliverer(Task& task, std::int64_t deadline_ns) {
   Process& process = *task.process;
   if (!IsDelivering(process, task.reached_ns)) return;
   waker_.Wait(task, {awaited::Deliverer{}, deadline_ns});
-  RobotScheduler& scheduler = SchedulerOf(task);
-  scheduler.SetBlockedOn(task.order, process.deliverer->order);
-  if (scheduler.FindEffectivePriority(process.deliverer->order)) waker_.Refresh(*process.robot);
+  PriorityInheritance::BlockOn(task, process.deliverer);
+  inheritance_.Find(*process.deliverer);
 }
 
 // What is wrong is said once of each process: it may send as often as it likes.

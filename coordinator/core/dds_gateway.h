@@ -13,6 +13,7 @@
 
 #include "coordinator/core/dds_records.h"
 #include "coordinator/core/moment.h"
+#include "coordinator/core/priority_inheritance.h"
 #include "coordinator/core/run_state.h"
 #include "coordinator/core/waker.h"
 #include "coordinator/core/world.h"
@@ -25,12 +26,15 @@ namespace tcs {
 
 class DdsGateway {
  public:
-  DdsGateway(RunState& run, Waker& waker, World& world) : run_(run), waker_(waker), world_(world) {}
+  DdsGateway(RunState& run, Waker& waker, World& world, PriorityInheritance& inheritance)
+      : run_(run), waker_(waker), world_(world), inheritance_(inheritance) {}
 
   // Once the run's header has its times, and the world is open. Empty on success, else one
   // sentence.
   [[nodiscard]] std::string Open();
   DdsRecords& records() { return records_; }
+  // The coordinator's own, for the world's channels on DDS.
+  dds::OwnEndpoints& ends() { return ends_; }
   const DdsRecords& records() const { return records_; }
   // The world, if there is one, takes what is for it, as far as nothing can come before that any
   // more.
@@ -66,6 +70,7 @@ class DdsGateway {
   RunState& run_;
   Waker& waker_;
   World& world_;
+  PriorityInheritance& inheritance_;
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   DdsRecords records_{run_, hub_, ends_, [this](dds::Hub::Number number) { return WhoIs(number); }};

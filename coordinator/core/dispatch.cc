@@ -78,7 +78,7 @@ void Engine::Resume(Task& task) {
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
     if (task.trap_continues) {
-      ContinueTrap(task);
+      guard_.Continue(task);
     } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
       task.handed_lock = 0;
     }
@@ -327,7 +327,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
-    SendTimerSignalsTo(task);
+    TimerSignals::SendTo(task);
     dds_.HandOver(task);
     WritePage(task, horizon_ns, idle_until_ns);
   }
@@ -356,13 +356,13 @@ void Engine::EndTurn(Task& task) {
 // at `call`.
 void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   const Moment stop{task.cpu->progress_ns};
-  ExpireCpuTimers(task);
+  TimerCalls::ExpireCpu(task);
   if (task.follow_up != FollowUp::kNone) DoFollowUp(task, call, looks_again);
   task.process->timers.EndRests(stop.ns);
-  if (turn_.HasSpoken()) PassOn(task, stop);
+  if (turn_.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
-  if (!turn_.notified && task.slot >= 0 && Slot(task).signals.load() != 0) WakeSignalled(0, stop);
+  if (!turn_.notified && task.slot >= 0 && Slot(task).signals.load() != 0) signals_.Sent(0, stop);
 }
 
 // What the thread has said at the end of its turn.

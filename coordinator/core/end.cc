@@ -24,7 +24,9 @@ void Engine::BeginGrace() {
   turn_.End();
   root_.EndDynamics();
   dds_.records().Stop();
-  for (const int fd : world_.command_fds()) reactor_.Remove(fd);
+  for (const int fd : world_.command_fds()) {
+    if (fd >= 0) reactor_.Remove(fd);
+  }
   for (VirtualCpu& cpu : cpus_) {
     if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
   }

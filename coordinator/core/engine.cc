@@ -58,7 +58,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   }
   std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
   if (task.process->timers.HasCpuTimers()) {
-    const std::int64_t left = task.process->timers.CpuTimeToExpiry(CpuUsedBy(task));
+    const std::int64_t left = task.process->timers.CpuTimeToExpiry(TimerCalls::CpuUsedBy(task));
     if (left != shm::kNeverNs) limit = std::min(limit, cpu.progress_ns + left);
   }
   limit = std::min(limit, std::max(robot.next_launch_ns, cpu.progress_ns));
@@ -116,7 +116,8 @@ void Engine::PayDebt(Task& task, std::int64_t ns) {
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
   cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
-  FireDue(robot, cpu.progress_ns);
+  const Moment due{.ns = cpu.progress_ns, .from_outside = true};
+  if (timers_.FireDue(robot, due.ns)) PollEvents(0, due);
   launches_.StartDue(robot, cpu.progress_ns);
   robot.scheduler.EndTurn(cpu.core);
   Refresh(robot);
@@ -211,7 +212,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
-  PollSignals();
+  signals_.Poll();
   if (waker_.unseen() == 0) return;
   for (Task& task : table_.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;

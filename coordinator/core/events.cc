@@ -134,7 +134,7 @@ bool Engine::BlockedInKernel() {
   if (expected && !stopped) return true;
   if (stopped) {
     const Moment moment{WrittenAt()};
-    NoteStops(*task.process, moment);
+    stops_.Look(*task.process, moment);
     dds_.NoteWhetherStopped(*task.process, moment.ns);
     return true;
   }
@@ -201,6 +201,20 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   return found;
 }
 
+// PollEvents for the running thread, in turns while somebody waits for signals.
+bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
+  while (waker_.counts().for_signals() + waker_.counts().for_stops() > 0 &&
+         timeout_ns > SignalCalls::kLookEveryNs) {
+    if (PollEvents(SignalCalls::kLookEveryNs, {}).stops_running) return true;
+    if (!turn_.timed_out) return false;
+    turn_.timed_out = false;
+    if (signals_.Poll()) return true;
+    timeout_ns -= SignalCalls::kLookEveryNs;
+    host_cpu_.Continue(task);
+  }
+  return PollEvents(timeout_ns, {}).stops_running;
+}
+
 // Those whose descriptors have become ready, all at once: one event may be for one of them only.
 Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
   std::vector<Task*> awaiters = std::exchange(ready_awaiters_, {});
@@ -212,7 +226,7 @@ Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
       turn_.HasClock() && std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
         return turn_.IsOn(*task->process->robot);
       });
-  WakeAwaiters(awaiters, moment);
+  shared_events_.Wake(awaiters, moment);
   if (beside) GoOnBesideWoken();
   return {.stops_running = !beside, .wakes_others = true};
 }

@@ -20,21 +20,21 @@ void Engine::DoFollowUp(Task& task, Moment call, bool last) {
     case FollowUp::kNone:
       break;
     case FollowUp::kBacklogs:
-      WakeQueue(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
-      PassOn(task, call);
+      objects_.Wake(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
+      shared_events_.PassOn(task, call);
       break;
     case FollowUp::kTaken:
-      PassOn(task, call);
+      shared_events_.PassOn(task, call);
       break;
     case FollowUp::kSignals:
-      WakeSignalled(0, call);
+      signals_.Sent(0, call);
       break;
     case FollowUp::kKernelWaits:
-      LookAtKernelWaits(call);
+      objects_.LookAtKernelWaits(call);
       break;
     case FollowUp::kContinued:
       if (Process* parent = LivingProcess(task.process->parent); parent != nullptr) {
-        WakeForSignals(*parent, call);
+        signal_wakes_.WakeForSignals(*parent, call);
       }
       break;
   }

@@ -1,8 +1,8 @@
-// What the kernel says of a futex call before it looks at the word, in its order.
+#include "coordinator/core/futex_arguments.h"
+
 #include <errno.h>
 #include <linux/futex.h>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/trap.h"
 #include "shm/time_values.h"
 
@@ -33,7 +33,7 @@ std::int64_t WrongAddress(const Task& task, std::uint64_t address, bool is_read)
 
 }  // namespace
 
-std::int64_t Engine::WrongFutexCall(const Task& task, const TrappedCall& call, int command) {
+std::int64_t WrongFutexCall(const Task& task, const TrappedCall& call, int command) {
   if (HasTimeout(command) && call.args[3] != 0) {
     timespec timeout{};
     if (!ReadMemory(task.process->pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;

@@ -1,6 +1,5 @@
-// Calls that could do something to tcsim's own processes, and that no filter can judge
-// (os/protection.h): signals to whole groups, and what names a process by a descriptor. Clients act
-// as the same user, so the kernel would let them.
+#include "coordinator/core/guarded_calls.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -15,7 +14,6 @@
 #include <optional>
 #include <string>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
 
@@ -63,12 +61,12 @@ bool SendAs(pid_t caller, const Credentials& sender, pid_t to, int signal) {
 
 }  // namespace
 
-bool Engine::IsGuarded(pid_t pid) const {
+bool GuardedCalls::IsGuarded(pid_t pid) const {
   return std::find(guarded_.begin(), guarded_.end(), pid) != guarded_.end();
 }
 
 // As kill understands it, less what concerns one process only.
-bool Engine::MeansGuarded(pid_t caller, pid_t receiver) const {
+bool GuardedCalls::MeansGuarded(pid_t caller, pid_t receiver) const {
   if (receiver == -1) return true;
   const pid_t group = receiver == 0 ? getpgid(caller) : -receiver;
   return std::any_of(guarded_.begin(), guarded_.end(),
@@ -77,7 +75,7 @@ bool Engine::MeansGuarded(pid_t caller, pid_t receiver) const {
 
 // In the caller's stead: to those of the run whom it means. So -1 is everybody on the robots, as
 // it would be there.
-std::int64_t Engine::SignalOurs(pid_t caller, pid_t receiver, int signal) const {
+std::int64_t GuardedCalls::SignalOurs(pid_t caller, pid_t receiver, int signal) const {
   if (signal < 0 || signal >= _NSIG) return -EINVAL;
   const Credentials sender = ReadCredentials(caller);
   const pid_t group = receiver == 0 ? getpgid(caller) : -receiver;
@@ -92,7 +90,7 @@ std::int64_t Engine::SignalOurs(pid_t caller, pid_t receiver, int signal) const 
 }
 
 // What the call returns without the kernel's carrying it out; none if it may.
-std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) const {
+std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& call) const {
   constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
   const auto refused_if = [](bool refused) -> std::optional<std::int64_t> {
     return refused ? std::optional<std::int64_t>(-EPERM) : std::nullopt;
@@ -137,7 +135,7 @@ std::optional<std::int64_t> Engine::InsteadOfKernel(const TrappedCall& call) con
   }
 }
 
-void Engine::LetThrough(const TrappedCall& call) const {
+void GuardedCalls::LetThrough(const TrappedCall& call) const {
   if (const auto result = InsteadOfKernel(call); result.has_value()) {
     AnswerTrapped(call.listener, call.id, *result);
   } else {
@@ -145,8 +143,7 @@ void Engine::LetThrough(const TrappedCall& call) const {
   }
 }
 
-// The call that the task has stopped in.
-void Engine::ContinueTrap(const Task& task) const {
+void GuardedCalls::Continue(const Task& task) const {
   const TrappedCall& call = task.trapped_call;
   if (call.id == task.trap_id && call.listener == task.trap_listener) {
     LetThrough(call);

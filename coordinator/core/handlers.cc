@@ -68,7 +68,7 @@ Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment momen
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
   Task& task = TaskAt(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
-  if (wait == nullptr || subject != SubjectOfWait(task, *wait)) return {};
+  if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
   if (std::exchange(wait->skips_event, false)) return {};
   ready_awaiters_.push_back(&task);
   return {.wakes_others = true};
@@ -77,7 +77,7 @@ Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
 Reactor::Found Engine::OnUnknownChildEnd(Subject child, std::uint32_t, Moment moment) {
   const auto pid = static_cast<pid_t>(child.index);
   if (Process* parent = unknown_children_.Ended(pid); parent != nullptr) {
-    ChildChanged(*parent, pid, false, moment);
+    stops_.ChildChanged(*parent, pid, false, moment);
   }
   return kConcernsAll;
 }
@@ -98,7 +98,7 @@ Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) 
 
 Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
   signalfd_siginfo info;
-  if (read(signals_.get(), &info, sizeof info) != sizeof info) return {};
+  if (read(signal_fd_.get(), &info, sizeof info) != sizeof info) return {};
   // ^C is for the program that has the terminal.
   if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL && options_.output_directory.empty()) {
     return {};

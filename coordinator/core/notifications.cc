@@ -17,11 +17,6 @@ namespace {
 
 constexpr int kYieldsBeforeLook = 100;
 
-bool IsTerminal(int fd) {
-  struct stat status {};
-  return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd) != 0;
-}
-
 // Sleeps, with a mask of their own or without, and waits for signals.
 Wait::What IdleFor(const shm::Notification& note) {
   const auto set = static_cast<std::uint64_t>(note.args[1]);
@@ -30,56 +25,6 @@ Wait::What IdleFor(const shm::Notification& note) {
 }
 
 }  // namespace
-
-// The client shares the open file, so closing our descriptor leaves it in the epoll set until the
-// client closes it, too. That is what we want: the next wait for it, under the same number of ours,
-// only has to arm it again. What fires meanwhile is of a wait that is over (Tag::kAwaited). But a
-// client's epoll set with a signalfd in it must not be polled by us when its wait is over: we have
-// other signals, and it would forget that there is one.
-void Engine::EndWatches(const awaited::Descriptors& watched) {
-  const bool forgets = watched.has_terminal || watched.signals != 0 || watched.is_edge_armed;
-  if (!forgets) return;
-  for (const UniqueFd& fd : watched.fds) reactor_.Remove(fd.get());
-}
-
-Subject Engine::SubjectOfWait(const Task& task, const awaited::Descriptors& watched) {
-  return {Tag::kAwaited, static_cast<std::uint32_t>(task.order),
-          watched.number & Subject::kNumberMask};
-}
-
-awaited::Descriptors Engine::Watch(const Task& task, const shm::WaitFd* fds, std::size_t count) {
-  awaited::Descriptors watched{.number = ++wait_counter_, .order = task.fds_order};
-  const Subject subject = SubjectOfWait(task, watched);
-  for (std::size_t i = 0; i < count; ++i) {
-    UniqueFd fd(DuplicateFd(task.process->pidfd.get(), fds[i].fd));
-    if (!fd) continue;
-    const std::uint32_t events = fds[i].events | EPOLLONESHOT;
-    if (!reactor_.Modify(fd.get(), events, subject)) {
-      if (!reactor_.Add(fd.get(), events, subject)) continue;
-      // Terminals are never left in the set, so they always come this way.
-      watched.has_terminal |= IsTerminal(fd.get());
-    }
-    watched.fds.push_back(std::move(fd));
-  }
-  return watched;
-}
-
-// The wait is a new one, behind all others that want to take from the same descriptor.
-void Engine::GoBehind(Task& task, awaited::Descriptors& watched) {
-  watched.order = task.fds_order = ++fds_order_counter_;
-}
-
-// What the notification asks for: whether one event is for one waiter, and whether signals end it.
-awaited::Descriptors Engine::WatchAsAsked(Task& task, const shm::Notification& note) {
-  awaited::Descriptors watched = Watch(task, note.fds, note.fd_count);
-  watched.signals = static_cast<std::uint64_t>(note.args[1]);
-  watched.takes =
-      note.args[0] != 0 && watched.fds.size() == 1 && note.fd_count == 1 && watched.signals == 0;
-  watched.last_is_first = note.args[0] == 2;
-  if (watched.takes) watched.events = note.fds[0].events;
-  if (note.args[2] == 0) GoBehind(task, watched);
-  return watched;
-}
 
 // From the program's clock to the robot's.
 std::int64_t Engine::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
@@ -93,9 +38,10 @@ void Engine::NoteSpawnedThread(Task& creator, const shm::Notification& note) {
     if (KnownTask(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
     executor_->Hold(tid);
     Task& thread = births_.AddThread(*creator.process, tid, creator.reached_ns);
-    InheritScheduling(thread, creator);
-    if (note.args[1] >= 0) SetPriority(creator, thread, note.args[1], note.args[2]);
-    if (note.args[3] != 0) SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
+    scheduling_.Inherit(thread, creator);
+    if (note.args[1] >= 0) scheduling_.SetPriority(creator, thread, note.args[1], note.args[2]);
+    if (note.args[3] != 0)
+      scheduling_.SetAffinity(creator, thread, static_cast<std::uint64_t>(note.args[3]));
   }
 }
 
@@ -108,7 +54,7 @@ void Engine::NoteSpawnedProcess(Task& parent, pid_t pid) {
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   executor_->Hold(pid);
-  InheritScheduling(births_.AddChild(pid, of.pid, of, parent.reached_ns), parent);
+  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached_ns), parent);
 }
 
 // Equals have their turn.
@@ -144,7 +90,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
       EnterWait(task, {IdleFor(note), deadline_ns});
       break;
     case Kind::kWaitFds:
-      EnterWait(task, {WatchAsAsked(task, note), deadline_ns});
+      EnterWait(task, {descriptors_.WatchAsAsked(task, note), deadline_ns});
       looks_again = true;
       break;
     case Kind::kWaitChild:
@@ -162,7 +108,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kTimerGet:
     case Kind::kTimerDelete:
     case Kind::kTimerOverrun:
-      looks_again = SetTimerOf(*task.process, task, note);
+      looks_again = timers_.Handle(*task.process, task, note);
       break;
     case Kind::kSpawned:
       if (note.args[0] == 0) {
@@ -177,22 +123,22 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kPriority:
     case Kind::kPriorityGet:
     case Kind::kAffinity:
-      HandleScheduling(task, note);
+      scheduling_.Handle(task, note);
       break;
     case Kind::kStrangers:
       task.process->has_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
-      WakeSignalled(static_cast<pid_t>(note.args[0]), moment);
+      signals_.Sent(static_cast<pid_t>(note.args[0]), moment);
       break;
     case Kind::kWaitKey:
-      WaitAtQueue(task, note, deadline_ns);
+      objects_.Wait(task, note, deadline_ns);
       break;
     case Kind::kWakeKey:
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
       // The kernel would have given those who wait what they wait for, before the waker could take
       // it again. So they go first, where its policy lets them.
-      if (WakeQueue(note.args[0], note.args[1], moment) &&
+      if (objects_.Wake(note.args[0], note.args[1], moment) &&
           ParametersOf(task).policy == SCHED_OTHER) {
         SchedulerOf(task).Yield(task.order);
       }

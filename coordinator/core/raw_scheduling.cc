@@ -1,5 +1,5 @@
-// Calls to the scheduler that are made without the C library: the robot's scheduler answers them,
-// with the errors of the kernel's.
+#include "coordinator/core/raw_scheduling.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <linux/sched.h>
@@ -10,7 +10,6 @@
 #include <cstddef>
 
 #include "coordinator/core/client_values.h"
-#include "coordinator/core/engine.h"
 
 namespace tcs {
 
@@ -41,15 +40,15 @@ DeadlineParameters DeadlineOf(const Attributes& attributes) {
 
 }  // namespace
 
-std::int64_t Engine::SetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t RawScheduling::SetScheduling(Task& task, Task& of, const TrappedCall& call) {
   const bool keeps = call.number == SYS_sched_setparam;
   sched_param param{};
   if (!Read(task, call.args[keeps ? 1 : 2], &param)) return -EFAULT;
   const std::int64_t policy = keeps ? shm::kKeepPolicy : static_cast<int>(call.args[1]);
-  return SetPriority(task, of, policy, param.sched_priority);
+  return calls_.SetPriority(task, of, policy, param.sched_priority);
 }
 
-std::int64_t Engine::SetAttributesRaw(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t RawScheduling::SetAttributes(Task& task, Task& of, const TrappedCall& call) {
   Attributes attributes;
   if (!Read(task, call.args[1], &attributes.size)) return -EFAULT;
   if (attributes.size == 0) attributes.size = kFirstAttributes;
@@ -69,10 +68,10 @@ std::int64_t Engine::SetAttributesRaw(Task& task, Task& of, const TrappedCall& c
     wanted.priority = static_cast<int>(std::min<std::uint32_t>(attributes.priority, INT_MAX));
     wanted.deadline = DeadlineOf(attributes);
   }
-  return Schedule(task, of, wanted);
+  return calls_.Schedule(task, of, wanted);
 }
 
-std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedCall& call) {
+std::int64_t RawScheduling::GetAttributes(Task& task, const Task& of, const TrappedCall& call) {
   const auto room = static_cast<std::uint32_t>(call.args[2]);
   if (room > kPageSize || room < kFirstAttributes || call.args[3] != 0) return -EINVAL;
   struct {
@@ -94,7 +93,7 @@ std::int64_t Engine::GetAttributesRaw(Task& task, const Task& of, const TrappedC
   return WriteMemory(task.process->pid, call.args[1], &answer, size) ? 0 : -EFAULT;
 }
 
-std::int64_t Engine::GetSchedulingRaw(Task& task, Task& of, const TrappedCall& call) {
+std::int64_t RawScheduling::GetScheduling(Task& task, Task& of, const TrappedCall& call) {
   switch (call.number) {
     case SYS_sched_getscheduler:
       return ParametersOf(of).PolicyAndFlag();
@@ -108,7 +107,7 @@ std::int64_t Engine::GetSchedulingRaw(Task& task, Task& of, const TrappedCall& c
                  : -EFAULT;
     }
     case SYS_sched_getattr:
-      return GetAttributesRaw(task, of, call);
+      return GetAttributes(task, of, call);
     default: {  // SYS_sched_getaffinity
       const auto size = static_cast<std::uint32_t>(call.args[1]);
       if (size < sizeof(std::uint64_t) || size % sizeof(std::uint64_t) != 0) return -EINVAL;
@@ -118,7 +117,7 @@ std::int64_t Engine::GetSchedulingRaw(Task& task, Task& of, const TrappedCall& c
   }
 }
 
-std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
+std::int64_t RawScheduling::Call(Task& task, const TrappedCall& call) {
   const auto tid = static_cast<pid_t>(call.args[0]);
   const bool has_pointer =
       call.number != SYS_sched_getscheduler && call.number != SYS_sched_setaffinity &&
@@ -128,22 +127,22 @@ std::int64_t Engine::ScheduleRaw(Task& task, const TrappedCall& call) {
       call.number == SYS_sched_setaffinity || call.number == SYS_sched_getaffinity;
   if ((tid < 0 && !is_of_affinity) || (has_pointer && pointer == 0)) return -EINVAL;
   if (call.number == SYS_sched_setscheduler && static_cast<int>(call.args[1]) < 0) return -EINVAL;
-  Task* of = tid == 0 ? &task : KnownTask(tid);
+  Task* of = tid == 0 ? &task : run_.table.Living(tid);
   switch (call.number) {
     case SYS_sched_setscheduler:
     case SYS_sched_setparam:
-      return of == nullptr ? -ESRCH : SetSchedulingRaw(task, *of, call);
+      return of == nullptr ? -ESRCH : SetScheduling(task, *of, call);
     case SYS_sched_setattr:
       if (call.args[2] != 0) return -EINVAL;
-      return of == nullptr ? -ESRCH : SetAttributesRaw(task, *of, call);
+      return of == nullptr ? -ESRCH : SetAttributes(task, *of, call);
     case SYS_sched_setaffinity: {
       std::uint64_t cores = 0;
       const std::size_t size = std::min<std::size_t>(call.args[1], sizeof cores);
       if (!ReadMemory(task.process->pid, call.args[2], &cores, size)) return -EFAULT;
-      return of == nullptr ? -ESRCH : SetAffinity(task, *of, cores);
+      return of == nullptr ? -ESRCH : calls_.SetAffinity(task, *of, cores);
     }
     default:
-      return of == nullptr ? -ESRCH : GetSchedulingRaw(task, *of, call);
+      return of == nullptr ? -ESRCH : GetScheduling(task, *of, call);
   }
 }
 

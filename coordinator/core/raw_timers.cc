@@ -1,5 +1,5 @@
-// Timers whose calls are made raw: they are the same as those that the shim makes for its program,
-// so a timer made one way can be set the other way.
+#include "coordinator/core/raw_timers.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <sys/syscall.h>
@@ -12,7 +12,7 @@
 
 #include "coordinator/core/borrowed.h"
 #include "coordinator/core/client_values.h"
-#include "coordinator/core/engine.h"
+#include "coordinator/core/usage_book.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
 #include "coordinator/os/timer_descriptor.h"
@@ -53,7 +53,7 @@ int PosixKind(const Task& task, clockid_t id, const sigevent& event, shm::TimerK
 
 }  // namespace
 
-std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
+std::int64_t RawTimers::Create(Task& task, const TrappedCall& call) {
   Process& process = *task.process;
   sigevent event{};
   event.sigev_signo = SIGALRM;
@@ -69,11 +69,10 @@ std::int64_t Engine::CreateTimerRaw(Task& task, const TrappedCall& call) {
   return 0;
 }
 
-// Whose descriptor it is, too: timers made before a fork are the parent's.
-Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
+RawTimers::Found RawTimers::Find(const Task& task, int number) {
   const Borrowed fd(task, number);
   if (fd.fd() < 0) return {};
-  for (Process& process : table_.processes()) {
+  for (Process& process : run_.table.processes()) {
     if (process.dead) continue;
     for (const auto& [id, timer_fd] : process.timer_fds) {
       if (IsSameFile(timer_fd.get(), fd.fd())) return {&process, id};
@@ -83,9 +82,9 @@ Engine::FoundTimer Engine::FindTimerFd(const Task& task, int number) {
 }
 
 // One that was made by the call itself, which the kernel carries out, or that comes from elsewhere.
-Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
+RawTimers::Found RawTimers::Adopt(const Task& task, int number) {
   Process& process = *task.process;
-  UniqueFd fd = TimerDescriptorOf(process, number);
+  UniqueFd fd = TimerCalls::DescriptorOf(process, number);
   if (!fd || process.timers.IsFull()) return {};
   shm::TimerKind kind;
   kind.clock_tid = IsOfRealtime(fd.get()) ? 1 : 0;
@@ -94,50 +93,50 @@ Engine::FoundTimer Engine::AdoptTimerFd(const Task& task, int number) {
   return {&process, id};
 }
 
-std::int64_t Engine::TimerNow(const Task& task, const Process& owner,
+std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
   if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner);
   if (kind.clock == shm::TimerClock::kTime) {
     return owner.clock.At(RobotTime(task.reached_ns)).ns();
   }
-  const Task* known = KnownTask(kind.clock_tid);
+  const Task* known = run_.table.Living(kind.clock_tid);
   return known == nullptr ? 0 : known->charged_ns;
 }
 
 // Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the
 // interval.
-itimerspec Engine::ExchangeTimer(Task& task, const FoundTimer& found, bool sets,
-                                 std::int64_t first_ns, std::int64_t interval_ns) {
-  const std::int64_t now = TimerNow(task, *found.owner, *found.owner->timers.KindOf(found.id));
+itimerspec RawTimers::Exchange(Task& task, const Found& found, bool sets, std::int64_t first_ns,
+                               std::int64_t interval_ns) {
+  const std::int64_t now = NowOf(task, *found.owner, *found.owner->timers.KindOf(found.id));
   shm::Notification note{};
   note.kind = sets ? shm::NotificationKind::kTimerSet : shm::NotificationKind::kTimerGet;
   note.args[0] = found.id;
   note.args[1] = first_ns;
   note.args[2] = interval_ns;
-  SetTimerOf(*found.owner, task, note);
+  calls_.Handle(*found.owner, task, note);
   const std::int64_t next = std::exchange(task.reply[0], 0);
   return {ToTimespec(std::exchange(task.reply[1], 0)), ToTimespec(shm::TimeLeft(next, now))};
 }
 
-std::int64_t Engine::SetTimerRaw(Task& task, const FoundTimer& found, const TrappedCall& call) {
+std::int64_t RawTimers::Set(Task& task, const Found& found, const TrappedCall& call) {
   itimerspec given{};
   if (!Read(task, call.args[2], &given)) return -EFAULT;
   if (!IsValid(given)) return -EINVAL;
   const shm::TimerKind kind = *found.owner->timers.KindOf(found.id);
   const std::int64_t offset = kind.clock != shm::TimerClock::kTime ? 0
-                              : kind.clock_tid != 0                ? header_->realtime_offset_ns
-                                                                   : header_->monotonic_offset_ns;
+                              : kind.clock_tid != 0                ? run_.header->realtime_offset_ns
+                                                    : run_.header->monotonic_offset_ns;
   const std::int64_t first = shm::FirstExpiry(ToNs(given.it_value), (call.args[1] & kAbsolute) != 0,
-                                              TimerNow(task, *found.owner, kind), offset);
-  const itimerspec before = ExchangeTimer(task, found, true, first, ToNs(given.it_interval));
+                                              NowOf(task, *found.owner, kind), offset);
+  const itimerspec before = Exchange(task, found, true, first, ToNs(given.it_interval));
   return call.args[3] == 0 || Write(task, call.args[3], before) ? 0 : -EFAULT;
 }
 
-std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
+std::int64_t RawTimers::IntervalTimer(Task& task, const TrappedCall& call) {
   const std::int64_t which =
       call.number == SYS_alarm ? ITIMER_REAL : static_cast<int>(call.args[0]);
   if (which < ITIMER_REAL || which > ITIMER_PROF) return -EINVAL;
-  FoundTimer found{task.process, which};
+  Found found{task.process, which};
   itimerval given{};
   if (call.number == SYS_alarm) given.it_value.tv_sec = static_cast<unsigned>(call.args[0]);
   if (call.number == SYS_setitimer && call.args[1] != 0 && !Read(task, call.args[1], &given)) {
@@ -145,9 +144,9 @@ std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
   }
   if (!IsValid(given)) return -EINVAL;
   const bool sets = call.number != SYS_getitimer;
-  const std::int64_t now = TimerNow(task, *task.process, *task.process->timers.KindOf(which));
+  const std::int64_t now = NowOf(task, *task.process, *task.process->timers.KindOf(which));
   const std::int64_t first = shm::FirstExpiry(ToNs(given.it_value), false, now, 0);
-  const itimerspec before = ExchangeTimer(task, found, sets, first, ToNs(given.it_interval));
+  const itimerspec before = Exchange(task, found, sets, first, ToNs(given.it_interval));
   const itimerval old{shm::RoundUpToTimeval(ToNs(before.it_interval)),
                       shm::RoundUpToTimeval(ToNs(before.it_value))};
   if (call.number == SYS_alarm) return shm::AlarmSeconds(old.it_value);
@@ -157,29 +156,29 @@ std::int64_t Engine::ItimerRaw(Task& task, const TrappedCall& call) {
 }
 
 // Calls that name a timer of timer_create.
-std::int64_t Engine::PosixTimerRaw(Task& task, const TrappedCall& call) {
-  const FoundTimer found{task.process, static_cast<int>(call.args[0])};
+std::int64_t RawTimers::PosixTimer(Task& task, const TrappedCall& call) {
+  const Found found{task.process, static_cast<int>(call.args[0])};
   ProcessTimers& timers = task.process->timers;
   const auto kind = timers.KindOf(found.id);
   if (!kind.has_value() || kind->is_posix == 0) return -EINVAL;
   switch (call.number) {
     case SYS_timer_settime:
-      return SetTimerRaw(task, found, call);
+      return Set(task, found, call);
     case SYS_timer_gettime:
-      return Write(task, call.args[1], ExchangeTimer(task, found, false, 0, 0)) ? 0 : -EFAULT;
+      return Write(task, call.args[1], Exchange(task, found, false, 0, 0)) ? 0 : -EFAULT;
     case SYS_timer_getoverrun:
-      NoteAccepted(*task.process);
+      TimerSignals::NoteAccepted(*task.process);
       return timers.Overruns(found.id);
     default:  // SYS_timer_delete
-      DeleteTimer(*task.process, found.id);
+      TimerCalls::Delete(*task.process, found.id);
       return 0;
   }
 }
 
-void Engine::HandleRawTimer(Task& task, const TrappedCall& call) {
+void RawTimers::Call(Task& task, const TrappedCall& call) {
   switch (call.number) {
     case SYS_timer_create:
-      task.trap_result = CreateTimerRaw(task, call);
+      task.trap_result = Create(task, call);
       return;
     case SYS_timerfd_create:
       task.trap_continues = true;  // it is known once it is set
@@ -187,28 +186,28 @@ void Engine::HandleRawTimer(Task& task, const TrappedCall& call) {
     case SYS_setitimer:
     case SYS_getitimer:
     case SYS_alarm:
-      task.trap_result = ItimerRaw(task, call);
+      task.trap_result = IntervalTimer(task, call);
       return;
     case SYS_timerfd_settime:
     case SYS_timerfd_gettime: {
       const auto number = static_cast<int>(call.args[0]);
-      FoundTimer found = FindTimerFd(task, number);
+      Found found = Find(task, number);
       if (found.owner == nullptr && call.number == SYS_timerfd_settime) {
-        found = AdoptTimerFd(task, number);
+        found = Adopt(task, number);
       }
       if (found.owner == nullptr) {
         task.trap_continues = true;  // what is wrong with it the kernel says best
       } else if (call.number == SYS_timerfd_settime) {
         constexpr std::uint64_t kFlags = TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET;
-        task.trap_result = (call.args[1] & ~kFlags) != 0 ? -EINVAL : SetTimerRaw(task, found, call);
+        task.trap_result = (call.args[1] & ~kFlags) != 0 ? -EINVAL : Set(task, found, call);
       } else {
         task.trap_result =
-            Write(task, call.args[1], ExchangeTimer(task, found, false, 0, 0)) ? 0 : -EFAULT;
+            Write(task, call.args[1], Exchange(task, found, false, 0, 0)) ? 0 : -EFAULT;
       }
       return;
     }
     default:
-      task.trap_result = PosixTimerRaw(task, call);
+      task.trap_result = PosixTimer(task, call);
   }
 }
 

@@ -1,5 +1,5 @@
-// Trapped calls that transfer data, or connect: each waits here until the kernel can carry it out,
-// or would have refused it at once.
+#include "coordinator/core/raw_transfers.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <sys/epoll.h>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "coordinator/core/borrowed.h"
-#include "coordinator/core/engine.h"
 
 namespace tcs {
 
@@ -124,10 +123,9 @@ bool AnswersAtOnce(const Task& task, const TrappedCall& call, const Borrowed& fd
 
 }  // namespace
 
-bool Engine::Receives(const TrappedCall& call) { return TransferOf(call).reads; }
+bool RawTransfers::Receives(const TrappedCall& call) { return TransferOf(call).reads; }
 
-// Goes on once it is ready, or can find all that was sent until now.
-void Engine::TransferRaw(Task& task, const TrappedCall& call) {
+void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
   const short events = transfer.reads ? POLLIN : POLLOUT;
   const auto number = static_cast<int>(call.args[0]);
@@ -140,24 +138,25 @@ void Engine::TransferRaw(Task& task, const TrappedCall& call) {
     task.follow_up = FollowUp::kBacklogs;
   }
   if (!transfer.reads) {
-    shm::NoteSent(Slot(task).receipts);
+    shm::NoteSent(SlotOf(task).receipts);
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
-    const bool of_timer = FindTimerFd(task, number).owner != nullptr;
+    const bool of_timer = timers_.Find(task, number).owner != nullptr;
     if (of_timer || !fd.IsEventFd()) activations_.ReceivedRaw(task, of_timer);
   }
   if (fd.IsNonBlocking() || fd.IsReady(events) || AnswersAtOnce(task, call, fd, transfer)) {
-    HoldRaw(task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
+    waker_.HoldInCall(
+        task, transfer.reads ? shm::NotificationKind::kRead : shm::NotificationKind::kWrite);
     return;
   }
   const std::int64_t timeout = fd.SocketTimeout(transfer.reads ? SO_RCVTIMEO : SO_SNDTIMEO);
   const shm::WaitFd waited{number, static_cast<std::uint32_t>(events)};
-  awaited::Descriptors watched = Watch(task, &waited, 1);
+  awaited::Descriptors watched = descriptors_.Watch(task, &waited, 1);
   watched.transfers = true;
   watched.takes = watched.fds.size() == 1;
   watched.events = waited.events;
-  GoBehind(task, watched);
-  EnterWait(task, {std::move(watched),
-                   timeout == shm::kNeverNs ? shm::kNeverNs : task.reached_ns + timeout, true});
+  descriptors_.GoBehind(task, watched);
+  waker_.Wait(task, {std::move(watched),
+                     timeout == shm::kNeverNs ? shm::kNeverNs : task.reached_ns + timeout, true});
 }
 
 }  // namespace tcs

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "coordinator/channel/udp_socket.h"
 #include "coordinator/core/slot_check.h"
 #include "coordinator/dds/topics_table.h"
 
@@ -90,18 +89,11 @@ void RunReporter::WarnOfEndsThatDidNotMeet() {
   for (const std::string& warning : dds::MismatchWarnings(from_.dds_records.topics().reports()))
     run_.Warn(warning);
   if (!from_.world.present()) return;
-  for (const std::string& warning : from_.command_input.Complaints(run_.scenario))
-    run_.Warn(warning);
+  for (const std::string& warning : from_.world.CommandComplaints()) run_.Warn(warning);
   // Whoever has ended may have listened before.
   const auto gone = [&](const Process& process) { return process.is_client && ended(process); };
   if (std::any_of(run_.table.processes().begin(), run_.table.processes().end(), gone)) return;
-  for (const SensorChannelSpec& spec : run_.scenario.sensors) {
-    if (IsListenedTo(spec.to)) continue;
-    run_.Warn(fmt::format(
-        "channel {}: nobody listens on {}:{}, so that its samples are lost; let a client "
-        "bind that port",
-        spec.name, spec.to.host, spec.to.port));
-  }
+  for (const std::string& warning : from_.world.SensorComplaints()) run_.Warn(warning);
 }
 
 }  // namespace tcs

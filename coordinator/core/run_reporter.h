@@ -5,7 +5,6 @@
 
 #include <cstdint>
 
-#include "coordinator/core/command_input.h"
 #include "coordinator/core/coordinator.h"
 #include "coordinator/core/dds_records.h"
 #include "coordinator/core/launches.h"
@@ -22,7 +21,6 @@ class RunReporter {
   struct Sources {
     const RunClock& clock;
     const World& world;
-    const CommandInput& command_input;
     const UsageBook& usage;
     const Launches& launches;
     const DdsRecords& dds_records;

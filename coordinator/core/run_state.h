@@ -34,6 +34,7 @@ struct RunState {
   std::deque<VirtualCpu> cpus;  // of all robots, by leaf
   TemporalConsistency root;
   Turn turn;
+  double ticks_per_ns = 1.0;         // of the TSC
   shm::RunHeader* header = nullptr;  // which all clients can read; null before the set-up
 
   std::int64_t end_ns;

@@ -44,7 +44,7 @@ std::string Engine::Prepare() {
   if (gates_only_ && !TrapsHoldSignals()) {
     return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
   }
-  if (std::string error = world_.Open(scenario_); !error.empty()) return error;
+  if (std::string error = world_.Open(scenario_, dds_.ends()); !error.empty()) return error;
   std::string taken;
   claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
@@ -69,8 +69,10 @@ std::string Engine::Prepare() {
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
-  for (std::size_t i = 0; i < world_.command_fds().size(); ++i) {
-    reactor_.Add(world_.command_fds()[i], EPOLLIN, {Tag::kCommand, static_cast<std::uint32_t>(i)});
+  std::uint32_t inlet = 0;
+  for (const int fd : world_.command_fds()) {
+    if (fd >= 0) reactor_.Add(fd, EPOLLIN, {Tag::kCommand, inlet});
+    ++inlet;
   }
   return PrepareHostCpu();
 }
@@ -103,9 +105,9 @@ std::string Engine::PrepareSignals() {
   for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&blocked, signal);
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  signals_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
+  signal_fd_.Reset(signalfd(-1, &blocked, SFD_CLOEXEC | SFD_NONBLOCK));
 
-  reactor_.Add(signals_.get(), EPOLLIN, {Tag::kSignal});
+  reactor_.Add(signal_fd_.get(), EPOLLIN, {Tag::kSignal});
   return {};
 }
 
@@ -145,25 +147,29 @@ std::string Engine::PrepareHostCpu() {
   }
   reactor_.Add(host_cpu_.detector().fired_fd(), EPOLLIN, {Tag::kDetector});
   reactor_.Add(host_cpu_.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
-  guarded_ = GuardsOf(getpid());
-  guarded_.insert(guarded_.end(), {getpid(), host_cpu_.detector().pid()});
+  std::vector<pid_t> own = GuardsOf(getpid());
+  own.insert(own.end(), {getpid(), host_cpu_.detector().pid()});
+  guard_.Guard(std::move(own));
   return {};
 }
 
-// Those who keep something for a thread that waits, and for one that lives.
+// Whoever keeps something for a thread that waits.
 void Engine::TellOfWaits() {
   waker_.Tell({
       .began_by_signal =
-          [this](Task& task) { EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns}); },
+          [this](Task& task) {
+            signal_wakes_.EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
+          },
       .left =
           [this](Task& task, const Wait& left) {
-            if (const auto* descriptors = left.As<awaited::Descriptors>()) EndWatches(*descriptors);
-            futexes_.Leave(task.order);
-            queues_.Leave(task.order);
-            LeaveLock(task);
+            if (const auto* descriptors = left.As<awaited::Descriptors>())
+              descriptors_.Leave(*descriptors);
+            words_.table().Leave(task.order);
+            objects_.Leave(task);
+            inheritance_.Leave(task);
           },
-      .ends_in_trapped_call = [this](Task& task,
-                                     shm::WakeReason reason) { FinishTrappedWait(task, reason); },
+      .ends_in_trapped_call =
+          [this](Task& task, shm::WakeReason reason) { trapped_waits_.Finish(task, reason); },
       .deliverer_is_held_up =
           [this](const Process& process, Moment moment) {
             dds_.ReleaseThoseAwaitingDeliverer(process, moment);
@@ -174,20 +180,21 @@ void Engine::TellOfWaits() {
 void Engine::TellOfEnds() {
   deaths_.Tell({
       .settle = [this](Task& task) { Settle(task); },
-      .thread_ends = [this](Task& task, Moment moment) { PassOn(task, moment); },
+      .thread_ends = [this](Task& task, Moment moment) { shared_events_.PassOn(task, moment); },
       .thread_has_ended =
           [this](Task& task) {
-            queues_.Forget(task.order);
+            objects_.Forget(task);
             registration_.Forget(task);
           },
       .wake_those_waiting_for = [this](Task& task,
-                                       Moment moment) { WakeThoseWaitingFor(task, moment); },
-      .child_has_ended = [this](Process& parent, pid_t child,
-                                Moment moment) { ChildChanged(parent, child, false, moment); },
+                                       Moment moment) { locks_.WakeThoseWaitingFor(task, moment); },
+      .child_has_ended = [this](
+                             Process& parent, pid_t child,
+                             Moment moment) { stops_.ChildChanged(parent, child, false, moment); },
       .process_has_ended =
           [this](Process& process, Moment moment) {
             if (process.is_client) launches_.ClientHasEnded(process);
-            WakeEveryQueue(moment);
+            objects_.WakeAll(moment);
             dds_.Leave(process, moment);
           },
   });

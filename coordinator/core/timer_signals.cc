@@ -1,9 +1,7 @@
-// The signals of timers, sent at their instant: at once where they become pending, are ignored or
-// end the process; at the dispatch of the thread that will run a handler, for the handler is its
-// work.
+#include "coordinator/core/timer_signals.h"
+
 #include <signal.h>
 
-#include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 
@@ -36,7 +34,7 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
 }  // namespace
 
 // The thread that waits to accept it, 0 if there is none. The kernel, too, prefers it to others.
-pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
+pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal) {
   for (const Task* task : process.robot->tasks) {
     const auto* wait = task->Awaits<awaited::Signals>();
     if (wait == nullptr || task->process != &process) continue;
@@ -47,7 +45,7 @@ pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
 }
 
 // Null if nobody runs a handler, or only one that the kernel holds in a call.
-Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
+Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
@@ -56,10 +54,10 @@ Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
   return nullptr;
 }
 
-void Engine::RouteTimerSignals(Process& process, Moment moment) {
+void TimerSignals::Route(Process& process, Moment moment) {
   bool sent = false;
   for (TimerSignal& signal : process.timers.TakeSignals()) {
-    if (signal.taker == 0 || KnownTask(signal.taker) == nullptr) {
+    if (signal.taker == 0 || run_.table.Living(signal.taker) == nullptr) {
       const pid_t accepter = AccepterOf(process, signal);
       Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
       if (taker == nullptr) {
@@ -69,15 +67,15 @@ void Engine::RouteTimerSignals(Process& process, Moment moment) {
       }
       signal.taker = taker->tid;
       if (taker->state == TaskState::kWaiting) {
-        MakeReady(*taker, shm::WakeReason::kSignal, moment);
+        waker_.Wake(*taker, shm::WakeReason::kSignal, moment);
       }
     }
     process.timers.GiveBack(signal);
   }
-  if (sent) WakeForSignals(process, moment);
+  if (sent) wakes_.WakeForSignals(process, moment);
 }
 
-void Engine::SendTimerSignalsTo(const Task& task) {
+void TimerSignals::SendTo(const Task& task) {
   Process& process = *task.process;
   if (!process.timers.HasSignals()) return;
   for (const TimerSignal& signal : process.timers.TakeSignals()) {
@@ -89,9 +87,7 @@ void Engine::SendTimerSignalsTo(const Task& task) {
   }
 }
 
-// Finds out which timers' signals have been accepted. While one of a signal's number is pending
-// where it was sent to it counts as not: whose it is cannot be seen.
-void Engine::NoteAccepted(Process& process) {
+void TimerSignals::NoteAccepted(Process& process) {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
     const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
     const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;

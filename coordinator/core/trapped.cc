@@ -16,9 +16,9 @@ bool Engine::HandleTrapped(Task& task, const TrappedCall& call) {
   task.expects_kernel = false;
   bool looks_again = false;
   if (call.number == SYS_futex) {
-    HandleFutex(task, call);
+    futexes_.Handle(task, call);
   } else {
-    looks_again = HandleRawCall(task, call);
+    looks_again = raw_calls_.Handle(task, call);
   }
   Refresh(*task.process->robot);
   return looks_again;
@@ -75,21 +75,21 @@ void Engine::HandleStranger(const TrappedCall& call, Moment moment) {
   Process* process = LivingProcess(pid);
   if (process != nullptr && KnownTask(call.tid) == nullptr) {
     process->has_unmanaged_threads = true;
-    CarryOutWake(*process, call, moment);
+    futexes_.CarryOutWake(*process, call, moment);
   }
-  LetThrough(call);
+  guard_.LetThrough(call);
 }
 
 // At the end of a run the kernel carries out all calls, those that wait included.
 void Engine::ReleaseTrapped() {
   for (Task& task : table_.tasks()) {
     if (task.state == TaskState::kDead) continue;
-    if (task.trap_id != 0) ContinueTrap(task);
-    if (task.early_trap.has_value()) LetThrough(*task.early_trap);
+    if (task.trap_id != 0) guard_.Continue(task);
+    if (task.early_trap.has_value()) guard_.LetThrough(*task.early_trap);
     task.trap_id = 0;
     task.early_trap.reset();
   }
-  if (turn_.trapped.has_value()) LetThrough(*turn_.trapped);
+  if (turn_.trapped.has_value()) guard_.LetThrough(*turn_.trapped);
   turn_.trapped.reset();
 }
 

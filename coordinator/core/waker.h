@@ -39,6 +39,10 @@ class Waker {
   void Wake(Task& task, shm::WakeReason reason, Moment moment);
   // It acts again once it can miss nothing (kRead), or be too early for nobody (kWrite).
   void Hold(Task& task, shm::NotificationKind for_what);
+  // The same for a call that the kernel carries out next. Under callback nobody is ahead.
+  void HoldInCall(Task& task, shm::NotificationKind for_what) {
+    if (!run_.IsCallback()) Hold(task, for_what);
+  }
   // The beginning of a wait, and its end; nothing happens if the thread does not wait.
   void Wait(Task& task, tcs::Wait wait);
   void Leave(Task& task);

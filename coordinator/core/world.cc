@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
-#include "coordinator/channel/json_codec.h"
 #include "coordinator/os/file_errors.h"
 #include "coordinator/os/host.h"
 #include "shm/layout.h"
@@ -34,24 +34,36 @@ class Spent {
 
 }  // namespace
 
-std::string World::Open(const Scenario& scenario) {
+World::World(std::function<void(const std::string&)> warn)
+    : commands_(std::move(warn),
+                [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
+                  Apply(std::max(sent.ns(), settled_ns_) + latency.ns(), body, wrench);
+                }) {}
+
+std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
-  for (const SensorChannelSpec& spec : scenario.sensors) {
-    sensors_.push_back({spec, 0, {}});
+  commands_.Open(scenario_.commands);
+  if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
+  if (channels_.clock != nullptr) {
+    sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, *channels_.clock);
   }
-  for (const CommandChannelSpec& spec : scenario.commands) {
-    auto socket = UdpSocket::Bind(spec.listen);
-    if (auto* error = std::get_if<SocketError>(&socket)) return error->message;
-    command_sockets_.push_back(std::move(std::get<UdpSocket>(socket)));
-    command_fds_.push_back(command_sockets_.back().fd());
+  for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
+    const SensorChannelSpec& spec = scenario_.sensors[i];
+    std::vector<Sensors::Body> bodies;
+    for (const int body : spec.bodies) {
+      bodies.push_back({body, scenario_.world->bodies[static_cast<std::size_t>(body)].name});
+    }
+    sensors_.Add(std::move(bodies), {.period = spec.period, .latency = spec.latency},
+                 *channels_.outlets[i]);
   }
-  auto out = UdpSocket::ForSending();
-  if (auto* error = std::get_if<SocketError>(&out)) return error->message;
-  out_.emplace(std::move(std::get<UdpSocket>(out)));
   FindNextStop();
   return {};
+}
+
+void World::Begin(std::int64_t realtime_offset_ns) {
+  channels_.Begin(VirtualDuration::Nanoseconds(realtime_offset_ns));
 }
 
 std::string World::OpenCsv(const std::string& path) {
@@ -80,30 +92,9 @@ std::string World::CloseCsv() {
   return csv_ ? "" : NotWrittenWhole(csv_path_);
 }
 
-void World::OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns) {
-  if (!present()) return;
-  if (scenario_.dds_sensors.empty() && scenario_.dds_commands.empty() &&
-      !scenario_.clock.has_value()) {
-    return;
-  }
-  dds_.emplace(scenario_, ends, realtime_offset_ns, input_);
-  FindNextStop();
-}
-
 void World::FindNextStop() {
-  next_output_ns_ = shm::kNeverNs;
-  next_stop_ns_ = csv_.is_open() ? next_csv_ns_ : shm::kNeverNs;
-  for (const Sensor& sensor : sensors_) {
-    const std::int64_t arrival = sensor.on_the_way.empty()
-                                     ? sensor.next_ns + sensor.spec.latency.ns()
-                                     : sensor.on_the_way.front().first;
-    next_output_ns_ = std::min(next_output_ns_, arrival);
-    next_stop_ns_ = std::min({next_stop_ns_, arrival, sensor.next_ns});
-  }
-  if (dds_.has_value()) {
-    next_output_ns_ = std::min(next_output_ns_, dds_->NextOutputNs());
-    next_stop_ns_ = std::min(next_stop_ns_, dds_->NextSampleNs());
-  }
+  next_output_ns_ = sensors_.NextArrival().ns();
+  next_stop_ns_ = std::min(csv_.is_open() ? next_csv_ns_ : shm::kNeverNs, sensors_.NextStop().ns());
 }
 
 void World::WriteCsv() {
@@ -120,44 +111,14 @@ void World::WriteCsv() {
   if (csv_text_.size() > kCsvAtOnce) FlushCsv();
 }
 
-void World::Sample(Sensor& sensor) {
-  std::vector<NamedBodyState> states;
-  for (const int body : sensor.spec.bodies) {
-    const auto i = static_cast<std::size_t>(body);
-    states.push_back({scenario_.world->bodies[i].name, dynamics_->Read(body)});
-  }
-  sensor.on_the_way.emplace_back(progress_ns_ + sensor.spec.latency.ns(),
-                                 EncodeSensorDatagram(dynamics_->Now(), states));
-  sensor.next_ns += sensor.spec.period.ns();
-  ++samples_;
-}
-
-bool World::SendDue(Sensor& sensor) {
-  bool sent = false;
-  while (!sensor.on_the_way.empty() && sensor.on_the_way.front().first <= progress_ns_) {
-    // A full or absent receiver loses the datagram, as on a network.
-    (void)out_->SendTo(sensor.spec.to, sensor.on_the_way.front().second);
-    sensor.on_the_way.pop_front();
-    sent = true;
-  }
-  return sent;
-}
-
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
   checkpoint_.reset();
   progress_ns_ = settled_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
   dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
   WriteCsv();
-  bool sent = false;
-  for (Sensor& sensor : sensors_) {
-    if (sensor.next_ns <= progress_ns_) Sample(sensor);
-    sent |= SendDue(sensor);
-  }
-  if (dds_.has_value() && dds_->NextSampleNs() <= progress_ns_) {
-    samples_ += dds_->WriteDue(progress_ns_, [this](int body) { return dynamics_->Read(body); });
-    sent = true;
-  }
+  const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
+                                 [this](int body) { return dynamics_->Read(body); });
   FindNextStop();
   return sent;
 }
@@ -186,31 +147,41 @@ void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
   dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(progress_ns_));
 }
 
-void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
-  const Spent spent(&host_ns_);
-  const CommandChannelSpec& spec = scenario_.commands[index];
-  for (;;) {
-    auto received = command_sockets_[index].Receive();
-    auto* datagram = std::get_if<std::optional<Datagram>>(&received);
-    if (datagram == nullptr || !datagram->has_value()) return;
-    auto wrench = DecodeCommandDatagram((*datagram)->payload);
-    if (auto* error = std::get_if<DecodeError>(&wrench)) {
-      input_.Refused(spec.name, error->message);
-      continue;
-    }
-    input_.Took(spec.name);
-    Apply(std::max(now_ns, settled_ns_) + spec.latency.ns(), spec.body, std::get<Wrench>(wrench));
-    ++commands_;
-  }
+std::vector<int> World::command_fds() const {
+  std::vector<int> fds;
+  for (const auto& inlet : channels_.inlets) fds.push_back(inlet->fd());
+  return fds;
 }
 
-void World::TakeDdsCommands(std::int64_t now_ns) {
+void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
   const Spent spent(&host_ns_);
-  while (const auto commands = dds_->TakeCommands(now_ns)) {
-    for (const DdsChannels::Command& command : *commands) {
-      Apply(std::max(command.at_ns, settled_ns_), command.body, command.wrench);
-      ++commands_;
-    }
+  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
+}
+
+std::vector<std::string> World::CommandComplaints() const {
+  std::vector<std::string> complaints;
+  for (std::size_t i = 0; i < channels_.inlet_of.size(); ++i) {
+    const auto body = static_cast<std::size_t>(scenario_.commands[i].body);
+    complaints.push_back(commands_.ComplaintAbout(i, channels_.inlet_of[i]->PlaceOf(i),
+                                                  scenario_.world->bodies[body].name));
+  }
+  std::erase(complaints, "");
+  return complaints;
+}
+
+std::vector<std::string> World::SensorComplaints() const {
+  std::vector<std::string> complaints;
+  for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+    const std::string why = channels_.outlets[i]->WhyUnheard();
+    if (!why.empty()) complaints.push_back("channel " + scenario_.sensors[i].name + ": " + why);
+  }
+  return complaints;
+}
+
+void World::ReceiveUntold(std::int64_t now_ns) {
+  const Spent spent(&host_ns_);
+  for (const auto& inlet : channels_.inlets) {
+    if (inlet->fd() < 0) inlet->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
   }
 }
 

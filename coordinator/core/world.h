@@ -2,36 +2,35 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <fstream>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "coordinator/channel/udp_socket.h"
-#include "coordinator/core/command_input.h"
-#include "coordinator/core/dds_channels.h"
+#include "coordinator/channel/channels.h"
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/world/commands.h"
+#include "coordinator/world/sensors.h"
 
 namespace tcs {
 
 class World {
  public:
-  // `input` hears what comes in on the channels of commands; it outlives this.
-  explicit World(CommandInput& input) : input_(input) {}
+  // `warn` is told of what comes in on a channel and is no command.
+  explicit World(std::function<void(const std::string&)> warn);
 
-  // Binds the channels' ports. Empty on success, else one sentence.
-  std::string Open(const Scenario& scenario);
+  // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
+  // are for those on DDS; they outlive this.
+  std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends);
+  // The run begins; virtual CLOCK_REALTIME is so far ahead of virtual time.
+  void Begin(std::int64_t realtime_offset_ns);
 
   // Where the body states are written to; none without a world. Empty on success, else one
   // sentence.
   std::string OpenCsv(const std::string& path);
   void FlushCsv();
   std::string CloseCsv();
-
-  // The channels on DDS, once there are such endpoints; they outlive this.
-  void OpenDds(dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns);
 
   bool present() const { return dynamics_ != nullptr; }
   std::int64_t progress_ns() const { return progress_ns_; }
@@ -47,32 +46,27 @@ class World {
   // again.
   void Lead(std::int64_t settled_ns, std::int64_t to_ns);
 
-  const std::vector<int>& command_fds() const { return command_fds_; }
-  // Applies what has arrived on command channel `index` at virtual time `now_ns`.
+  // Where commands come in, by number: to be read from when they are readable.
+  std::vector<int> command_fds() const;
+  // Applies what has arrived there at virtual time `now_ns`.
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
-
-  bool speaks_dds() const { return dds_.has_value(); }
-  // Applies what has been written by `now_ns` to command channels on DDS.
-  void TakeDdsCommands(std::int64_t now_ns);
+  // Applies what has been sent by `now_ns` to where no descriptor tells of it.
+  void ReceiveUntold(std::int64_t now_ns);
 
   // Of the coordinator's processor time, what physics and channels took.
   std::int64_t host_ns() const { return host_ns_; }
-  std::int64_t commands() const { return commands_; }
-  std::int64_t samples() const { return samples_; }
+  std::int64_t commands() const { return commands_.taken(); }
+  std::int64_t samples() const { return sensors_.samples(); }
+  // At the run's end, a sentence each: channels of commands where nothing of use came in, and of
+  // sensors that nobody can have heard.
+  std::vector<std::string> CommandComplaints() const;
+  std::vector<std::string> SensorComplaints() const;
 
  private:
-  struct Sensor {
-    SensorChannelSpec spec;
-    std::int64_t next_ns = 0;                                     // sample
-    std::deque<std::pair<std::int64_t, std::string>> on_the_way;  // (arrival, datagram)
-  };
   void WriteCsv();
-  void Sample(Sensor& sensor);
-  bool SendDue(Sensor& sensor);
   void FindNextStop();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
-  CommandInput& input_;
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
@@ -87,15 +81,13 @@ class World {
   };
   std::unique_ptr<Dynamics::Checkpoint> checkpoint_;
   std::vector<TimedCommand> since_checkpoint_;
-  std::vector<Sensor> sensors_;
-  std::vector<UdpSocket> command_sockets_;
-  std::vector<int> command_fds_;
-  std::optional<UdpSocket> out_;
-  std::optional<DdsChannels> dds_;
+  Channels channels_;
+  Sensors sensors_;
+  Commands commands_;
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
-  std::int64_t host_ns_ = 0, commands_ = 0, samples_ = 0;
+  std::int64_t host_ns_ = 0;
 };
 
 }  // namespace tcs

@@ -80,6 +80,25 @@ void TakeNoteBack() {
   if (g_state != nullptr) g_state->note.store(-1);
 }
 
+void RemoveIfKilled(const std::string& path) {
+  if (g_state == nullptr || path.size() >= Removal::kMostPath) return;
+  for (Removal& removal : g_state->removals) {
+    if (removal.is_set.load()) continue;
+    memcpy(removal.path, path.c_str(), path.size() + 1);
+    removal.is_set.store(true);
+    return;
+  }
+}
+
+// First the file: were this process killed between the two, the file would go, too.
+void RemoveNow(const std::string& path) {
+  unlink(path.c_str());
+  if (g_state == nullptr) return;
+  for (Removal& removal : g_state->removals) {
+    if (removal.is_set.load() && path == removal.path) removal.is_set.store(false);
+  }
+}
+
 // By name: of a process that is not dumpable nobody may ask which program it executes.
 std::vector<pid_t> GuardsOf(pid_t coordinator) {
   std::vector<pid_t> guards;

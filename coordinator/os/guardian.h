@@ -50,6 +50,11 @@ void Beat();
 void LeaveNote(const std::string& path, const std::string& text);
 void TakeNoteBack();
 
+// A file that must not outlive the run: the keeper removes it if `coordinate` ends without
+// RemoveNow. Of a few hundred, that is; of the rest a killed run leaves files.
+void RemoveIfKilled(const std::string& path);
+void RemoveNow(const std::string& path);
+
 // tcsim's own processes around and above this one, which its clients are not to touch.
 std::vector<pid_t> GuardsOf(pid_t coordinator);
 

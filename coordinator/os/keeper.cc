@@ -180,6 +180,9 @@ void EndWhatIsLeft(int status, GuardedState* state) {
   const int cpu = state->clients_cpu.load();
   if (WIFSIGNALED(status) && cpu >= 0) LowerStraysOn(cpu, state->pid_max);
   KillDescendants();
+  for (Removal& removal : state->removals) {
+    if (removal.is_set.exchange(false)) unlink(removal.path);
+  }
   const int which = state->note.exchange(-1);
   if (which < 0) return;
   const Note& note = state->notes[which];

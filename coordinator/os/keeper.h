@@ -21,6 +21,13 @@ struct Note {
   char text[kMostText];
 };
 
+// A file that must not outlive the run (guardian.h).
+struct Removal {
+  static constexpr std::size_t kMostPath = 256;
+  std::atomic<bool> is_set{false};
+  char path[kMostPath];
+};
+
 // In memory that the three processes share.
 struct GuardedState {
   std::atomic<std::uint64_t> beats{0};  // of the coordinator
@@ -30,6 +37,7 @@ struct GuardedState {
   // The coordinator writes one while the other one counts: it may be killed in the middle.
   Note notes[2];
   std::atomic<int> note{-1};  // which counts; -1: none
+  Removal removals[256];
 };
 
 // In the keeper's process, which the guardian has just made with SIGCHLD, SIGTERM and SIGHUP

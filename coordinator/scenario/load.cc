@@ -82,8 +82,9 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
   LoadWorld(top, &scenario);
-  LoadRobots(top, {scenario.seed, FolderOf(path), overrides.result_directory}, &scenario);
-  LoadChannels(top, &scenario);
+  const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
+  LoadRobots(top, variables, &scenario);
+  LoadChannels(top, variables, &scenario);
   CheckDdsTransports(top, &scenario);
   return scenario;
 }

@@ -1,13 +1,11 @@
 // `channels` of a scenario file: how clients meet their robots.
-#include <arpa/inet.h>
-
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_sockets.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 
@@ -16,93 +14,80 @@ namespace {
 
 constexpr double kLowestRate = 1e-3;
 constexpr double kHighestRate = 1e6;
-constexpr std::string_view kAnyAddress = "0.0.0.0";
 
-UdpEndpoint LoadEndpoint(const YamlValue& value) {
-  constexpr std::string_view kExample = "write ADDRESS:PORT, like \"127.0.0.1:47010\"";
+enum class ChannelType { kUdpJson, kUnixJson, kDds };
+
+ChannelType LoadType(const YamlValue& value) {
   const std::string text = value.AsText();
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos) {
-    value.Fail("is '" + text + "', which has no port; " + std::string(kExample));
-  }
-  UdpEndpoint endpoint;
-  endpoint.host = text.substr(0, colon);
-  in_addr address;
-  if (inet_pton(AF_INET, endpoint.host.c_str(), &address) != 1) {
-    value.Fail("has the address '" + endpoint.host + "', which is not IPv4 in numbers; " +
-               std::string(kExample));
-  }
-  const std::string port = text.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
-  if (error != std::errc() || end != port.data() + port.size() || endpoint.port == 0) {
-    value.Fail("has the port '" + port + "', which is not a number from 1 to 65535; " +
-               std::string(kExample));
-  }
-  return endpoint;
+  if (text == "udp_json") return ChannelType::kUdpJson;
+  if (text == "unix_json") return ChannelType::kUnixJson;
+  if (text == "dds") return ChannelType::kDds;
+  value.Fail("is the unknown '" + text + "'; " +
+             Suggest(text, {"udp_json", "unix_json", "dds"}, "types"));
 }
 
-// The endpoints given so far: each belongs to one channel.
-class Endpoints {
- public:
-  UdpEndpoint Load(const YamlValue& value) {
-    const UdpEndpoint endpoint = LoadEndpoint(value);
-    for (const Use& use : uses_) {
-      const bool same_host = use.endpoint.host == endpoint.host ||
-                             use.endpoint.host == kAnyAddress || endpoint.host == kAnyAddress;
-      if (use.endpoint.port == endpoint.port && same_host) {
-        value.Fail("uses port " + std::to_string(endpoint.port) + " again, which is that of " +
-                   use.name + " " + use.place.Reference() +
-                   "; give each channel a port of its own");
-      }
-    }
-    uses_.push_back({endpoint, value.name(), value.place()});
-    return endpoint;
-  }
-
- private:
-  struct Use {
-    UdpEndpoint endpoint;
-    std::string name;
-    Place place;
-  };
-  std::vector<Use> uses_;
+// What is taken by the channels so far.
+struct Ends {
+  UdpEndpoints udp;
+  UnixNames unix_names;
+  DdsTopics topics;
 };
 
-SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value,
-                              const Scenario& scenario, Endpoints* endpoints) {
+SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
+                              const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  map.AllowOnly({"bodies", "rate", "to", "latency"});
+  std::vector<std::string> keys = {"bodies", "rate", "latency"};
+  if (type == ChannelType::kDds) {
+    keys.insert(keys.end(), {"message", "topic", "domain", "qos"});
+  } else {
+    keys.push_back("to");
+  }
+  map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
   channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  const YamlValue& to = map.Require("to", "to: \"127.0.0.1:47010\"");
-  channel.to = endpoints->Load(to);
-  if (channel.to.host == kAnyAddress) {
-    to.Fail("has the address 0.0.0.0, to which nothing can be sent; name one, like 127.0.0.1");
+  switch (type) {
+    case ChannelType::kUdpJson:
+      channel.to = ends->udp.LoadReceiver(map.Require("to", "to: \"127.0.0.1:47010\""));
+      break;
+    case ChannelType::kUnixJson:
+      channel.to = ends->unix_names.Load(map.Require("to", "to: eyes.sock"));
+      break;
+    case ChannelType::kDds:
+      channel.to = LoadDdsSensorEnd(map, channel, &ends->topics);
+      break;
   }
   return channel;
 }
 
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
-                                const Scenario& scenario, Endpoints* endpoints) {
+                                ChannelType type, const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  map.AllowOnly({"body", "listen", "latency"});
+  std::vector<std::string> keys = {"body", "latency"};
+  if (type == ChannelType::kDds) {
+    keys.insert(keys.end(), {"message", "topic", "domain", "qos"});
+  } else {
+    keys.push_back("listen");
+  }
+  map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
   channel.body = FindBody(map.Require("body", "body: predator"), scenario);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  channel.listen = endpoints->Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
-  return channel;
-}
-
-bool IsDds(const YamlValue& type) {
-  const std::string text = type.AsText();
-  if (text != "dds" && text != "udp_json") {
-    type.Fail("is the unknown '" + text + "'; " + Suggest(text, {"udp_json", "dds"}, "types"));
+  switch (type) {
+    case ChannelType::kUdpJson:
+      channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
+      break;
+    case ChannelType::kUnixJson:
+      channel.from = ends->unix_names.Load(map.Require("listen", "listen: hands.sock"));
+      break;
+    case ChannelType::kDds:
+      channel.from = LoadDdsCommandEnd(map, &ends->topics);
+      break;
   }
-  return text == "dds";
+  return channel;
 }
 
 }  // namespace
@@ -127,10 +112,9 @@ std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario) {
   return bodies;
 }
 
-void LoadChannels(const YamlMap& top, Scenario* scenario) {
-  Endpoints endpoints;
-  DdsTopics topics;
-  if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &topics);
+void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario) {
+  Ends ends{{}, UnixNames(variables), {}};
+  if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &ends.topics);
   if (const YamlValue* ros = top.Find("ros")) scenario->ros = LoadRosRelease(*ros);
   const YamlValue* channels = top.Find("channels");
   if (channels == nullptr) return;
@@ -142,7 +126,7 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
     }
     const YamlMap map = entry.value.AsMap();
     map.AllowOnly({"type", "sensors", "commands"});
-    const bool is_dds = IsDds(map.Require("type", "type: udp_json"));
+    const ChannelType type = LoadType(map.Require("type", "type: udp_json"));
     const YamlValue* sensors = map.Find("sensors");
     const YamlValue* commands = map.Find("commands");
     if ((sensors == nullptr) == (commands == nullptr)) {
@@ -150,14 +134,10 @@ void LoadChannels(const YamlMap& top, Scenario* scenario) {
                            ? "carries nothing; add the key sensors or commands"
                            : "has both sensors and commands; make two channels of it");
     }
-    if (is_dds && sensors != nullptr) {
-      scenario->dds_sensors.push_back(LoadDdsSensors(entry, *sensors, *scenario, &topics));
-    } else if (is_dds) {
-      scenario->dds_commands.push_back(LoadDdsCommands(entry, *commands, *scenario, &topics));
-    } else if (sensors != nullptr) {
-      scenario->sensors.push_back(LoadSensors(entry, *sensors, *scenario, &endpoints));
+    if (sensors != nullptr) {
+      scenario->sensors.push_back(LoadSensors(entry, *sensors, type, *scenario, &ends));
     } else {
-      scenario->commands.push_back(LoadCommands(entry, *commands, *scenario, &endpoints));
+      scenario->commands.push_back(LoadCommands(entry, *commands, type, *scenario, &ends));
     }
   }
 }

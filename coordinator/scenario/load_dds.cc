@@ -133,41 +133,28 @@ void DdsTopics::Add(const YamlValue& value, const std::string& topic, int domain
   uses_.push_back({topic, domain, std::string(message), value.name(), value.place()});
 }
 
-DdsSensorSpec LoadDdsSensors(const YamlMap::Entry& entry, const YamlValue& value,
-                             const Scenario& scenario, DdsTopics* topics) {
-  const YamlMap map = value.AsMap();
-  map.AllowOnly({"bodies", "message", "topic", "rate", "latency", "domain", "qos"});
-  DdsSensorSpec sensor;
-  sensor.name = entry.key;
-  const YamlValue& bodies = map.Require("bodies", "bodies: [predator]");
-  sensor.bodies = FindBodies(bodies, scenario);
-  sensor.message = static_cast<dds::SensorMessage>(LoadMessage(
+DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& sensor,
+                              DdsTopics* topics) {
+  DdsSensorEnd to;
+  to.message = static_cast<dds::SensorMessage>(LoadMessage(
       map.Require("message", "message: nav_msgs/msg/Odometry"), dds::SensorMessageNames()));
-  const std::string& name = dds::NameOf(sensor.message);
-  if (sensor.bodies.size() > 1 && sensor.message != dds::SensorMessage::kJointState) {
-    bodies.Fail("names " + std::to_string(sensor.bodies.size()) + " bodies, but " + name +
-                " tells of one; make a channel for each");
+  const std::string& name = dds::NameOf(to.message);
+  if (sensor.bodies.size() > 1 && to.message != dds::SensorMessage::kJointState) {
+    map.Find("bodies")->Fail("names " + std::to_string(sensor.bodies.size()) + " bodies, but " +
+                             name + " tells of one; make a channel for each");
   }
-  if (const YamlValue* rate = map.Find("rate")) sensor.period = LoadPeriod(*rate);
-  if (const YamlValue* latency = map.Find("latency")) sensor.latency = latency->AsDuration();
-  sensor.end = LoadEnd(map, name, Side::kWriter, {}, topics);
-  CheckDeadline(map, sensor.end, sensor.period);
-  return sensor;
+  to.end = LoadEnd(map, name, Side::kWriter, {}, topics);
+  CheckDeadline(map, to.end, sensor.period);
+  return to;
 }
 
-DdsCommandSpec LoadDdsCommands(const YamlMap::Entry& entry, const YamlValue& value,
-                               const Scenario& scenario, DdsTopics* topics) {
-  const YamlMap map = value.AsMap();
-  map.AllowOnly({"body", "message", "topic", "latency", "domain", "qos"});
-  DdsCommandSpec command;
-  command.name = entry.key;
-  command.body = FindBody(map.Require("body", "body: predator"), scenario);
-  command.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
-  if (const YamlValue* latency = map.Find("latency")) command.latency = latency->AsDuration();
+DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, DdsTopics* topics) {
+  DdsCommandEnd from;
+  from.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
   // Best effort matches what every writer offers; on the way to the coordinator nothing is lost.
-  command.end.qos.reliability = dds::Reliability::kBestEffort;
-  command.end = LoadEnd(map, dds::NameOf(command.message), Side::kReader, command.end, topics);
-  return command;
+  from.end.qos.reliability = dds::Reliability::kBestEffort;
+  from.end = LoadEnd(map, dds::NameOf(from.message), Side::kReader, from.end, topics);
+  return from;
 }
 
 ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics) {

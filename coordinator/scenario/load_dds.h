@@ -29,10 +29,10 @@ class DdsTopics {
   std::vector<Use> uses_;
 };
 
-DdsSensorSpec LoadDdsSensors(const YamlMap::Entry& entry, const YamlValue& value,
-                             const Scenario& scenario, DdsTopics* topics);
-DdsCommandSpec LoadDdsCommands(const YamlMap::Entry& entry, const YamlValue& value,
-                               const Scenario& scenario, DdsTopics* topics);
+// `sensor` is what the channel says besides.
+DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& sensor,
+                              DdsTopics* topics);
+DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, DdsTopics* topics);
 ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
 
 dds::RosRelease LoadRosRelease(const YamlValue& value);

@@ -15,8 +15,12 @@ std::string NamesOfOwnTopics(const Scenario& scenario) {
   const auto add = [&names](const DdsTopicSpec& end) {
     if (std::find(names.begin(), names.end(), end.topic) == names.end()) names.push_back(end.topic);
   };
-  for (const DdsSensorSpec& sensor : scenario.dds_sensors) add(sensor.end);
-  for (const DdsCommandSpec& command : scenario.dds_commands) add(command.end);
+  for (const SensorChannelSpec& sensor : scenario.sensors) {
+    if (const auto* topic = std::get_if<DdsSensorEnd>(&sensor.to)) add(topic->end);
+  }
+  for (const CommandChannelSpec& command : scenario.commands) {
+    if (const auto* topic = std::get_if<DdsCommandEnd>(&command.from)) add(topic->end);
+  }
   if (scenario.clock.has_value()) add(scenario.clock->end);
   if (names.size() > kMostNames) {
     const std::size_t more = names.size() - (kMostNames - 1);

@@ -5,10 +5,12 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "coordinator/dds/qos.h"
@@ -87,23 +89,14 @@ struct UdpEndpoint {
   std::uint16_t port = 0;
 };
 
-// The state of `bodies`, sampled every `period` from time 0 on and sent `latency` later as one JSON
-// datagram.
-struct SensorChannelSpec {
-  std::string name;
-  std::vector<int> bodies;  // indices into world.bodies
-  VirtualDuration period = VirtualDuration::Milliseconds(10);
-  VirtualDuration latency{};
-  UdpEndpoint to;
-};
+// Of a UNIX socket: a file, or a name in the abstract namespace, which has no file.
+struct UnixName {
+  static constexpr std::size_t kLongest = 107;  // as the kernel has it
 
-// Datagrams received on `listen` are wrenches for `body`, applied at the virtual time of the send
-// plus `latency`.
-struct CommandChannelSpec {
-  std::string name;
-  int body = 0;
-  VirtualDuration latency{};
-  UdpEndpoint listen;
+  std::string name;  // an absolute path; without the '@' of an abstract one
+  bool is_abstract = false;
+
+  std::string Text() const { return is_abstract ? "@" + name : name; }
 };
 
 // The coordinator's end of a DDS topic.
@@ -113,24 +106,36 @@ struct DdsTopicSpec {
   dds::Qos qos;
 };
 
-// The state of `bodies`, sampled every `period` from time 0 on and written to the topic `latency`
-// later.
-struct DdsSensorSpec {
-  std::string name;
+struct DdsSensorEnd {
   DdsTopicSpec end;
   dds::SensorMessage message = dds::SensorMessage::kOdometry;
-  std::vector<int> bodies;  // indices into world.bodies; one, unless `message` tells of several
-  VirtualDuration period = VirtualDuration::Milliseconds(10);
-  VirtualDuration latency{};
 };
 
-// Samples of the topic move `body`, from the virtual time of the write plus `latency` on.
-struct DdsCommandSpec {
-  std::string name;
+struct DdsCommandEnd {
   DdsTopicSpec end;
   dds::CommandMessage message = dds::CommandMessage::kWrench;
+};
+
+// What carries a channel: an alternative for each transport (coordinator/channel/).
+using SensorEnd = std::variant<UdpEndpoint, UnixName, DdsSensorEnd>;    // where readings are sent
+using CommandEnd = std::variant<UdpEndpoint, UnixName, DdsCommandEnd>;  // where commands come in
+
+// The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
+// `latency` later.
+struct SensorChannelSpec {
+  std::string name;
+  std::vector<int> bodies;  // indices into world.bodies; at least one
+  VirtualDuration period = VirtualDuration::Milliseconds(10);
+  VirtualDuration latency{};
+  SensorEnd to;
+};
+
+// What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
+struct CommandChannelSpec {
+  std::string name;
   int body = 0;
   VirtualDuration latency{};
+  CommandEnd from;
 };
 
 // The virtual time as a topic, every `period` from time 0 on.
@@ -150,8 +155,6 @@ struct Scenario {
   std::vector<RobotSpec> robots;
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;
-  std::vector<DdsSensorSpec> dds_sensors;
-  std::vector<DdsCommandSpec> dds_commands;
   std::optional<ClockSpec> clock;
   dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =

@@ -19,7 +19,7 @@ void LoadWorld(const YamlMap& top, Scenario* scenario);
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
-void LoadChannels(const YamlMap& top, Scenario* scenario);
+void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
 // The index of the body that `value` names.
 int FindBody(const YamlValue& value, const Scenario& scenario);

@@ -1,10 +1,11 @@
-#include "coordinator/channel/json_codec.h"
+#include "coordinator/channel/json/json_codec.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace tcs {
@@ -15,13 +16,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string ComplaintAbout(std::string_view datagram) {
-  const auto result = DecodeCommandDatagram(datagram);
+  const auto result = DecodeCommand(datagram);
   const auto* error = std::get_if<DecodeError>(&result);
   return error != nullptr ? error->message : "";
 }
 
 Wrench Decoded(std::string_view datagram) {
-  const auto result = DecodeCommandDatagram(datagram);
+  const auto result = DecodeCommand(datagram);
   if (const auto* error = std::get_if<DecodeError>(&result)) {
     ADD_FAILURE() << error->message;
     return {};
@@ -29,12 +30,12 @@ Wrench Decoded(std::string_view datagram) {
   return std::get<Wrench>(result);
 }
 
-std::string Encoded(VirtualTime time, const std::vector<NamedBodyState>& bodies) {
-  return EncodeSensorDatagram(time, bodies);
+std::string Encoded(VirtualTime time, std::vector<BodyReading> bodies) {
+  return EncodeReading({time, std::move(bodies)});
 }
 
 TEST(SensorDatagram, NamesTimeFrameAndStates) {
-  NamedBodyState predator{"predator", {}};
+  BodyReading predator{"predator", {}};
   predator.state.position_m = {-5, 0.25, 1e-9};
   predator.state.linear_velocity_mps = {1, 2, 3};
   predator.state.angular_velocity_radps = {0, 0, 0.5};
@@ -66,7 +67,7 @@ TEST(SensorDatagram, DoublesReadBackAsTheyWere) {
     bits ^= bits >> 7;
     bits ^= bits << 17;
     const double value = std::ldexp(static_cast<double>(bits), i % 400 - 200);
-    NamedBodyState body{"b", {}};
+    BodyReading body{"b", {}};
     body.state.position_m = {value, -value, 1 / value};
     const std::string datagram = Encoded(VirtualTime(), {body});
     const char* at = datagram.c_str() + datagram.find("[") + 1;

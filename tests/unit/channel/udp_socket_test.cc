@@ -1,4 +1,4 @@
-#include "coordinator/channel/udp_socket.h"
+#include "coordinator/channel/udp/udp_socket.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -29,16 +29,16 @@ class LoadDdsTest : public testing::Test {
 
 TEST_F(LoadDdsTest, SensorsAreAsWritten) {
   const Scenario scenario = Load(kGoodDdsScenario);
-  EXPECT_TRUE(scenario.sensors.empty());
-  ASSERT_EQ(scenario.dds_sensors.size(), 2u);
-  const DdsSensorSpec& odometry = scenario.dds_sensors[0];
+  ASSERT_EQ(scenario.sensors.size(), 2u);
+  const SensorChannelSpec& odometry = scenario.sensors[0];
+  const auto& to = std::get<DdsSensorEnd>(odometry.to);
   EXPECT_EQ(odometry.name, "odometry");
-  EXPECT_EQ(odometry.message, dds::SensorMessage::kOdometry);
+  EXPECT_EQ(to.message, dds::SensorMessage::kOdometry);
   EXPECT_THAT(odometry.bodies, ElementsAre(1));
   EXPECT_EQ(odometry.period, Ms(5));
   EXPECT_EQ(odometry.latency, Ms(2));
-  EXPECT_EQ(odometry.end.topic, "/odom");
-  EXPECT_EQ(odometry.end.domain, 3);
+  EXPECT_EQ(to.end.topic, "/odom");
+  EXPECT_EQ(to.end.domain, 3);
   dds::Qos qos;
   qos.reliability = dds::Reliability::kBestEffort;
   qos.depth = 5;
@@ -46,40 +46,42 @@ TEST_F(LoadDdsTest, SensorsAreAsWritten) {
   qos.deadline = Ms(20);
   qos.lifespan = Ms(1000);
   qos.lease = Ms(3000);
-  EXPECT_EQ(odometry.end.qos, qos);
+  EXPECT_EQ(to.end.qos, qos);
 }
 
 TEST_F(LoadDdsTest, SensorsHaveDefaults) {
-  const DdsSensorSpec joints = Load(kGoodDdsScenario).dds_sensors.at(1);
-  EXPECT_EQ(joints.message, dds::SensorMessage::kJointState);
+  const SensorChannelSpec joints = Load(kGoodDdsScenario).sensors.at(1);
+  const auto& to = std::get<DdsSensorEnd>(joints.to);
+  EXPECT_EQ(to.message, dds::SensorMessage::kJointState);
   EXPECT_THAT(joints.bodies, ElementsAre(0, 1));
   EXPECT_EQ(joints.period, Ms(10));
   EXPECT_EQ(joints.latency, Ms(0));
-  EXPECT_EQ(joints.end.domain, 0);
-  EXPECT_EQ(joints.end.qos, dds::Qos());  // ROS 2's own: reliable, volatile, the last ten
+  EXPECT_EQ(to.end.domain, 0);
+  EXPECT_EQ(to.end.qos, dds::Qos());  // ROS 2's own: reliable, volatile, the last ten
 }
 
 TEST_F(LoadDdsTest, CommandsAreAsWritten) {
   const Scenario scenario = Load(kGoodDdsScenario);
-  EXPECT_TRUE(scenario.commands.empty());
-  ASSERT_EQ(scenario.dds_commands.size(), 2u);
-  const DdsCommandSpec& thrust = scenario.dds_commands[0];
+  ASSERT_EQ(scenario.commands.size(), 2u);
+  const CommandChannelSpec& thrust = scenario.commands[0];
+  const DdsTopicSpec& topic = std::get<DdsCommandEnd>(thrust.from).end;
   EXPECT_EQ(thrust.name, "thrust");
   EXPECT_EQ(thrust.body, 1);
   EXPECT_EQ(thrust.latency, Ms(3));
-  EXPECT_EQ(thrust.end.topic, "/cmd");
-  EXPECT_EQ(thrust.end.domain, 3);
-  EXPECT_EQ(thrust.end.qos.reliability, dds::Reliability::kReliable);
-  EXPECT_EQ(thrust.end.qos.history, dds::History::kKeepAll);
-  EXPECT_EQ(thrust.end.qos.deadline, Ms(1000));
+  EXPECT_EQ(topic.topic, "/cmd");
+  EXPECT_EQ(topic.domain, 3);
+  EXPECT_EQ(topic.qos.reliability, dds::Reliability::kReliable);
+  EXPECT_EQ(topic.qos.history, dds::History::kKeepAll);
+  EXPECT_EQ(topic.qos.deadline, Ms(1000));
 }
 
 TEST_F(LoadDdsTest, CommandsAreReadFromEveryWriter) {
-  const DdsCommandSpec push = Load(kGoodDdsScenario).dds_commands.at(1);
-  EXPECT_EQ(push.end.topic, "/push");
-  EXPECT_EQ(push.end.qos.reliability, dds::Reliability::kBestEffort);
-  EXPECT_EQ(push.end.qos.durability, dds::Durability::kVolatile);
-  EXPECT_EQ(push.end.qos.deadline, std::nullopt);
+  const CommandChannelSpec push = Load(kGoodDdsScenario).commands.at(1);
+  const DdsTopicSpec& topic = std::get<DdsCommandEnd>(push.from).end;
+  EXPECT_EQ(topic.topic, "/push");
+  EXPECT_EQ(topic.qos.reliability, dds::Reliability::kBestEffort);
+  EXPECT_EQ(topic.qos.durability, dds::Durability::kVolatile);
+  EXPECT_EQ(topic.qos.deadline, std::nullopt);
 }
 
 TEST_F(LoadDdsTest, TheClockIsAsWrittenOrWithDefaults) {
@@ -110,16 +112,17 @@ TEST_F(LoadDdsTest, ClientsTalkByEndpointsUnlessTold) {
 }
 
 TEST_F(LoadDdsTest, OneTopicMayHaveTwoTypesInTwoDomains) {
-  EXPECT_EQ(Load(WithReplaced("/push", "/odom", kGoodDdsScenario)).dds_commands[1].end.topic,
-            "/odom");
+  const Scenario scenario = Load(WithReplaced("/push", "/odom", kGoodDdsScenario));
+  EXPECT_EQ(std::get<DdsCommandEnd>(scenario.commands[1].from).end.topic, "/odom");
 }
 
 TEST_F(LoadDdsTest, ChannelsOfBothTypesStandSideBySide) {
   const Scenario scenario = Load(std::string(kGoodDdsScenario) +
                                  "  eyes:\n    type: udp_json\n"
                                  "    sensors: {bodies: [prey], to: \"127.0.0.1:47010\"}\n");
-  EXPECT_EQ(scenario.dds_sensors.size(), 2u);
-  EXPECT_EQ(scenario.sensors.size(), 1u);
+  ASSERT_EQ(scenario.sensors.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<DdsSensorEnd>(scenario.sensors[1].to));
+  EXPECT_TRUE(std::holds_alternative<UdpEndpoint>(scenario.sensors[2].to));
 }
 
 // It may have others to talk to, so it is no mistake.

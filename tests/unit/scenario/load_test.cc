@@ -96,14 +96,14 @@ TEST_F(LoadTest, TheChannelsAreAsWritten) {
   EXPECT_THAT(eyes.bodies, ElementsAre(0, 1));
   EXPECT_EQ(eyes.period, Ms(20));
   EXPECT_EQ(eyes.latency, Ms(2));
-  EXPECT_EQ(eyes.to.host, "127.0.0.1");
-  EXPECT_EQ(eyes.to.port, 47010);
+  EXPECT_EQ(std::get<UdpEndpoint>(eyes.to).host, "127.0.0.1");
+  EXPECT_EQ(std::get<UdpEndpoint>(eyes.to).port, 47010);
   ASSERT_EQ(scenario.commands.size(), 1u);
   const CommandChannelSpec& hands = scenario.commands[0];
   EXPECT_EQ(hands.name, "hands");
   EXPECT_EQ(hands.body, 1);
   EXPECT_EQ(hands.latency, Ms(3));
-  EXPECT_EQ(hands.listen.port, 47011);
+  EXPECT_EQ(std::get<UdpEndpoint>(hands.from).port, 47011);
 }
 
 TEST_F(LoadTest, WhatIsLeftOutHasDefaults) {

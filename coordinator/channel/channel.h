@@ -1,0 +1,85 @@
+// How programs meet their robot: what sensors read goes out at an Outlet, commands come in at an
+// Inlet. What carries both is a transport: a folder here, and a few lines in channels.cc.
+//
+// Outlets and inlets carry, no more. When a sensor is sampled, what it reads, and when a command
+// acts is none of their business but world/'s.
+//
+// Not thread-safe: the coordinator's thread calls them, and none of them waits.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "shm/virtual_time.h"
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+struct BodyReading {
+  std::string_view name;  // UTF-8; outlives the reading
+  BodyState state;        // finite
+};
+
+// What a sensor reads at an instant.
+struct Reading {
+  VirtualTime at;
+  std::vector<BodyReading> bodies;  // as the channel lists them
+};
+
+// Where the readings of one sensor go out.
+class Outlet {
+ public:
+  virtual ~Outlet() = default;
+
+  // The reading is to arrive at `arrives`, not before the ones sent earlier. True if it is out of
+  // the outlet's hands: others have it arrive then.
+  virtual bool Send(const Reading& reading, VirtualTime arrives) = 0;
+
+  // When the next of what it still has is due; never: it has nothing.
+  virtual VirtualTime NextDue() const = 0;
+  // Hands over what is due. True if there was anything.
+  virtual bool HandOver(VirtualTime now) = 0;
+
+  // At the run's end: why nothing of what was sent has reached anybody, and how to mend that, as a
+  // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
+  virtual std::string WhyUnheard() const { return {}; }
+};
+
+// An end that has been opened, or why it was not: one sentence.
+template <class End>
+using Opened = std::variant<std::unique_ptr<End>, std::string>;
+
+// Who is given what comes in. Channels are numbered as the scenario lists those of commands.
+class CommandSink {
+ public:
+  // A command that was sent at `sent`.
+  virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
+  // Something that is no command; `why` is a sentence.
+  virtual void Refuse(std::size_t channel, const std::string& why) = 0;
+
+ protected:
+  ~CommandSink() = default;
+};
+
+// Where commands come in, of one channel or of several.
+class Inlet {
+ public:
+  virtual ~Inlet() = default;
+
+  // Readable once something has come in; -1: it is asked again and again.
+  virtual int fd() const = 0;
+  // Gives away what has come in by `now`, in the order of sending.
+  virtual void Receive(VirtualTime now, CommandSink& sink) = 0;
+
+  // For a sentence about a channel of its: "nothing came in WHERE; let a client MEND".
+  struct Place {
+    std::string where, mend;
+  };
+  virtual Place PlaceOf(std::size_t channel) const = 0;
+};
+
+}  // namespace tcs

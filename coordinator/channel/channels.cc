@@ -1,0 +1,58 @@
+// The one place that knows all transports.
+#include "coordinator/channel/channels.h"
+
+#include <utility>
+#include <variant>
+
+#include "coordinator/channel/dds/dds_channels.h"
+#include "coordinator/channel/udp/udp_channel.h"
+#include "coordinator/channel/unix/unix_channel.h"
+
+namespace tcs {
+namespace {
+
+// A visitor for the alternatives of a variant.
+template <class... Cases>
+struct Either : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Either(Cases...) -> Either<Cases...>;
+
+}  // namespace
+
+std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
+  std::unique_ptr<DdsChannels> dds = DdsChannels::For(scenario, ends);
+  for (const SensorChannelSpec& spec : scenario.sensors) {
+    auto outlet =
+        std::visit(Either{[](const UdpEndpoint& to) { return OpenUdpOutlet(to); },
+                          [](const UnixName& to) { return OpenUnixOutlet(to); },
+                          [&](const DdsSensorEnd&) { return Opened<Outlet>(dds->OutletOf(spec)); }},
+                   spec.to);
+    if (auto* error = std::get_if<std::string>(&outlet)) return std::move(*error);
+    outlets.push_back(std::move(std::get<std::unique_ptr<Outlet>>(outlet)));
+  }
+  std::unique_ptr<Inlet> dds_commands = dds == nullptr ? nullptr : dds->Commands();
+  for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
+    auto inlet = std::visit(
+        Either{[i](const UdpEndpoint& from) { return OpenUdpInlet(from, i); },
+               [i](const UnixName& from) { return OpenUnixInlet(from, i); },
+               [](const DdsCommandEnd&) { return Opened<Inlet>(std::unique_ptr<Inlet>()); }},
+        scenario.commands[i].from);
+    if (auto* error = std::get_if<std::string>(&inlet)) return std::move(*error);
+    auto& own = std::get<std::unique_ptr<Inlet>>(inlet);
+    inlet_of.push_back(own == nullptr ? dds_commands.get() : own.get());
+    if (own != nullptr) inlets.push_back(std::move(own));
+  }
+  if (dds == nullptr) return {};
+  clock = dds->Clock();
+  inlets.push_back(std::move(dds_commands));
+  transports.push_back(std::move(dds));
+  return {};
+}
+
+void Channels::Begin(VirtualDuration realtime_offset) {
+  for (const auto& transport : transports) transport->Begin(realtime_offset);
+}
+
+}  // namespace tcs

@@ -1,0 +1,161 @@
+#include "coordinator/channel/dds/dds_channels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "coordinator/dds/robot_topics.h"
+
+namespace tcs {
+
+// Nothing stays here: the hub has it.
+class DdsChannels::SensorOutlet final : public Outlet {
+ public:
+  SensorOutlet(DdsChannels& transport, const SensorChannelSpec& spec, dds::SensorEncoder encoder)
+      : transport_(transport), spec_(spec), encoder_(std::move(encoder)) {}
+
+  void Begin() {
+    const auto& to = std::get<DdsSensorEnd>(spec_.to);
+    writer_ = transport_.Add(dds::EndpointKind::kWriter, to.end, dds::NameOf(to.message),
+                             spec_.bodies.front());
+  }
+
+  bool Send(const Reading& reading, VirtualTime arrives) override {
+    std::vector<BodyState> states;
+    for (const BodyReading& body : reading.bodies) states.push_back(body.state);
+    const std::int64_t stamp_ns = transport_.StampOf(reading.at);
+    const auto cdr = encoder_.Encode(reading.at, stamp_ns, states);
+    transport_.ends_.Write(writer_, cdr, stamp_ns, arrives.ns());
+    return true;
+  }
+  VirtualTime NextDue() const override { return VirtualTime::Never(); }
+  bool HandOver(VirtualTime) override { return false; }
+
+ private:
+  DdsChannels& transport_;
+  const SensorChannelSpec& spec_;
+  dds::SensorEncoder encoder_;
+  dds::OwnEndpoints::Index writer_ = 0;
+};
+
+class DdsChannels::ClockOutlet final : public Outlet {
+ public:
+  explicit ClockOutlet(DdsChannels& transport) : transport_(transport) {}
+
+  bool Send(const Reading& reading, VirtualTime arrives) override {
+    const std::int64_t stamp_ns = transport_.StampOf(reading.at);
+    transport_.ends_.Write(*transport_.clock_, dds::EncodeClock(stamp_ns), stamp_ns, arrives.ns());
+    return true;
+  }
+  VirtualTime NextDue() const override { return VirtualTime::Never(); }
+  bool HandOver(VirtualTime) override { return false; }
+
+ private:
+  DdsChannels& transport_;
+};
+
+class DdsChannels::CommandInlet final : public Inlet {
+ public:
+  explicit CommandInlet(DdsChannels& transport) : transport_(transport) {}
+
+  int fd() const override { return -1; }
+
+  void Receive(VirtualTime now, CommandSink& sink) override {
+    while (const auto sample = transport_.ends_.Take(now.ns())) {
+      for (const Actuator& actuator : transport_.actuators_) {
+        const auto& readers = sample->readers;
+        if (std::find(readers.begin(), readers.end(), actuator.reader) == readers.end()) continue;
+        Decode(actuator, *sample, sink);
+      }
+    }
+  }
+
+  Place PlaceOf(std::size_t channel) const override {
+    const auto& from = std::get<DdsCommandEnd>(transport_.scenario_.commands[channel].from);
+    return {"on " + from.end.topic, fmt::format("write {} there", dds::NameOf(from.message))};
+  }
+
+ private:
+  static void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
+                     CommandSink& sink) {
+    const auto wrench = dds::DecodeCommand(actuator.end->message, sample.cdr);
+    if (const auto* error = std::get_if<dds::MessageError>(&wrench)) {
+      sink.Refuse(actuator.channel,
+                  fmt::format("a sample on {} {}", actuator.end->end.topic, error->message));
+      return;
+    }
+    sink.Take(actuator.channel, VirtualTime::FromNanoseconds(sample.at_ns),
+              std::get<Wrench>(wrench));
+  }
+
+  DdsChannels& transport_;
+};
+
+std::unique_ptr<DdsChannels> DdsChannels::For(const Scenario& scenario, dds::OwnEndpoints& ends) {
+  const auto is_ours = [](const SensorChannelSpec& spec) {
+    return std::holds_alternative<DdsSensorEnd>(spec.to);
+  };
+  const auto commands_us = [](const CommandChannelSpec& spec) {
+    return std::holds_alternative<DdsCommandEnd>(spec.from);
+  };
+  if (!scenario.clock.has_value() &&
+      std::none_of(scenario.sensors.begin(), scenario.sensors.end(), is_ours) &&
+      std::none_of(scenario.commands.begin(), scenario.commands.end(), commands_us)) {
+    return nullptr;
+  }
+  return std::unique_ptr<DdsChannels>(new DdsChannels(scenario, ends));
+}
+
+std::unique_ptr<Outlet> DdsChannels::OutletOf(const SensorChannelSpec& spec) {
+  std::vector<std::string> bodies;
+  for (const int body : spec.bodies) {
+    bodies.push_back(scenario_.world->bodies[static_cast<std::size_t>(body)].name);
+  }
+  auto outlet = std::make_unique<SensorOutlet>(
+      *this, spec,
+      dds::SensorEncoder(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies),
+                         scenario_.world->gravity_mps2));
+  sensors_.push_back(outlet.get());
+  return outlet;
+}
+
+std::unique_ptr<Outlet> DdsChannels::Clock() {
+  if (!scenario_.clock.has_value()) return nullptr;
+  return std::make_unique<ClockOutlet>(*this);
+}
+
+std::unique_ptr<Inlet> DdsChannels::Commands() { return std::make_unique<CommandInlet>(*this); }
+
+void DdsChannels::Begin(VirtualDuration realtime_offset) {
+  realtime_offset_ = realtime_offset;
+  for (SensorOutlet* sensor : sensors_) sensor->Begin();
+  for (std::size_t i = 0; i < scenario_.commands.size(); ++i) {
+    const CommandChannelSpec& spec = scenario_.commands[i];
+    const auto* from = std::get_if<DdsCommandEnd>(&spec.from);
+    if (from == nullptr) continue;
+    actuators_.push_back(
+        {i, from,
+         Add(dds::EndpointKind::kReader, from->end, dds::NameOf(from->message), spec.body)});
+  }
+  if (scenario_.clock.has_value()) {
+    clock_ = Add(dds::EndpointKind::kWriter, scenario_.clock->end, dds::kClockMessageName, {});
+  }
+  nodes_.Announce(ends_, realtime_offset.ns());
+}
+
+dds::OwnEndpoints::Index DdsChannels::Add(dds::EndpointKind kind, const DdsTopicSpec& end,
+                                          std::string_view message, std::optional<int> body) {
+  const dds::Endpoint endpoint{.kind = kind,
+                               .topic = dds::DdsTopic(end.topic),
+                               .type = dds::DdsType(message),
+                               .keyless = true,
+                               .qos = end.qos};
+  const dds::OwnEndpoints::Index index = ends_.Add(endpoint, end.domain, 0);
+  nodes_.Add(ends_, index, kind, end.domain, body);
+  return index;
+}
+
+}  // namespace tcs

@@ -1,0 +1,29 @@
+#include "coordinator/channel/json/json_channel.h"
+
+#include <variant>
+
+#include "coordinator/channel/json/json_codec.h"
+
+namespace tcs {
+
+bool JsonOutlet::Send(const Reading& reading, VirtualTime arrives) {
+  on_the_way_.Add(EncodeReading(reading), arrives);
+  return false;
+}
+
+bool JsonOutlet::HandOver(VirtualTime now) {
+  return on_the_way_.Arrive(now, [this](const std::string& datagram) { sender_->Send(datagram); });
+}
+
+void JsonInlet::Receive(VirtualTime now, CommandSink& sink) {
+  while (const auto datagram = receiver_->Receive()) {
+    const auto wrench = DecodeCommand(*datagram);
+    if (const auto* error = std::get_if<DecodeError>(&wrench)) {
+      sink.Refuse(channel_, "the command datagram " + error->message);
+    } else {
+      sink.Take(channel_, now, std::get<Wrench>(wrench));
+    }
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,64 @@
+// Sensors and commands as JSON (json_codec.h), a datagram each, whatever carries datagrams.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "coordinator/channel/channel.h"
+#include "coordinator/channel/on_the_way.h"
+
+namespace tcs {
+
+class DatagramSender {
+ public:
+  virtual ~DatagramSender() = default;
+  // Without waiting. What nobody has room for is lost, as on a network.
+  virtual void Send(const std::string& datagram) = 0;
+  virtual std::string WhyUnheard() const = 0;  // as Outlet's
+};
+
+class DatagramReceiver {
+ public:
+  virtual ~DatagramReceiver() = default;
+  virtual int fd() const = 0;
+  // The next one, whole; none if nothing has come.
+  virtual std::optional<std::string> Receive() = 0;
+  // "on 127.0.0.1:47011"
+  virtual std::string Where() const = 0;
+};
+
+class JsonOutlet final : public Outlet {
+ public:
+  explicit JsonOutlet(std::unique_ptr<DatagramSender> sender) : sender_(std::move(sender)) {}
+
+  bool Send(const Reading& reading, VirtualTime arrives) override;
+  VirtualTime NextDue() const override { return on_the_way_.NextDue(); }
+  bool HandOver(VirtualTime now) override;
+  std::string WhyUnheard() const override { return sender_->WhyUnheard(); }
+
+ private:
+  std::unique_ptr<DatagramSender> sender_;
+  OnTheWay on_the_way_;
+};
+
+class JsonInlet final : public Inlet {
+ public:
+  // Of the scenario's commands, the channel of that number.
+  JsonInlet(std::unique_ptr<DatagramReceiver> receiver, std::size_t channel)
+      : receiver_(std::move(receiver)), channel_(channel) {}
+
+  int fd() const override { return receiver_->fd(); }
+  void Receive(VirtualTime now, CommandSink& sink) override;
+  Place PlaceOf(std::size_t) const override {
+    return {receiver_->Where(), "send its commands there"};
+  }
+
+ private:
+  std::unique_ptr<DatagramReceiver> receiver_;
+  std::size_t channel_;
+};
+
+}  // namespace tcs

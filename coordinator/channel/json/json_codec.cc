@@ -1,0 +1,113 @@
+#include "coordinator/channel/json/json_codec.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace tcs {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::string_view kExample = R"({"force": [0, 0, 0], "torque": [0, 0, 0]})";
+constexpr std::size_t kLongestQuote = 40;
+
+// Somebody else's text, short and printable.
+std::string Quote(const std::string& text) {
+  const bool cut = text.size() > kLongestQuote;
+  return Json(cut ? text.substr(0, kLongestQuote) + "..." : text)
+      .dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+DecodeError Mistake(const std::string& what) {
+  return DecodeError{what + "; send an object like " + std::string(kExample)};
+}
+
+// Three finite numbers; none if `value` is anything else.
+std::optional<std::array<double, 3>> Vector3(const Json& value) {
+  if (!value.is_array() || value.size() != 3) return std::nullopt;
+  std::array<double, 3> vector{};
+  for (std::size_t i = 0; i < vector.size(); ++i) {
+    if (!value[i].is_number()) return std::nullopt;
+    vector[i] = value[i].get<double>();
+    if (!std::isfinite(vector[i])) return std::nullopt;
+  }
+  return vector;
+}
+
+// In as few digits as read back as the same double, and with a point or an exponent: JSON readers
+// of some languages make an integer of what has neither.
+void AppendNumber(double value, std::string& text) {
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
+  }
+  const std::size_t begin = text.size();
+  fmt::format_to(std::back_inserter(text), "{}", value);
+  if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
+}
+
+void AppendList(std::span<const double> values, std::string& text) {
+  char before = '[';
+  for (const double value : values) {
+    text += std::exchange(before, ',');
+    AppendNumber(value, text);
+  }
+  text += ']';
+}
+
+}  // namespace
+
+// Written out rather than built as a tree first: a fleet sends thousands of these a second.
+std::string EncodeReading(const Reading& reading) {
+  // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
+  std::string text = R"({"time":)";
+  AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
+  text += R"(,"frame_id":"world","bodies":{)";
+  for (const BodyReading& body : reading.bodies) {
+    if (&body != &reading.bodies.front()) text += ',';
+    text += Json(body.name).dump() + R"(:{"position":)";
+    AppendList(body.state.position_m, text);
+    text += R"(,"orientation":)";
+    AppendList(body.state.orientation_xyzw, text);
+    text += R"(,"linear_velocity":)";
+    AppendList(body.state.linear_velocity_mps, text);
+    text += R"(,"angular_velocity":)";
+    AppendList(body.state.angular_velocity_radps, text);
+    text += '}';
+  }
+  return text += "}}";
+}
+
+std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
+  Json command;
+  try {
+    command = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    return Mistake("is not valid JSON at byte " + std::to_string(error.byte));
+  } catch (const Json::out_of_range&) {
+    return Mistake("holds a number too large for a double");
+  }
+  if (!command.is_object()) return Mistake(std::string("is of the type ") + command.type_name());
+
+  Wrench wrench;
+  for (const auto& [key, value] : command.items()) {
+    const bool is_force = key == "force";
+    if (!is_force && key != "torque") {
+      return Mistake("has the unknown key " + Quote(key));
+    }
+    const auto vector = Vector3(value);
+    if (!vector) return Mistake("has a " + key + " that is not a list of three finite numbers");
+    (is_force ? wrench.force_n : wrench.torque_nm) = *vector;
+  }
+  return wrench;
+}
+
+}  // namespace tcs

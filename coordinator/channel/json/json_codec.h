@@ -1,0 +1,30 @@
+// What a robot's programs and their body tell each other, as JSON: one object each time
+// (docs/SCENARIO.md). No transport here: UDP and others carry it.
+//
+// Units and frames as in simbody_bridge/dynamics.h: SI, world frame, quaternions x y z w. Pure
+// functions: equal input gives equal bytes, whatever the locale.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "coordinator/channel/channel.h"
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+// {"time":1.23,"frame_id":"world","bodies":{"NAME":{"position":[x,y,z],"orientation":[x,y,z,w],
+// "linear_velocity":[x,y,z],"angular_velocity":[x,y,z]}}}: bodies in the order given, time in
+// seconds, no line end. Every double reads back as the same double.
+[[nodiscard]] std::string EncodeReading(const Reading& reading);
+
+struct DecodeError {
+  std::string message;  // the rest of a sentence that begins with what was decoded; quotes little
+};
+
+// {"force":[x,y,z],"torque":[x,y,z]}; either may be left out and is zero then. The text is
+// whatever somebody sent: anything else, numbers that are not finite included, is an error.
+[[nodiscard]] std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text);
+
+}  // namespace tcs

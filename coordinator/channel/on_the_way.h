@@ -1,0 +1,42 @@
+// Messages that have been sent and have not arrived yet, in order.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <utility>
+
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+class OnTheWay {
+ public:
+  // Not before the last one.
+  void Add(std::string message, VirtualTime arrives) {
+    messages_.push_back({arrives, std::move(message)});
+  }
+
+  VirtualTime NextDue() const {
+    return messages_.empty() ? VirtualTime::Never() : messages_.front().arrives;
+  }
+
+  // Calls `receive` with each that has arrived by `now`. True if there was one.
+  template <class Receive>
+  bool Arrive(VirtualTime now, Receive receive) {
+    bool any = false;
+    for (; NextDue() <= now; any = true) {
+      receive(messages_.front().text);
+      messages_.pop_front();
+    }
+    return any;
+  }
+
+ private:
+  struct Message {
+    VirtualTime arrives;
+    std::string text;
+  };
+  std::deque<Message> messages_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,73 @@
+#include "coordinator/channel/udp/udp_channel.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "coordinator/channel/json/json_channel.h"
+#include "coordinator/channel/udp/udp_socket.h"
+
+namespace tcs {
+namespace {
+
+std::string NameOf(const UdpEndpoint& endpoint) {
+  return fmt::format("{}:{}", endpoint.host, endpoint.port);
+}
+
+class UdpSender final : public DatagramSender {
+ public:
+  UdpSender(UdpSocket socket, UdpEndpoint to) : socket_(std::move(socket)), to_(std::move(to)) {}
+
+  void Send(const std::string& datagram) override { (void)socket_.SendTo(to_, datagram); }
+  std::string WhyUnheard() const override {
+    if (IsListenedTo(to_)) return {};
+    return fmt::format(
+        "nobody listens on {}, so that its samples are lost; let a client bind that port",
+        NameOf(to_));
+  }
+
+ private:
+  UdpSocket socket_;
+  UdpEndpoint to_;
+};
+
+class UdpReceiver final : public DatagramReceiver {
+ public:
+  UdpReceiver(UdpSocket socket, UdpEndpoint from)
+      : socket_(std::move(socket)), from_(std::move(from)) {}
+
+  int fd() const override { return socket_.fd(); }
+  std::optional<std::string> Receive() override {
+    auto received = socket_.Receive();
+    auto* datagram = std::get_if<std::optional<Datagram>>(&received);
+    if (datagram == nullptr || !datagram->has_value()) return std::nullopt;
+    return std::move((*datagram)->payload);
+  }
+  std::string Where() const override { return "on " + NameOf(from_); }
+
+ private:
+  UdpSocket socket_;
+  UdpEndpoint from_;
+};
+
+}  // namespace
+
+Opened<Outlet> OpenUdpOutlet(const UdpEndpoint& to) {
+  auto socket = UdpSocket::ForSending();
+  if (const auto* error = std::get_if<SocketError>(&socket)) return error->message;
+  return std::make_unique<JsonOutlet>(
+      std::make_unique<UdpSender>(std::move(std::get<UdpSocket>(socket)), to));
+}
+
+Opened<Inlet> OpenUdpInlet(const UdpEndpoint& from, std::size_t channel) {
+  auto socket = UdpSocket::Bind(from);
+  if (const auto* error = std::get_if<SocketError>(&socket)) return error->message;
+  return std::make_unique<JsonInlet>(
+      std::make_unique<UdpReceiver>(std::move(std::get<UdpSocket>(socket)), from), channel);
+}
+
+}  // namespace tcs

@@ -1,0 +1,131 @@
+#include "coordinator/channel/unix/unix_socket.h"
+
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+#include "coordinator/os/guardian.h"
+
+namespace tcs {
+namespace {
+
+struct Address {
+  sockaddr_un name{};
+  socklen_t size = 0;
+
+  // It fits: the scenario's loader has seen to that.
+  explicit Address(const UnixName& of) {
+    name.sun_family = AF_UNIX;
+    memcpy(name.sun_path + (of.is_abstract ? 1 : 0), of.name.data(), of.name.size());
+    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + of.name.size() + 1);
+  }
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&name); }
+};
+
+std::variant<UniqueFd, std::string> Open() {
+  UniqueFd fd(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (fd) return fd;
+  return std::string("cannot open a UNIX socket: ") + strerror(errno);
+}
+
+std::string CannotBind(const UnixName& name, int error) {
+  const std::string what = "the UNIX socket '" + name.Text() + "'";
+  switch (error) {
+    case EADDRINUSE:
+      return what +
+             " is taken by another program; end that one, or choose another path (with "
+             "${result_dir} in it each run has its own)";
+    case ENOENT:
+    case ENOTDIR:
+      return what + " cannot be made, because its folder is not there; make it, or choose another";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return what + " cannot be made: " + strerror(error) + "; choose a folder that you may write";
+    default:
+      return what + " cannot be made: " + strerror(error);
+  }
+}
+
+// Of a run that has ended without taking it along. 0, or an errno.
+int RemoveStale(const UnixName& name) {
+  struct stat status;
+  if (lstat(name.name.c_str(), &status) != 0) return errno;
+  if (!S_ISSOCK(status.st_mode)) return EEXIST;
+  if (IsListenedTo(name)) return EADDRINUSE;
+  return unlink(name.name.c_str()) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+std::variant<UnixSocket, std::string> UnixSocket::Bind(const UnixName& name) {
+  auto opened = Open();
+  if (auto* error = std::get_if<std::string>(&opened)) return std::move(*error);
+  UnixSocket bound(std::move(std::get<UniqueFd>(opened)));
+  const Address address(name);
+  int error = bind(bound.fd(), address.get(), address.size) == 0 ? 0 : errno;
+  if (error == EADDRINUSE && !name.is_abstract) {
+    error = RemoveStale(name);
+    if (error == EEXIST) {
+      return "'" + name.Text() +
+             "' is there and is no socket, so that no UNIX socket can be made of it; choose "
+             "another path";
+    }
+    if (error == 0) error = bind(bound.fd(), address.get(), address.size) == 0 ? 0 : errno;
+  }
+  if (error != 0) return CannotBind(name, error);
+  if (!name.is_abstract) {
+    bound.file_ = name.name;
+    RemoveIfKilled(bound.file_);
+  }
+  return bound;
+}
+
+std::variant<UnixSocket, std::string> UnixSocket::ForSending() {
+  auto opened = Open();
+  if (auto* error = std::get_if<std::string>(&opened)) return std::move(*error);
+  return UnixSocket(std::move(std::get<UniqueFd>(opened)));
+}
+
+UnixSocket::~UnixSocket() {
+  if (!file_.empty()) RemoveNow(file_);
+}
+
+bool UnixSocket::SendTo(const UnixName& to, std::string_view payload) {
+  const Address address(to);
+  ssize_t sent;
+  do {
+    sent = sendto(fd(), payload.data(), payload.size(), MSG_NOSIGNAL, address.get(), address.size);
+  } while (sent < 0 && errno == EINTR);
+  return sent >= 0;
+}
+
+std::optional<std::string> UnixSocket::Receive() {
+  for (;;) {
+    // How long it is the kernel says without handing it out; there is no upper bound to rely on.
+    const ssize_t size = recv(fd(), nullptr, 0, MSG_PEEK | MSG_TRUNC);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) return std::nullopt;
+    std::string datagram(static_cast<std::size_t>(size), '\0');
+    const ssize_t got = recv(fd(), datagram.data(), datagram.size(), 0);
+    if (got < 0) return std::nullopt;
+    datagram.resize(static_cast<std::size_t>(got));
+    return datagram;
+  }
+}
+
+// To be connected to is nothing that whoever has the name notices.
+bool IsListenedTo(const UnixName& name) {
+  auto opened = Open();
+  if (std::holds_alternative<std::string>(opened)) return true;
+  const Address address(name);
+  return connect(std::get<UniqueFd>(opened).get(), address.get(), address.size) == 0 ||
+         (errno != ECONNREFUSED && errno != ENOENT);
+}
+
+}  // namespace tcs

@@ -1,0 +1,52 @@
+// A non-blocking UNIX datagram socket, and the file that it has.
+//
+// Owns its descriptor, which is close-on-exec, and the file: it is removed with the socket, and by
+// the keeper if this process is killed (os/guardian.h). Movable. One thread at a time. Failures
+// that a user can mend come back as sentences.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class UnixSocket {
+ public:
+  // A socket that receives what is sent to `name`. A file of a socket that nobody has open any more
+  // is replaced.
+  [[nodiscard]] static std::variant<UnixSocket, std::string> Bind(const UnixName& name);
+  // A socket for sending only; it has no name.
+  [[nodiscard]] static std::variant<UnixSocket, std::string> ForSending();
+
+  UnixSocket(UnixSocket&& other) noexcept
+      : fd_(std::move(other.fd_)), file_(std::exchange(other.file_, {})) {}
+  UnixSocket& operator=(UnixSocket&&) = delete;
+  ~UnixSocket();
+
+  // For epoll; stays the socket's.
+  int fd() const { return fd_.get(); }
+
+  // Sends one datagram without waiting. False where nobody has the name, or no room for it: errno
+  // says which.
+  [[nodiscard]] bool SendTo(const UnixName& to, std::string_view payload);
+
+  // The next datagram, whole; none if nothing has come.
+  [[nodiscard]] std::optional<std::string> Receive();
+
+ private:
+  explicit UnixSocket(UniqueFd fd) : fd_(std::move(fd)) {}
+
+  UniqueFd fd_;
+  std::string file_;  // its path; empty: it has none
+};
+
+// Whether some socket gets what is sent to `name`.
+[[nodiscard]] bool IsListenedTo(const UnixName& name);
+
+}  // namespace tcs

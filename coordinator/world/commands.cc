@@ -1,0 +1,37 @@
+#include "coordinator/world/commands.h"
+
+#include <fmt/format.h>
+
+namespace tcs {
+
+void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
+  for (const CommandChannelSpec& spec : specs) channels_.push_back({spec});
+}
+
+void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  act_(sent, on.spec.latency, on.spec.body, wrench);
+}
+
+void Commands::Refuse(std::size_t channel, const std::string& why) {
+  Channel& on = channels_[channel];
+  if (++on.refused == 1) warn_("channel " + on.spec.name + ": " + why);
+}
+
+std::string Commands::ComplaintAbout(std::size_t channel, const Inlet::Place& place,
+                                     const std::string& body) const {
+  const Channel& on = channels_[channel];
+  if (on.taken + on.refused == 0) {
+    return fmt::format(
+        "channel {}: nothing came in {}, so that no command moved {}; let a client "
+        "{}",
+        on.spec.name, place.where, body, place.mend);
+  }
+  if (on.refused <= 1) return {};
+  return fmt::format("channel {}: {} of the {} messages that came in were no commands",
+                     on.spec.name, on.refused, on.taken + on.refused);
+}
+
+}  // namespace tcs

@@ -1,0 +1,51 @@
+// The commands of a run: what comes in on their channels, and when it acts. Keeps account of it,
+// for the sentences about channels where nothing came in, or nothing of use.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "coordinator/channel/channel.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class Commands final : public CommandSink {
+ public:
+  // From `sent` plus `latency` on the wrench acts on the body.
+  using Act =
+      std::function<void(VirtualTime sent, VirtualDuration latency, int body, const Wrench&)>;
+
+  // `warn` is told of the first thing on each channel that was no command.
+  Commands(std::function<void(const std::string&)> warn, Act act)
+      : warn_(std::move(warn)), act_(std::move(act)) {}
+
+  // The scenario's channels; before anything comes in.
+  void Open(const std::vector<CommandChannelSpec>& specs);
+
+  void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
+  void Refuse(std::size_t channel, const std::string& why) override;
+
+  // Of all channels, what acted.
+  std::int64_t taken() const { return taken_; }
+
+  // At the end of the run: what there is to say about the channel. Empty where commands came in and
+  // no more was none than what was said at once.
+  std::string ComplaintAbout(std::size_t channel, const Inlet::Place& place,
+                             const std::string& body) const;
+
+ private:
+  struct Channel {
+    CommandChannelSpec spec;
+    std::int64_t taken = 0, refused = 0;
+  };
+  std::function<void(const std::string&)> warn_;
+  Act act_;
+  std::vector<Channel> channels_;  // as in the scenario
+  std::int64_t taken_ = 0;
+};
+
+}  // namespace tcs

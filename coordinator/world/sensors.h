@@ -1,0 +1,60 @@
+// The sensors of a run: when each looks at the world, and that what it reads goes out. The clock is
+// one that looks at no body.
+//
+// Not thread-safe. It neither moves the dynamics nor knows what carries its readings.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/channel/channel.h"
+#include "shm/virtual_time.h"
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+struct SensorTiming {
+  VirtualDuration period;   // between samples, of which the first is at time 0
+  VirtualDuration latency;  // from the sample to its arrival
+};
+
+class Sensors {
+ public:
+  // How body `body` of the world is at the instant.
+  using Read = std::function<BodyState(int body)>;
+  struct Body {
+    int index;         // in the world
+    std::string name;  // in readings
+  };
+
+  // The outlet outlives this.
+  void Add(std::vector<Body> bodies, SensorTiming timing, Outlet& outlet) {
+    sensors_.push_back({std::move(bodies), timing, &outlet, VirtualTime()});
+  }
+
+  // When there is something to do next, and when something may reach a program next.
+  VirtualTime NextStop() const;
+  VirtualTime NextArrival() const;
+
+  // Takes the samples that are due, and has arrived what is due. True if something went out.
+  bool Act(VirtualTime now, const Read& read);
+
+  std::int64_t samples() const { return samples_; }
+
+ private:
+  struct Sensor {
+    std::vector<Body> bodies;
+    SensorTiming timing;
+    Outlet* outlet;
+    VirtualTime next;  // sample
+  };
+  bool Sample(Sensor& sensor, VirtualTime now, const Read& read);
+
+  std::vector<Sensor> sensors_;
+  std::int64_t samples_ = 0;
+};
+
+}  // namespace tcs

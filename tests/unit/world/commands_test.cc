@@ -1,0 +1,65 @@
+#include "coordinator/world/commands.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+
+class CommandsTest : public testing::Test {
+ protected:
+  CommandsTest() {
+    commands_.Open({{.name = "bow", .body = 3, .latency = VirtualDuration::Milliseconds(2)},
+                    {.name = "stern", .body = 4}});
+  }
+  std::string Complaint(std::size_t channel) {
+    return commands_.ComplaintAbout(channel, {.where = "there", .mend = "send some"}, "ship");
+  }
+
+  struct Acted {
+    VirtualTime sent;
+    VirtualDuration latency;
+    int body;
+    Wrench wrench;
+  };
+  std::vector<std::string> warnings_;
+  std::vector<Acted> acted_;
+  Commands commands_{
+      [this](const std::string& text) { warnings_.push_back(text); },
+      [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
+        acted_.push_back({sent, latency, body, wrench});
+      }};
+};
+
+TEST_F(CommandsTest, ActOnTheirChannelsBody) {
+  commands_.Take(0, VirtualTime::FromNanoseconds(7), {.force_n = {1, 2, 3}});
+  ASSERT_EQ(acted_.size(), 1u);
+  EXPECT_EQ(acted_[0].sent.ns(), 7);
+  EXPECT_EQ(acted_[0].latency, VirtualDuration::Milliseconds(2));
+  EXPECT_EQ(acted_[0].body, 3);
+  EXPECT_THAT(acted_[0].wrench.force_n, ElementsAre(1, 2, 3));
+  EXPECT_EQ(commands_.taken(), 1);
+}
+
+TEST_F(CommandsTest, WhatIsNoneIsNamedOnceAndCounted) {
+  for (int i = 0; i < 3; ++i) commands_.Refuse(1, "it is no JSON");
+  commands_.Take(1, {}, {});
+  EXPECT_THAT(warnings_, ElementsAre("channel stern: it is no JSON"));
+  EXPECT_EQ(Complaint(1), "channel stern: 3 of the 4 messages that came in were no commands");
+}
+
+TEST_F(CommandsTest, ASilentChannelIsNamedAtTheEnd) {
+  EXPECT_EQ(Complaint(0),
+            "channel bow: nothing came in there, so that no command moved ship; let a client send "
+            "some");
+  commands_.Take(0, {}, {});
+  EXPECT_EQ(Complaint(0), "");
+}
+
+}  // namespace
+}  // namespace tcs

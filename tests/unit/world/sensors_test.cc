@@ -1,0 +1,102 @@
+#include "coordinator/world/sensors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "coordinator/channel/on_the_way.h"
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr VirtualTime Ms(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
+constexpr VirtualDuration MsLong(std::int64_t ms) { return VirtualDuration::Milliseconds(ms); }
+
+// Keeps what it is given until it is due, as a socket's outlet does.
+class Keeping : public Outlet {
+ public:
+  bool Send(const Reading& reading, VirtualTime arrives) override {
+    on_the_way.Add(std::to_string(reading.at.ns() / 1'000'000), arrives);
+    readings.push_back(reading);
+    return false;
+  }
+  VirtualTime NextDue() const override { return on_the_way.NextDue(); }
+  bool HandOver(VirtualTime now) override {
+    return on_the_way.Arrive(now, [this](const std::string& text) { arrived.push_back(text); });
+  }
+
+  OnTheWay on_the_way;
+  std::vector<Reading> readings;
+  std::vector<std::string> arrived;
+};
+
+BodyState At(double x) { return {.position_m = {x, 0, 0}}; }
+
+class SensorsTest : public testing::Test {
+ protected:
+  bool ActAt(VirtualTime now) {
+    return sensors_.Act(now, [this](int body) { return At(x_ + body); });
+  }
+
+  Keeping outlet_;
+  Sensors sensors_;
+  double x_ = 0;
+};
+
+TEST_F(SensorsTest, WithoutAnyThereIsNothingToDo) {
+  EXPECT_EQ(sensors_.NextStop(), VirtualTime::Never());
+  EXPECT_EQ(sensors_.NextArrival(), VirtualTime::Never());
+  EXPECT_FALSE(ActAt(Ms(5)));
+}
+
+TEST_F(SensorsTest, TheFirstSampleIsAtTimeZero) {
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
+  EXPECT_EQ(sensors_.NextStop(), Ms(0));
+  EXPECT_TRUE(ActAt(Ms(0)));
+  EXPECT_THAT(outlet_.arrived, ElementsAre("0"));
+  EXPECT_EQ(sensors_.NextStop(), Ms(10));
+  EXPECT_EQ(sensors_.samples(), 1);
+}
+
+TEST_F(SensorsTest, WhatIsReadIsOfTheSampleNotOfItsArrival) {
+  sensors_.Add({{1, "ship"}, {0, "rock"}}, {MsLong(10), MsLong(15)}, outlet_);
+  x_ = 7;
+  EXPECT_FALSE(ActAt(Ms(0)));
+  EXPECT_EQ(sensors_.NextStop(), Ms(10));     // to sample,
+  EXPECT_EQ(sensors_.NextArrival(), Ms(15));  // but nothing arrives there
+  x_ = 9;
+  EXPECT_FALSE(ActAt(Ms(10)));
+  EXPECT_EQ(sensors_.NextStop(), Ms(15));
+  EXPECT_TRUE(ActAt(Ms(15)));
+  EXPECT_THAT(outlet_.arrived, ElementsAre("0"));
+  ASSERT_EQ(outlet_.readings[0].bodies.size(), 2u);
+  EXPECT_EQ(outlet_.readings[0].bodies[0].name, "ship");
+  EXPECT_EQ(outlet_.readings[0].bodies[0].state.position_m[0], 8);
+  EXPECT_EQ(outlet_.readings[0].bodies[1].state.position_m[0], 7);
+}
+
+TEST_F(SensorsTest, BetweenSamplesNothingHappens) {
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
+  ActAt(Ms(0));
+  EXPECT_FALSE(ActAt(Ms(9)));
+  EXPECT_EQ(sensors_.samples(), 1);
+}
+
+TEST_F(SensorsTest, OfSeveralTheNextCounts) {
+  Keeping other;
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
+  sensors_.Add({}, {MsLong(4), MsLong(1)}, other);
+  ActAt(Ms(0));
+  EXPECT_EQ(sensors_.NextStop(), Ms(1));
+  EXPECT_EQ(sensors_.NextArrival(), Ms(1));
+  ActAt(Ms(1));
+  EXPECT_EQ(sensors_.NextStop(), Ms(4));
+  EXPECT_EQ(sensors_.NextArrival(), Ms(5));
+}
+
+}  // namespace
+}  // namespace tcs
