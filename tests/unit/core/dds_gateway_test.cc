@@ -57,9 +57,9 @@ class DdsGatewayTest : public testing::Test {
   RunState run_{Scenario{}, RunOptions{}, false};
   Activations activations_{false};
   Waker waker_{run_, activations_};
-  CommandInput command_input_{[](const std::string&) {}};
-  World world_{command_input_};
-  DdsGateway dds_{run_, waker_, world_};
+  World world_{[](const std::string&) {}};
+  PriorityInheritance inheritance_{run_, waker_};
+  DdsGateway dds_{run_, waker_, world_, inheritance_};
   Robot* robot_ = nullptr;
   Process* process_ = nullptr;
   Task* deliverer_ = nullptr;

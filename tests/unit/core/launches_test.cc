@@ -38,8 +38,7 @@ class LaunchesTest : public testing::Test {
   Activations activations_{false};
   Waker waker_{run_, activations_};
   Reactor reactor_;
-  CommandInput command_input_{[](const std::string&) {}};
-  World world_{command_input_};
+  World world_{[](const std::string&) {}};
   RunRecords records_{run_, world_, activations_};
   Births births_{run_, waker_, reactor_, records_};
   RegistrationSockets sockets_{reactor_};
