@@ -16,12 +16,14 @@
 
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/inertial.h"
 
 namespace tcs {
 
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
   BodyState state;        // finite
+  InertialReading felt;   // finite, too
 };
 
 // What a sensor reads at an instant.

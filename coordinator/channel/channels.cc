@@ -27,9 +27,9 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   auto serial = std::make_unique<PtyChannels>();
   for (const SensorChannelSpec& spec : scenario.sensors) {
     auto outlet =
-        std::visit(Either{[](const UdpEndpoint& to) { return OpenUdpOutlet(to); },
-                          [](const UnixName& to) { return OpenUnixOutlet(to); },
-                          [&](const SerialPort& to) { return serial->OutletOn(to, spec.period); },
+        std::visit(Either{[&](const UdpEndpoint& to) { return OpenUdpOutlet(to, spec.fields); },
+                          [&](const UnixName& to) { return OpenUnixOutlet(to, spec.fields); },
+                          [&](const SerialPort& to) { return serial->OutletOn(to, spec); },
                           [&](const DdsSensorEnd&) { return Opened<Outlet>(dds->OutletOf(spec)); }},
                    spec.to);
     if (auto* error = std::get_if<std::string>(&outlet)) return std::move(*error);

@@ -47,10 +47,11 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   dynamics_ = MakeDynamics(*scenario.world);
   all_bodies_.resize(scenario.world->bodies.size());
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
+  sensors_ = Sensors(scenario_.world->gravity_mps2);
   commands_.Open(scenario_.commands);
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
   if (channels_.clock != nullptr) {
-    sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, *channels_.clock);
+    sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
   }
   for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
     const SensorChannelSpec& spec = scenario_.sensors[i];
@@ -58,7 +59,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
     for (const int body : spec.bodies) {
       bodies.push_back({body, scenario_.world->bodies[static_cast<std::size_t>(body)].name});
     }
-    sensors_.Add(std::move(bodies), {.period = spec.period, .latency = spec.latency},
+    sensors_.Add(std::move(bodies), {.period = spec.period, .latency = spec.latency}, spec.errors,
                  *channels_.outlets[i]);
   }
   for (const auto& inlet : channels_.inlets) {

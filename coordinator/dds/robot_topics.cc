@@ -4,20 +4,20 @@
 
 namespace tcs::dds {
 
-SensorEncoder::SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
-                             const std::array<double, 3>& gravity_mps2)
-    : message_(message), bodies_(std::move(bodies)), inertial_(bodies_.at(0), gravity_mps2) {
+SensorEncoder::SensorEncoder(SensorMessage message, std::vector<std::string> bodies)
+    : message_(message), bodies_(std::move(bodies)) {
   TCS_CHECK(bodies_.size() == 1 || message_ == SensorMessage::kJointState);
 }
 
-std::vector<std::byte> SensorEncoder::Encode(VirtualTime at, std::int64_t stamp_ns,
-                                             std::span<const BodyState> states) {
+std::vector<std::byte> SensorEncoder::Encode(std::int64_t stamp_ns,
+                                             std::span<const BodyState> states,
+                                             const InertialReading& felt) const {
   TCS_CHECK(states.size() == bodies_.size());
   switch (message_) {
     case SensorMessage::kOdometry:
       return ToCdr(ToOdometry(stamp_ns, bodies_[0], states[0]));
     case SensorMessage::kImu:
-      return ToCdr(inertial_.Sample(at, stamp_ns, states[0]));
+      return ToCdr(ToImu(stamp_ns, bodies_[0], states[0], felt));
     case SensorMessage::kJointState:
       return ToCdr(ToJointState(stamp_ns, bodies_, states));
     case SensorMessage::kTwist:

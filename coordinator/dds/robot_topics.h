@@ -19,18 +19,17 @@ namespace tcs::dds {
 class SensorEncoder {
  public:
   // All messages but JointState tell of one body.
-  SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
-                const std::array<double, 3>& gravity_mps2);
+  SensorEncoder(SensorMessage message, std::vector<std::string> bodies);
 
-  // The sample of the instant `at`, in virtual CLOCK_REALTIME `stamp_ns`; instants go forward.
-  // `states` are those of the bodies, in their order.
-  [[nodiscard]] std::vector<std::byte> Encode(VirtualTime at, std::int64_t stamp_ns,
-                                              std::span<const BodyState> states);
+  // The sample in virtual CLOCK_REALTIME `stamp_ns`. `states` are those of the bodies, in their
+  // order, `felt` is what the first of them feels.
+  [[nodiscard]] std::vector<std::byte> Encode(std::int64_t stamp_ns,
+                                              std::span<const BodyState> states,
+                                              const InertialReading& felt) const;
 
  private:
   SensorMessage message_;
   std::vector<std::string> bodies_;
-  InertialSensor inertial_;
 };
 
 [[nodiscard]] std::vector<std::byte> EncodeClock(std::int64_t stamp_ns);

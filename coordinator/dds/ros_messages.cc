@@ -24,20 +24,6 @@ void SetHeader(HeaderMessage* header, std::int64_t stamp_ns, std::string_view fr
   SetText(&header->frame_id, frame);
 }
 
-Vector3 Cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-// A world vector along the axes of a body with the orientation `q`.
-Vector3 InBody(const std::array<double, 4>& q, const Vector3& v) {
-  const Vector3 axis = {-q[0], -q[1], -q[2]};
-  const Vector3 once = Cross(axis, v);
-  const Vector3 twice = Cross(axis, once);
-  Vector3 turned;
-  for (std::size_t i = 0; i < 3; ++i) turned[i] = v[i] + 2 * (q[3] * once[i] + twice[i]);
-  return turned;
-}
-
 TwistMessage TwistInBody(const BodyState& state) {
   return {ToVector3(InBody(state.orientation_xyzw, state.linear_velocity_mps)),
           ToVector3(InBody(state.orientation_xyzw, state.angular_velocity_radps))};
@@ -123,27 +109,17 @@ Owned<ClockMessage> ToClock(std::int64_t stamp_ns) {
   return clock;
 }
 
-Owned<ImuMessage> InertialSensor::Sample(VirtualTime at, std::int64_t stamp_ns,
-                                         const BodyState& state) {
+Owned<ImuMessage> ToImu(std::int64_t stamp_ns, std::string_view body, const BodyState& state,
+                        const InertialReading& felt) {
   Owned<ImuMessage> imu;
-  SetHeader(&imu->header, stamp_ns, body_);
+  SetHeader(&imu->header, stamp_ns, body);
   imu->orientation = ToQuaternion(state.orientation_xyzw);
-  imu->angular_velocity = ToVector3(InBody(state.orientation_xyzw, state.angular_velocity_radps));
-  if (has_before_) {
-    TCS_CHECK(at > before_at_);
-    const double seconds = static_cast<double>((at - before_at_).ns()) * 1e-9;
-    Vector3 force_mps2;
-    for (std::size_t i = 0; i < 3; ++i) {
-      force_mps2[i] =
-          (state.linear_velocity_mps[i] - before_velocity_mps_[i]) / seconds - gravity_mps2_[i];
-    }
-    imu->linear_acceleration = ToVector3(InBody(state.orientation_xyzw, force_mps2));
+  imu->angular_velocity = ToVector3(felt.angular_rate_radps);
+  if (felt.proper_acceleration_mps2.has_value()) {
+    imu->linear_acceleration = ToVector3(*felt.proper_acceleration_mps2);
   } else {
     imu->linear_acceleration_covariance[0] = -1;
   }
-  has_before_ = true;
-  before_at_ = at;
-  before_velocity_mps_ = state.linear_velocity_mps;
   return imu;
 }
 

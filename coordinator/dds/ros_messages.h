@@ -15,6 +15,7 @@
 #include "coordinator/dds/ros_types.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/inertial.h"
 
 namespace tcs::dds {
 
@@ -43,26 +44,10 @@ struct MessageError {
 
 [[nodiscard]] Owned<ClockMessage> ToClock(std::int64_t stamp_ns);
 
-// An accelerometer and a gyroscope at a body's centre of mass, their axes the body's.
-class InertialSensor {
- public:
-  InertialSensor(std::string body, const std::array<double, 3>& gravity_mps2)
-      : body_(std::move(body)), gravity_mps2_(gravity_mps2) {}
-
-  // The sample at `at`, later than the one before. As accelerometers do, it tells the specific
-  // force (acceleration less gravity: none in free fall), meant over the time since the sample
-  // before. The first sample has none, and says so as Imu does: by a covariance that begins with
-  // -1.
-  [[nodiscard]] Owned<ImuMessage> Sample(VirtualTime at, std::int64_t stamp_ns,
-                                         const BodyState& state);
-
- private:
-  std::string body_;
-  std::array<double, 3> gravity_mps2_;
-  bool has_before_ = false;
-  VirtualTime before_at_{};
-  std::array<double, 3> before_velocity_mps_{};
-};
+// What a body feels, its frame called after it. Where there is no acceleration yet it says so as
+// Imu does: by a covariance that begins with -1.
+[[nodiscard]] Owned<ImuMessage> ToImu(std::int64_t stamp_ns, std::string_view body,
+                                      const BodyState& state, const InertialReading& felt);
 
 // Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
 // where they are not finite.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
 #include "coordinator/scenario/nearest.h"
@@ -55,7 +56,9 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  std::vector<std::string> keys = {"bodies", "rate", "latency"};
+  std::vector<std::string> keys = {"bodies", "rate",    "latency", "noise",
+                                   "bias",   "dropout", "jitter"};
+  if (type != ChannelType::kDds) keys.push_back("fields");
   AddKeys(type, "to", &keys);
   map.AllowOnly(keys);
   SensorChannelSpec channel;
@@ -63,6 +66,8 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
+  channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
+  if (const YamlValue* fields = map.Find("fields")) channel.fields = LoadSensorFields(*fields);
   switch (type) {
     case ChannelType::kUdpJson:
       channel.to = ends->udp.LoadReceiver(map.Require("to", "to: \"127.0.0.1:47010\""));
@@ -83,13 +88,14 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
                                 ChannelType type, const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  std::vector<std::string> keys = {"body", "latency"};
+  std::vector<std::string> keys = {"body", "latency", "limits"};
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
   channel.body = FindBody(map.Require("body", "body: predator"), scenario);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
+  if (const YamlValue* limits = map.Find("limits")) LoadCommandLimits(*limits, &channel);
   switch (type) {
     case ChannelType::kUdpJson:
       channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));

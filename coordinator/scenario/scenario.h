@@ -5,8 +5,10 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -131,6 +133,35 @@ using SensorEnd =
 using CommandEnd =
     std::variant<UdpEndpoint, UnixName, SerialPort, DdsCommandEnd>;  // where commands come in
 
+// What a sensor can tell of a body. The first four are in the world's frame, the others in the
+// body's, as a gyroscope and an accelerometer feel them.
+enum class SensorField {
+  kPosition,
+  kOrientation,
+  kLinearVelocity,
+  kAngularVelocity,
+  kAngularRate,
+  kProperAcceleration,
+  kCount
+};
+inline constexpr std::size_t kSensorFields = static_cast<std::size_t>(SensorField::kCount);
+// As in scenarios and in JSON: "position".
+const char* NameOf(SensorField field);
+
+// What is wrong with the readings of a sensor, drawn from the scenario's seed. Units are those of
+// the field; of the orientation radians about the body's axes.
+struct FieldError {
+  double noise = 0;              // standard deviation, of each reading anew
+  double bias_deviation = 0;     // standard deviation of a bias that is drawn once a run
+  std::array<double, 3> bias{};  // beside that one
+};
+struct SensorErrors {
+  std::array<FieldError, kSensorFields> fields{};
+  double dropout = 0;        // the share of the samples that never arrive
+  VirtualDuration jitter{};  // the most that a reading comes later than its latency says
+  std::uint64_t seed = 0;    // of this sensor
+};
+
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
 // `latency` later.
 struct SensorChannelSpec {
@@ -138,14 +169,24 @@ struct SensorChannelSpec {
   std::vector<int> bodies;  // indices into world.bodies; at least one
   VirtualDuration period = VirtualDuration::Milliseconds(10);
   VirtualDuration latency{};
+  SensorErrors errors;
   SensorEnd to;
+  // Of those on JSON.
+  std::vector<SensorField> fields = {SensorField::kPosition, SensorField::kOrientation,
+                                     SensorField::kLinearVelocity, SensorField::kAngularVelocity};
 };
+
+inline constexpr std::array<double, 3> kNoLimit = {std::numeric_limits<double>::infinity(),
+                                                   std::numeric_limits<double>::infinity(),
+                                                   std::numeric_limits<double>::infinity()};
 
 // What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
   std::string name;
   int body = 0;
   VirtualDuration latency{};
+  // The most of each component, either way.
+  std::array<double, 3> most_force_n = kNoLimit, most_torque_nm = kNoLimit;
   CommandEnd from;
 };
 

@@ -61,6 +61,7 @@ class YamlValue {
   // At least one element.
   std::vector<YamlValue> AsList(std::string_view example) const;
   bool IsMap() const { return node_.IsMap(); }
+  bool IsList() const { return node_.IsSequence(); }
   YamlMap AsMap() const;
 
  private:

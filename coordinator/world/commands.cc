@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tcs {
 
 void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
@@ -12,7 +14,13 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   Channel& on = channels_[channel];
   ++on.taken;
   ++taken_;
-  act_(sent, on.spec.latency, on.spec.body, wrench);
+  Wrench limited = wrench;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double force = on.spec.most_force_n[i], torque = on.spec.most_torque_nm[i];
+    limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);
+    limited.torque_nm[i] = std::clamp(wrench.torque_nm[i], -torque, torque);
+  }
+  act_(sent, on.spec.latency, on.spec.body, limited);
 }
 
 void Commands::Refuse(std::size_t channel, const std::string& why) {

@@ -1,8 +1,17 @@
 #include "coordinator/world/sensors.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tcs {
+
+void Sensors::Add(std::vector<Body> bodies, SensorTiming timing, const SensorErrors& errors,
+                  Outlet& outlet) {
+  SensorNoise noise(errors, bodies.size());
+  std::vector<InertialSensor> inertial(bodies.size(), InertialSensor(gravity_mps2_));
+  sensors_.push_back(
+      {std::move(bodies), timing, &outlet, std::move(noise), std::move(inertial), {}, 0, {}});
+}
 
 VirtualTime Sensors::NextStop() const {
   VirtualTime next = VirtualTime::Never();
@@ -38,10 +47,19 @@ bool Sensors::Act(VirtualTime now, const Read& read) {
 
 bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read) {
   Reading reading{now, {}};
-  for (const Body& body : sensor.bodies) reading.bodies.push_back({body.name, read(body.index)});
+  for (std::size_t i = 0; i < sensor.bodies.size(); ++i) {
+    const BodyState state = read(sensor.bodies[i].index);
+    reading.bodies.push_back({sensor.bodies[i].name, state, sensor.inertial[i].Sample(now, state)});
+  }
   sensor.next += sensor.timing.period;
+  const std::uint64_t number = sensor.number++;
+  const SensorNoise::Fate fate = sensor.noise.FateOf(number);
+  if (fate.is_lost) return false;
+  sensor.noise.Disturb(number, &reading);
   ++samples_;
-  return sensor.outlet->Send(reading, now + sensor.timing.latency);
+  // None overtakes another.
+  sensor.last_arrives = std::max(sensor.last_arrives, now + sensor.timing.latency + fate.late);
+  return sensor.outlet->Send(reading, sensor.last_arrives);
 }
 
 }  // namespace tcs

@@ -4,6 +4,7 @@
 // Not thread-safe. It neither moves the dynamics nor knows what carries its readings.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -11,8 +12,11 @@
 #include <vector>
 
 #include "coordinator/channel/channel.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/world/sensor_noise.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/inertial.h"
 
 namespace tcs {
 
@@ -30,10 +34,12 @@ class Sensors {
     std::string name;  // in readings
   };
 
+  // `gravity_mps2` is what accelerometers do not feel.
+  explicit Sensors(const std::array<double, 3>& gravity_mps2 = {}) : gravity_mps2_(gravity_mps2) {}
+
   // The outlet outlives this.
-  void Add(std::vector<Body> bodies, SensorTiming timing, Outlet& outlet) {
-    sensors_.push_back({std::move(bodies), timing, &outlet, VirtualTime()});
-  }
+  void Add(std::vector<Body> bodies, SensorTiming timing, const SensorErrors& errors,
+           Outlet& outlet);
 
   // When there is something to do next, and when something may reach a program next.
   VirtualTime NextStop() const;
@@ -51,10 +57,15 @@ class Sensors {
     std::vector<Body> bodies;
     SensorTiming timing;
     Outlet* outlet;
-    VirtualTime next;  // sample
+    SensorNoise noise;
+    std::vector<InertialSensor> inertial;  // of each body
+    VirtualTime next;                      // sample
+    std::uint64_t number = 0;              // of it
+    VirtualTime last_arrives;
   };
   bool Sample(Sensor& sensor, VirtualTime now, const Read& read);
 
+  std::array<double, 3> gravity_mps2_;
   std::vector<Sensor> sensors_;
   std::int64_t samples_ = 0;
 };

@@ -27,7 +27,7 @@ class DdsChannels::SensorOutlet final : public Outlet {
     std::vector<BodyState> states;
     for (const BodyReading& body : reading.bodies) states.push_back(body.state);
     const std::int64_t stamp_ns = transport_.StampOf(reading.at);
-    const auto cdr = encoder_.Encode(reading.at, stamp_ns, states);
+    const auto cdr = encoder_.Encode(stamp_ns, states, reading.bodies.front().felt);
     transport_.ends_.Write(writer_, cdr, stamp_ns, arrives.ns());
     return true;
   }
@@ -115,9 +115,7 @@ std::unique_ptr<Outlet> DdsChannels::OutletOf(const SensorChannelSpec& spec) {
     bodies.push_back(scenario_.world->bodies[static_cast<std::size_t>(body)].name);
   }
   auto outlet = std::make_unique<SensorOutlet>(
-      *this, spec,
-      dds::SensorEncoder(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies),
-                         scenario_.world->gravity_mps2));
+      *this, spec, dds::SensorEncoder(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies)));
   sensors_.push_back(outlet.get());
   return outlet;
 }

@@ -7,7 +7,7 @@
 namespace tcs {
 
 bool JsonOutlet::Send(const Reading& reading, VirtualTime arrives) {
-  on_the_way_.Add(EncodeReading(reading), arrives);
+  on_the_way_.Add(EncodeReading(reading, fields_), arrives);
   return false;
 }
 

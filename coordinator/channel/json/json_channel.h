@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "coordinator/channel/channel.h"
 #include "coordinator/channel/on_the_way.h"
+#include "coordinator/scenario/scenario.h"
 
 namespace tcs {
 
@@ -32,7 +34,8 @@ class DatagramReceiver {
 
 class JsonOutlet final : public Outlet {
  public:
-  explicit JsonOutlet(std::unique_ptr<DatagramSender> sender) : sender_(std::move(sender)) {}
+  JsonOutlet(std::unique_ptr<DatagramSender> sender, std::vector<SensorField> fields)
+      : sender_(std::move(sender)), fields_(std::move(fields)) {}
 
   bool Send(const Reading& reading, VirtualTime arrives) override;
   VirtualTime NextDue() const override { return on_the_way_.NextDue(); }
@@ -41,6 +44,7 @@ class JsonOutlet final : public Outlet {
 
  private:
   std::unique_ptr<DatagramSender> sender_;
+  const std::vector<SensorField> fields_;
   OnTheWay on_the_way_;
 };
 

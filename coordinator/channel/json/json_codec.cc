@@ -63,24 +63,47 @@ void AppendList(std::span<const double> values, std::string& text) {
   text += ']';
 }
 
+void AppendField(const BodyReading& body, SensorField field, std::string& text) {
+  switch (field) {
+    case SensorField::kPosition:
+      return AppendList(body.state.position_m, text);
+    case SensorField::kOrientation:
+      return AppendList(body.state.orientation_xyzw, text);
+    case SensorField::kLinearVelocity:
+      return AppendList(body.state.linear_velocity_mps, text);
+    case SensorField::kAngularVelocity:
+      return AppendList(body.state.angular_velocity_radps, text);
+    case SensorField::kAngularRate:
+      return AppendList(body.felt.angular_rate_radps, text);
+    case SensorField::kProperAcceleration:
+      if (!body.felt.proper_acceleration_mps2.has_value()) {
+        text += "null";
+        return;
+      }
+      return AppendList(*body.felt.proper_acceleration_mps2, text);
+    case SensorField::kCount:
+      break;
+  }
+}
+
 }  // namespace
 
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
-std::string EncodeReading(const Reading& reading) {
+std::string EncodeReading(const Reading& reading, std::span<const SensorField> fields) {
   // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
   std::string text = R"({"time":)";
   AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
   text += R"(,"frame_id":"world","bodies":{)";
   for (const BodyReading& body : reading.bodies) {
     if (&body != &reading.bodies.front()) text += ',';
-    text += Json(body.name).dump() + R"(:{"position":)";
-    AppendList(body.state.position_m, text);
-    text += R"(,"orientation":)";
-    AppendList(body.state.orientation_xyzw, text);
-    text += R"(,"linear_velocity":)";
-    AppendList(body.state.linear_velocity_mps, text);
-    text += R"(,"angular_velocity":)";
-    AppendList(body.state.angular_velocity_radps, text);
+    text += Json(body.name).dump() + ":{";
+    for (const SensorField& field : fields) {
+      if (&field != &fields.front()) text += ',';
+      text += '"';
+      text += NameOf(field);
+      text += "\":";
+      AppendField(body, field, text);
+    }
     text += '}';
   }
   return text += "}}";

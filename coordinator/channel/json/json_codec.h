@@ -5,19 +5,23 @@
 // functions: equal input gives equal bytes, whatever the locale.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 
 #include "coordinator/channel/channel.h"
+#include "coordinator/scenario/scenario.h"
 #include "simbody_bridge/dynamics.h"
 
 namespace tcs {
 
 // {"time":1.23,"frame_id":"world","bodies":{"NAME":{"position":[x,y,z],"orientation":[x,y,z,w],
-// "linear_velocity":[x,y,z],"angular_velocity":[x,y,z]}}}: bodies in the order given, time in
-// seconds, no line end. Every double reads back as the same double.
-[[nodiscard]] std::string EncodeReading(const Reading& reading);
+// "linear_velocity":[x,y,z],"angular_velocity":[x,y,z]}}} for these fields: bodies and fields in
+// the order given, time in seconds, no line end. Every double reads back as the same double; a
+// proper acceleration that is not known yet is null.
+[[nodiscard]] std::string EncodeReading(const Reading& reading,
+                                        std::span<const SensorField> fields);
 
 struct DecodeError {
   std::string message;  // the rest of a sentence that begins with what was decoded; quotes little

@@ -66,10 +66,11 @@ class PtyChannels::Device {
 // A sensor that the device has.
 class PtyChannels::DeviceOutlet final : public Outlet {
  public:
-  DeviceOutlet(Device& device, VirtualDuration period) : device_(device), period_(period) {}
+  DeviceOutlet(Device& device, const SensorChannelSpec& spec)
+      : device_(device), period_(spec.period), fields_(spec.fields) {}
 
   bool Send(const Reading& reading, VirtualTime arrives) override {
-    waiting_.Add(EncodeReading(reading) + "\n", arrives);
+    waiting_.Add(EncodeReading(reading, fields_) + "\n", arrives);
     return false;
   }
   VirtualTime NextDue() const override { return std::min(waiting_.NextDue(), device_.NextDue()); }
@@ -107,6 +108,7 @@ class PtyChannels::DeviceOutlet final : public Outlet {
 
   Device& device_;
   const VirtualDuration period_;
+  const std::vector<SensorField> fields_;
   OnTheWay waiting_;  // until the device begins to send it
   VirtualTime busy_until_;
   std::int64_t count_ = 0, lost_ = 0;
@@ -183,11 +185,11 @@ PtyChannels::Device* PtyChannels::Find(const SerialPort& port, std::string* erro
   return device.get();
 }
 
-Opened<Outlet> PtyChannels::OutletOn(const SerialPort& port, VirtualDuration period) {
+Opened<Outlet> PtyChannels::OutletOn(const SerialPort& port, const SensorChannelSpec& spec) {
   std::string error;
   Device* device = Find(port, &error);
   if (device == nullptr) return error;
-  return std::make_unique<DeviceOutlet>(*device, period);
+  return std::make_unique<DeviceOutlet>(*device, spec);
 }
 
 Opened<Inlet> PtyChannels::InletOn(const SerialPort& port, std::size_t channel) {

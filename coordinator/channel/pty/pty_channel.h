@@ -27,7 +27,7 @@ class PtyChannels final : public Transport {
 
   void Begin(VirtualDuration) override {}
 
-  Opened<Outlet> OutletOn(const SerialPort& port, VirtualDuration period);
+  Opened<Outlet> OutletOn(const SerialPort& port, const SensorChannelSpec& spec);
   // For the scenario's channel of commands of that number; at most once for each device.
   Opened<Inlet> InletOn(const SerialPort& port, std::size_t channel);
   // For devices without such a channel: what programs write there is thrown away.

@@ -56,11 +56,11 @@ class UdpReceiver final : public DatagramReceiver {
 
 }  // namespace
 
-Opened<Outlet> OpenUdpOutlet(const UdpEndpoint& to) {
+Opened<Outlet> OpenUdpOutlet(const UdpEndpoint& to, const std::vector<SensorField>& fields) {
   auto socket = UdpSocket::ForSending();
   if (const auto* error = std::get_if<SocketError>(&socket)) return error->message;
   return std::make_unique<JsonOutlet>(
-      std::make_unique<UdpSender>(std::move(std::get<UdpSocket>(socket)), to));
+      std::make_unique<UdpSender>(std::move(std::get<UdpSocket>(socket)), to), fields);
 }
 
 Opened<Inlet> OpenUdpInlet(const UdpEndpoint& from, std::size_t channel) {

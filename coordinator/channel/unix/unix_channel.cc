@@ -47,11 +47,11 @@ class UnixReceiver final : public DatagramReceiver {
 
 }  // namespace
 
-Opened<Outlet> OpenUnixOutlet(const UnixName& to) {
+Opened<Outlet> OpenUnixOutlet(const UnixName& to, const std::vector<SensorField>& fields) {
   auto socket = UnixSocket::ForSending();
   if (auto* error = std::get_if<std::string>(&socket)) return std::move(*error);
   return std::make_unique<JsonOutlet>(
-      std::make_unique<UnixSender>(std::move(std::get<UnixSocket>(socket)), to));
+      std::make_unique<UnixSender>(std::move(std::get<UnixSocket>(socket)), to), fields);
 }
 
 Opened<Inlet> OpenUnixInlet(const UnixName& from, std::size_t channel) {

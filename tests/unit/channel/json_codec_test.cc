@@ -31,7 +31,7 @@ Wrench Decoded(std::string_view datagram) {
 }
 
 std::string Encoded(VirtualTime time, std::vector<BodyReading> bodies) {
-  return EncodeReading({time, std::move(bodies)});
+  return EncodeReading({time, std::move(bodies)}, SensorChannelSpec().fields);
 }
 
 TEST(SensorDatagram, NamesTimeFrameAndStates) {

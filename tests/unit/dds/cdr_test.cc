@@ -129,7 +129,7 @@ TEST(Cdr, WhatIsCutOffIsRefusedWhereverItIsCut) {
   const std::vector<std::string> bodies = {"one", "another"};
   ExpectNoPrefixIsAMessage<OdometryMessage>(ToCdr(ToOdometry(7, "hunter", Flying())));
   ExpectNoPrefixIsAMessage<ImuMessage>(
-      ToCdr(InertialSensor("b", {0, 0, -9.8}).Sample(VirtualTime{}, 7, Flying())));
+      ToCdr(ToImu(7, "b", Flying(), InertialSensor({0, 0, -9.8}).Sample({}, Flying()))));
   ExpectNoPrefixIsAMessage<JointStateMessage>(
       ToCdr(ToJointState(1, bodies, std::vector{Flying(), Flying()})));
   ExpectNoPrefixIsAMessage<WrenchMessage>(ToCdr(Owned<WrenchMessage>()));

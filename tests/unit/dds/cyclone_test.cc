@@ -77,8 +77,8 @@ TEST_F(Cyclone, WritesTheSameOdometry) {
 }
 
 TEST_F(Cyclone, WritesTheSameImu) {
-  ExpectTheSameBytes("rt/imu", InertialSensor("hunter", {0, 0, -9.8})
-                                   .Sample(VirtualTime{}, 1'700'000'000'000'000'001, Flying()));
+  ExpectTheSameBytes("rt/imu", ToImu(1'700'000'000'000'000'001, "hunter", Flying(),
+                                     InertialSensor({0, 0, -9.8}).Sample({}, Flying())));
 }
 
 TEST_F(Cyclone, WritesTheSameJointState) {

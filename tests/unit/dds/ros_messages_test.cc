@@ -62,8 +62,22 @@ TEST(Clock, IsTheStamp) {
   EXPECT_EQ(ToClock(kStamp)->clock.nanosec, 250'000'000u);
 }
 
+// A sensor and its messages.
+class ImuOf {
+ public:
+  ImuOf(std::string body, const std::array<double, 3>& gravity_mps2)
+      : body_(std::move(body)), sensor_(gravity_mps2) {}
+  Owned<ImuMessage> Sample(VirtualTime at, std::int64_t stamp_ns, const BodyState& state) {
+    return ToImu(stamp_ns, body_, state, sensor_.Sample(at, state));
+  }
+
+ private:
+  std::string body_;
+  InertialSensor sensor_;
+};
+
 TEST(Imu, OfABodyHeldUpFeelsGravityUpwards) {
-  InertialSensor sensor("hunter", {0, 0, -9.8});
+  ImuOf sensor("hunter", {0, 0, -9.8});
   BodyState still = TurnedLeft();
   (void)sensor.Sample(VirtualTime{}, kStamp, still);
   const auto imu = sensor.Sample(VirtualTime{} + VirtualDuration::Milliseconds(10), kStamp, still);
@@ -76,7 +90,7 @@ TEST(Imu, OfABodyHeldUpFeelsGravityUpwards) {
 }
 
 TEST(Imu, InFreeFallFeelsNothing) {
-  InertialSensor sensor("hunter", {0, 0, -9.8});
+  ImuOf sensor("hunter", {0, 0, -9.8});
   BodyState falling = TurnedLeft();
   (void)sensor.Sample(VirtualTime{}, kStamp, falling);
   falling.linear_velocity_mps[2] -= 9.8 * 0.5;
@@ -86,7 +100,7 @@ TEST(Imu, InFreeFallFeelsNothing) {
 }
 
 TEST(Imu, TellsTheMeanAccelerationAlongTheBodysAxes) {
-  InertialSensor sensor("hunter", {});
+  ImuOf sensor("hunter", {});
   BodyState state = TurnedLeft();
   (void)sensor.Sample(VirtualTime{}, kStamp, state);
   state.linear_velocity_mps[1] += 0.03;
@@ -96,7 +110,7 @@ TEST(Imu, TellsTheMeanAccelerationAlongTheBodysAxes) {
 }
 
 TEST(Imu, SaysThatTheFirstSampleHasNoAcceleration) {
-  InertialSensor sensor("hunter", {0, 0, -9.8});
+  ImuOf sensor("hunter", {0, 0, -9.8});
   const auto imu = sensor.Sample(VirtualTime{}, kStamp, TurnedLeft());
   EXPECT_EQ(imu->linear_acceleration_covariance[0], -1);
   EXPECT_EQ(imu->linear_acceleration.z, 0);
@@ -205,13 +219,14 @@ TEST(Wrench, OfForeignBytesIsRefused) {
 TEST(SensorEncoder, SaysWhatItsMessageSays) {
   const std::vector<BodyState> states = {TurnedLeft()};
   const auto encode = [&](SensorMessage message) {
-    return SensorEncoder(message, {"hunter"}, {0, 0, -9.8}).Encode(VirtualTime{}, kStamp, states);
+    const InertialReading felt = InertialSensor({0, 0, -9.8}).Sample(VirtualTime{}, states[0]);
+    return SensorEncoder(message, {"hunter"}).Encode(kStamp, states, felt);
   };
   const std::vector<std::string> bodies = {"hunter"};
   EXPECT_EQ(encode(SensorMessage::kOdometry), ToCdr(ToOdometry(kStamp, "hunter", states[0])));
   EXPECT_EQ(encode(SensorMessage::kJointState), ToCdr(ToJointState(kStamp, bodies, states)));
   EXPECT_EQ(encode(SensorMessage::kTwist), ToCdr(ToTwist(states[0])));
-  InertialSensor sensor("hunter", {0, 0, -9.8});
+  ImuOf sensor("hunter", {0, 0, -9.8});
   EXPECT_EQ(encode(SensorMessage::kImu), ToCdr(sensor.Sample(VirtualTime{}, kStamp, states[0])));
 }
 

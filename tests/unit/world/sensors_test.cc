@@ -54,7 +54,7 @@ TEST_F(SensorsTest, WithoutAnyThereIsNothingToDo) {
 }
 
 TEST_F(SensorsTest, TheFirstSampleIsAtTimeZero) {
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
   EXPECT_EQ(sensors_.NextStop(), Ms(0));
   EXPECT_TRUE(ActAt(Ms(0)));
   EXPECT_THAT(outlet_.arrived, ElementsAre("0"));
@@ -63,7 +63,7 @@ TEST_F(SensorsTest, TheFirstSampleIsAtTimeZero) {
 }
 
 TEST_F(SensorsTest, WhatIsReadIsOfTheSampleNotOfItsArrival) {
-  sensors_.Add({{1, "ship"}, {0, "rock"}}, {MsLong(10), MsLong(15)}, outlet_);
+  sensors_.Add({{1, "ship"}, {0, "rock"}}, {MsLong(10), MsLong(15)}, {}, outlet_);
   x_ = 7;
   EXPECT_FALSE(ActAt(Ms(0)));
   EXPECT_EQ(sensors_.NextStop(), Ms(10));     // to sample,
@@ -80,7 +80,7 @@ TEST_F(SensorsTest, WhatIsReadIsOfTheSampleNotOfItsArrival) {
 }
 
 TEST_F(SensorsTest, BetweenSamplesNothingHappens) {
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
   ActAt(Ms(0));
   EXPECT_FALSE(ActAt(Ms(9)));
   EXPECT_EQ(sensors_.samples(), 1);
@@ -88,8 +88,8 @@ TEST_F(SensorsTest, BetweenSamplesNothingHappens) {
 
 TEST_F(SensorsTest, OfSeveralTheNextCounts) {
   Keeping other;
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, outlet_);
-  sensors_.Add({}, {MsLong(4), MsLong(1)}, other);
+  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
+  sensors_.Add({}, {MsLong(4), MsLong(1)}, {}, other);
   ActAt(Ms(0));
   EXPECT_EQ(sensors_.NextStop(), Ms(1));
   EXPECT_EQ(sensors_.NextArrival(), Ms(1));

@@ -1,0 +1,112 @@
+#include "coordinator/scenario/load_sensing.h"
+
+#include <algorithm>
+
+#include "coordinator/scenario/nearest.h"
+
+namespace tcs {
+
+const char* NameOf(SensorField field) {
+  constexpr std::array<const char*, kSensorFields> kNames = {
+      "position",         "orientation",  "linear_velocity",
+      "angular_velocity", "angular_rate", "proper_acceleration"};
+  return kNames[static_cast<std::size_t>(field)];
+}
+
+namespace {
+
+std::vector<std::string> FieldNames() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kSensorFields; ++i) {
+    names.push_back(NameOf(static_cast<SensorField>(i)));
+  }
+  return names;
+}
+
+// A number for all three axes, or one for each.
+std::array<double, 3> LoadAxes(const YamlValue& value, std::string_view unit) {
+  if (value.IsList()) return value.AsVector3();
+  const double number = value.AsNonNegativeNumber(unit);
+  return {number, number, number};
+}
+
+// FNV-1a; the scenario's seed has come in before.
+std::uint64_t SeedOf(std::uint64_t seed, const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325 ^ seed * 0x9e3779b97f4a7c15;
+  for (const char byte : name) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+  }
+  return hash;
+}
+
+std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
+  const std::array<double, 3> limit = LoadAxes(value, unit);
+  if (std::any_of(limit.begin(), limit.end(), [](double axis) { return axis < 0; })) {
+    value.Fail("is negative; a limit holds both ways");
+  }
+  return limit;
+}
+
+}  // namespace
+
+std::vector<SensorField> LoadSensorFields(const YamlValue& value) {
+  const std::vector<std::string> names = FieldNames();
+  std::vector<SensorField> fields;
+  for (const YamlValue& item : value.AsList("[position, angular_rate]")) {
+    const std::string name = item.AsText();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      item.Fail("is the unknown '" + name + "'; " + Suggest(name, names, "fields"));
+    }
+    const auto field = static_cast<SensorField>(found - names.begin());
+    if (std::find(fields.begin(), fields.end(), field) != fields.end()) {
+      item.Fail("names " + name + " a second time; remove it");
+    }
+    fields.push_back(field);
+  }
+  return fields;
+}
+
+SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed) {
+  SensorErrors errors;
+  errors.seed = SeedOf(seed, name);
+  const auto field_of = [&errors](const YamlMap::Entry& entry) -> FieldError& {
+    const std::vector<std::string> names = FieldNames();
+    const auto index = std::find(names.begin(), names.end(), entry.key) - names.begin();
+    return errors.fields[static_cast<std::size_t>(index)];
+  };
+  if (const YamlValue* value = map.Find("noise")) {
+    const YamlMap noise = value->AsMap();
+    noise.AllowOnly(FieldNames());
+    for (const YamlMap::Entry& entry : noise.entries()) {
+      field_of(entry).noise = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+    }
+  }
+  if (const YamlValue* value = map.Find("bias")) {
+    const YamlMap bias = value->AsMap();
+    bias.AllowOnly(FieldNames());
+    for (const YamlMap::Entry& entry : bias.entries()) {
+      FieldError& field = field_of(entry);
+      if (entry.value.IsList()) {
+        field.bias = entry.value.AsVector3();
+      } else {
+        field.bias_deviation = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+      }
+    }
+  }
+  if (const YamlValue* value = map.Find("dropout")) {
+    errors.dropout = value->AsNonNegativeNumber(" (the share of samples that are lost)");
+    if (errors.dropout > 1) value->Fail("is above 1, at which all samples are lost");
+  }
+  if (const YamlValue* value = map.Find("jitter")) errors.jitter = value->AsDuration();
+  return errors;
+}
+
+void LoadCommandLimits(const YamlValue& value, CommandChannelSpec* command) {
+  const YamlMap map = value.AsMap();
+  map.AllowOnly({"force", "torque"});
+  if (const YamlValue* v = map.Find("force")) command->most_force_n = LoadLimit(*v, " (N)");
+  if (const YamlValue* v = map.Find("torque")) command->most_torque_nm = LoadLimit(*v, " (N*m)");
+}
+
+}  // namespace tcs

@@ -1,0 +1,37 @@
+// What is wrong with a sensor's readings: noise, bias, samples that are lost or late.
+//
+// Pure. What happens to a sample depends on the sensor's seed and the sample's number alone: not on
+// other sensors, nor on who ran when.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "coordinator/channel/channel.h"
+#include "coordinator/scenario/scenario.h"
+
+namespace tcs {
+
+class SensorNoise {
+ public:
+  SensorNoise(const SensorErrors& errors, std::size_t bodies);
+
+  struct Fate {
+    bool is_lost = false;
+    VirtualDuration late{};  // beyond its latency
+  };
+  // Of the sample of that number.
+  Fate FateOf(std::uint64_t sample) const;
+  // Adds what is wrong with the sample's values; of the same number always the same.
+  void Disturb(std::uint64_t sample, Reading* reading) const;
+
+ private:
+  using Biases = std::array<std::array<double, 3>, kSensorFields>;
+
+  SensorErrors errors_;
+  bool is_exact_;               // its values are
+  std::vector<Biases> biases_;  // of each body
+};
+
+}  // namespace tcs
