@@ -35,6 +35,9 @@ Reply Exchange(GuestThread& thread, const Request& request);
 // once the coordinator has seen what the thread's last call did to others, and has it dispatched.
 void AwaitTurn(GuestThread& thread);
 
+// True in a handler that has interrupted an exchange of the thread's whose answer is not there yet.
+bool IsAtGate(const GuestThread& thread);
+
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 

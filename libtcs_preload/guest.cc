@@ -66,8 +66,9 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
 
 void CountCall(GuestThread& thread) {
   if (g_header->gates_only != 0) {
-    AwaitTurn(thread);
-    thread.in_call = true;
+    const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
+    if (is_fixed || thread.in_call) AwaitTurn(thread);
+    thread.in_call = is_fixed;
   }
   ++thread.slot->work.calls;
   shm::ClockPage& page = thread.slot->clock;

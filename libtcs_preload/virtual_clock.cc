@@ -99,6 +99,7 @@ void HoldForRead(GuestThread& thread) {
 void HoldForWrite(GuestThread& thread) {
   NoteSent(thread);
   const std::int64_t now = NowNs(thread);
+  BeginChange(thread);
   if (now <= thread.slot->clock.write_safe_ns) return;
   if (g_header->sync != shm::Sync::kConsistent) return;
   Exchange(thread, Request{.kind = NotificationKind::kWrite});

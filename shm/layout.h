@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 13;
+inline constexpr std::uint32_t kVersion = 14;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -97,7 +97,15 @@ enum class NotificationKind : std::uint32_t {
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
   kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
+  kPreempted = 34,   // the thread computes, and has got kPreemptionSignal
 };
+
+// By this the coordinator stops a thread that computes, where only gates keep threads apart
+// (RunHeader::preempts). It is one of the two that the C library keeps for itself: programs can
+// neither catch nor block it, and it is in none of their sets. The library itself has it for
+// set*id() in programs of several threads, and tells its own by who sent it. It carries the number
+// of the dispatch that is to end.
+inline constexpr int kPreemptionSignal = 33;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
 
@@ -288,6 +296,7 @@ struct alignas(64) RunHeader {
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.
   std::uint32_t gates_only;
+  std::uint32_t preempts;  // 1: the coordinator sends kPreemptionSignal
   std::uint64_t reserved[6];
 };
 static_assert(sizeof(RunHeader) == 128);

@@ -177,7 +177,7 @@ void Engine::Settle(Task& task) {
                  .horizon_ns = turn_.horizon_ns(),
                  .reached_ns = on_robot(reading.time_ns),
                  .shown_ns = on_robot(page.last_shown_ns.load()),
-                 .is_preempted = turn_.timed_out && !turn_.notified};
+                 .is_preempted = turn_.timed_out && (!turn_.notified || turn_.is_sent_to_gate)};
   if (turn_.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted_ns = on_robot(slot.note.time_ns);
   }
@@ -406,6 +406,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   const Moment call{task.cpu->progress_ns};
   BeginTurn(task, horizon_ns, idle_until_ns);
   AwaitStop(task);
+  BringToGate(task);
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {

@@ -36,6 +36,8 @@ constexpr int kExitTurns = 20;
 }  // namespace
 
 Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
+  task.executes = false;
+  if (Slot(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
   if (turn_.IsOf(task)) {
     if (gates_only_ && MayGoOn(task)) return {.looks_again = true};
     turn_.notified = true;
@@ -55,6 +57,7 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
     if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);
+    ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
   }
@@ -185,6 +188,7 @@ bool Engine::CutsOff(Task& task) {
   if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
+  fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n", task.order, (int)Slot(task).note.kind, (int)turn_.is_sent_to_gate, (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches, Slot(task).clock.executed_adjust.load()>>48);
   if (std::exchange(task.is_cut_off, true)) {
     Expel(*task.process, "a notification that was never sent");
     return true;
