@@ -33,10 +33,12 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 // for one that ends a wait. So until the destructor no handler runs.
 class NoHandlers {
  public:
-  NoHandlers() {
+  // `blocked`: by the program, if that is something else than by the thread.
+  NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) {
     if (g_header->gates_only == 0) return;
     const unsigned long all = ~0ul;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
+    slot.blocked_signals = blocked != nullptr ? *blocked : before_;
   }
   ~NoHandlers() { Allow(0); }
   NoHandlers(const NoHandlers&) = delete;
@@ -158,7 +160,7 @@ bool ShutGate(shm::ThreadSlot& slot) {
 // Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
 bool EndWait(GuestThread& thread) {
   shm::ThreadSlot& slot = *thread.slot;
-  NoHandlers none;
+  NoHandlers none(slot, nullptr);
   if (g_header->gates_only != 0) {
     // The handler may have begun before the thread's turn; what ended the wait may be another
     // thing.
@@ -175,7 +177,7 @@ bool EndWait(GuestThread& thread) {
 
 Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   shm::ThreadSlot& slot = *thread.slot;
-  NoHandlers none;
+  NoHandlers none(slot, request.blocked);
   slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   const Charged charged = FillRecord(slot, request);
   Notify(thread);

@@ -19,6 +19,8 @@ struct Request {
   bool interruptible = false;
   // The kernel's signal mask to wait with for a handler, instead of at the gate; null: the gate.
   const unsigned long* suspend_mask = nullptr;
+  // The signals that the program blocks, in a handler that it does not know of; null: in no such.
+  const unsigned long* blocked = nullptr;
 };
 
 struct Reply {

@@ -67,7 +67,7 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
 void CountCall(GuestThread& thread) {
   if (g_header->gates_only != 0) {
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
-    if (is_fixed || thread.in_call) AwaitTurn(thread);
+    if (is_fixed || thread.in_call || IsAtGate(thread)) AwaitTurn(thread);
     thread.in_call = is_fixed;
   }
   ++thread.slot->work.calls;

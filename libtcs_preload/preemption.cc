@@ -1,6 +1,7 @@
 #include "libtcs_preload/preemption.h"
 
 #include <signal.h>
+#include <ucontext.h>
 
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -50,7 +51,9 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   GuestThread& thread = t_thread;
   if (thread.slot == nullptr || IsShutDown() || IsAtGate(thread)) return;
   if (!IsForThisDispatch(*thread.slot, *info)) return;
-  Exchange(thread, Request{.kind = shm::NotificationKind::kPreempted});
+  const auto& interrupted = *static_cast<const ucontext_t*>(context);
+  const auto* blocked = reinterpret_cast<const unsigned long*>(&interrupted.uc_sigmask);
+  Exchange(thread, Request{.kind = shm::NotificationKind::kPreempted, .blocked = blocked});
 }
 
 }  // namespace

@@ -44,7 +44,9 @@ Now ReadNowSlowly(GuestThread& thread) {
   ClockPage& page = thread.slot->clock;
   for (;;) {
     const ClockReading r = ReadChecked(page);
-    if (r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown()) return Show(page, r);
+    // A handler that has interrupted an exchange would end its wait by another one.
+    const bool may_ask = thread.depth == 0 || (g_header->gates_only != 0 && !IsAtGate(thread));
+    if (r.time_ns < r.horizon_ns || !may_ask || IsShutDown()) return Show(page, r);
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});
   }
 }

@@ -264,7 +264,10 @@ struct alignas(64) ThreadSlot {
   IpcNote ipc_notes[kMostIpcNotes];
   Receipts receipts;
   WorkCounts work;  // written by the thread, where it is counted
-  std::uint8_t reserved[32];
+  // Written by the thread before it notifies, where only gates keep threads apart: the signals that
+  // it blocks at its gate. What the kernel knows is true only once it waits there.
+  std::uint64_t blocked_signals;
+  std::uint8_t reserved[24];
 };
 static_assert(sizeof(ThreadSlot) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);

@@ -55,7 +55,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       metered,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
-  grant.counts_work = IsFixed() || options_.counts_work ? 1 : 0;
+  // Without levels the shim looks at the beginning of each call whether it may begin.
+  grant.counts_work = IsFixed() || options_.counts_work || gates_only_ ? 1 : 0;
   grant.NoteLimits();
   grant.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;

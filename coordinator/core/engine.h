@@ -384,7 +384,7 @@ class Engine {
 
   // Their signals (timer_signals.cc).
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
-  static Task* TakerOf(const Process& process, const TimerSignal& signal);
+  Task* TakerOf(const Process& process, const TimerSignal& signal) const;
   void RouteTimerSignals(Process& process, Moment moment);
   void SendTimerSignalsTo(const Task& task);
   static void NoteAccepted(Process& process);

@@ -89,9 +89,12 @@ void Engine::BringToGate(Task& task) {
 
 // Without the one that it was sent here, which is nothing of its program's. One of this number that
 // it was not sent is the C library's: every thread has to handle it, whatever it waits in.
+// At its gate a thread blocks more than its program does, until it waits there.
 SignalSets Engine::SignalsOf(Task& task) const {
   constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal);
   SignalSets sets = ReadSignalSets(task.tid);
+  const bool is_at_gate = task.slot >= 0 && task.parked && task.trap_id == 0;
+  if (gates_only_ && is_at_gate) sets.blocked = Slot(task).blocked_signals;
   if (!Preempts()) return sets;
   if ((sets.own_pending & kOurs) == 0) {
     task.has_signal = false;
