@@ -30,6 +30,7 @@ struct GuestThread {
   // Since it last waited for its turn (exchange.h) it has begun a call; where the thread's own
   // clock keeps it from going on, one whose end others may see.
   bool in_call = false;
+  std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
   bool passes_on = false;  // others wait for what it leaves (fd_wait.h)
   // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;

@@ -107,6 +107,10 @@ enum class NotificationKind : std::uint32_t {
 // of the dispatch that is to end.
 inline constexpr int kPreemptionSignal = 33;
 
+// Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call that
+// the kernel carries out, so that the thread says once it is done (kCall).
+inline constexpr std::uint64_t kBeginsInCall = 2;
+
 inline constexpr std::int64_t kKeepPolicy = -1;
 
 enum class WhySockets : std::uint32_t {
@@ -194,7 +198,7 @@ struct ClockPage {
   std::atomic<std::int64_t> staleness_ns;
   // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
   std::int64_t allocation_cost_ns;
-  std::uint64_t counts_work;  // 1: the thread keeps its WorkCounts
+  std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
   std::uint64_t reserved[2];
 };
 static_assert(sizeof(ClockPage) == 192);

@@ -57,6 +57,9 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       grant);
   // Without levels the shim looks at the beginning of each call whether it may begin.
   grant.counts_work = IsFixed() || options_.counts_work || gates_only_ ? 1 : 0;
+  if (gates_only_ && task.trap_id != 0 && task.trap_continues) {
+    grant.counts_work |= shm::kBeginsInCall;
+  }
   grant.NoteLimits();
   grant.WriteTo(page);
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
