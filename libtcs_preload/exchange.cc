@@ -84,15 +84,17 @@ void DieIfCoordinatorIsGone() {
   }
 }
 
-Charged FillRecord(shm::ThreadSlot& slot, const Request& request) {
+// What the thread has come to, before it does anything for the exchange itself.
+shm::ClockReading ReadForNote(shm::ClockPage& page) {
+  shm::ClockReading reading = shm::ReadClock(page);
+  if (!OnlyCpuClockTells(page)) return reading;
+  while (!shm::RemoveStolen(page, reading, OwnCpuNs())) reading = shm::ReadClock(page);
+  return shm::ReadClock(page);
+}
+
+Charged FillRecord(shm::ThreadSlot& slot, const Request& request,
+                   const shm::ClockReading& reading) {
   shm::Notification& note = slot.note;
-  shm::ClockReading reading = shm::ReadClock(slot.clock);
-  if (OnlyCpuClockTells(slot.clock)) {
-    while (!shm::RemoveStolen(slot.clock, reading, OwnCpuNs())) {
-      reading = shm::ReadClock(slot.clock);
-    }
-    reading = shm::ReadClock(slot.clock);
-  }
   note.kind = request.kind;
   note.time_ns = shm::ShownTime(slot.clock, reading);
   note.deadline_ns = request.deadline_ns;
@@ -160,6 +162,7 @@ bool ShutGate(shm::ThreadSlot& slot) {
 // Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
 bool EndWait(GuestThread& thread) {
   shm::ThreadSlot& slot = *thread.slot;
+  const shm::ClockReading reading = ReadForNote(slot.clock);
   NoHandlers none(slot, nullptr);
   if (g_header->gates_only != 0) {
     // The handler may have begun before the thread's turn; what ended the wait may be another
@@ -168,7 +171,7 @@ bool EndWait(GuestThread& thread) {
   } else {
     slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   }
-  const Charged charged = FillRecord(slot, Request{.kind = NotificationKind::kInterrupted});
+  const Charged charged = FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
   Notify(thread);
   none.Allow(0);
   WaitAtGate(slot, false, charged);
@@ -177,9 +180,10 @@ bool EndWait(GuestThread& thread) {
 
 Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   shm::ThreadSlot& slot = *thread.slot;
+  const shm::ClockReading reading = ReadForNote(slot.clock);
   NoHandlers none(slot, request.blocked);
   slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
-  const Charged charged = FillRecord(slot, request);
+  const Charged charged = FillRecord(slot, request, reading);
   Notify(thread);
   if (request.suspend_mask != nullptr) {
     const unsigned long mask = *request.suspend_mask | OwnSignals();

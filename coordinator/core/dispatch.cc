@@ -62,6 +62,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   }
   grant.NoteLimits();
   grant.WriteTo(page);
+  // One that computes on meanwhile goes to its gate rather than read what is half written.
+  if (!host_cpu_.stands_still()) page.horizon_ns = 0;
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
@@ -82,6 +84,12 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
 void Engine::Resume(Task& task) {
   const bool is_at_gate = task.parked;
   host_cpu_.Dispatch(task);
+  // A thread that shares the processor runs as soon as it can.
+  const bool starts_at_once = !host_cpu_.stands_still();
+  if (starts_at_once) {
+    host_cpu_.Start(task, task.spins);
+    if (task.slot >= 0) Slot(task).clock.horizon_ns = task.grant.horizon_ns;
+  }
   if (task.slot < 0) TakeUpRegistration(task);
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
@@ -95,7 +103,7 @@ void Engine::Resume(Task& task) {
     HostCpu::OpenGate(Slot(task));
   }
   ++report_.switches;
-  host_cpu_.Start(task, task.spins);
+  if (!starts_at_once) host_cpu_.Start(task, task.spins);
 }
 
 // The running thread has woken one of another computer, which does not need its core. It goes on,
