@@ -171,7 +171,8 @@ bool EndWait(GuestThread& thread) {
   } else {
     slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   }
-  const Charged charged = FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
+  const Charged charged =
+      FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
   Notify(thread);
   none.Allow(0);
   WaitAtGate(slot, false, charged);

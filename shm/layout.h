@@ -107,8 +107,8 @@ enum class NotificationKind : std::uint32_t {
 // of the dispatch that is to end.
 inline constexpr int kPreemptionSignal = 33;
 
-// Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call that
-// the kernel carries out, so that the thread says once it is done (kCall).
+// Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
+// that the kernel carries out, so that the thread says once it is done (kCall).
 inline constexpr std::uint64_t kBeginsInCall = 2;
 
 inline constexpr std::int64_t kKeepPolicy = -1;

@@ -188,7 +188,10 @@ bool Engine::CutsOff(Task& task) {
   if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
-  fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n", task.order, (int)Slot(task).note.kind, (int)turn_.is_sent_to_gate, (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches, Slot(task).clock.executed_adjust.load()>>48);
+  fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n",
+          task.order, (int)Slot(task).note.kind, (int)turn_.is_sent_to_gate,
+          (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches,
+          Slot(task).clock.executed_adjust.load() >> 48);
   if (std::exchange(task.is_cut_off, true)) {
     Expel(*task.process, "a notification that was never sent");
     return true;

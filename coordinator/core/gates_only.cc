@@ -4,6 +4,8 @@
 // the dispatched one has come to the end of what it does to others. It says so where its next call
 // begins (kCall): until then its clock stands at the time of its last call, and what it has made
 // ready becomes ready at that time, however late the coordinator looks.
+#include <signal.h>
+
 #include <utility>
 
 #include "coordinator/core/engine.h"
@@ -19,6 +21,10 @@ namespace {
 constexpr std::int64_t kMostWayToGateNs = 100'000;
 constexpr std::int64_t kGateLookNs = 500'000;
 constexpr int kMostGateLooks = 400;
+
+// Unless they are caught.
+constexpr std::uint64_t kDoNothing =
+    SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) | SignalBit(SIGWINCH);
 
 }  // namespace
 
@@ -74,8 +80,8 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
 // the signal, or the kernel has it) it computes on, and owes what it computes.
 void Engine::BringToGate(Task& task) {
   const bool computes = Preempts() && task.slot >= 0 && IsRunnable(task) && !task.parked &&
-                        !turn_.HasSpoken() &&
-                        !task.is_brief && !task.executes && !task.process->expelled;
+                        !turn_.HasSpoken() && !task.is_brief && !task.executes &&
+                        !task.process->expelled;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const std::int64_t sent_ns = HostClockOf(task);
   turn_.is_sent_to_gate = task.has_signal = true;
@@ -94,7 +100,13 @@ SignalSets Engine::SignalsOf(Task& task) const {
   constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal);
   SignalSets sets = ReadSignalSets(task.tid);
   const bool is_at_gate = task.slot >= 0 && task.parked && task.trap_id == 0;
-  if (gates_only_ && is_at_gate) sets.blocked = Slot(task).blocked_signals;
+  if (gates_only_ && is_at_gate) {
+    sets.blocked = Slot(task).blocked_signals;
+    // The kernel keeps what does nothing only as long as it is blocked.
+    const std::uint64_t lost = (sets.ignored | (kDoNothing & ~sets.caught)) & ~sets.blocked;
+    sets.own_pending &= ~lost;
+    sets.shared_pending &= ~lost;
+  }
   if (!Preempts()) return sets;
   if ((sets.own_pending & kOurs) == 0) {
     task.has_signal = false;

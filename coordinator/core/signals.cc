@@ -48,8 +48,7 @@ bool Engine::PollSignals() {
     const Moment moment{std::max(now_ns, task.reached_ns)};
     if (HasSignalForTrapped(task)) {
       WakeForSignals(*task.process, moment);
-    } else if (SignalsThatEnd(*task.wait) == 0 ||
-               !EndAwait(task, SignalsOf(task), moment)) {
+    } else if (SignalsThatEnd(*task.wait) == 0 || !EndAwait(task, SignalsOf(task), moment)) {
       continue;
     }
     latest_ns_ = moment.ns;
@@ -129,9 +128,9 @@ void Engine::WakeSignalled(pid_t receiver, Moment moment) {
 void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
-  for (const Task& task : table_.tasks()) {
+  for (Task& task : table_.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
-    const SignalSets sets = ReadSignalSets(task.tid);
+    const SignalSets sets = SignalsOf(task);
     const std::uint64_t ignored = sets.blocked | sets.caught;
     stopped |= ThreadState(task.tid) == 'T' ||
                ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;

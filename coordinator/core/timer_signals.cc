@@ -50,7 +50,8 @@ Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) const {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if (Handles(*task, SignalsOf(*task), signal.number)) return task->state == TaskState::kUnseen ? nullptr : task;
+    if (Handles(*task, SignalsOf(*task), signal.number))
+      return task->state == TaskState::kUnseen ? nullptr : task;
   }
   return nullptr;
 }

@@ -89,7 +89,8 @@ sock_filter LoadArgument(std::size_t argument) {
 std::vector<sock_filter> NativeProgram(bool with_executions) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
   std::vector<std::uint32_t> trapped(std::begin(kTrapped), std::end(kTrapped));
-  if (with_executions) trapped.insert(trapped.end(), std::begin(kExecutions), std::end(kExecutions));
+  if (with_executions)
+    trapped.insert(trapped.end(), std::begin(kExecutions), std::end(kExecutions));
   const std::size_t count = trapped.size();
   std::vector<sock_filter> program{
       JumpIfEqual(kNuma, 0, 1),
