@@ -44,7 +44,9 @@ Now ReadNowSlowly(GuestThread& thread) {
   ClockPage& page = thread.slot->clock;
   for (;;) {
     const ClockReading r = ReadChecked(page);
-    if (r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown()) return Show(page, r);
+    // A handler that has interrupted an exchange would end its wait by another one.
+    const bool may_ask = thread.depth == 0 || (g_header->gates_only != 0 && !IsAtGate(thread));
+    if (r.time_ns < r.horizon_ns || !may_ask || IsShutDown()) return Show(page, r);
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});
   }
 }
@@ -99,6 +101,7 @@ void HoldForRead(GuestThread& thread) {
 void HoldForWrite(GuestThread& thread) {
   NoteSent(thread);
   const std::int64_t now = NowNs(thread);
+  BeginChange(thread);
   if (now <= thread.slot->clock.write_safe_ns) return;
   if (g_header->sync != shm::Sync::kConsistent) return;
   Exchange(thread, Request{.kind = NotificationKind::kWrite});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "coordinator/core/signal_sets.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 
@@ -18,7 +19,7 @@ void ChildStops::LetStop(const Process& process) {
   bool certain = false, stops = false;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
-    const SignalSets sets = ReadSignalSets(task->tid);
+    const SignalSets sets = SignalsOf(run_, *task);
     const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStopSignals &
                                   ~(sets.blocked | sets.caught | sets.ignored);
     certain |= (pending & SignalBit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';

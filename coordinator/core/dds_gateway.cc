@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "coordinator/core/signal_sets.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/scenario/own_topics.h"
@@ -197,9 +198,9 @@ void DdsGateway::ShowDeliverersTheirDeadlines() {
 void DdsGateway::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
-  for (const Task& task : run_.table.tasks()) {
+  for (Task& task : run_.table.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
-    const SignalSets sets = ReadSignalSets(task.tid);
+    const SignalSets sets = SignalsOf(run_, task);
     const std::uint64_t ignored = sets.blocked | sets.caught;
     stopped |= ThreadState(task.tid) == 'T' ||
                ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;

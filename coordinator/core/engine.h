@@ -179,7 +179,9 @@ class Engine {
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
   bool PutOff(const Task* by, Late late);
-  bool MayGoOn(const Task& task);
+  bool MayGoOn(Task& task);
+  void BringToGate(Task& task);
+  void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 

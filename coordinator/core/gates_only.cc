@@ -4,11 +4,25 @@
 // the dispatched one has come to the end of what it does to others. It says so where its next call
 // begins (kCall): until then its clock stands at the time of its last call, and what it has made
 // ready becomes ready at that time, however late the coordinator looks.
+#include <signal.h>
+
 #include <utility>
 
+#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
 
 namespace tcs {
+
+namespace {
+
+// The processor time that a thread has to handle the signal, and the real time: others of the host
+// may go first.
+constexpr std::int64_t kMostWayToGateNs = 100'000;
+constexpr std::int64_t kGateLookNs = 500'000;
+constexpr int kMostGateLooks = 400;
+
+}  // namespace
 
 // True if what `by` does happens later.
 bool Engine::PutOff(const Task* by, Late late) {
@@ -25,8 +39,10 @@ Reactor::Found Engine::TakePutOff(Moment moment) {
 }
 
 // Of the running thread's: true if it does not end its turn.
-bool Engine::MayGoOn(const Task& task) {
+bool Engine::MayGoOn(Task& task) {
+  if (turn_.is_sent_to_gate) return false;
   const shm::ThreadSlot& slot = Slot(task);
+  HostCpu::FollowOrigin(task);
   if (slot.note.kind == shm::NotificationKind::kCall) {
     says_call_ = true;
     return true;
@@ -53,6 +69,34 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
     opens_gate_ = true;
   }
   return found;
+}
+
+// The running thread is to stop, and has not said anything: it computes. It is told to go to its
+// gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
+// the signal, or the kernel has it) it computes on, and owes what it computes.
+void Engine::BringToGate(Task& task) {
+  const bool computes = run_.Preempts() && task.slot >= 0 && Waker::IsRunnable(task) &&
+                        !task.parked && !turn_.HasSpoken() && !task.is_brief && !task.executes &&
+                        !task.process->expelled;
+  if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
+  const std::int64_t sent_ns = HostClockOf(task);
+  turn_.is_sent_to_gate = task.has_signal = true;
+  host_cpu_.SendToGate(task.process->pid, task);
+  for (int look = 0; look < kMostGateLooks; ++look) {
+    PollEvents(kGateLookNs, {});
+    if (turn_.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
+    if (HostClockOf(task) > sent_ns + kMostWayToGateNs || ThreadState(task.tid) != 'R') return;
+  }
+}
+
+// What the thread has computed since its last turn ended, or while it was taken to be stopped, is a
+// debt like what it computes beyond its horizon.
+void Engine::ChargeUndispatched(Task& task) {
+  if (!run_.Preempts() || task.slot < 0) return;
+  const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
+  task.charged_ns += ns;
+  task.debt_ns += ns;
+  report_.client_ns += task.metered.HostNs(ns);
 }
 
 }  // namespace tcs

@@ -133,6 +133,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kKernelWait:
     case Kind::kPassOn:  // any stop does it
     case Kind::kCall:
+    case Kind::kPreempted:
       break;
   }
   waker_.Refresh(robot);

@@ -46,6 +46,8 @@ struct RunState {
 
   bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
+  // Without levels a thread that computes is told by a signal to stop.
+  bool Preempts() const { return gates_only && !IsFixed(); }
   bool IsInGrace() const { return grace_began_ns != shm::kNeverNs; }
 
   // The furthest that two leaves, or a program's clock and the world, have been apart.

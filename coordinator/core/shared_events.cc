@@ -2,9 +2,11 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,14 +42,48 @@ bool HasEvent(const Task& task) {
 
 bool IsExclusive(const EpollEntry& entry) { return (entry.events & EPOLLEXCLUSIVE) != 0; }
 
+// What the threads wait at, each looked at once: there may be hundreds of them.
+class Looks {
+ public:
+  // False where they cannot offer the same event, as the descriptors' files tell.
+  bool MayBeOne(const Task& one, const Task& other) {
+    const File &file = FileOf(one), &other_file = FileOf(other);
+    return file.device == other_file.device && file.number == other_file.number;
+  }
+  // Of the epoll set that the thread waits at.
+  const std::vector<EpollEntry>& EntriesOf(const Task& task) {
+    const auto [found, is_new] = entries_.try_emplace(task.order);
+    if (is_new) found->second = tcs::EntriesOf(DescriptorOf(task));
+    return found->second;
+  }
+
+ private:
+  struct File {
+    dev_t device;
+    ino_t number;  // all epoll sets have the same
+  };
+  const File& FileOf(const Task& task) {
+    const auto [found, is_new] = files_.try_emplace(task.order);
+    if (is_new) {
+      struct stat status {};
+      fstat(DescriptorOf(task), &status);
+      found->second = {status.st_dev, status.st_ino};
+    }
+    return found->second;
+  }
+
+  std::unordered_map<int, File> files_;
+  std::unordered_map<int, std::vector<EpollEntry>> entries_;
+};
+
 // Whether all that `other`'s set has to offer is a descriptor that both sets hold exclusively.
-bool OffersTheSameOnly(const Task& first, const Task& other) {
+bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
   const int set = DescriptorOf(first), other_set = DescriptorOf(other);
-  std::vector<EpollEntry> exclusive = EntriesOf(set);
+  std::vector<EpollEntry> exclusive = looks.EntriesOf(first);
   std::erase_if(exclusive, [](const EpollEntry& entry) { return !IsExclusive(entry); });
   if (exclusive.empty()) return false;
   bool shared = false;
-  for (const EpollEntry& entry : EntriesOf(other_set)) {
+  for (const EpollEntry& entry : looks.EntriesOf(other)) {
     const Borrowed target(other, entry.fd);
     // What is no longer under its number cannot be looked at.
     if (target.fd() < 0 || !IsAbout(other_set, entry, target.fd())) continue;
@@ -67,10 +103,12 @@ bool OffersTheSameOnly(const Task& first, const Task& other) {
 void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
   std::vector<EventWaiter> waiters;
   for (const Task* task : awaiters) waiters.push_back(WaiterOf(*task));
+  Looks looks;
   const std::vector<EventShare> shares =
-      ShareEvents(std::move(waiters), [this](int first, int second) {
+      ShareEvents(std::move(waiters), [this, &looks](int first, int second) {
         const Task &one = run_.table.At(first), &other = run_.table.At(second);
-        return IsSameFile(DescriptorOf(one), DescriptorOf(other)) || OffersTheSameOnly(one, other);
+        return looks.MayBeOne(one, other) && (IsSameFile(DescriptorOf(one), DescriptorOf(other)) ||
+                                              OffersTheSameOnly(one, other, looks));
       });
   for (const EventShare& share : shares) {
     if (share.passed_over_for == kNoThread) continue;

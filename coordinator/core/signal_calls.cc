@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/core/signal_sets.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -21,7 +22,7 @@ bool SignalCalls::Poll() {
     if (wakes_.HasSignalForTrapped(task)) {
       wakes_.WakeForSignals(*task.process, moment);
     } else if (SignalsThatEnd(*task.wait) == 0 ||
-               !wakes_.EndAwait(task, ReadSignalSets(task.tid), moment)) {
+               !wakes_.EndAwait(task, SignalsOf(run_, task), moment)) {
       continue;
     }
     run_.latest_ns = moment.ns;

@@ -1,5 +1,6 @@
 #include "coordinator/core/signal_wakes.h"
 
+#include "coordinator/core/signal_sets.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 
@@ -29,7 +30,7 @@ void SignalWakes::WakeForSignals(Process& process, Moment moment) {
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
     if (!active_.IsLast(task)) active_.Hold(task);
-    const SignalSets sets = ReadSignalSets(task.tid);
+    const SignalSets sets = SignalsOf(run_, task);
     if (EndAwait(task, sets, moment)) continue;
     const std::uint64_t mine =
         Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, BlockedOf(task, sets));
@@ -55,9 +56,9 @@ void SignalWakes::AnswerAhead(Task& task) {
   task.parked = false;
 }
 
-bool SignalWakes::HasSignalForTrapped(const Task& task) const {
+bool SignalWakes::HasSignalForTrapped(Task& task) const {
   if (!run_.gates_only || run_.turn.lasts() || !task.wait->is_in_trapped_call) return false;
-  const SignalSets sets = ReadSignalSets(task.tid);
+  const SignalSets sets = SignalsOf(run_, task);
   return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0;
 }
 

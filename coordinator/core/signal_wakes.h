@@ -24,7 +24,7 @@ class SignalWakes {
   void WakeForSignals(Process& process, Moment moment);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // that nobody but who looks learns of one from outside. One from inside is told by who sends it.
-  bool HasSignalForTrapped(const Task& task) const;
+  bool HasSignalForTrapped(Task& task) const;
 
  private:
   void AnswerAhead(Task& task);

@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include "coordinator/core/signal_sets.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 
@@ -9,9 +10,8 @@ namespace tcs {
 
 namespace {
 
-// Would the thread run a handler for it?
-bool Handles(const Task& task, int signal) {
-  const SignalSets sets = ReadSignalSets(task.tid);
+// Would a thread of these sets run a handler for it?
+bool Handles(const Task& task, const SignalSets& sets, int signal) {
   return (sets.caught & ~BlockedOf(task, sets) & SignalBit(signal)) != 0;
 }
 
@@ -45,11 +45,12 @@ pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal
 }
 
 // Null if nobody runs a handler, or only one that the kernel holds in a call.
-Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) {
+Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) const {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if (Handles(*task, signal.number)) return task->state == TaskState::kUnseen ? nullptr : task;
+    if (Handles(*task, SignalsOf(run_, *task), signal.number))
+      return task->state == TaskState::kUnseen ? nullptr : task;
   }
   return nullptr;
 }

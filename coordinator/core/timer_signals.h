@@ -26,7 +26,7 @@ class TimerSignals {
 
  private:
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
-  static Task* TakerOf(const Process& process, const TimerSignal& signal);
+  Task* TakerOf(const Process& process, const TimerSignal& signal) const;
 
   RunState& run_;
   Waker& waker_;
