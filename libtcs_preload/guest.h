@@ -32,6 +32,7 @@ struct GuestThread {
   bool in_call = false;
   std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
   bool passes_on = false;                           // others wait for what it leaves (fd_wait.h)
+  std::int64_t cpu_shown_ns = 0;  // its charged processor time as it was last shown
   // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;
   std::int64_t locks_at = 0;

@@ -53,7 +53,10 @@ Now ReadNowSlowly(GuestThread& thread) {
 
 std::int64_t ThreadCpuNs(GuestThread& thread) {
   NowNs(thread);  // a spin on the CPU clock, too, must reach its horizon
-  return ReadChecked(thread.slot->clock).cpu_ns;
+  // What was stolen since the last look is taken out later; what has been shown stays.
+  const std::int64_t now_ns = ReadChecked(thread.slot->clock).cpu_ns;
+  if (now_ns > thread.cpu_shown_ns) thread.cpu_shown_ns = now_ns;
+  return thread.cpu_shown_ns;
 }
 
 std::int64_t ProcessCpuNs(GuestThread& thread) {

@@ -24,6 +24,26 @@ robots:
       short: {command: [$out/bin/steady_worker, short, "400"], priority: 10}
 END
 
+# Who is deaf to the signal that stops threads computes on, and owes what it computes.
+cat >"$out/deaf.py" <<'PY'
+import ctypes, sys, time
+if sys.argv[1] == "deaf":
+    every = ctypes.c_uint64(2**64 - 1)
+    assert ctypes.CDLL(None).syscall(14, 0, ctypes.byref(every), None, 8) == 0  # rt_sigprocmask, raw
+begun = time.thread_time(), time.monotonic()
+for _ in range(6_000_000): pass
+print(time.thread_time() - begun[0], time.monotonic() - begun[1])
+PY
+cat >"$out/deaf.yaml" <<END
+duration: 60s
+robots:
+  robot:
+    clients:
+      deaf: {command: [python3, $out/deaf.py, deaf]}
+      urgent: {command: [$out/bin/steady_worker, short, "2000"], priority: 10}
+  other: {clients: {hears: {command: [python3, $out/deaf.py, hears]}}}
+END
+
 run() {  # with|without NAME SCENARIO ARGUMENTS...: into FOLDER/NAME
   local folder=$out/$1 name=$2 scenario=$3 as=()
   shift 3
@@ -35,6 +55,7 @@ for rights in with without; do
   run $rights fixed "$out/example/scenario.yaml" --duration 2s --accounting fixed
   run $rights flight "$out/example/scenario.yaml" --duration 3s
 done
+run without deaf "$out/deaf.yaml"
 # In turns, so that other load meets both.
 for turn in 1 2 3; do
   for rights in with without; do run $rights work$turn "$out/work.yaml"; done
@@ -65,6 +86,17 @@ ratio = (flights["without"]["clients"]["predator/planner"]["charged_ns"] /
          flights["with"]["clients"]["predator/planner"]["charged_ns"])
 print("the planner is charged", ratio)
 assert abs(ratio - 1) < 0.05, ratio
+deaf = summary("without", "deaf")
+check(deaf)
+assert deaf["drift_ns"] > 0 and deaf["clients"]["robot/urgent"]["charged_ns"] > 100_000_000, deaf
+took = {log: tuple(map(float, open(f"{folder}/without/deaf/{log}.out.log").read().split()))
+        for log in ("robot-deaf", "other-hears")}
+print("charged and passed", took)
+for log, (charged, passed) in took.items():
+    assert charged > 0.05, (log, charged)
+# One has its processor for itself; the other one waits for the urgent one, which takes about half of it.
+assert took["other-hears"][1] < 1.02 * took["other-hears"][0], took
+assert took["robot-deaf"][1] > 1.2 * took["robot-deaf"][0], took
 # The least of three: what caches and other load add differs from run to run.
 def piece(rights, log):
     return min(float(open(f"{folder}/{rights}/work{turn}/{log}.out.log").read().split()[0]) for turn in (1, 2, 3))
