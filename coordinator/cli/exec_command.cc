@@ -47,7 +47,9 @@ std::string TakeOrigins(const ExecArguments& arguments, RunOptions* options) {
 }
 
 // Says warnings as they come, in the order in which they come. The program has the same stderr: so
-// one line at a time, and never one that would have to wait until somebody reads what is there.
+// one line at a time, and none where it might have to wait until somebody reads what is there. A
+// pipe that polls as writable has room for PIPE_BUF bytes, more than a line; a terminal's output
+// has not been stopped.
 class WarningsAsTheyCome {
  public:
   void Take(const std::string& warning) {

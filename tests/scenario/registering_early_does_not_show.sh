@@ -23,15 +23,17 @@ robots:
             if child == 0:
                 time.sleep(0.1)
                 os._exit(0)
-            open("$out/waits", "w").close()
+            with open("$out/said", "w") as said:
+                said.write(os.environ["TCS_SOCKET"])
+            os.rename("$out/said", "$out/waits")
             os.splice(outside, write_end, 1)
             os.waitpid(child, 0)
             time.sleep(0.1)
       other: {command: [sh, -c, "sleep 0.01; sleep 0.01"]}
 END
 fly() { # NAME: a run; dispatches and activations are printed
-  timeout 40 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" >"$out/said" 2>&1 ||
-    fail "$1: status $?: $(cat "$out/said")"
+  timeout 40 "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 ||
+    fail "$1: status $?: $(cat "$out/$1.said")"
   cat "$out/$1/dispatches.csv" "$out/$1/activations.csv"
 }
 exec 7<>"$out/fifo"
@@ -39,7 +41,16 @@ exec 7<>"$out/fifo"
 printf x >&7
 at_once=$(fly at_once)
 rm -f "$out/waits"
-(until [[ -e $out/waits ]]; do sleep 0.05; done; sleep 0.3; printf x >&7) &
+# Meanwhile the child connects, and has no answer.
+(
+  until [[ -e $out/waits ]]; do sleep 0.05; done
+  for _ in $(seq 100); do
+    sleep 0.05
+    grep -q " 03 *[0-9]* @$(cat "$out/waits")\$" /proc/net/unix && touch "$out/early" && break
+  done
+  printf x >&7
+) &
 writer=$!
 later=$(fly later)
+[[ -e $out/early ]] || fail 'the child did not come to register while its maker was held'
 diff <(echo "$at_once") <(echo "$later") >"$out/diff" || fail "$(head -20 "$out/diff")"
