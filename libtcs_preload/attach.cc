@@ -10,6 +10,7 @@
 
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
 
@@ -139,6 +140,7 @@ void Attach(GuestThread& thread) {
   if (received.reply.slot >= shm::kSlotCount) DieWithoutCoordinator("it gave a wrong slot");
   thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
+  AllowPreemption();
   AwaitFirstDispatch(thread);
 }
 

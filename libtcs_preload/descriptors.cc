@@ -8,6 +8,7 @@
 
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -16,6 +17,12 @@
 using namespace tcs::preload;
 
 namespace {
+
+// What was open for others to see is about to be closed.
+void BeginClosing(int fd) {
+  if (g_header == nullptr || g_header->gates_only == 0 || !CanWait(fd)) return;
+  if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
+}
 
 void ForgetTimer(int fd) {
   const std::int64_t id = ForgetTimerFd(fd);
@@ -35,6 +42,9 @@ long MayUnlock(long result) {
 
 long CloseRange(unsigned first, unsigned last, unsigned flags) {
   if (first > last) return -EINVAL;
+  if (g_header != nullptr && g_header->gates_only != 0) {
+    if (GuestThread* t = Current(); t != nullptr) BeginChange(*t);
+  }
   if ((flags & CLOSE_RANGE_CLOEXEC) == 0) {
     for (unsigned fd = first; fd <= last && fd < 1024; ++fd) ForgetTimer(static_cast<int>(fd));
   }
@@ -56,6 +66,7 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
 TCS_EXPORT int close(int fd) {
   if (IsOwnDescriptor(fd)) return Fail(EBADF);
   ForgetTimer(fd);
+  BeginClosing(fd);
   return static_cast<int>(ToErrno(MayUnlock(RawSyscall(SYS_close, fd))));
 }
 
@@ -76,6 +87,7 @@ TCS_EXPORT int dup(int fd) noexcept {
 
 TCS_EXPORT int dup3(int from, int to, int flags) noexcept {
   if (IsOwnDescriptor(to)) return Fail(EBUSY);
+  BeginClosing(to);
   const long copy = RawSyscall(SYS_dup3, from, to, flags);
   if (copy >= 0) {
     ForgetTimer(to);

@@ -4,12 +4,15 @@
 #include <linux/futex.h>
 #include <poll.h>
 #include <pthread.h>
+#include <signal.h>
 #include <string.h>
 #include <time.h>
 
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
 #include "shm/clock_page.h"
+#include "shm/time_values.h"
 
 namespace tcs::preload {
 
@@ -22,6 +25,55 @@ using shm::WakeReason;
 // timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
 constexpr std::int64_t kMostGateNs = 10'000;
+constexpr std::int64_t kMostExchangeNs = 50'000;  // of the thread's own, both ways
+constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
+
+// Where only gates keep threads apart nothing stops the thread in the instant in which it notifies.
+// A handler that ran after the gate is shut, and before the coordinator is told, would take itself
+// for one that ends a wait. So until the destructor no handler runs.
+class NoHandlers {
+ public:
+  // `blocked`: by the program, if that is something else than by the thread.
+  NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) {
+    if (g_header->gates_only == 0) return;
+    const unsigned long all = ~0ul;
+    RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
+    slot.blocked_signals = blocked != nullptr ? *blocked : before_;
+  }
+  ~NoHandlers() { Allow(0); }
+  NoHandlers(const NoHandlers&) = delete;
+  NoHandlers& operator=(const NoHandlers&) = delete;
+
+  // They may run, but for those of `but`, which have to wait for the destructor.
+  void Allow(unsigned long but) {
+    if (g_header->gates_only == 0 || allows_all_) return;
+    const unsigned long mask = before_ | but;
+    RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&mask), 0, kSetSize);
+    allows_all_ = mask == before_;
+  }
+
+ private:
+  unsigned long before_ = 0;
+  bool allows_all_ = false;
+};
+
+// Where a thread's charge stood when it last notified, and in which dispatch that was.
+struct Charged {
+  std::uint64_t dispatch = ~std::uint64_t{0};
+  std::int64_t cpu_ns = 0;
+};
+
+// True where its own CPU clock alone tells what the thread computes: others have the processor as
+// it has.
+bool OnlyCpuClockTells(const shm::ClockPage& page) {
+  return g_header->gates_only != 0 && page.ns_per_tick_q32 != 0;
+}
+
+std::int64_t OwnCpuNs() {
+  timespec cpu;
+  RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
+  return shm::ToNs(cpu);
+}
 
 void DieIfCoordinatorIsGone() {
   pollfd pipe{g_notify_fd, 0, 0};
@@ -32,15 +84,24 @@ void DieIfCoordinatorIsGone() {
   }
 }
 
-void FillRecord(shm::ThreadSlot& slot, const Request& request) {
+// What the thread has come to, before it does anything for the exchange itself.
+shm::ClockReading ReadForNote(shm::ClockPage& page) {
+  shm::ClockReading reading = shm::ReadClock(page);
+  if (!OnlyCpuClockTells(page)) return reading;
+  while (!shm::RemoveStolen(page, reading, OwnCpuNs())) reading = shm::ReadClock(page);
+  return shm::ReadClock(page);
+}
+
+Charged FillRecord(shm::ThreadSlot& slot, const Request& request,
+                   const shm::ClockReading& reading) {
   shm::Notification& note = slot.note;
-  const shm::ClockReading reading = shm::ReadClock(slot.clock);
   note.kind = request.kind;
   note.time_ns = shm::ShownTime(slot.clock, reading);
   note.deadline_ns = request.deadline_ns;
   memcpy(note.args, request.args, sizeof note.args);
   note.fd_count = request.fd_count;
   if (request.fd_count > 0) memcpy(note.fds, request.fds, request.fd_count * sizeof(shm::WaitFd));
+  return {shm::DispatchNumber(reading.executed_word), reading.cpu_ns};
 }
 
 void Notify(const GuestThread& thread) {
@@ -54,14 +115,23 @@ void Notify(const GuestThread& thread) {
   }
 }
 
+// What the way to the gate and out of it has taken, and the time that others had meanwhile.
+void TakeOutWait(shm::ClockPage& page, const Charged& at_notification) {
+  const shm::ClockReading now = shm::ReadClock(page);
+  const bool goes_on = shm::DispatchNumber(now.executed_word) == at_notification.dispatch;
+  shm::LeaveGate(page, now, goes_on ? at_notification.cpu_ns : page.base_cpu_ns, OwnCpuNs(),
+                 kMostExchangeNs);
+}
+
 // False if a signal handler has run and the gate is still shut.
-bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
+bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charged) {
   for (;;) {
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
     if (gate == shm::kGateOpen || IsShutDown()) {
       if (slot.wake_reason.load(std::memory_order_relaxed) == WakeReason::kCutOff) {
         DieWithoutCoordinator("it has closed the connection to it");
       }
+      if (OnlyCpuClockTells(slot.clock)) TakeOutWait(slot.clock, charged);
       return true;
     }
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
@@ -69,7 +139,9 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible) {
     }
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
-    if (result == 0) shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
+    if (result == 0 && !OnlyCpuClockTells(slot.clock)) {
+      shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
+    }
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
     if (result == -EINTR && interruptible &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {
@@ -90,6 +162,8 @@ bool ShutGate(shm::ThreadSlot& slot) {
 // Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
 bool EndWait(GuestThread& thread) {
   shm::ThreadSlot& slot = *thread.slot;
+  const shm::ClockReading reading = ReadForNote(slot.clock);
+  NoHandlers none(slot, nullptr);
   if (g_header->gates_only != 0) {
     // The handler may have begun before the thread's turn; what ended the wait may be another
     // thing.
@@ -97,24 +171,32 @@ bool EndWait(GuestThread& thread) {
   } else {
     slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   }
-  FillRecord(slot, Request{.kind = NotificationKind::kInterrupted});
+  const Charged charged =
+      FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
   Notify(thread);
-  WaitAtGate(slot, false);
+  none.Allow(0);
+  WaitAtGate(slot, false, charged);
   return slot.reply[0] != 0;
 }
 
 Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   shm::ThreadSlot& slot = *thread.slot;
+  const shm::ClockReading reading = ReadForNote(slot.clock);
+  NoHandlers none(slot, request.blocked);
   slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
-  FillRecord(slot, request);
+  const Charged charged = FillRecord(slot, request, reading);
   Notify(thread);
   if (request.suspend_mask != nullptr) {
-    RawSyscall(SYS_rt_sigsuspend, Arg(request.suspend_mask), 8);
+    const unsigned long mask = *request.suspend_mask | OwnSignals();
+    RawSyscall(SYS_rt_sigsuspend, Arg(&mask), kSetSize);
+    none.Allow(0);
     // Dispatched before the signal was sent, unless it came from somebody else.
     if (slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) EndWait(thread);
     return Reply{WakeReason::kSignal, {0, 0}};
   }
-  if (!WaitAtGate(slot, request.interruptible)) {
+  // The coordinator's own signal is no end of a wait.
+  none.Allow(request.interruptible ? OwnSignals() : 0);
+  if (!WaitAtGate(slot, request.interruptible, charged)) {
     EndWait(thread);
     if (g_header->gates_only == 0) return Reply{WakeReason::kSignal, {0, 0}};
   }
@@ -179,6 +261,10 @@ void AwaitTurn(GuestThread& thread) {
   if (!IsShutDown()) Exchange(thread, Request{.kind = NotificationKind::kCall});
 }
 
-void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false); }
+bool IsAtGate(const GuestThread& thread) {
+  return thread.depth > 0 && thread.slot->gate.load(std::memory_order_acquire) != shm::kGateOpen;
+}
+
+void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false, {}); }
 
 }  // namespace tcs::preload

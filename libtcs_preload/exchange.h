@@ -19,6 +19,8 @@ struct Request {
   bool interruptible = false;
   // The kernel's signal mask to wait with for a handler, instead of at the gate; null: the gate.
   const unsigned long* suspend_mask = nullptr;
+  // The signals that the program blocks, in a handler that it does not know of; null: in no such.
+  const unsigned long* blocked = nullptr;
 };
 
 struct Reply {
@@ -34,6 +36,9 @@ Reply Exchange(GuestThread& thread, const Request& request);
 // At the beginning of a call, where nothing but its gate keeps a thread from running on: returns
 // once the coordinator has seen what the thread's last call did to others, and has it dispatched.
 void AwaitTurn(GuestThread& thread);
+
+// True in a handler that has interrupted an exchange of the thread's whose answer is not there yet.
+bool IsAtGate(const GuestThread& thread);
 
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);

@@ -3,6 +3,8 @@
 #include <errno.h>
 #include <sys/mman.h>
 
+#include <utility>
+
 #include "libtcs_preload/attach.h"
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
@@ -64,10 +66,25 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns) {
   }
 }
 
+namespace {
+
+// True once in a dispatch.
+bool BeganInUnseenCall(GuestThread& thread) {
+  const shm::ClockPage& page = thread.slot->clock;
+  if ((page.counts_work & shm::kBeginsInCall) == 0) return false;
+  const std::uint64_t dispatch = shm::DispatchNumber(page.executed_adjust.load());
+  return std::exchange(thread.told_dispatch, dispatch) != dispatch;
+}
+
+}  // namespace
+
 void CountCall(GuestThread& thread) {
   if (g_header->gates_only != 0) {
-    AwaitTurn(thread);
-    thread.in_call = true;
+    const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
+    if (is_fixed || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {
+      AwaitTurn(thread);
+    }
+    thread.in_call = is_fixed;
   }
   ++thread.slot->work.calls;
   shm::ClockPage& page = thread.slot->clock;

@@ -27,8 +27,12 @@ struct GuestThread {
   std::uint32_t index = 0;
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
-  bool in_call = false;    // since it last waited for its turn (exchange.h)
-  bool passes_on = false;  // others wait for what it leaves (fd_wait.h)
+  // Since it last waited for its turn (exchange.h) it has begun a call; where the thread's own
+  // clock keeps it from going on, one whose end others may see.
+  bool in_call = false;
+  std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
+  bool passes_on = false;                           // others wait for what it leaves (fd_wait.h)
+  std::int64_t cpu_shown_ns = 0;  // its charged processor time as it was last shown
   // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;
   std::int64_t locks_at = 0;
@@ -66,6 +70,9 @@ void Charge(shm::ClockPage& page, std::int64_t cost_ns);
 // Counts an interposed call, and charges it where it has a set cost. Where nothing but its gate
 // keeps the thread from running on, it first waits there until it may.
 void CountCall(GuestThread& thread);
+
+// The thread is about to do what others may see, as a descriptor that becomes ready.
+inline void BeginChange(GuestThread& thread) { thread.in_call = true; }
 
 // The same as Current for an interposed call, which it counts where calls are counted.
 inline GuestThread* Enter() {

@@ -63,6 +63,7 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
   if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
   auto take = [&] {
     if (any_socket) AcknowledgeAtOnce(fd);
+    BeginChange(*t);  // there is room again
     const long result = call();
     if (result > 0 && reads.takes) NoteReceivedFrom(*t, fd);
     return ToErrno(result);
@@ -164,6 +165,7 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
   msghdr message{};
   if (!CopyIn(&message, given)) return ToErrno(whole());
   HoldForRead(*t);
+  BeginChange(*t);
   Rest rest(message.msg_iov, message.msg_iovlen);
   msghdr part_of = message;
   bool first = true;
@@ -288,6 +290,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
+  BeginChange(*t);
   const long result = at_once();
   if (result > 0 && Takes(flags)) NoteReceived(*t);
   PassOn(*t);

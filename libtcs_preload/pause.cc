@@ -6,6 +6,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 
@@ -19,8 +20,9 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 int SuspendWith(GuestThread& t, const unsigned long* mask) {
   unsigned long pending = 0;
   RawSyscall(SYS_rt_sigpending, Arg(&pending), kSetSize);
-  if ((pending & ~*mask) != 0 || IsShutDown()) {
-    RawSyscall(SYS_rt_sigsuspend, Arg(mask), kSetSize);  // handled at once
+  const unsigned long kept = *mask | OwnSignals();
+  if ((pending & ~kept) != 0 || IsShutDown()) {
+    RawSyscall(SYS_rt_sigsuspend, Arg(&kept), kSetSize);  // handled at once
   } else {
     // Until the kernel puts the mask in place no handler may run: it would not end the wait.
     const unsigned long all = ~0ul;

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <time.h>
 
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 
 namespace tcs::preload {
@@ -34,7 +35,7 @@ class MaskedWait {
   bool active() const { return active_; }
 
   // The signals that end the wait.
-  unsigned long Awaited() const { return active_ ? ~mask_ & ~kNeverHeld : 0; }
+  unsigned long Awaited() const { return active_ ? ~mask_ & ~kNeverHeld & ~OwnSignals() : 0; }
 
   bool IsPending() const {
     unsigned long pending = 0;
@@ -46,7 +47,8 @@ class MaskedWait {
   bool Deliver() const {
     if (!active_) return false;
     const timespec now{};
-    return RawSyscall(SYS_ppoll, 0, 0, Arg(&now), Arg(&mask_), kSetSize) == -EINTR;
+    const unsigned long mask = mask_ | OwnSignals();
+    return RawSyscall(SYS_ppoll, 0, 0, Arg(&now), Arg(&mask), kSetSize) == -EINTR;
   }
 
  private:

@@ -6,6 +6,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -76,7 +77,8 @@ int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
     if (timeout != nullptr && !CopyIn(&limit, timeout)) return Fail(EFAULT);
     if (!IsValid(limit)) return Fail(EINVAL);
     constexpr unsigned long kNeverAccepted = 1ul << (SIGKILL - 1) | 1ul << (SIGSTOP - 1);
-    signal = Accept(*t, wanted & ~kNeverAccepted, &found, timeout == nullptr ? -1 : ToNs(limit));
+    signal = Accept(*t, wanted & ~kNeverAccepted & ~OwnSignals(), &found,
+                    timeout == nullptr ? -1 : ToNs(limit));
     if (signal > 0 && found.si_code == SI_TIMER) {
       // It was sent before these happened.
       found.si_overrun =

@@ -44,14 +44,19 @@ Now ReadNowSlowly(GuestThread& thread) {
   ClockPage& page = thread.slot->clock;
   for (;;) {
     const ClockReading r = ReadChecked(page);
-    if (r.time_ns < r.horizon_ns || thread.depth > 0 || IsShutDown()) return Show(page, r);
+    // A handler that has interrupted an exchange would end its wait by another one.
+    const bool may_ask = thread.depth == 0 || (g_header->gates_only != 0 && !IsAtGate(thread));
+    if (r.time_ns < r.horizon_ns || !may_ask || IsShutDown()) return Show(page, r);
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});
   }
 }
 
 std::int64_t ThreadCpuNs(GuestThread& thread) {
   NowNs(thread);  // a spin on the CPU clock, too, must reach its horizon
-  return ReadChecked(thread.slot->clock).cpu_ns;
+  // What was stolen since the last look is taken out later; what has been shown stays.
+  const std::int64_t now_ns = ReadChecked(thread.slot->clock).cpu_ns;
+  if (now_ns > thread.cpu_shown_ns) thread.cpu_shown_ns = now_ns;
+  return thread.cpu_shown_ns;
 }
 
 std::int64_t ProcessCpuNs(GuestThread& thread) {
@@ -99,6 +104,7 @@ void HoldForRead(GuestThread& thread) {
 void HoldForWrite(GuestThread& thread) {
   NoteSent(thread);
   const std::int64_t now = NowNs(thread);
+  BeginChange(thread);
   if (now <= thread.slot->clock.write_safe_ns) return;
   if (g_header->sync != shm::Sync::kConsistent) return;
   Exchange(thread, Request{.kind = NotificationKind::kWrite});

@@ -135,4 +135,23 @@ inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t mos
                                                        page.ns_per_host_ns_q32);
 }
 
+// Where others share the processor as ordinary tasks, the thread's clock goes on when it leaves its
+// gate, from where its charge was `cpu_ns`. What its CPU clock has counted since is the way to the
+// gate and out of it, as in TakeOutGate; `host_cpu_ns` must have been read after `r`.
+inline void LeaveGate(ClockPage& page, const ClockReading& r, std::int64_t cpu_ns,
+                      std::int64_t host_cpu_ns, std::int64_t most_ns) {
+  const std::int64_t counted_ns = CpuTimeFromHostClock(page, host_cpu_ns) - cpu_ns;
+  const bool is_ours = counted_ns > 0 && counted_ns <= most_ns;
+  const std::int64_t wrong_ns = r.cpu_ns - (is_ours ? cpu_ns : cpu_ns + counted_ns);
+  std::uint64_t expected = r.executed_word;
+  const std::uint64_t desired =
+      PackAdjust(r.executed_word, AdjustValue(r.executed_word) - wrong_ns);
+  if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
+  page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
+  if (is_ours) {
+    page.host_cpu_origin_ns += static_cast<std::int64_t>(
+        (static_cast<std::uint64_t>(counted_ns) << 32) / page.ns_per_host_ns_q32);
+  }
+}
+
 }  // namespace tcs::shm

@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 13;
+inline constexpr std::uint32_t kVersion = 14;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -97,7 +97,19 @@ enum class NotificationKind : std::uint32_t {
       30,  // its DDS uses sockets, though it was to use dds_exchange.h; args[0]: WhySockets
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
   kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
+  kPreempted = 34,   // the thread computes, and has got kPreemptionSignal
 };
+
+// By this the coordinator stops a thread that computes, where only gates keep threads apart
+// (RunHeader::preempts). It is one of the two that the C library keeps for itself: programs can
+// neither catch nor block it, and it is in none of their sets. The library itself has it for
+// set*id() in programs of several threads, and tells its own by who sent it. It carries the number
+// of the dispatch that is to end.
+inline constexpr int kPreemptionSignal = 33;
+
+// Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
+// that the kernel carries out, so that the thread says once it is done (kCall).
+inline constexpr std::uint64_t kBeginsInCall = 2;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
 
@@ -186,7 +198,7 @@ struct ClockPage {
   std::atomic<std::int64_t> staleness_ns;
   // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
   std::int64_t allocation_cost_ns;
-  std::uint64_t counts_work;  // 1: the thread keeps its WorkCounts
+  std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
   std::uint64_t reserved[2];
 };
 static_assert(sizeof(ClockPage) == 192);
@@ -256,7 +268,10 @@ struct alignas(64) ThreadSlot {
   IpcNote ipc_notes[kMostIpcNotes];
   Receipts receipts;
   WorkCounts work;  // written by the thread, where it is counted
-  std::uint8_t reserved[32];
+  // Written by the thread before it notifies, where only gates keep threads apart: the signals that
+  // it blocks at its gate. What the kernel knows is true only once it waits there.
+  std::uint64_t blocked_signals;
+  std::uint8_t reserved[24];
 };
 static_assert(sizeof(ThreadSlot) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);
@@ -288,6 +303,7 @@ struct alignas(64) RunHeader {
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.
   std::uint32_t gates_only;
+  std::uint32_t preempts;  // 1: the coordinator sends kPreemptionSignal
   std::uint64_t reserved[6];
 };
 static_assert(sizeof(RunHeader) == 128);

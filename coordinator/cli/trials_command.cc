@@ -208,7 +208,6 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
 
   RunnerReport report;
   if (!todo.empty()) {
-    if (const std::string error = WhyNoRealTime(); !error.empty()) return Fail(error);
     if (arguments.no_wait) {
       if (const std::string taken = WhoHasProcessors(); !taken.empty()) return Fail(taken);
     }

@@ -55,9 +55,15 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
       metered,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
-  grant.counts_work = IsFixed() || options_.counts_work ? 1 : 0;
+  // Without levels the shim looks at the beginning of each call whether it may begin.
+  grant.counts_work = IsFixed() || options_.counts_work || gates_only_ ? 1 : 0;
+  if (gates_only_ && task.trap_id != 0 && task.trap_continues) {
+    grant.counts_work |= shm::kBeginsInCall;
+  }
   grant.NoteLimits();
   grant.WriteTo(page);
+  // One that computes on meanwhile goes to its gate rather than read what is half written.
+  if (!host_cpu_.stands_still()) page.horizon_ns = 0;
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1 ? task.process->ended.usage().charged_ns
                                                  : ChargedTo(*task.process) - task.charged_ns;
@@ -78,6 +84,12 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
 void Engine::Resume(Task& task) {
   const bool is_at_gate = task.parked;
   host_cpu_.Dispatch(task);
+  // A thread that shares the processor runs as soon as it can.
+  const bool starts_at_once = !host_cpu_.stands_still();
+  if (starts_at_once) {
+    host_cpu_.Start(task, task.spins);
+    if (task.slot >= 0) Slot(task).clock.horizon_ns = task.grant.horizon_ns;
+  }
   if (task.slot < 0) TakeUpRegistration(task);
   if (task.trap_id != 0) {
     // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
@@ -91,7 +103,7 @@ void Engine::Resume(Task& task) {
     HostCpu::OpenGate(Slot(task));
   }
   ++report_.switches;
-  host_cpu_.Start(task, task.spins);
+  if (!starts_at_once) host_cpu_.Start(task, task.spins);
 }
 
 // The running thread has woken one of another computer, which does not need its core. It goes on,
@@ -177,7 +189,7 @@ void Engine::Settle(Task& task) {
                  .horizon_ns = turn_.horizon_ns(),
                  .reached_ns = on_robot(reading.time_ns),
                  .shown_ns = on_robot(page.last_shown_ns.load()),
-                 .is_preempted = turn_.timed_out && !turn_.notified};
+                 .is_preempted = turn_.timed_out && (!turn_.notified || turn_.is_sent_to_gate)};
   if (turn_.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted_ns = on_robot(slot.note.time_ns);
   }
@@ -406,6 +418,7 @@ void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_unt
   const Moment call{task.cpu->progress_ns};
   BeginTurn(task, horizon_ns, idle_until_ns);
   AwaitStop(task);
+  BringToGate(task);
   EndTurn(task);
   TellOthersOf(task, call, looks_again);
   if (task.process->expelled) {

@@ -276,6 +276,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     LetWorldGoOnWithout(task);
     return;
   }
+  if (!task.parked) ChargeUndispatched(task);
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns;
   const VirtualDuration lead = clock.lead();

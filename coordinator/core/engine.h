@@ -366,7 +366,7 @@ class Engine {
   void AnswerAhead(Task& task);
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
   bool PollSignals();
-  bool HasSignalForTrapped(const Task& task) const;
+  bool HasSignalForTrapped(Task& task) const;
   bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
 
   // Timers (timers.cc); the rules are ProcessTimers'.
@@ -384,7 +384,7 @@ class Engine {
 
   // Their signals (timer_signals.cc).
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);
-  static Task* TakerOf(const Process& process, const TimerSignal& signal);
+  Task* TakerOf(const Process& process, const TimerSignal& signal) const;
   void RouteTimerSignals(Process& process, Moment moment);
   void SendTimerSignalsTo(const Task& task);
   static void NoteAccepted(Process& process);
@@ -429,7 +429,11 @@ class Engine {
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
   bool PutOff(const Task* by, Late late);
-  bool MayGoOn(const Task& task);
+  bool MayGoOn(Task& task);
+  bool Preempts() const { return gates_only_ && !IsFixed(); }
+  void BringToGate(Task& task);
+  SignalSets SignalsOf(Task& task) const;
+  void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
 

@@ -28,6 +28,8 @@ constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold u
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;
 constexpr std::int64_t kLentTurnNs = 20'000;  // where another one has its level
+// The detector's false alarms make it wait twice as long each time, up to 2^this times kHeldTurnNs.
+constexpr int kMostFalseAlarms = 6;
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
 // So long the threads of a process that ends as a whole have to be gone, too.
@@ -36,6 +38,8 @@ constexpr int kExitTurns = 20;
 }  // namespace
 
 Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
+  task.executes = false;
+  if (Slot(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
   if (turn_.IsOf(task)) {
     if (gates_only_ && MayGoOn(task)) return {.looks_again = true};
     turn_.notified = true;
@@ -55,6 +59,7 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
     if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);
+    ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
   }
@@ -138,8 +143,11 @@ bool Engine::BlockedInKernel() {
   Task& task = *turn_.task();
   const char state = ThreadState(task.tid);
   if (gates_only_ && state == 'R') {
-    // The detector, too, has had a moment of the processor beside it.
+    // The detector, too, has had a moment of the processor beside it. It is armed again soon.
     turn_.held_looks = 0;
+    // Under set costs it is armed again when the thread is looked at, which is found silent by how
+    // often it was looked at after an undisturbed while.
+    if (Preempts()) ++turn_.false_alarms;
     return false;
   }
   if (state != 'S' && task.process->threads > 1) LetDie(*task.process);
@@ -185,6 +193,10 @@ bool Engine::CutsOff(Task& task) {
   if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
+  fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n",
+          task.order, (int)Slot(task).note.kind, (int)turn_.is_sent_to_gate,
+          (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches,
+          Slot(task).clock.executed_adjust.load() >> 48);
   if (std::exchange(task.is_cut_off, true)) {
     Expel(*task.process, "a notification that was never sent");
     return true;
@@ -210,8 +222,13 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 // `is_rest`: a further look at an instant, at which the running thread stands as it was found.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
   const bool held = turn_.held_looks > 0 && turn_.lasts() && !host_cpu_.detector().is_armed();
-  const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs : kHeldTurnNs;
-  if (held && timeout_ns > turn_ns) timeout_ns = turn_ns;
+  const bool rearms = turn_.lasts() && turn_.false_alarms > 0 && !host_cpu_.detector().is_armed();
+  const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs
+                               : held
+                                   ? kHeldTurnNs
+                                   : kHeldTurnNs << std::min(turn_.false_alarms, kMostFalseAlarms);
+  const bool is_cut_short = (held || rearms) && timeout_ns > turn_ns;
+  if (is_cut_short) timeout_ns = turn_ns;
   const bool counts = !is_rest && turn_.HasClock() && timeout_ns >= 0;
   const shm::ClockReading before = counts ? host_cpu_.ClockOf(*turn_.task()) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
@@ -219,7 +236,7 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*turn_.task(), before, timeout_ns);
   if (n == 0 && turn_.lasts()) {
-    if (held) {
+    if (held || (rearms && is_cut_short)) {
       host_cpu_.active().TakeBack();
       host_cpu_.detector().Arm();
     } else {

@@ -4,11 +4,29 @@
 // the dispatched one has come to the end of what it does to others. It says so where its next call
 // begins (kCall): until then its clock stands at the time of its last call, and what it has made
 // ready becomes ready at that time, however late the coordinator looks.
+#include <signal.h>
+
 #include <utility>
 
 #include "coordinator/core/engine.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
 
 namespace tcs {
+
+namespace {
+
+// The processor time that a thread has to handle the signal, and the real time: others of the host
+// may go first.
+constexpr std::int64_t kMostWayToGateNs = 100'000;
+constexpr std::int64_t kGateLookNs = 500'000;
+constexpr int kMostGateLooks = 400;
+
+// Unless they are caught.
+constexpr std::uint64_t kDoNothing =
+    SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) | SignalBit(SIGWINCH);
+
+}  // namespace
 
 // True if what `by` does happens later.
 bool Engine::PutOff(const Task* by, Late late) {
@@ -25,8 +43,10 @@ Reactor::Found Engine::TakePutOff(Moment moment) {
 }
 
 // Of the running thread's: true if it does not end its turn.
-bool Engine::MayGoOn(const Task& task) {
+bool Engine::MayGoOn(Task& task) {
+  if (turn_.is_sent_to_gate) return false;
   const shm::ThreadSlot& slot = Slot(task);
+  HostCpu::FollowOrigin(task);
   if (slot.note.kind == shm::NotificationKind::kCall) {
     says_call_ = true;
     return true;
@@ -53,6 +73,59 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
     opens_gate_ = true;
   }
   return found;
+}
+
+// The running thread is to stop, and has not said anything: it computes. It is told to go to its
+// gate, and waited for, so that nobody runs beside it. Where it does not come (its program blocks
+// the signal, or the kernel has it) it computes on, and owes what it computes.
+void Engine::BringToGate(Task& task) {
+  const bool computes = Preempts() && task.slot >= 0 && IsRunnable(task) && !task.parked &&
+                        !turn_.HasSpoken() && !task.is_brief && !task.executes &&
+                        !task.process->expelled;
+  if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
+  const std::int64_t sent_ns = HostClockOf(task);
+  turn_.is_sent_to_gate = task.has_signal = true;
+  host_cpu_.SendToGate(task.process->pid, task);
+  for (int look = 0; look < kMostGateLooks; ++look) {
+    PollEvents(kGateLookNs, {});
+    if (turn_.HasSpoken() || !IsRunnable(task) || task.process->dead) return;
+    if (HostClockOf(task) > sent_ns + kMostWayToGateNs || ThreadState(task.tid) != 'R') return;
+  }
+}
+
+// Without the one that it was sent here, which is nothing of its program's. One of this number that
+// it was not sent is the C library's: every thread has to handle it, whatever it waits in.
+// At its gate a thread blocks more than its program does, until it waits there.
+SignalSets Engine::SignalsOf(Task& task) const {
+  constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal);
+  SignalSets sets = ReadSignalSets(task.tid);
+  const bool is_at_gate = task.slot >= 0 && task.parked && task.trap_id == 0;
+  if (gates_only_ && is_at_gate) {
+    sets.blocked = Slot(task).blocked_signals;
+    // The kernel keeps what does nothing only as long as it is blocked.
+    const std::uint64_t lost = (sets.ignored | (kDoNothing & ~sets.caught)) & ~sets.blocked;
+    sets.own_pending &= ~lost;
+    sets.shared_pending &= ~lost;
+  }
+  if (!Preempts()) return sets;
+  if ((sets.own_pending & kOurs) == 0) {
+    task.has_signal = false;
+  } else if (task.has_signal) {
+    sets.own_pending &= ~kOurs;
+  } else {
+    sets.blocked &= ~kOurs;
+  }
+  return sets;
+}
+
+// What the thread has computed since its last turn ended, or while it was taken to be stopped, is a
+// debt like what it computes beyond its horizon.
+void Engine::ChargeUndispatched(Task& task) {
+  if (!Preempts() || task.slot < 0) return;
+  const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
+  task.charged_ns += ns;
+  task.debt_ns += ns;
+  client_host_ns_ += task.metered.HostNs(ns);
 }
 
 }  // namespace tcs

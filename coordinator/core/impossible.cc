@@ -53,7 +53,8 @@ const char* Engine::WhatIsImpossible(const shm::Notification& note) {
   const bool is_known = kind >= static_cast<std::uint32_t>(Kind::kHorizon) &&
                         kind <= static_cast<std::uint32_t>(Kind::kKernelWait) && kind != 16 &&
                         note.kind != Kind::kResumed;
-  if (!is_known && note.kind != Kind::kPassOn && note.kind != Kind::kCall)
+  if (!is_known && note.kind != Kind::kPassOn && note.kind != Kind::kCall &&
+      note.kind != Kind::kPreempted)
     return "a notification of no kind";
   if (note.fd_count > shm::kMaxWaitFds) return "a wait for too many descriptors";
   if (note.kind != Kind::kTimerCreate) return nullptr;

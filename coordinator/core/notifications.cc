@@ -206,6 +206,7 @@ bool Engine::Handle(Task& task, const shm::Notification& note) {
     case Kind::kKernelWait:
     case Kind::kPassOn:  // any stop does it
     case Kind::kCall:
+    case Kind::kPreempted:
       break;
   }
   Refresh(robot);

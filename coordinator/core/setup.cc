@@ -21,6 +21,7 @@
 #include "coordinator/core/scheduling_rights.h"
 #include "coordinator/host/fixed_meter.h"
 #include "coordinator/host/measured_meter.h"
+#include "coordinator/host/shared_cpu_meter.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
@@ -39,9 +40,6 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 std::string Engine::Prepare() {
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  if (gates_only_ && !IsFixed()) {
-    return WhyNoRealTime() + ", and --accounting fixed runs without it";
-  }
   if (gates_only_ && !TrapsHoldSignals()) {
     return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
   }
@@ -53,6 +51,7 @@ std::string Engine::Prepare() {
   if (std::string error = BindTo(claim_.cpu); !error.empty()) return error;
   if (gates_only_) {
     IgnoreRealTimeLimits();
+    BeWokenInTime();
     if (options_.on_notice) {
       options_.on_notice(
           "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
@@ -98,6 +97,7 @@ std::string Engine::PrepareMemory() {
       options_.date_ns.value_or(IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   header_->coordinator_pid = getpid();
   header_->gates_only = gates_only_ ? 1 : 0;
+  header_->preempts = Preempts() ? 1 : 0;
   return {};
 }
 
@@ -138,6 +138,8 @@ std::string Engine::PrepareHostCpu() {
   std::unique_ptr<Meter> meter;
   if (IsFixed()) {
     meter = std::make_unique<FixedMeter>();
+  } else if (gates_only_) {
+    meter = std::make_unique<SharedCpuMeter>(rate);
   } else {
     meter = std::make_unique<MeasuredMeter>(rate);
   }

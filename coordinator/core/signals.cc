@@ -48,8 +48,7 @@ bool Engine::PollSignals() {
     const Moment moment{std::max(now_ns, task.reached_ns)};
     if (HasSignalForTrapped(task)) {
       WakeForSignals(*task.process, moment);
-    } else if (SignalsThatEnd(*task.wait) == 0 ||
-               !EndAwait(task, ReadSignalSets(task.tid), moment)) {
+    } else if (SignalsThatEnd(*task.wait) == 0 || !EndAwait(task, SignalsOf(task), moment)) {
       continue;
     }
     latest_ns_ = moment.ns;
@@ -61,9 +60,9 @@ bool Engine::PollSignals() {
 
 // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
 // that nobody but who looks learns of one from outside. One from inside is told by who sends it.
-bool Engine::HasSignalForTrapped(const Task& task) const {
+bool Engine::HasSignalForTrapped(Task& task) const {
   if (!gates_only_ || turn_.lasts() || !task.wait->is_in_trapped_call) return false;
-  const SignalSets sets = ReadSignalSets(task.tid);
+  const SignalSets sets = SignalsOf(task);
   return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0;
 }
 
@@ -89,7 +88,7 @@ void Engine::WakeForSignals(Process& process, Moment moment) {
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
     if (!host_cpu_.active().IsLast(task)) host_cpu_.active().Hold(task);
-    const SignalSets sets = ReadSignalSets(task.tid);
+    const SignalSets sets = SignalsOf(task);
     if (EndAwait(task, sets, moment)) continue;
     const std::uint64_t mine =
         Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, BlockedOf(task, sets));
@@ -129,9 +128,9 @@ void Engine::WakeSignalled(pid_t receiver, Moment moment) {
 void Engine::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
   if (process.dds_number == 0) return;
   bool stopped = false;
-  for (const Task& task : table_.tasks()) {
+  for (Task& task : table_.tasks()) {
     if (task.process != &process || task.state == TaskState::kDead) continue;
-    const SignalSets sets = ReadSignalSets(task.tid);
+    const SignalSets sets = SignalsOf(task);
     const std::uint64_t ignored = sets.blocked | sets.caught;
     stopped |= ThreadState(task.tid) == 'T' ||
                ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;

@@ -19,7 +19,7 @@ void Engine::LetStop(const Process& process) {
   bool certain = false, stops = false;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
-    const SignalSets sets = ReadSignalSets(task->tid);
+    const SignalSets sets = SignalsOf(*task);
     const std::uint64_t pending = (sets.own_pending | sets.shared_pending) & kStopSignals &
                                   ~(sets.blocked | sets.caught | sets.ignored);
     certain |= (pending & SignalBit(SIGSTOP)) != 0 || ThreadState(task->tid) == 'T';

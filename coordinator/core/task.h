@@ -79,6 +79,8 @@ struct Task : HostThread {
   int yields = 0;               // since it last looked whether strangers wait for their turn
   bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
+  bool executes = false;        // another program, perhaps: it has no handlers there
+  bool has_signal = false;      // ours, to go to its gate, unless it has handled it by now
   bool is_put_off = false;      // has notified, and is heard later (gates_only.cc)
   shm::WorkCounts work{};       // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
@@ -106,7 +108,7 @@ inline std::uint64_t BlockedOf(const Task& task, const SignalSets& sets) {
 
 struct Process {
   std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
-  std::uint32_t index = 0;            // its place in the engine's list
+  std::uint32_t index = 0;            // its place in TaskTable::processes
   Process* client = nullptr;          // the client that it is or descends from
   const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;

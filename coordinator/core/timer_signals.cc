@@ -11,9 +11,8 @@ namespace tcs {
 
 namespace {
 
-// Would the thread run a handler for it?
-bool Handles(const Task& task, int signal) {
-  const SignalSets sets = ReadSignalSets(task.tid);
+// Would a thread of these sets run a handler for it?
+bool Handles(const Task& task, const SignalSets& sets, int signal) {
   return (sets.caught & ~BlockedOf(task, sets) & SignalBit(signal)) != 0;
 }
 
@@ -47,11 +46,12 @@ pid_t Engine::AccepterOf(const Process& process, const TimerSignal& signal) {
 }
 
 // Null if nobody runs a handler, or only one that the kernel holds in a call.
-Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) {
+Task* Engine::TakerOf(const Process& process, const TimerSignal& signal) const {
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
     if (signal.tid != 0 && task->tid != signal.tid) continue;
-    if (Handles(*task, signal.number)) return task->state == TaskState::kUnseen ? nullptr : task;
+    if (Handles(*task, SignalsOf(*task), signal.number))
+      return task->state == TaskState::kUnseen ? nullptr : task;
   }
   return nullptr;
 }

@@ -29,7 +29,12 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
   if (!call.has_value()) return {.stops_running = !gates_only_, .wakes_others = true};
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
-  const Task* by = KnownTask(call->tid);
+  Task* by = KnownTask(call->tid);
+  if (IsExecution(*call)) {
+    if (by != nullptr) by->executes = true;
+    LetThrough(*call);
+    return {};
+  }
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
   return waits && PutOff(by, take) ? Reactor::Found{} : take(moment);
 }
@@ -52,6 +57,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   // again, or it came back from a call that nobody saw.
   if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo, moment);
   if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal, moment);
+  ChargeUndispatched(*task);
   task->early_trap = call;
   task->trap_id = 0;
   return kConcernsAll;

@@ -15,7 +15,7 @@ void Engine::EnterWait(Task& task, Wait wait) {
   task.wait = std::move(wait);
   SetState(task, TaskState::kWaiting);
   // One of them may be pending already.
-  if (ends_by_signal) EndAwait(task, ReadSignalSets(task.tid), {task.reached_ns});
+  if (ends_by_signal) EndAwait(task, SignalsOf(task), {task.reached_ns});
 }
 
 // Whatever the thread waits for, it waits no longer.

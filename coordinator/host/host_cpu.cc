@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <x86intrin.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace tcs {
@@ -40,7 +41,8 @@ void HostCpu::Woke() { stop_tsc_ = __rdtsc(); }
 void HostCpu::Continue(HostThread& thread) {
   const std::uint64_t stopped_tsc = stop_tsc_;
   Woke();
-  if (thread.slot_memory == nullptr) return;
+  // If it runs on its CPU clock tells; and its page is not to be touched.
+  if (thread.slot_memory == nullptr || !stands_still()) return;
   shm::ClockPage& page = thread.slot_memory->clock;
   page.base_tsc = thread.grant.base_tsc += stop_tsc_ - stopped_tsc;
   // A new number, so that the thread repeats a reading that it was interrupted in.
@@ -53,11 +55,25 @@ void HostCpu::Continue(HostThread& thread) {
 // What the thread has taken out itself moved its origin; and it may have become another one
 // meanwhile.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock) {
+  FollowOrigin(thread);
+  meter_->End(thread.metered, stop_tsc_, clock);
+}
+
+void HostCpu::FollowOrigin(HostThread& thread) {
   MeteredThread& metered = thread.metered;
   const std::int64_t moved_ns = metered.page->host_cpu_origin_ns - metered.page_origin_ns;
   metered.page_origin_ns += moved_ns;
   metered.host_origin_ns += moved_ns;
-  meter_->End(metered, stop_tsc_, clock);
+}
+
+std::int64_t HostCpu::Uncharged(const HostThread& thread, std::int64_t charged_ns,
+                                const Meter::CpuClock& clock) {
+  const MeteredThread& metered = thread.metered;
+  const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
+  if (cpu_ns < 0) return 0;
+  const std::int64_t used_ns =
+      shm::MulQ32(cpu_ns - metered.host_origin_ns, metered.NsPerHostNsQ32());
+  return std::max<std::int64_t>(0, used_ns - charged_ns);
 }
 
 shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {

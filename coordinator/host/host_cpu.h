@@ -32,10 +32,19 @@ namespace tcs {
 
 class HostCpu {
  public:
-  explicit HostCpu(Executor& executor) : active_(executor) {}
+  explicit HostCpu(Executor& executor) : executor_(executor), active_(executor) {}
 
   // Before all else. Makes the detector's process.
   [[nodiscard]] std::string Open(std::unique_ptr<Meter> meter);
+
+  // False if the dispatched thread shares the processor with the coordinator and with others
+  // (executor.h): its own CPU clock alone tells what it has computed, and it has stopped once it
+  // says so. Where Woke() is said to be its stop, it may run on.
+  bool stands_still() const { return executor_.StandsStill(); }
+  // Of a process, and in its last dispatch.
+  void SendToGate(pid_t pid, const HostThread& thread) {
+    executor_.SendToGate(pid, thread.tid, shm::DispatchNumber(thread.DispatchWord()));
+  }
 
   // Who else may run, and who has ended.
   ActiveThreads& active() { return active_; }
@@ -66,10 +75,18 @@ class HostCpu {
                              std::int64_t asked_ns, const Meter::CpuClock& clock);
   // Of a thread that ran on though another one was dispatched.
   void Check(HostThread& thread, const Meter::CpuClock& clock);
+  // What the thread has moved the origin of its CPU clock by, on its ways out of gates, is its own
+  // from now on.
+  static void FollowOrigin(HostThread& thread);
+  // What a thread has computed since it was last charged `charged_ns`, by its CPU clock: while it
+  // was not dispatched. In virtual nanoseconds.
+  static std::int64_t Uncharged(const HostThread& thread, std::int64_t charged_ns,
+                                const Meter::CpuClock& clock);
   // Of a thread that has stopped in a system call that its shim knows nothing of.
   void ChargeCall(HostThread& thread, std::int64_t cost_ns);
 
  private:
+  Executor& executor_;
   ActiveThreads active_;
   BlockDetector detector_;
   std::unique_ptr<Meter> meter_;

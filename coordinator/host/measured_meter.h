@@ -12,7 +12,7 @@
 
 namespace tcs {
 
-class MeasuredMeter final : public Meter {
+class MeasuredMeter : public Meter {
  public:
   explicit MeasuredMeter(const TscRate& rate) : rate_(rate) {}
 

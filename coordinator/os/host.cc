@@ -89,6 +89,8 @@ void RunOnlyWhenIdle() {
   sched_setscheduler(0, SCHED_IDLE, &param);
 }
 
+void BeWokenInTime() { prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0); }
+
 void LeaveRealTime(pid_t tid) {
   const sched_param param{0};
   sched_setscheduler(tid, SCHED_OTHER, &param);

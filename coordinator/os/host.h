@@ -42,6 +42,10 @@ bool SetLevel(pid_t tid, Level level);
 // The calling thread runs only when hardly anybody else on its CPU wants to. Everybody may do that.
 void RunOnlyWhenIdle();
 
+// Of the calling thread, at ordinary priority: its timers are not put off, and it preempts those
+// that compute when it wakes, as far as the kernel lets it. Everybody may do that.
+void BeWokenInTime();
+
 // Back to ordinary scheduling.
 void LeaveRealTime(pid_t tid);
 

@@ -15,6 +15,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "coordinator/os/protection.h"
@@ -53,6 +55,9 @@ constexpr std::uint32_t kTrapped[] = {
     // Several futexes at once.
     SYS_futex_waitv};
 
+// The shim's own, too.
+constexpr std::uint32_t kExecutions[] = {SYS_execve, SYS_execveat};
+
 // As a jump over the given number of instructions where the value just loaded is, or is not, `k`.
 sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
   return {BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint8_t>(yes), static_cast<std::uint8_t>(no),
@@ -81,9 +86,12 @@ sock_filter LoadArgument(std::size_t argument) {
 }
 
 // What programs of this architecture call, after the number was loaded.
-std::vector<sock_filter> NativeProgram() {
+std::vector<sock_filter> NativeProgram(bool with_executions) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
-  constexpr std::size_t count = sizeof kTrapped / sizeof kTrapped[0];
+  std::vector<std::uint32_t> trapped(std::begin(kTrapped), std::end(kTrapped));
+  if (with_executions)
+    trapped.insert(trapped.end(), std::begin(kExecutions), std::end(kExecutions));
+  const std::size_t count = trapped.size();
   std::vector<sock_filter> program{
       JumpIfEqual(kNuma, 0, 1),
       Return(SECCOMP_RET_ERRNO | ENOSYS),
@@ -123,7 +131,8 @@ std::vector<sock_filter> NativeProgram() {
       allow,
   };
   for (std::size_t i = 0; i < count; ++i) {
-    program.push_back(JumpIfEqual(kTrapped[i], count - i, 0));
+    const bool is_marked = i < std::size(kTrapped);
+    program.push_back(JumpIfEqual(trapped[i], count - i + (is_marked ? 0 : 3), 0));
   }
   program.push_back(allow);
   program.push_back(LoadArgument(5));
@@ -133,7 +142,7 @@ std::vector<sock_filter> NativeProgram() {
   return program;
 }
 
-std::vector<sock_filter> Program(const std::vector<pid_t>& guarded) {
+std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, bool with_executions) {
   constexpr std::uint32_t kX32 = 0x40000000;  // a third table of numbers, which nobody uses
   const std::vector<sock_filter> of_32_bits = Protection(CallTable::kOf32Bits, guarded);
   std::vector<sock_filter> program{
@@ -151,7 +160,7 @@ std::vector<sock_filter> Program(const std::vector<pid_t>& guarded) {
   program.push_back({BPF_JMP | BPF_JGE | BPF_K, 0, 1, kX32});
   program.push_back(Return(SECCOMP_RET_ERRNO | ENOSYS));
   append(Protection(CallTable::kNative, guarded));
-  append(NativeProgram());
+  append(NativeProgram(with_executions));
   return program;
 }
 
@@ -167,21 +176,27 @@ bool TrapsHoldSignals() {
 }
 
 int InstallTrap(const std::vector<pid_t>& guarded) {
-  std::vector<sock_filter> program = Program(guarded);
+  // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
+  // it may be sent one to stop.
+  const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
+  std::vector<sock_filter> program = Program(guarded, !has_level);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {
     return static_cast<int>(
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
                 SECCOMP_FILTER_FLAG_NEW_LISTENER | SECCOMP_FILTER_FLAG_SPEC_ALLOW | more, &filter));
   };
-  // Without a real-time priority nothing else keeps a thread in its call when a signal comes.
-  const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
   const unsigned more = has_level ? 0 : kHoldsSignals;
   const int listener = install(more);
   if (listener >= 0 || errno != EACCES) return listener;
   // Without rights over others a filter must not outlive a set-uid exec.
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   return install(more);
+}
+
+bool IsExecution(const TrappedCall& call) {
+  return std::find(std::begin(kExecutions), std::end(kExecutions), call.number) !=
+         std::end(kExecutions);
 }
 
 std::optional<TrappedCall> ReceiveTrapped(int listener) {

@@ -28,6 +28,10 @@ int InstallTrap(const std::vector<pid_t>& guarded);
 // A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
 bool TrapsHoldSignals();
 
+// It executes another program. Trapped only where threads may be sent a signal by the coordinator,
+// which the other program would have no handler for.
+bool IsExecution(const TrappedCall& call);
+
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);
 

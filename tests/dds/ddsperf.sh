@@ -1,11 +1,21 @@
 #!/usr/bin/env bash
-# ddsperf.sh BUILD sockets|endpoints: Debian's ddsperf, on two robots: each process ends by itself
-# with status 0 after its stated virtual duration, having seen its peer and what it had to.
+# ddsperf.sh BUILD sockets|endpoints [without_rights]: Debian's ddsperf, on two robots: each process ends by itself
+# with status 0 after its stated virtual duration, having seen its peer and what it had to. Also as somebody
+# without any rights, from copies that everybody may read.
 set -euo pipefail
-build=$1 variant=$2
+build=$1 variant=$2 rights=${3:-}
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+run=("$build/bin/in_own_network" "$build/bin/tcsim")
+if [[ -n $rights ]]; then
+  ((EUID == 0)) || exit 77  # to have an own network, and give it up
+  chmod 777 "$work"
+  install -D -m 755 -t "$work/bin" "$build/bin/tcsim"
+  install -D -m 755 -t "$work/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
+  run=("$build/bin/in_own_network" prlimit --rtprio=0:0 --nice=0:0 setpriv --reuid=65534 --regid=65534
+       --clear-groups --bounding-set=-all --inh-caps=-all "$work/bin/tcsim")
+fi
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General>
   <Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>
 </General></Domain></CycloneDDS>'
@@ -22,7 +32,7 @@ robots:
   right: {clients: {second: {command: [ddsperf, -D$seconds, "-Qminmatch:1", $two]$dds}}}
 END
   rm -rf "$work/out"
-  "$build/bin/in_own_network" "$build/bin/tcsim" run "$work/scenario.yaml" --out "$work/out" \
+  "${run[@]}" run "$work/scenario.yaml" --out "$work/out" \
     >"$work/said" 2>&1 || fail "'$2' with '$3': $(cat "$work/said" "$work"/out/*.log)"
   python3 - "$work/out/summary.json" "$seconds" <<'END' || fail "'$2' with '$3': $(cat "$work"/out/*.log)"
 import json, sys
@@ -32,6 +42,7 @@ for name, client in json.load(open(sys.argv[1]))["clients"].items():
     ended = client["ended_at_ns"] / 1e9
     assert seconds <= ended < seconds + 0.5, f"{name} ended at {ended} s"
 END
+  [[ -z $rights ]] || grep -q 'SCHED_FIFO is not permitted here' "$work/said" || fail 'it had the right'
   first=$(cat "$work/out/left-first.out.log") second=$(cat "$work/out/right-second.out.log")
 }
 

@@ -96,6 +96,28 @@ TEST(ClockPage, WhatAHandlerDidAtTheGateStays) {
   EXPECT_EQ(ReadClockAt(page, 1'001).cpu_ns, 1'001);
 }
 
+// The TSC counts what others had; of its own time only what it took to leave is not the thread's.
+TEST(ClockPage, AClockThatLeavesItsGateGoesOnFromWhereItStood) {
+  Page page(100);
+  page.host_cpu_origin_ns = 10'000;
+  const std::int64_t stood_at = 300, leaving = 40, of_others = 7'000;
+  const std::uint64_t now = 100 + stood_at + leaving + of_others;
+  LeaveGate(page, ReadClockAt(page, now), stood_at, 10'000 + stood_at + leaving, 50);
+  EXPECT_EQ(ReadClockAt(page, now).cpu_ns, stood_at);
+  EXPECT_EQ(ReadClockAt(page, now + 5).time_ns, 1'000 + stood_at + 5);
+  EXPECT_EQ(page.host_cpu_origin_ns, 10'000 + leaving);
+  EXPECT_FALSE(IsCheckDue(page, ReadClockAt(page, now)));
+  EXPECT_EQ(page.stolen_ns, 0);
+}
+
+TEST(ClockPage, WhatAHandlerDidBeforeTheGateOpenedIsTheThreads) {
+  Page page(100);
+  const std::int64_t stood_at = 300, handler = 2'000;
+  LeaveGate(page, ReadClockAt(page, 9'000), stood_at, stood_at + handler, 50);
+  EXPECT_EQ(ReadClockAt(page, 9'000).cpu_ns, stood_at + handler);
+  EXPECT_EQ(page.host_cpu_origin_ns, 0);
+}
+
 TEST(ClockPage, ADispatchInBetweenMakesACorrectionFail) {
   Page page(0);
   const ClockReading before = ReadClockAt(page, 1'000);

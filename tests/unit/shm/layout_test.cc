@@ -10,7 +10,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, VersionTwelveHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 13u);
+  EXPECT_EQ(kVersion, 14u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1152u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);

@@ -1,0 +1,26 @@
+// Charges a thread what its own CPU clock counts, on a processor that it shares with others as
+// ordinary tasks (gate_executor.h). The TSC counts the others' time, too; so it only carries the
+// clock from one look at the CPU clock to the next. A dispatch begins with such a look, its end is
+// one, and no context switch has to be learnt: whatever is not on the CPU clock is not charged.
+//
+// A thread may have computed beyond its horizon, or after it was held, for as long as nothing
+// stopped it: the timer tells nothing of what was stolen.
+#pragma once
+
+#include "coordinator/host/measured_meter.h"
+
+namespace tcs {
+
+class SharedCpuMeter final : public MeasuredMeter {
+ public:
+  using MeasuredMeter::MeasuredMeter;
+
+  std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
+                      bool is_silent) override;
+  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+             const CpuClock& clock) override;
+  bool HasOverslept(std::uint64_t, std::uint64_t, std::int64_t) const override { return false; }
+  void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
+};
+
+}  // namespace tcs

@@ -1,0 +1,24 @@
+// How a thread that computes is stopped where only gates keep threads apart: the coordinator sends
+// it kPreemptionSignal, and the handler waits at the gate. A thread that the signal does not reach
+// (it has blocked it by a raw call) computes on, with a clock that stands still, and owes what it
+// has computed: results are the same.
+//
+// The signal interrupts no wait of the program's: threads that wait are not sent it, and where one
+// has come to a wait meanwhile the signal is blocked until that is over.
+#pragma once
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// Has the calling thread stopped by the signal from now on. Called by each thread that attaches:
+// the C library has taken the signal for itself when it made its first thread.
+void AllowPreemption();
+
+// The signals that no program knows of, as the kernel's sigset_t has them.
+inline unsigned long OwnSignals() {
+  const bool has_one = g_header != nullptr && g_header->preempts != 0;
+  return has_one ? 1ul << (shm::kPreemptionSignal - 1) : 0;
+}
+
+}  // namespace tcs::preload

@@ -1,0 +1,64 @@
+#include "coordinator/host/shared_cpu_meter.h"
+
+#include <gtest/gtest.h>
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000, kUs = 1'000;
+constexpr std::uint64_t kTicksPerMs = 2'000'000, kTicksPerUs = 2'000;
+constexpr TscRate kRate{.ns_per_tick_q32 = std::uint64_t{1} << 31, .ticks_per_ns = 2.0};
+constexpr std::uint64_t kBegun = 1'000 * kTicksPerMs;
+constexpr std::int64_t kStart = 50 * kMs, kHorizon = kStart + 5 * kMs;
+
+// A thread's page, dispatched at kBegun, and a CPU clock whose time the test says.
+class SharedCpuMeterTest : public testing::Test {
+ protected:
+  SharedCpuMeterTest() {
+    thread_.page = &page_;
+    thread_.host_origin_ns = thread_.page_origin_ns = host_cpu_ns_;
+    ClockGrant grant;
+    grant.base_time_ns = kStart;
+    grant.horizon_ns = kHorizon;
+    meter_.SetRates(thread_, {}, grant);
+    grant.WriteTo(page_);
+    page_.host_cpu_origin_ns = thread_.host_origin_ns;
+    page_.base_tsc = meter_.Begin(thread_, kBegun, true, false);
+  }
+  std::int64_t ClockAt(std::uint64_t tsc) { return ReadClockAt(page_, tsc).time_ns; }
+
+  shm::ClockPage page_{};
+  MeteredThread thread_;
+  SharedCpuMeter meter_{kRate};
+  std::int64_t host_cpu_ns_ = 700 * kMs;
+  Meter::CpuClock clock_ = [this] { return host_cpu_ns_; };
+};
+
+TEST_F(SharedCpuMeterTest, AThreadAsksItsCpuClockAtItsFirstLook) {
+  EXPECT_EQ(page_.base_tsc, kBegun);
+  EXPECT_TRUE(IsCheckDue(page_, ReadClockAt(page_, kBegun)));
+}
+
+TEST_F(SharedCpuMeterTest, AThreadThatOthersKeptFromComputingIsNotAtItsHorizon) {
+  host_cpu_ns_ += kMs;
+  const std::uint64_t late = kBegun + 20 * kTicksPerMs;
+  EXPECT_EQ(meter_.Look(thread_, late, kHorizon, clock_), Meter::Found::kGoesOn);
+  EXPECT_EQ(ClockAt(late), kStart + kMs);
+  host_cpu_ns_ += 4 * kMs;
+  EXPECT_EQ(meter_.Look(thread_, late + kTicksPerMs, kHorizon, clock_), Meter::Found::kAtHorizon);
+}
+
+TEST_F(SharedCpuMeterTest, EachEndAsksHoweverShortTheRunWas) {
+  host_cpu_ns_ += 10 * kUs;
+  const std::uint64_t end = kBegun + 30 * kTicksPerUs;
+  meter_.End(thread_, end, clock_);
+  EXPECT_EQ(ClockAt(end), kStart + 10 * kUs);
+}
+
+// It may have computed on.
+TEST_F(SharedCpuMeterTest, ALateTimerTellsOfNoTheft) {
+  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 1'000 * kTicksPerMs, kMs));
+}
+
+}  // namespace
+}  // namespace tcs

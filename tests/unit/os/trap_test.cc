@@ -1,0 +1,98 @@
+#include "coordinator/os/trap.h"
+
+#include <errno.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+#include "coordinator/os/unique_fd.h"
+#include "shm/layout.h"
+
+namespace tcs {
+namespace {
+
+std::atomic<int> g_handled{0};
+
+// A thread of this process with the trap, which is this thread's to answer. Like a client's first
+// it has no real-time priority.
+class TrappedThread {
+ public:
+  explicit TrappedThread(const std::function<void()>& program)
+      : thread_([this, program] {
+          listener_ = InstallTrap({});
+          if (listener_ >= 0) program();
+        }) {
+    while (listener_ == kNone) std::this_thread::yield();
+  }
+  // The kernel carries out whatever it still calls, its end among them.
+  ~TrappedThread() {
+    const UniqueFd listener(listener_);
+    pollfd call{listener.get(), POLLIN, 0};
+    while (listener && poll(&call, 1, 5000) == 1 && (call.revents & POLLIN) != 0) {
+      if (const auto rest = ReceiveTrapped(listener.get())) {
+        ContinueTrapped(rest->listener, rest->id);
+      }
+    }
+    thread_.join();
+  }
+
+  bool is_trapped() const { return listener_ >= 0; }
+  pthread_t id() { return thread_.native_handle(); }
+  // The next call of that number; others are carried out.
+  TrappedCall Await(int number) const {
+    for (;;) {
+      const auto call = ReceiveTrapped(listener_);
+      if (call.has_value() && call->number == number) return *call;
+      if (call.has_value()) ContinueTrapped(call->listener, call->id);
+    }
+  }
+
+ private:
+  static constexpr int kNone = -2;
+  std::atomic<int> listener_{kNone};
+  std::thread thread_;
+};
+
+TEST(Trap, WithoutARealTimePriorityASignalWaitsUntilTheCallIsAnswered) {
+  if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
+  struct sigaction action {};
+  action.sa_handler = [](int) { ++g_handled; };
+  sigaction(SIGUSR1, &action, nullptr);
+  std::atomic<long> result{-1};
+  {
+    TrappedThread thread([&result] { result = syscall(SYS_sched_yield); });
+    if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
+    const TrappedCall call = thread.Await(SYS_sched_yield);
+    pthread_kill(thread.id(), SIGUSR1);
+    usleep(50'000);
+    EXPECT_EQ(g_handled, 0);
+    EXPECT_TRUE(AnswerTrapped(call.listener, call.id, 7)) << "the signal has ended it";
+  }
+  EXPECT_EQ(result, 7);
+  EXPECT_EQ(g_handled, 1);
+}
+
+TEST(Trap, WithoutARealTimePriorityExecutionsAreHandedOverEvenTheShims) {
+  std::atomic<int> error{0};
+  {
+    TrappedThread thread([&error] {
+      syscall(SYS_execve, "/no/such/program", nullptr, nullptr, 0, 0, shm::kOwnCallMark);
+      error = errno;
+    });
+    if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
+    const TrappedCall call = thread.Await(SYS_execve);
+    EXPECT_TRUE(IsExecution(call));
+    EXPECT_TRUE(ContinueTrapped(call.listener, call.id));
+  }
+  EXPECT_EQ(error, ENOENT);
+}
+
+}  // namespace
+}  // namespace tcs
