@@ -124,7 +124,7 @@ const char* Colour(Verdict verdict) {
 
 std::vector<Finding> Examine(const std::string& preload_library) {
   return {
-      JudgeRealTime(TryRealTime()),
+      JudgeRealTime(TryRealTime(), TrapsHoldSignals()),
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
                       ReadFile("/proc/sys/kernel/sched_rt_period_us"),
                       ReadFile("/proc/sys/kernel/osrelease")),

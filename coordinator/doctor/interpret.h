@@ -8,7 +8,8 @@
 namespace tcs {
 
 // `error`: the errno of asking for the coordinator's real-time priority; 0 if it was granted.
-Finding JudgeRealTime(int error);
+// `has_gates`: the kernel has what a run needs that goes without (TrapsHoldSignals).
+Finding JudgeRealTime(int error, bool has_gates);
 // Texts: /proc/sys/kernel/sched_rt_runtime_us, .../sched_rt_period_us and .../osrelease. From
 // Linux 6.12 on the scheduler's fair server does what throttling did, and does not heed its
 // setting.

@@ -10,13 +10,24 @@
 namespace tcs {
 namespace {
 
-TEST(Doctor, WithoutRealTimePriorityOnlyFixedRuns) {
-  EXPECT_EQ(JudgeRealTime(0).verdict, Verdict::kOk);
-  const Finding refused = JudgeRealTime(EPERM);
+TEST(Doctor, WithoutRealTimePriorityGatesKeepThreadsApart) {
+  const Finding permitted = JudgeRealTime(0, true);
+  EXPECT_EQ(permitted.verdict, Verdict::kOk);
+  EXPECT_NE(permitted.found.find("gates would"), std::string::npos);
+  const Finding refused = JudgeRealTime(EPERM, true);
   EXPECT_EQ(refused.verdict, Verdict::kWarning);
-  EXPECT_NE(refused.found.find("--accounting fixed"), std::string::npos);
+  EXPECT_NE(refused.found.find("gates and a signal keep"), std::string::npos);
+  EXPECT_NE(refused.mend.find("less time"), std::string::npos);
   EXPECT_NE(refused.mend.find("limits.conf"), std::string::npos);
-  EXPECT_TRUE(CanRun({JudgeRealTime(0), refused}));
+  EXPECT_TRUE(CanRun({permitted, refused}));
+}
+
+TEST(Doctor, WithoutEitherNothingRuns) {
+  EXPECT_EQ(JudgeRealTime(0, false).verdict, Verdict::kOk);
+  const Finding neither = JudgeRealTime(EPERM, false);
+  EXPECT_EQ(neither.verdict, Verdict::kMissing);
+  EXPECT_NE(neither.found.find("5.19"), std::string::npos);
+  EXPECT_FALSE(CanRun({neither}));
 }
 
 TEST(Doctor, ThrottlingIsAWarningUnlessItIsOff) {
