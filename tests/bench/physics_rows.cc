@@ -1,6 +1,8 @@
 #include "tests/bench/physics_rows.h"
 
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include "tests/bench/bare_simbody.h"
 #include "tests/bench/physics_world.h"
@@ -12,8 +14,11 @@ namespace {
 constexpr int kBodies[] = {1, 2, 8, 32, 96, 512};
 constexpr VirtualDuration kAnswer = VirtualDuration::Microseconds(500);  // after the sample
 
+constexpr int kCheckpoints = 100;
+
 struct Run {
   double seconds = 0;
+  double checkpoint_s = 0;  // for each
   Dynamics::Work work;
 };
 
@@ -34,11 +39,16 @@ Run RunDynamics(const WorldSpec& world, int samples, VirtualDuration period, boo
                       now + kAnswer + VirtualDuration::Microseconds(i));
     }
   }
-  return {CpuSeconds() - start_s, dynamics->work()};
+  Run run{.seconds = CpuSeconds() - start_s, .work = dynamics->work()};
+  std::unique_ptr<Dynamics::Checkpoint> checkpoint = dynamics->Save();
+  const double saving_s = CpuSeconds();
+  for (int i = 0; i < kCheckpoints; ++i) checkpoint = dynamics->Save(std::move(checkpoint));
+  run.checkpoint_s = (CpuSeconds() - saving_s) / kCheckpoints;
+  return run;
 }
 
 PhysicsRow MeasureRow(int bodies, int samples, int rounds) {
-  std::vector<double> bare, changing, same, changing_ratio, unlike_ratio, same_ratio;
+  std::vector<double> bare, changing, same, checkpoint, changing_ratio, unlike_ratio, same_ratio;
   const WorldSpec world = PhysicsWorld(bodies), unlike = PhysicsWorldOfUnlikeBodies(bodies);
   PhysicsRow row{.bodies = bodies};
   const double count = static_cast<double>(bodies) * samples;
@@ -46,6 +56,7 @@ PhysicsRow MeasureRow(int bodies, int samples, int rounds) {
     bare.push_back(BareSimbodySeconds(bodies, samples) / count);
     const Run with_changes = RunDynamics(world, samples, kSamplePeriod, true);
     changing.push_back(with_changes.seconds / count);
+    checkpoint.push_back(with_changes.checkpoint_s / bodies);
     same.push_back(RunDynamics(world, samples, kSamplePeriod, false).seconds / count);
     const Run of_unlike = RunDynamics(unlike, samples, kSamplePeriod, true);
     unlike_ratio.push_back(of_unlike.seconds / count / bare.back());
@@ -55,6 +66,7 @@ PhysicsRow MeasureRow(int bodies, int samples, int rounds) {
   }
   row.bare_us = 1e6 * SpreadOf(bare).median;
   row.changing_us = 1e6 * SpreadOf(changing).median;
+  row.checkpoint_us = 1e6 * SpreadOf(checkpoint).median;
   row.same_us = 1e6 * SpreadOf(same).median;
   row.changing = SpreadOf(changing_ratio);
   row.unlike = SpreadOf(unlike_ratio);

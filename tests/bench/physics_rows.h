@@ -15,6 +15,7 @@ struct PhysicsRow {
   double bare_us = 0, changing_us = 0, same_us = 0;
   // To the same round's bare Simbody; unlike: changing, and no two bodies alike.
   Spread changing, unlike, same;
+  double checkpoint_us = 0;     // for each body, memory used again
   double steps_per_sample = 0;  // and body, with commands that change
 };
 

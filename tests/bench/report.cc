@@ -82,19 +82,20 @@ std::string DdsTable(const DdsRows& dds) {
 }
 
 std::string PhysicsTable(const PhysicsRows& physics) {
-  static constexpr char kLine[] = "{:>6}{:>10}{:>13}{:>7}  {:<11}{:>7}{:>10}{:>7}  {:<13}{:>6}\n";
+  static constexpr char kLine[] =
+      "{:>6}{:>10}{:>13}{:>7}  {:<11}{:>7}{:>10}{:>7}  {:<13}{:>6}{:>9}\n";
   const auto two_digits = [](double ratio) { return fmt::format("{:.2f}", ratio); };
   const auto span = [](const Spread& spread) {
     return fmt::format("{:.2f}-{:.2f}", spread.lowest, spread.highest);
   };
   std::string text = fmt::format(kLine, "bodies", "bare µs", "changing µs", "ratio", "goal <= 5",
-                                 "unlike", "same µs", "ratio", "goal <= 1.2", "steps");
+                                 "unlike", "same µs", "ratio", "goal <= 1.2", "steps", "saved µs");
   for (const PhysicsRow& row : physics.rows) {
-    text +=
-        fmt::format(kLine, row.bodies, Brief(row.bare_us), Brief(row.changing_us),
-                    two_digits(row.changing.median), span(row.changing),
-                    two_digits(row.unlike.median), Brief(row.same_us), two_digits(row.same.median),
-                    span(row.same), two_digits(row.steps_per_sample));
+    text += fmt::format(kLine, row.bodies, Brief(row.bare_us), Brief(row.changing_us),
+                        two_digits(row.changing.median), span(row.changing),
+                        two_digits(row.unlike.median), Brief(row.same_us),
+                        two_digits(row.same.median), span(row.same),
+                        two_digits(row.steps_per_sample), two_digits(row.checkpoint_us));
   }
   text += fmt::format(
       "Microseconds of processor time for each body and sample at 100 Hz, for {:g} virtual s; "
@@ -103,7 +104,9 @@ std::string PhysicsTable(const PhysicsRows& physics) {
       "command\n"
       "0.5 ms after each sample (unlike: the ratio where no two bodies have the same mass); same: "
       "it\n"
-      "is the same again. Steps: of a body between two samples, with commands that change.\n"
+      "is the same again. Steps: of a body between two samples, with commands that change. Saved: "
+      "a\n"
+      "checkpoint, for each body.\n"
       "A sample of one body at 1 kHz that nothing changes for: {} µs (goal <= 50).\n",
       physics.virtual_s, physics.rounds, physics.rounds == 1 ? "" : "s",
       Brief(physics.sample_at_1khz_us));
@@ -189,6 +192,7 @@ std::string ToJson(const Results& results) {
                             {"changing_ratio", ToJson(row.changing)},
                             {"unlike_ratio", ToJson(row.unlike)},
                             {"same_ratio", ToJson(row.same)},
+                            {"checkpoint_us", row.checkpoint_us},
                             {"steps_per_sample", row.steps_per_sample}});
     }
   }

@@ -271,6 +271,48 @@ TEST(Islands, RefuseABodyInTwoOfThem) {
   EXPECT_THROW(MakeDynamics(world), DynamicsError);
 }
 
+// The steps that are taken here on Simbody's derivatives lead where Simbody's own integrator goes.
+TEST(Islands, OfRungeKutta3GoWhereSimbodysIntegratorsGo) {
+  std::mt19937_64 random(2);
+  const auto commands = RandomCommands(40, 2, 20'000'000, random);
+  const std::int64_t end_ns = 800'000'000;
+  auto here = MakeDynamics(BusyWorld({.accuracy = 1e-7}));
+  auto there = MakeDynamics(
+      BusyWorld({.kind = IntegratorKind::kRungeKuttaMerson, .fixed_step = {}, .accuracy = 1e-9}));
+  for (Dynamics* dynamics : {here.get(), there.get()}) ApplyAll(commands, *dynamics);
+  for (std::int64_t ns = 0; ns <= end_ns; ns += 50'000'000) {
+    const auto a = StatesAt(*here, ns, 2), b = StatesAt(*there, ns, 2);
+    for (std::size_t body = 0; body < 2; ++body) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ASSERT_NEAR(a[body].position_m[axis], b[body].position_m[axis], 1e-5);
+        ASSERT_NEAR(a[body].linear_velocity_mps[axis], b[body].linear_velocity_mps[axis], 1e-4);
+        ASSERT_NEAR(a[body].angular_velocity_radps[axis], b[body].angular_velocity_radps[axis],
+                    1e-5);
+        ASSERT_NEAR(a[body].orientation_xyzw[axis], b[body].orientation_xyzw[axis], 1e-5);
+      }
+    }
+  }
+}
+
+// The accuracy is of a step's end; what is read in between is as good.
+TEST(Islands, AreAsAccurateBetweenTheirStepsAsTheyAreTold) {
+  for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
+    WorldSpec world = OneBody({.accuracy = accuracy});
+    world.has_region = true;
+    world.region = {.half_extent_m = 1.0, .stiffness_npm = 50.0, .damping_nspm = 0};
+    world.bodies[0].initial.position_m = {2, 0, 0};  // swings as 1 + cos(5 t) while outside
+    auto dynamics = MakeDynamics(world);
+    double worst = 0;
+    for (int ms = 0; ms <= 300; ++ms) {
+      dynamics->AdvanceTo(AtMs(ms));
+      const double x = dynamics->Read(0).position_m[0];
+      worst = std::max(worst, std::abs(x - (1 + std::cos(5e-3 * ms))));
+    }
+    EXPECT_LT(worst, accuracy);
+    EXPECT_GT(worst, accuracy / 1000) << "as if it took shorter steps than it need";
+  }
+}
+
 // A force and a torque from an instant on, with all others busy: the closed form.
 TEST_P(EachEngine, AStepResponseFollowsTheClosedFormBesideAnyNumberOfBodies) {
   constexpr double kMoment = 0.25;  // about z
