@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simbody_bridge/engines.h"
+
 namespace tcs {
 namespace {
 
@@ -78,7 +80,7 @@ void CheckIntegrator(const IntegratorSpec& integrator) {
     throw DynamicsError(fmt::format("integrator: the fixed step must not be negative, but is {} ns",
                                     integrator.fixed_step.ns()));
   }
-  if (integrator.engine != EngineKind::kSimbody) return;  // the accuracy is Simbody's
+  if (!TraitsOf(integrator.engine).has_integrators) return;  // the accuracy is theirs
   if (!(integrator.accuracy > 0 && integrator.accuracy < 1)) {
     throw DynamicsError(fmt::format("integrator: the accuracy must lie between 0 and 1, but is {}",
                                     integrator.accuracy));

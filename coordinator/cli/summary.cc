@@ -10,6 +10,7 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
+#include "simbody_bridge/engines.h"
 
 namespace tcs {
 
@@ -40,7 +41,7 @@ std::int64_t NotOnOurCpu(const RunReport& r) {
 // None where there is no world.
 nlohmann::json EngineOf(const Scenario& scenario) {
   if (!scenario.world.has_value()) return {};
-  return scenario.world->integrator.engine == EngineKind::kOde ? "ode" : "simbody";
+  return TraitsOf(scenario.world->integrator.engine).name;
 }
 
 }  // namespace

@@ -188,10 +188,9 @@ bool Engine::StepWorld() {
   return true;
 }
 
-// Every stop of the dynamics costs a step of the integrator, and every horizon a context switch. So
-// they may lag behind while threads act for short, and where a thread computes on and on they lead:
-// within the drift bound on either side its slices are twice as long. Returns how far the thread
-// may run.
+// To move the dynamics costs next to nothing, but every horizon costs a context switch. So they may
+// lag behind while threads act for short, and where a thread computes on and on they lead: within
+// the drift bound on either side its slices are twice as long. Returns how far the thread may run.
 std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
   if (!WorldGoesOn() || IsCallback()) return horizon_ns;
   const std::int64_t bound = std::min(scenario_.drift_bound.ns(), shm::kMaxDispatchNs);
@@ -199,7 +198,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
   const bool computes = task.used_up >= kComputes;
   const std::int64_t room = computes ? horizon_ns : std::min(horizon_ns, now + bound / 2);
   if (world + bound < room) {
-    // As far as they may: the fewer stops, the better.
+    // As far as they may: the fewer slices, the better.
     const std::int64_t to = computes ? now + bound : now;
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));

@@ -8,6 +8,7 @@
 
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
+#include "simbody_bridge/engines.h"
 
 namespace tcs {
 namespace {
@@ -32,9 +33,12 @@ IntegratorKind LoadIntegratorKind(const YamlValue& value) {
 
 EngineKind LoadEngine(const YamlValue& value) {
   const std::string text = value.AsText();
-  if (text == "simbody") return EngineKind::kSimbody;
-  if (text == "ode") return EngineKind::kOde;
-  value.Fail("is the unknown '" + text + "'; " + Suggest(text, {"simbody", "ode"}, "engines"));
+  std::vector<std::string> known;
+  for (const EngineTraits& engine : kEngines) {
+    if (engine.name == text) return engine.kind;
+    known.emplace_back(engine.name);
+  }
+  value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "engines"));
 }
 
 IntegratorSpec LoadIntegrator(const YamlMap& dynamics) {
@@ -42,10 +46,10 @@ IntegratorSpec LoadIntegrator(const YamlMap& dynamics) {
   if (const YamlValue* engine = dynamics.Find("engine")) integrator.engine = LoadEngine(*engine);
   for (const char* key : {"integrator", "accuracy"}) {
     const YamlValue* value = dynamics.Find(key);
-    if (value == nullptr || integrator.engine == EngineKind::kSimbody) continue;
-    value->Fail(
-        "is Simbody's, and dynamics.engine is ode, which takes fixed steps; remove it, or set "
-        "step");
+    const EngineTraits& engine = TraitsOf(integrator.engine);
+    if (value == nullptr || engine.has_integrators) continue;
+    value->Fail("is Simbody's, and dynamics.engine is " + std::string(engine.name) +
+                ", which takes fixed steps; remove it, or set step");
   }
   if (const YamlValue* kind = dynamics.Find("integrator")) {
     integrator.kind = LoadIntegratorKind(*kind);

@@ -1,0 +1,29 @@
+// The engines that there are, and what each can do: who asks for something of an engine looks here
+// whether it has it, and knows no engine by name. make_engine.cc makes them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+struct EngineTraits {
+  EngineKind kind;
+  std::string_view name;  // in scenarios and results
+  bool has_integrators;   // several methods, which choose their steps by an accuracy
+};
+
+inline constexpr std::array<EngineTraits, 2> kEngines = {{
+    {EngineKind::kSimbody, "simbody", true},
+    {EngineKind::kOde, "ode", false},
+}};
+
+constexpr const EngineTraits& TraitsOf(EngineKind kind) {
+  return *std::find_if(kEngines.begin(), kEngines.end(),
+                       [kind](const EngineTraits& engine) { return engine.kind == kind; });
+}
+
+}  // namespace tcs
