@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "simbody_bridge/require.h"
 
@@ -17,6 +16,11 @@ constexpr VirtualDuration kLeastAhead = VirtualDuration::Milliseconds(1);
 bool IsEarlier(VirtualTime t, const Island::Command& command) { return t < command.at; }
 
 }  // namespace
+
+VirtualDuration LengthOf(const IslandStep& step) {
+  if (step.length_s == step.limit.seconds()) return step.limit;
+  return VirtualDuration::Nanoseconds(static_cast<std::int64_t>(std::floor(step.length_s * 1e9)));
+}
 
 Island::Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work)
     : index_(index), engine_(engine), work_(work) {
@@ -113,13 +117,8 @@ void Island::Depart(Leg* leg) {
 
 void Island::Took() {
   Leg& leg = legs_[used_];
-  const IslandStep& step = leg.step;
-  VirtualDuration length = step.limit;
-  if (step.length_s != step.limit.seconds()) {
-    length =
-        VirtualDuration::Nanoseconds(static_cast<std::int64_t>(std::floor(step.length_s * 1e9)));
-    if (length <= VirtualDuration{}) throw std::runtime_error("the integrator makes no progress");
-  }
+  const VirtualDuration length = LengthOf(leg.step);
+  Require(length > VirtualDuration{}, "a step leads on");
   leg.to = leg.start.at + length;
   ++used_;
   ++work_.steps;

@@ -15,6 +15,9 @@
 
 namespace tcs {
 
+// How long a step is that was taken, in whole nanoseconds; 0 if it led nowhere.
+VirtualDuration LengthOf(const IslandStep& step);
+
 class Island {
  public:
   // The engine and `work` outlive this.

@@ -59,7 +59,7 @@ class Islands : public Dynamics {
   void Reach(VirtualTime t);
   void TakeSteps();
   void TakeEachStep();
-  void CheckIsFinite(const IslandStep& step) const;
+  void Check(const IslandStep& step) const;
 
   const std::vector<std::vector<int>> members_;  // bodies of each island
   std::unique_ptr<IslandEngine> engine_;
@@ -138,7 +138,7 @@ void Islands::Reach(VirtualTime t) {
 void Islands::TakeSteps() {
   try {
     engine_->TakeAll(steps_);
-    for (const IslandStep* step : steps_) CheckIsFinite(*step);
+    for (const IslandStep* step : steps_) Check(*step);
   } catch (const std::exception&) {
     TakeEachStep();
   }
@@ -156,19 +156,24 @@ void Islands::TakeEachStep() {
       throw DynamicsError(
           fmt::format("the integration from {:.12g} s on failed: {}", from_s, e.what()));
     }
-    CheckIsFinite(*step);
+    Check(*step);
   }
 }
 
 // With steps of a set length engines take whatever comes out of one, and stumble over it only in
 // the next.
-void Islands::CheckIsFinite(const IslandStep& step) const {
+void Islands::Check(const IslandStep& step) const {
   const auto is_finite = [](double value) { return std::isfinite(value); };
   const auto all_finite = [&](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), is_finite);
   };
-  if (all_finite(step.to) && all_finite(step.to_rate)) return;
   const auto island = static_cast<std::size_t>(step.island);
+  const double from_s = islands_[island].StepStart().seconds();
+  if (all_finite(step.to) && all_finite(step.to_rate)) {
+    if (LengthOf(step) > VirtualDuration{}) return;
+    throw DynamicsError(fmt::format(
+        "the integration from {:.12g} s on failed: the integrator makes no progress", from_s));
+  }
   std::size_t place = 0;
   while (place + 1 < members_[island].size() &&
          AllFinite(engine_->Read(step.island, static_cast<int>(place), step.to))) {
@@ -176,7 +181,7 @@ void Islands::CheckIsFinite(const IslandStep& step) const {
   }
   throw DynamicsError(fmt::format("body '{}': its motion has diverged by {:.12g} s",
                                   names_[static_cast<std::size_t>(members_[island][place])],
-                                  islands_[island].StepStart().seconds() + step.length_s));
+                                  from_s + step.length_s));
 }
 
 std::unique_ptr<Dynamics::Checkpoint> Islands::Save(std::unique_ptr<Checkpoint> reuse) {

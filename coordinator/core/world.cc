@@ -142,15 +142,17 @@ bool World::Advance(std::int64_t limit_ns) {
   return sent;
 }
 
-// The dynamics integrate what somebody reads, and nobody does before the next stop.
-void World::Lead(std::int64_t settled_ns, std::int64_t to_ns) {
-  Settle(settled_ns);
+// The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
+// still be woken earlier than `now_ns`, but no further back than the drift bound.
+void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
+  Settle(now_ns - scenario_.drift_bound.ns());
   progress_ns_ = to_ns;
 }
 
 void World::Settle(std::int64_t settled_ns) {
+  if (settled_ns <= settled_ns_) return;
   settled_ns_ = settled_ns;
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(settled_ns));
+  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(settled_ns_));
 }
 
 void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {

@@ -41,9 +41,9 @@ class World {
   // Advances to the earliest of `limit_ns` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
   bool Advance(std::int64_t limit_ns);
-  // Goes on to `to_ns`, at most the next stop, though commands for times from `settled_ns` on may
-  // still come. One that does is applied at its time.
-  void Lead(std::int64_t settled_ns, std::int64_t to_ns);
+  // Goes on to `to_ns`, at most the next stop, while somebody acts at `now_ns` whose commands are
+  // still to come. Each is applied at its time.
+  void Lead(std::int64_t now_ns, std::int64_t to_ns);
 
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
