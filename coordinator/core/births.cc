@@ -25,6 +25,7 @@ Task& Births::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
   task.process = &process;
   task.parked = false;
   task.metered.speed = process.robot->speed;
+  task.metered.is_ideal = process.robot->is_ideal;
   task.reached_ns = task.activation.release_ns = std::max(at_ns, waker_.EarliestWake());
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);

@@ -46,8 +46,8 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
   grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
   grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
-  host_cpu_.meter().SetRates(
-      metered,
+  host_cpu_.SetRates(
+      task,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
   // Without levels the shim looks at the beginning of each call whether it may begin.
@@ -291,10 +291,17 @@ void Engine::StepAside(Task& task) {
     task.spins = false;
     return;
   }
-  Warn(task.process->name +
-       " has computed for 5 s without a call or an allocation: under --accounting fixed that "
-       "counts as waiting for "
-       "what others do, and depends on the host; run it with --accounting measured");
+  const Process& process = *task.process;
+  if (process.robot->is_ideal) {
+    Warn(process.name +
+         " has computed for 10 s at one instant: its robot is ideal, so that the world waits for "
+         "what it computes, but no longer; from here on it counts as waiting for what others do");
+  } else {
+    Warn(process.name +
+         " has computed for 5 s without a call or an allocation: under --accounting fixed that "
+         "counts as waiting for "
+         "what others do, and depends on the host; run it with --accounting measured");
+  }
   EnterWait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
   Refresh(*task.process->robot);

@@ -69,7 +69,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
                                 {.input_ns = root_.NextInput(cpu.leaf),
                                  .outside_input_ns = root_.NextInputFromOutside(cpu.leaf),
                                  .output_ns = root_.NextOutput(),
-                                 .acts_at_once = IsFixed(),
+                                 .acts_at_once = IsFixed() || robot.is_ideal,
                                  .has_given_way = root_.HasGivenWay(cpu.leaf)});
   *idle_until = horizon.idle_ns;
   return horizon.run_ns;
@@ -86,14 +86,32 @@ std::int64_t Engine::LeftToHoldNs(const Task& task) const {
   return std::clamp<std::int64_t>(MostHeldNs() - held.ns(), 0, shm::kMaxDispatchNs);
 }
 
+// The virtual CPU of an ideal robot has been at this instant for long, of real time, though its
+// threads stop and go on: they may be answering each other for ever.
+bool Engine::StandsForEver(VirtualCpu& cpu) const {
+  const std::int64_t now_ns = HostClockNs(CLOCK_MONOTONIC);
+  if (std::exchange(cpu.stands_at_ns, cpu.progress_ns) != cpu.progress_ns) {
+    cpu.stands_since_ns = now_ns;
+  }
+  return now_ns - cpu.stands_since_ns > kMostHeldNs;
+}
+
 // The thread stays where it is, and the world goes on to the end.
 void Engine::LetWorldGoOnWithout(Task& task) {
-  Warn(
-      fmt::format("{} has computed for {:.0f} s at one instant of the world's: under --sync "
-                  "callback the world waits for it, but not for longer than the run is to be; from "
-                  "{:.3f} s on it goes on without that program",
-                  task.process->name, static_cast<double>(MostHeldNs()) * 1e-9,
-                  static_cast<double>(task.cpu->progress_ns) * 1e-9));
+  const double at_s = static_cast<double>(task.cpu->progress_ns) * 1e-9;
+  if (task.process->robot->is_ideal) {
+    Warn(
+        fmt::format("{} has been busy for {:.0f} s at one instant: its robot is ideal, so that "
+                    "the world waits for what it does, but no longer; from {:.3f} s on it goes on "
+                    "without that program; does it answer its own answers?",
+                    task.process->name, static_cast<double>(kMostHeldNs) * 1e-9, at_s));
+  } else {
+    Warn(fmt::format(
+        "{} has computed for {:.0f} s at one instant of the world's: under --sync "
+        "callback the world waits for it, but not for longer than the run is to be; from "
+        "{:.3f} s on it goes on without that program",
+        task.process->name, static_cast<double>(MostHeldNs()) * 1e-9, at_s));
+  }
   host_cpu_.active().Hold(task);
   task.reached_ns = task.cpu->progress_ns;
   EnterWait(task, {awaited::Nothing{}});
@@ -131,7 +149,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   ProgramClock& clock = task.process->clock;
   if (IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
   TCS_CHECK(waker_.IsSafe(task));
-  if (IsCallback() && LeftToHoldNs(task) == 0) {
+  if ((IsCallback() && LeftToHoldNs(task) == 0) || (robot.is_ideal && StandsForEver(cpu))) {
     LetWorldGoOnWithout(task);
     return;
   }
@@ -150,6 +168,8 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   robot.scheduler.Dispatch(cpu.core, task.order);
   horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
+  // Time that passes only in waiting needs none to be left.
+  if (robot.is_ideal) horizon = std::max(horizon, start + 1);
   if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
   } else {

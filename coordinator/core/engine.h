@@ -95,6 +95,7 @@ class Engine {
   bool AwaitDeaths();
   std::int64_t MostHeldNs() const;
   std::int64_t LeftToHoldNs(const Task& task) const;
+  bool StandsForEver(VirtualCpu& cpu) const;
   void LetWorldGoOnWithout(Task& task);
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);

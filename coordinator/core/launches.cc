@@ -20,14 +20,14 @@ std::string WithOurLibraries(const std::string& users, const std::string& ours) 
   return users.empty() ? ours : users + ":" + ours;
 }
 
-SpawnRequest RequestFor(const ClientSpec& client, const RunOptions& options) {
+SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunOptions& options) {
   const bool is_fixed = options.accounting == shm::Accounting::kFixed;
   SpawnRequest request;
   request.command = client.command;
   request.working_directory = client.working_directory;
   request.environment = client.environment;
   const bool counts_allocations =
-      options.counts_work || (is_fixed && client.fixed_allocation_cost.ns() > 0);
+      options.counts_work || (is_fixed && !robot.is_ideal && client.fixed_allocation_cost.ns() > 0);
   std::string& preload = request.environment["LD_PRELOAD"];
   preload = WithOurLibraries(
       client.environment.contains("LD_PRELOAD") ? preload : options.user_preload,
@@ -101,7 +101,7 @@ void Launches::Stop() {
 
 std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
   const ClientSpec& client = *launch.spec;
-  SpawnRequest request = RequestFor(client, run_.options);
+  SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
   const std::string socket_name = sockets_.Open();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";

@@ -120,6 +120,7 @@ void Engine::MakeRobots() {
                                         RobotScheduler(cores, !IsCallback(), [this](int order) {
                                           return waker_.WaitOf(TaskAt(order));
                                         }));
+    robot.is_ideal = spec.is_ideal;
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = cpus_.emplace_back();
       cpu.robot = &robot;

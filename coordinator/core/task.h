@@ -150,6 +150,8 @@ struct VirtualCpu {
   std::uint32_t core = 0;
   std::int64_t progress_ns = 0;  // changed by ComeTo only
   TemporalConsistency::Leaf leaf = -1;
+  // Of an ideal robot's: where it has been standing since when, of real time.
+  std::int64_t stands_at_ns = -1, stands_since_ns = 0;
 
   void ComeTo(std::int64_t ns);
 };
@@ -160,6 +162,7 @@ struct Robot {
 
   std::string name;
   double speed;
+  bool is_ideal = false;  // its threads are charged nothing
   RobotScheduler scheduler;
   std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                // by core

@@ -8,7 +8,7 @@
 
 namespace tcs {
 
-class FixedMeter final : public Meter {
+class FixedMeter : public Meter {
  public:
   static constexpr std::int64_t kLookNs = 50'000'000;
   static constexpr int kSilentLooks = 100;                    // until it is taken to spin

@@ -32,7 +32,7 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
   Woke();
   if (thread.slot_memory == nullptr) return;
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc =
-      meter_->Begin(thread.metered, stop_tsc_, from_gate_, is_silent);
+      MeterOf(thread).Begin(thread.metered, stop_tsc_, from_gate_, is_silent);
 }
 
 void HostCpu::Woke() { stop_tsc_ = __rdtsc(); }
@@ -56,7 +56,7 @@ void HostCpu::Continue(HostThread& thread) {
 // meanwhile.
 void HostCpu::End(HostThread& thread, const Meter::CpuClock& clock) {
   FollowOrigin(thread);
-  meter_->End(thread.metered, stop_tsc_, clock);
+  MeterOf(thread).End(thread.metered, stop_tsc_, clock);
 }
 
 void HostCpu::FollowOrigin(HostThread& thread) {
@@ -69,6 +69,7 @@ void HostCpu::FollowOrigin(HostThread& thread) {
 std::int64_t HostCpu::Uncharged(const HostThread& thread, std::int64_t charged_ns,
                                 const Meter::CpuClock& clock) {
   const MeteredThread& metered = thread.metered;
+  if (metered.is_ideal) return 0;
   const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
   if (cpu_ns < 0) return 0;
   const std::int64_t used_ns =
@@ -81,26 +82,27 @@ shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {
 }
 
 std::int64_t HostCpu::NsToLook(HostThread& thread, std::int64_t horizon_ns) {
-  return meter_->NsToLook(thread.metered, stop_tsc_, horizon_ns);
+  return MeterOf(thread).NsToLook(thread.metered, stop_tsc_, horizon_ns);
 }
 
 Meter::Found HostCpu::Look(HostThread& thread, std::int64_t horizon_ns,
                            const Meter::CpuClock& clock) {
-  return meter_->Look(thread.metered, stop_tsc_, horizon_ns, clock);
+  return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon_ns, clock);
 }
 
 std::int64_t HostCpu::TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
                                     std::int64_t asked_ns, const Meter::CpuClock& clock) {
-  if (!meter_->HasOverslept(before.tsc, stop_tsc_, asked_ns) || !thread.HasOwnClock()) return 0;
-  return meter_->TakeOutUntold(thread.metered, before, stop_tsc_, asked_ns, clock);
+  if (!MeterOf(thread).HasOverslept(before.tsc, stop_tsc_, asked_ns) || !thread.HasOwnClock())
+    return 0;
+  return MeterOf(thread).TakeOutUntold(thread.metered, before, stop_tsc_, asked_ns, clock);
 }
 
 void HostCpu::Check(HostThread& thread, const Meter::CpuClock& clock) {
-  meter_->Check(thread.metered, stop_tsc_, clock);
+  MeterOf(thread).Check(thread.metered, stop_tsc_, clock);
 }
 
 void HostCpu::ChargeCall(HostThread& thread, std::int64_t cost_ns) {
-  meter_->ChargeCall(thread.metered, cost_ns);
+  MeterOf(thread).ChargeCall(thread.metered, cost_ns);
 }
 
 }  // namespace tcs

@@ -24,6 +24,7 @@
 #include "coordinator/host/block_detector.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_thread.h"
+#include "coordinator/host/ideal_meter.h"
 #include "coordinator/host/meter.h"
 #include "shm/clock_page.h"
 #include "shm/layout.h"
@@ -49,7 +50,10 @@ class HostCpu {
   // Who else may run, and who has ended.
   ActiveThreads& active() { return active_; }
   BlockDetector& detector() { return detector_; }
-  const Meter& meter() const { return *meter_; }
+  // What the thread's clock is to count from its next dispatch on.
+  void SetRates(const HostThread& thread, const Meter::SetCosts& costs, ClockGrant& grant) {
+    MeterOf(thread).SetRates(thread.metered, costs, grant);
+  }
 
   void Dispatch(HostThread& thread);
   static void OpenGate(shm::ThreadSlot& slot);
@@ -86,10 +90,15 @@ class HostCpu {
   void ChargeCall(HostThread& thread, std::int64_t cost_ns);
 
  private:
+  Meter& MeterOf(const HostThread& thread) {
+    return thread.metered.is_ideal ? static_cast<Meter&>(ideal_meter_) : *meter_;
+  }
+
   Executor& executor_;
   ActiveThreads active_;
   BlockDetector detector_;
   std::unique_ptr<Meter> meter_;
+  IdealMeter ideal_meter_;
   bool from_gate_ = false;  // the thread that was dispatched last
   std::uint64_t stop_tsc_ = 0;
 };

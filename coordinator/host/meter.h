@@ -28,7 +28,8 @@ struct TscRate {
 // What a meter knows of one thread.
 struct MeteredThread {
   shm::ClockPage* page = nullptr;
-  double speed = 1.0;  // the host's nanoseconds per virtual one
+  double speed = 1.0;     // the host's nanoseconds per virtual one
+  bool is_ideal = false;  // it is charged nothing (ideal_meter.h)
   // What the thread's CPU clock said when its charge was 0, moved by what is not charged; -1: not
   // known yet.
   std::int64_t host_origin_ns = -1;

@@ -18,6 +18,11 @@ constexpr double kSlowest = 1e-3;
 constexpr double kFastest = 1e3;
 
 void LoadCpu(const YamlValue& value, RobotSpec* robot) {
+  if (!value.IsMap()) {
+    robot->is_ideal = value.AsText() == "ideal";
+    if (robot->is_ideal) return;
+    value.Fail("is '" + value.AsText() + "'; write ideal, or how it is: {cores: 1, speed: 1.0}");
+  }
   const YamlMap map = value.AsMap();
   map.AllowOnly({"cores", "speed"});
   if (const YamlValue* cores = map.Find("cores")) {

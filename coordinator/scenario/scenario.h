@@ -84,6 +84,7 @@ struct RobotSpec {
   double speed = 1.0;  // of one core, relative to the host's
   std::vector<ClientSpec> clients;
   SchedulerPolicy scheduler = SchedulerPolicy::kFixedPriority;
+  bool is_ideal = false;  // computing takes its programs no time
 };
 
 struct UdpEndpoint {

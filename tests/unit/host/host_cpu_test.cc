@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <x86intrin.h>
 
 #include <memory>
 #include <string>
@@ -33,7 +34,7 @@ class HostCpuTest : public testing::Test {
     ClockGrant& grant = thread_.grant;
     grant.base_time_ns = 50 * kMs;
     grant.horizon_ns = 60 * kMs;
-    cpu_.meter().SetRates(thread_.metered, {}, grant);
+    cpu_.SetRates(thread_, {}, grant);
     grant.WriteTo(slot_.clock);
     ++thread_.dispatches;
     slot_.clock.executed_adjust = slot_.clock.waited_adjust = thread_.DispatchWord();
@@ -130,6 +131,18 @@ TEST_F(HostCpuTest, AClockThatItsProcessHasOverwrittenIsNotReckonedWith) {
   const std::uint64_t word = slot_.clock.executed_adjust.load();
   EXPECT_EQ(cpu_.TakeOutUntold(thread_, long_ago, kMs, clock_), 0);
   EXPECT_EQ(slot_.clock.executed_adjust.load(), word);
+}
+
+TEST_F(HostCpuTest, AnIdealThreadsClockStandsWhileItComputes) {
+  thread_.metered.is_ideal = true;
+  WritePage();
+  cpu_.Dispatch(thread_);
+  cpu_.Start(thread_, false);
+  shm::ClockReading read = shm::ReadClockAt(slot_.clock, __rdtsc() + 1'000'000'000);
+  EXPECT_EQ(read.time_ns, 50 * kMs);
+  cpu_.ChargeCall(thread_, 3 * kMs);
+  read = shm::ReadClockAt(slot_.clock, __rdtsc());
+  EXPECT_EQ(read.time_ns, 50 * kMs);
 }
 
 }  // namespace

@@ -88,6 +88,11 @@ TEST_F(LoadTest, TheRobotsAreAsWritten) {
   EXPECT_TRUE(controller.patch_vdso);
 }
 
+TEST_F(LoadTest, ARobotMayBeIdeal) {
+  EXPECT_TRUE(Load(WithReplaced("cpu: {cores: 4, speed: 0.5}", "cpu: ideal")).robots[0].is_ideal);
+  EXPECT_FALSE(Load(kGoodScenario).robots[0].is_ideal);
+}
+
 TEST_F(LoadTest, TheChannelsAreAsWritten) {
   const Scenario scenario = Load(kGoodScenario);
   ASSERT_EQ(scenario.sensors.size(), 1u);
