@@ -32,7 +32,7 @@ constexpr int kStartTurns = 600;
 }  // namespace
 
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
-  shm::ThreadSlot& slot = Slot(task);
+  shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
   const ProgramClock& clock = task.process->clock;
@@ -44,15 +44,15 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.base_cpu_ns = task.charged_ns;
   grant.horizon_ns = clock.At(RobotTime(horizon_ns)).ns();
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
-  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.read_safe_ns = run_.IsCallback() ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
   host_cpu_.SetRates(
       task,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
       grant);
   // Without levels the shim looks at the beginning of each call whether it may begin.
-  grant.counts_work = IsFixed() || options_.counts_work || gates_only_ ? 1 : 0;
-  if (gates_only_ && task.trap_id != 0 && task.trap_continues) {
+  grant.counts_work = run_.IsFixed() || run_.options.counts_work || run_.gates_only ? 1 : 0;
+  if (run_.gates_only && task.trap_id != 0 && task.trap_continues) {
     grant.counts_work |= shm::kBeginsInCall;
   }
   grant.NoteLimits();
@@ -84,7 +84,7 @@ void Engine::Resume(Task& task) {
   const bool starts_at_once = !host_cpu_.stands_still();
   if (starts_at_once) {
     host_cpu_.Start(task, task.spins);
-    if (task.slot >= 0) Slot(task).clock.horizon_ns = task.grant.horizon_ns;
+    if (task.slot >= 0) SlotOf(task).clock.horizon_ns = task.grant.horizon_ns;
   }
   if (task.slot < 0) registration_.LetRegister(task);
   if (task.trap_id != 0) {
@@ -96,25 +96,26 @@ void Engine::Resume(Task& task) {
     }
     task.trap_id = 0;
   } else if (task.slot >= 0 && is_at_gate) {
-    HostCpu::OpenGate(Slot(task));
+    HostCpu::OpenGate(SlotOf(task));
   }
-  ++report_.switches;
+  ++run_.report.switches;
   if (!starts_at_once) host_cpu_.Start(task, task.spins);
 }
 
 // The running thread has woken one of another computer, which does not need its core. It goes on,
 // as far as that one now allows.
 void Engine::GoOnBesideWoken() {
-  shm::ClockPage& page = Slot(*turn_.task()).clock;
-  const VirtualCpu& cpu = *turn_.task()->cpu;
+  shm::ClockPage& page = SlotOf(*run_.turn.task()).clock;
+  const VirtualCpu& cpu = *run_.turn.task()->cpu;
   std::int64_t idle_until = 0;
-  const std::int64_t allowed = std::max(HorizonFor(*turn_.task(), &idle_until), WrittenAt());
-  turn_.LimitTo(allowed);
-  ClockGrant& grant = turn_.task()->grant;
+  const std::int64_t allowed =
+      std::max(HorizonFor(*run_.turn.task(), &idle_until), run_.WrittenAt());
+  run_.turn.LimitTo(allowed);
+  ClockGrant& grant = run_.turn.task()->grant;
   grant.horizon_ns = OwnHorizonNs();
   grant.idle_until_ns = 0;  // it asks
-  grant.read_safe_ns = IsCallback() ? cpu.progress_ns : root_.ReadSafe(cpu.leaf);
-  grant.write_safe_ns = root_.WriteSafe(cpu.leaf);
+  grant.read_safe_ns = run_.IsCallback() ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
+  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
   grant.NoteLimits();
   grant.WriteTo(page);
 }
@@ -127,14 +128,14 @@ std::int64_t Engine::NsToLook(Task& task) {
 
 // The turn's horizon, as the thread's own clock shows it.
 std::int64_t Engine::OwnHorizonNs() const {
-  return turn_.task()->process->clock.At(RobotTime(turn_.horizon_ns())).ns();
+  return run_.turn.task()->process->clock.At(RobotTime(run_.turn.horizon_ns())).ns();
 }
 
 void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
   const std::int64_t stolen_ns = host_cpu_.TakeOutUntold(task, before, asked_ns, CpuClockOf(task));
   if (stolen_ns <= 0) return;
-  report_.untold_ns += stolen_ns;
-  ++report_.untold;
+  run_.report.untold_ns += stolen_ns;
+  ++run_.report.untold;
 }
 
 // False if the thread cannot have done what it has noted: its process is ended for that.
@@ -151,13 +152,13 @@ void Engine::Settle(Task& task) {
     expulsion_.Expel(*task.process, what);
     return;
   }
-  shm::ThreadSlot& slot = Slot(task);
+  shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
   MeteredThread& metered = task.metered;
   host_cpu_.End(task, CpuClockOf(task));
   // The shim counts and charges the calls that it sees, whatever the C library calls for it.
-  const bool made_unseen_call =
-      turn_.trapped.has_value() && turn_.trapped->number != SYS_exit && slot.signals.load() == 0;
+  const bool made_unseen_call = run_.turn.trapped.has_value() &&
+                                run_.turn.trapped->number != SYS_exit && slot.signals.load() == 0;
   if (made_unseen_call) {
     host_cpu_.ChargeCall(task, task.process->call_cost_ns);
   }
@@ -169,15 +170,16 @@ void Engine::Settle(Task& task) {
   const std::int64_t start = task.cpu->progress_ns;
   // Whom it has woken, however long ago it sent what did, it must not have left behind further than
   // the drift bound: what it has computed beyond is a debt.
-  if (!IsCallback()) {
-    turn_.LimitTo(root_.Horizon(task.cpu->leaf));
+  if (!run_.IsCallback()) {
+    run_.turn.LimitTo(run_.root.Horizon(task.cpu->leaf));
   }
-  StoppedRun run{.start_ns = start,
-                 .horizon_ns = turn_.horizon_ns(),
-                 .reached_ns = on_robot(reading.time_ns),
-                 .shown_ns = on_robot(page.last_shown_ns.load()),
-                 .is_preempted = turn_.timed_out && (!turn_.notified || turn_.is_sent_to_gate)};
-  if (turn_.notified && slot.note.kind != shm::NotificationKind::kYield) {
+  StoppedRun run{
+      .start_ns = start,
+      .horizon_ns = run_.turn.horizon_ns(),
+      .reached_ns = on_robot(reading.time_ns),
+      .shown_ns = on_robot(page.last_shown_ns.load()),
+      .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate)};
+  if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted_ns = on_robot(slot.note.time_ns);
   }
   const auto [progress, debt, ours] = SettleRun(run);
@@ -185,14 +187,14 @@ void Engine::Settle(Task& task) {
   const std::int64_t charged = reading.cpu_ns - ours;
   const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
   const std::int64_t host_ns = metered.HostNs(executed);
-  report_.client_ns += host_ns;
+  run_.report.client_ns += host_ns;
   metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
   task.charged_ns = charged;
   task.debt_ns = debt;
   activations_.TakeReceipts(task, clock.At(RobotTime(progress)).ns());
   task.trapped_calls += made_unseen_call;
   task.work = WithTrapped(task, slot.work);
-  if (IsCallback()) {
+  if (run_.IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
     const VirtualTime at = RobotTime(start);
     const VirtualDuration computed = RobotTime(progress) - at;
@@ -241,7 +243,7 @@ bool Engine::GivesUpStart(Task& task, int turns) {
     return true;
   }
   if (turns < kStartTurns) return false;
-  report_.error = fmt::format(
+  run_.report.error = fmt::format(
       "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
       "set-uid?",
       ProgramOf(task.process->pid), task.process->name);
@@ -256,12 +258,12 @@ void Engine::AwaitStop(Task& task) {
     // What it has made of its clock meanwhile must not be reckoned with.
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
-    if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(Slot(task));
+    if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
     const std::int64_t asked_ns = task.is_brief ? kBriefNs : NsToLook(task);
     if (PollWhileRunning(task, asked_ns)) return;
-    if (!turn_.timed_out) continue;
-    turn_.timed_out = false;
-    if (gates_only_) host_cpu_.detector().Arm();
+    if (!run_.turn.timed_out) continue;
+    run_.turn.timed_out = false;
+    if (run_.gates_only) host_cpu_.detector().Arm();
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
       unmanaged_.LowerThoseThatCompute(claim_.cpu, host_cpu_.detector().pid());
@@ -277,7 +279,7 @@ void Engine::AwaitStop(Task& task) {
     const Meter::Found found = host_cpu_.Look(task, OwnHorizonNs(), CpuClockOf(task));
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
-      turn_.timed_out = true;
+      run_.turn.timed_out = true;
       return;
     }
   }
@@ -287,31 +289,33 @@ void Engine::AwaitStop(Task& task) {
 // would spin for ever. It waits until somebody has run, and looks again, as long as it makes no
 // call.
 void Engine::StepAside(Task& task) {
-  if (turn_.HasSpoken() || task.state == TaskState::kDead) {
+  if (run_.turn.HasSpoken() || task.state == TaskState::kDead) {
     task.spins = false;
     return;
   }
   const Process& process = *task.process;
   if (process.robot->is_ideal) {
-    Warn(process.name +
-         " has computed for 10 s at one instant: its robot is ideal, so that the world waits for "
-         "what it computes, but no longer; from here on it counts as waiting for what others do");
+    run_.Warn(
+        process.name +
+        " has computed for 10 s at one instant: its robot is ideal, so that the world waits for "
+        "what it computes, but no longer; from here on it counts as waiting for what others do");
   } else {
-    Warn(process.name +
-         " has computed for 5 s without a call or an allocation: under --accounting fixed that "
-         "counts as waiting for "
-         "what others do, and depends on the host; run it with --accounting measured");
+    run_.Warn(
+        process.name +
+        " has computed for 5 s without a call or an allocation: under --accounting fixed that "
+        "counts as waiting for "
+        "what others do, and depends on the host; run it with --accounting measured");
   }
-  EnterWait(task, {awaited::OthersRun{}});
+  waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
-  Refresh(*task.process->robot);
+  waker_.Refresh(*task.process->robot);
 }
 
 void Engine::WakeSpinners() {
   has_spinners_ = false;
-  for (Task& task : table_.tasks()) {
+  for (Task& task : run_.table.tasks()) {
     if (task.Awaits<awaited::OthersRun>() != nullptr) {
-      MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
+      waker_.Wake(task, shm::WakeReason::kGo, {run_.latest_ns});
     }
   }
 }
@@ -320,13 +324,13 @@ void Engine::WakeSpinners() {
 bool Engine::AnswerEarly(Task& task) {
   if (!task.notified_early && !task.early_trap.has_value()) return false;
   task.parked = true;
-  SetState(task, TaskState::kReady);
+  waker_.SetState(task, TaskState::kReady);
   const Moment moment{task.reached_ns};
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
     if (!TakeIpcNotesOf(task)) return true;
-    const shm::Notification early = Slot(task).note;
+    const shm::Notification early = SlotOf(task).note;
     finds_more = notifications_.Handle(task, early);
   } else {
     const TrappedCall early = *task.early_trap;
@@ -341,10 +345,10 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   Beat();
   task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
-  if (task.is_brief && IsFixed()) horizon_ns = task.cpu->progress_ns;
-  turn_.Begin(task, horizon_ns);
+  if (task.is_brief && run_.IsFixed()) horizon_ns = task.cpu->progress_ns;
+  run_.turn.Begin(task, horizon_ns);
   says_call_ = opens_gate_ = false;
-  if (task.state == TaskState::kHolding) SetState(task, TaskState::kReady);
+  if (task.state == TaskState::kHolding) waker_.SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     TimerSignals::SendTo(task);
     dds_.HandOver(task);
@@ -353,7 +357,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   if (task.trap_id != 0) task.brief_id = task.trap_id;
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
   Resume(task);
-  turn_.recorded_tsc = host_cpu_.stop_tsc();
+  run_.turn.recorded_tsc = host_cpu_.stop_tsc();
   if (task.activation.start_ns < 0) {
     task.activation.start_ns = task.process->clock.At(RobotTime(task.cpu->progress_ns)).ns();
   }
@@ -362,11 +366,11 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
 void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
-  turn_.End();
-  latest_ns_ = task.cpu->progress_ns;
-  if (latest_ns_ >= turn_.horizon_ns()) {
+  run_.turn.End();
+  run_.latest_ns = task.cpu->progress_ns;
+  if (run_.latest_ns >= run_.turn.horizon_ns()) {
     ++task.used_up;
-  } else if (turn_.HasSpoken()) {
+  } else if (run_.turn.HasSpoken()) {
     task.used_up = 0;
   }
 }
@@ -378,26 +382,27 @@ void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
   TimerCalls::ExpireCpu(task);
   if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
   task.process->timers.EndRests(stop.ns);
-  if (turn_.HasSpoken()) shared_events_.PassOn(task, stop);
+  if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
-  if (!turn_.notified && task.slot >= 0 && Slot(task).signals.load() != 0) signals_.Sent(0, stop);
+  if (!run_.turn.notified && task.slot >= 0 && SlotOf(task).signals.load() != 0)
+    signals_.Sent(0, stop);
 }
 
 // What the thread has said at the end of its turn.
 void Engine::Answer(Task& task) {
-  if (task.state == TaskState::kDead || !turn_.HasSpoken()) return;
+  if (task.state == TaskState::kDead || !run_.turn.HasSpoken()) return;
   const Moment moment{task.reached_ns};
   task.parked = true;
   // It was found held by the kernel, and has come back at the same instant.
-  if (task.state == TaskState::kUnseen) SetState(task, TaskState::kReady);
+  if (task.state == TaskState::kUnseen) waker_.SetState(task, TaskState::kReady);
   bool finds_more = false;
-  if (turn_.notified) {
+  if (run_.turn.notified) {
     task.reply[0] = task.reply[1] = 0;
-    const shm::Notification note = Slot(task).note;
+    const shm::Notification note = SlotOf(task).note;
     finds_more = notifications_.Handle(task, note);
   } else {
-    finds_more = trapped_.Handle(task, *turn_.trapped);
+    finds_more = trapped_.Handle(task, *run_.turn.trapped);
   }
   // What is there already ends the wait here and now.
   if (finds_more) PollEvents(0, moment);

@@ -19,16 +19,16 @@ void Engine::EndClients() {
 
 // The world stops, and nothing is recorded any more.
 void Engine::BeginGrace() {
-  grace_began_ns_ = report_.virtual_ns;
-  if (turn_.lasts()) Settle(*turn_.task());  // the dynamics have failed beside it
-  turn_.End();
-  root_.EndDynamics();
+  run_.grace_began_ns = run_.report.virtual_ns;
+  if (run_.turn.lasts()) Settle(*run_.turn.task());  // the dynamics have failed beside it
+  run_.turn.End();
+  run_.root.EndDynamics();
   dds_.records().Stop();
   for (const int fd : world_.command_fds()) {
     if (fd >= 0) reactor_.Remove(fd);
   }
-  for (VirtualCpu& cpu : cpus_) {
-    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, grace_began_ns_));
+  for (VirtualCpu& cpu : run_.cpus) {
+    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, run_.grace_began_ns));
   }
   launches_.Stop();
   grace_.Begin();
@@ -37,8 +37,8 @@ void Engine::BeginGrace() {
 // Whoever is left now is killed. None may keep the processor meanwhile, nor this process, which
 // waits in the kernel for the last steps of their threads.
 void Engine::Shutdown() {
-  header_->shutdown.store(1);
-  for (const Task& task : table_.tasks()) {
+  run_.header->shutdown.store(1);
+  for (const Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kDead) LeaveRealTime(task.tid);
   }
   LeaveRealTime(0);

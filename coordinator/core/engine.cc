@@ -52,11 +52,11 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
   const Robot& robot = *cpu.robot;
   const std::int64_t furthest = cpu.progress_ns + shm::kMaxDispatchNs - 1;
   *idle_until = 0;
-  if (IsCallback()) {
+  if (run_.IsCallback()) {
     return std::min({furthest, robot.scheduler.HorizonWhileWorldStands(cpu.core, task.order),
                      cpu.progress_ns + LeftToHoldNs(task)});
   }
-  std::int64_t limit = std::min(root_.Horizon(cpu.leaf), furthest);
+  std::int64_t limit = std::min(run_.root.Horizon(cpu.leaf), furthest);
   if (task.process->timers.HasCpuTimers()) {
     const std::int64_t left = task.process->timers.CpuTimeToExpiry(TimerCalls::CpuUsedBy(task));
     if (left != shm::kNeverNs) limit = std::min(limit, cpu.progress_ns + left);
@@ -66,11 +66,11 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
       std::min(limit, std::max(task.process->timers.NextLook(), cpu.progress_ns + kLeastLookNs));
   const RobotScheduler::Horizon horizon =
       robot.scheduler.HorizonOf(cpu.core, task.order, limit,
-                                {.input_ns = root_.NextInput(cpu.leaf),
-                                 .outside_input_ns = root_.NextInputFromOutside(cpu.leaf),
-                                 .output_ns = root_.NextOutput(),
-                                 .acts_at_once = IsFixed() || robot.is_ideal,
-                                 .has_given_way = root_.HasGivenWay(cpu.leaf)});
+                                {.input_ns = run_.root.NextInput(cpu.leaf),
+                                 .outside_input_ns = run_.root.NextInputFromOutside(cpu.leaf),
+                                 .output_ns = run_.root.NextOutput(),
+                                 .acts_at_once = run_.IsFixed() || robot.is_ideal,
+                                 .has_given_way = run_.root.HasGivenWay(cpu.leaf)});
   *idle_until = horizon.idle_ns;
   return horizon.run_ns;
 }
@@ -78,7 +78,7 @@ std::int64_t Engine::HorizonFor(const Task& task, std::int64_t* idle_until) {
 // A program that computes for as long as the run is to be, all at one instant of the world's, would
 // have the world stand for ever. Short runs, too, may have long plans computed.
 std::int64_t Engine::MostHeldNs() const {
-  return IsInGrace() ? kMostHeldNs : std::max(kMostHeldNs, scenario_.duration.ns());
+  return run_.IsInGrace() ? kMostHeldNs : std::max(kMostHeldNs, run_.scenario.duration.ns());
 }
 
 std::int64_t Engine::LeftToHoldNs(const Task& task) const {
@@ -100,13 +100,13 @@ bool Engine::StandsForEver(VirtualCpu& cpu) const {
 void Engine::LetWorldGoOnWithout(Task& task) {
   const double at_s = static_cast<double>(task.cpu->progress_ns) * 1e-9;
   if (task.process->robot->is_ideal) {
-    Warn(
+    run_.Warn(
         fmt::format("{} has been busy for {:.0f} s at one instant: its robot is ideal, so that "
                     "the world waits for what it does, but no longer; from {:.3f} s on it goes on "
                     "without that program; does it answer its own answers?",
                     task.process->name, static_cast<double>(kMostHeldNs) * 1e-9, at_s));
   } else {
-    Warn(fmt::format(
+    run_.Warn(fmt::format(
         "{} has computed for {:.0f} s at one instant of the world's: under --sync "
         "callback the world waits for it, but not for longer than the run is to be; from "
         "{:.3f} s on it goes on without that program",
@@ -114,14 +114,14 @@ void Engine::LetWorldGoOnWithout(Task& task) {
   }
   host_cpu_.active().Hold(task);
   task.reached_ns = task.cpu->progress_ns;
-  EnterWait(task, {awaited::Nothing{}});
-  Refresh(*task.process->robot);
+  waker_.Wait(task, {awaited::Nothing{}});
+  waker_.Refresh(*task.process->robot);
 }
 
 // Its clock has shown so much of the time to come already: it passes without the thread.
 void Engine::PayDebt(Task& task, std::int64_t ns) {
   task.debt_ns -= ns;
-  if (IsCallback()) {
+  if (run_.IsCallback()) {
     ProgramClock& clock = task.process->clock;
     clock.Advance(RobotTime(task.cpu->progress_ns), VirtualDuration::Nanoseconds(ns));
     task.lead = clock.lead();
@@ -133,23 +133,23 @@ void Engine::PayDebt(Task& task, std::int64_t ns) {
 
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
-  cpu.ComeTo(std::max(cpu.progress_ns, root_.Least()));
+  cpu.ComeTo(std::max(cpu.progress_ns, run_.root.Least()));
   const Moment due{.ns = cpu.progress_ns, .from_outside = true};
   if (timers_.FireDue(robot, due.ns)) PollEvents(0, due);
   launches_.StartDue(robot, cpu.progress_ns);
   robot.scheduler.EndTurn(cpu.core);
-  Refresh(robot);
+  waker_.Refresh(robot);
   const RobotScheduler::Turn turn = robot.scheduler.Next(cpu.core);
   // What was due may have woken somebody who acts on another virtual CPU first; and more may be due
   // here before the turn begins.
-  if (turn.start_ns > cpu.progress_ns || root_.First() != cpu.leaf) return;
-  Task& task = TaskAt(turn.thread);
+  if (turn.start_ns > cpu.progress_ns || run_.root.First() != cpu.leaf) return;
+  Task& task = run_.table.At(turn.thread);
   TCS_CHECK(task.reached_ns <= cpu.progress_ns);  // nobody runs before what has made it ready
   task.cpu = &cpu;
   ProgramClock& clock = task.process->clock;
-  if (IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
+  if (run_.IsCallback()) clock.LetWorldCatchUp(RobotTime(cpu.progress_ns));
   TCS_CHECK(waker_.IsSafe(task));
-  if ((IsCallback() && LeftToHoldNs(task) == 0) || (robot.is_ideal && StandsForEver(cpu))) {
+  if ((run_.IsCallback() && LeftToHoldNs(task) == 0) || (robot.is_ideal && StandsForEver(cpu))) {
     LetWorldGoOnWithout(task);
     return;
   }
@@ -158,13 +158,14 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   const std::int64_t start = cpu.progress_ns;
   const VirtualDuration lead = clock.lead();
   std::int64_t horizon = HorizonFor(task, &idle_until);
-  if (horizon <= start && root_.NextInput(cpu.leaf) == start && !root_.HasGivenWay(cpu.leaf)) {
+  if (horizon <= start && run_.root.NextInput(cpu.leaf) == start &&
+      !run_.root.HasGivenWay(cpu.leaf)) {
     // At this very instant others may still wake somebody who goes before it.
-    root_.GiveWay(cpu.leaf);
+    run_.root.GiveWay(cpu.leaf);
     return;
   }
   task.reached_ns = cpu.progress_ns;
-  root_.FirstActs();
+  run_.root.FirstActs();
   robot.scheduler.Dispatch(cpu.core, task.order);
   horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
@@ -174,37 +175,38 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
-    if (TakePutOff({latest_ns_}).looks_again) PollEvents(0, {latest_ns_});
-    registration_.RegisterUnannounced({latest_ns_});
+    if (TakePutOff({run_.latest_ns}).looks_again) PollEvents(0, {run_.latest_ns});
+    registration_.RegisterUnannounced({run_.latest_ns});
     if (has_spinners_ && !task.spins) WakeSpinners();
   }
   const std::int64_t advanced = cpu.progress_ns - start;
   robot.scheduler.Stop(cpu.core, advanced, advanced + (clock.lead() - lead).ns());
   waker_.Requeue(task);
-  Refresh(robot);
-  TCS_CHECK(IsCallback() || root_.drift_ns() <= scenario_.drift_bound.ns());
+  waker_.Refresh(robot);
+  TCS_CHECK(run_.IsCallback() || run_.root.drift_ns() <= run_.scenario.drift_bound.ns());
 }
 
 // Advances the dynamics where the virtual CPUs have come to what is due there, or have left them
 // behind. False if neither is so.
 bool Engine::StepWorld() {
   if (!WorldGoesOn()) return false;
-  const std::int64_t limit = std::min(root_.Least(), end_ns_);
+  const std::int64_t limit = std::min(run_.root.Least(), run_.end_ns);
   const std::int64_t now = world_.progress_ns();
-  const std::int64_t lag = limit == end_ns_ || IsCallback() ? 0 : scenario_.drift_bound.ns();
+  const std::int64_t lag =
+      limit == run_.end_ns || run_.IsCallback() ? 0 : run_.scenario.drift_bound.ns();
   if (limit - now <= lag && world_.NextStopNs() > limit) return false;
-  latest_ns_ = std::max(latest_ns_, std::min(now, limit));
+  run_.latest_ns = std::max(run_.latest_ns, std::min(now, limit));
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
   records_.Integrated({now, world_.progress_ns()}, {begun_tsc, ended_tsc});
-  root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+  run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
-    latest_ns_ = world_.progress_ns();
-    records_.SentSensors(latest_ns_);
+    run_.latest_ns = world_.progress_ns();
+    records_.SentSensors(run_.latest_ns);
     dds_.ShowDeliverersTheirDeadlines();
-    PollEvents(0, {.ns = latest_ns_, .from_outside = true});
+    PollEvents(0, {.ns = run_.latest_ns, .from_outside = true});
   }
   return true;
 }
@@ -213,8 +215,8 @@ bool Engine::StepWorld() {
 // lag behind while threads act for short, and where a thread computes on and on they lead: within
 // the drift bound on either side its slices are twice as long. Returns how far the thread may run.
 std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
-  if (!WorldGoesOn() || IsCallback()) return horizon_ns;
-  const std::int64_t bound = std::min(scenario_.drift_bound.ns(), shm::kMaxDispatchNs);
+  if (!WorldGoesOn() || run_.IsCallback()) return horizon_ns;
+  const std::int64_t bound = std::min(run_.scenario.drift_bound.ns(), shm::kMaxDispatchNs);
   const std::int64_t now = task.cpu->progress_ns, world = world_.progress_ns();
   const bool computes = task.used_up >= kComputes;
   const std::int64_t room = computes ? horizon_ns : std::min(horizon_ns, now + bound / 2);
@@ -225,37 +227,37 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();
     records_.Integrated({world, world_.progress_ns()}, {begun_tsc, ended_tsc});
-    root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+    run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
-  return std::min(horizon_ns, root_.DynamicsHorizon());
+  return std::min(horizon_ns, run_.root.DynamicsHorizon());
 }
 
 // A thread that blocked where the shim could not see it is runnable again once the kernel says so.
 void Engine::PollUnseen() {
   signals_.Poll();
   if (waker_.unseen() == 0) return;
-  for (Task& task : table_.tasks()) {
+  for (Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
-    latest_ns_ = std::max(latest_ns_, task.reached_ns);
-    MakeReady(task, shm::WakeReason::kGo, {latest_ns_});
+    run_.latest_ns = std::max(run_.latest_ns, task.reached_ns);
+    waker_.Wake(task, shm::WakeReason::kGo, {run_.latest_ns});
     task.parked = false;
-    dds_.NoteWhetherStopped(*task.process, latest_ns_);
+    dds_.NoteWhetherStopped(*task.process, run_.latest_ns);
   }
 }
 
 void Engine::WaitOutside() {
   Beat();
-  const bool unseen = gates_only_ || waker_.unseen() > 0 || waker_.counts().for_child() > 0 ||
+  const bool unseen = run_.gates_only || waker_.unseen() > 0 || waker_.counts().for_child() > 0 ||
                       waker_.counts().for_signals() > 0;
-  PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {latest_ns_});
+  PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {run_.latest_ns});
 }
 
 // Before idle time is jumped over: is something from outside already there?
 bool Engine::HasJumpedOver() {
-  const Reactor::Found found = PollEvents(0, {latest_ns_});
+  const Reactor::Found found = PollEvents(0, {run_.latest_ns});
   PollUnseen();
   if (UnmanagedRun()) {
-    PollEvents(kUnseenPollNs, {latest_ns_});
+    PollEvents(kUnseenPollNs, {run_.latest_ns});
     return false;
   }
   return !found.wakes_others;
@@ -266,20 +268,20 @@ bool Engine::UnmanagedRun() const { return unmanaged_.AnyRuns() || unknown_child
 
 std::int64_t Engine::FurthestNs() const {
   std::int64_t furthest_ns = world_.present() ? world_.progress_ns() : 0;
-  for (const VirtualCpu& cpu : cpus_) furthest_ns = std::max(furthest_ns, cpu.progress_ns);
+  for (const VirtualCpu& cpu : run_.cpus) furthest_ns = std::max(furthest_ns, cpu.progress_ns);
   return furthest_ns;
 }
 
 // What need not be looked at in each step.
 void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
-  if (IsInGrace() || begun_tsc < next_look_tsc_) return;
+  if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
-  if (options_.on_progress) {
+  if (run_.options.on_progress) {
     if (shows_++ % kShowsPerFlush == 0) records_.Flush();
-    options_.on_progress(reporter_.Now());
+    run_.options.on_progress(reporter_.Now());
   }
-  if (options_.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
+  if (run_.options.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
@@ -288,28 +290,29 @@ void Engine::LookAround() {
 // All threads have said that they end; the kernel is about to end their processes. False once that
 // is over.
 bool Engine::AwaitDeaths() {
-  for (int turn = 0; turn < kDeathTurns && table_.living() == 0 && !launches_.AreAhead(); ++turn) {
-    const bool all_dead = std::all_of(table_.processes().begin(), table_.processes().end(),
+  for (int turn = 0; turn < kDeathTurns && run_.table.living() == 0 && !launches_.AreAhead();
+       ++turn) {
+    const bool all_dead = std::all_of(run_.table.processes().begin(), run_.table.processes().end(),
                                       [](const Process& process) { return process.dead; });
-    if (all_dead || grace_.IsOver() || (stop_.asked() && !IsInGrace())) return false;
-    PollEvents(kOutsidePollNs, {latest_ns_});
+    if (all_dead || grace_.IsOver() || (run_.stop.asked() && !run_.IsInGrace())) return false;
+    PollEvents(kOutsidePollNs, {run_.latest_ns});
   }
-  return table_.living() > 0 || launches_.AreAhead();
+  return run_.table.living() > 0 || launches_.AreAhead();
 }
 
 // Nobody acts by itself any more, and no world goes on: what is left of the run is idle time, which
 // is jumped over. But those that the kernel has, or that compute without a call, may still come
 // back: they get as much real time as there is virtual time left. False at the run's end.
 bool Engine::AwaitOutside() {
-  if (end_ns_ != shm::kNeverNs) {
-    const Reactor::Found found = PollEvents(0, {latest_ns_});
+  if (run_.end_ns != shm::kNeverNs) {
+    const Reactor::Found found = PollEvents(0, {run_.latest_ns});
     PollUnseen();
-    if (found.wakes_others || root_.Least() != shm::kNeverNs) return true;
+    if (found.wakes_others || run_.root.Least() != shm::kNeverNs) return true;
     if (waker_.unseen() == 0 && !has_spinners_ && !unknown_children_.AnyCounts() && !UnmanagedRun())
       return false;
     const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
-    if (now_ns - idle_since_real_ns_ >= end_ns_ - furthest_ns) return false;
+    if (now_ns - idle_since_real_ns_ >= run_.end_ns - furthest_ns) return false;
   }
   if (has_spinners_) {
     WakeSpinners();
@@ -322,52 +325,52 @@ bool Engine::AwaitOutside() {
 // One step of the run; false at its end.
 bool Engine::Step() {
   deaths_.DropLinks();
-  if (table_.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
+  if (run_.table.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();
   if (StepWorld()) return true;
-  const std::int64_t least = root_.Least();
-  if (least >= end_ns_ || least == shm::kNeverNs) {
+  const std::int64_t least = run_.root.Least();
+  if (least >= run_.end_ns || least == shm::kNeverNs) {
     if (least == shm::kNeverNs && !WorldGoesOn() && AwaitOutside()) return true;
     reached_end_ = true;
     return false;
   }
-  VirtualCpu& cpu = cpus_[static_cast<std::size_t>(root_.First())];
+  VirtualCpu& cpu = run_.cpus[static_cast<std::size_t>(run_.root.First())];
   const bool idle = cpu.robot->scheduler.Next(cpu.core).thread == RobotScheduler::kNobody;
   if (idle && !HasJumpedOver()) return true;
   // What was there may have made another one the least.
-  if (root_.First() == cpu.leaf) StepCpu(cpu);
+  if (run_.root.First() == cpu.leaf) StepCpu(cpu);
   return true;
 }
 
 RunReport Engine::Run() {
-  for (const std::string& warning : scenario_.warnings) Warn(warning);
-  report_.error = Prepare();
-  if (report_.error.empty()) {
+  for (const std::string& warning : run_.scenario.warnings) run_.Warn(warning);
+  run_.report.error = Prepare();
+  if (run_.report.error.empty()) {
     MakeRobots();
-    report_.error = launches_.Begin();
+    run_.report.error = launches_.Begin();
   }
   clock_.Start();
   records_.StartAt(clock_);
   try {
-    while (report_.error.empty() && !stop_.asked()) {
+    while (run_.report.error.empty() && !run_.stop.asked()) {
       if (!Step()) break;
     }
   } catch (const DynamicsError& error) {
-    report_.error = error.what();
+    run_.report.error = error.what();
   }
-  reporter_.Conclude(reached_end_ ? end_ns_ : FurthestNs());
+  reporter_.Conclude(reached_end_ ? run_.end_ns : FurthestNs());
   // First: what clients do at their end is no part of the run.
   for (const std::string& error : {records_.Close(), dds_.records().Close()}) {
-    if (report_.error.empty()) report_.error = error;
+    if (run_.report.error.empty()) run_.report.error = error;
   }
-  RunReport report = report_;
-  if (header_ != nullptr) {
+  RunReport report = run_.report;
+  if (run_.header != nullptr) {
     EndClients();
     Shutdown();
   }
-  report.warnings = report_.warnings;
+  report.warnings = run_.report.warnings;
   return report;
 }
 

@@ -110,14 +110,6 @@ class Engine {
   std::int64_t FurthestNs() const;
   void LookAround();
 
-  // The door (waker.h).
-  void SetState(Task& task, TaskState state) { waker_.SetState(task, state); }
-  void Refresh(Robot& robot) { waker_.Refresh(robot); }
-  void MakeReady(Task& task, shm::WakeReason reason, Moment moment) {
-    waker_.Wake(task, reason, moment);
-  }
-  void EnterWait(Task& task, Wait wait) { waker_.Wait(task, std::move(wait)); }
-
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   bool AnswerEarly(Task& task);
@@ -138,7 +130,6 @@ class Engine {
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
-  std::int64_t WrittenAt() const { return run_.WrittenAt(); }
 
   // By the kind of descriptor (handlers.cc).
   void RegisterHandlers();
@@ -173,9 +164,6 @@ class Engine {
   bool CutsOff(Task& task);
   void DetectorEnded();
   void LookAtDetector();
-  Process* LivingProcess(pid_t pid) const { return table_.LivingProcess(pid); }
-  Task* KnownTask(pid_t tid) const { return table_.Living(tid); }
-  Task& TaskAt(int order) { return table_.At(order); }
 
   // Where only gates keep threads from running (gates_only.cc).
   using Late = std::function<Reactor::Found(Moment)>;
@@ -191,29 +179,10 @@ class Engine {
   void BeginGrace();
   void Shutdown();
 
-  void Warn(const std::string& text) { run_.Warn(text); }
-  bool IsInGrace() const { return run_.IsInGrace(); }
-  bool WorldGoesOn() const { return world_.present() && !IsInGrace(); }
-  bool IsFixed() const { return run_.IsFixed(); }
-  bool IsCallback() const { return run_.IsCallback(); }
-  static shm::ThreadSlot& Slot(const Task& task) { return SlotOf(task); }
+  bool WorldGoesOn() const { return world_.present() && !run_.IsInGrace(); }
 
   RunState run_;
-  const Scenario& scenario_ = run_.scenario;
-  const RunOptions& options_ = run_.options;
-  RunReport& report_ = run_.report;
-  TaskTable& table_ = run_.table;
-  std::deque<Robot>& robots_ = run_.robots;
-  std::deque<VirtualCpu>& cpus_ = run_.cpus;
-  TemporalConsistency& root_ = run_.root;
-  Turn& turn_ = run_.turn;
-  shm::RunHeader*& header_ = run_.header;
-  const bool& gates_only_ = run_.gates_only;
-  std::int64_t& end_ns_ = run_.end_ns;
-  std::int64_t& latest_ns_ = run_.latest_ns;
-  StopRequest& stop_ = run_.stop;
-  std::int64_t& grace_began_ns_ = run_.grace_began_ns;
-  World world_{[this](const std::string& text) { Warn(text); }};
+  World world_{[this](const std::string& text) { run_.Warn(text); }};
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
@@ -252,7 +221,7 @@ class Engine {
 
   // Who takes part: how threads and processes come, and how they go.
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
-  UsageBook usage_{table_, slot_check_};
+  UsageBook usage_{run_.table, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
   // Threads and processes that come and go.
   Births births_{run_, waker_, reactor_, records_};
@@ -266,7 +235,7 @@ class Engine {
                              }};
   Launches launches_{run_, waker_, births_, sockets_, traps_, world_, guard_.guarded()};
   UnmanagedThreads unmanaged_{run_};
-  UnknownChildren unknown_children_{table_, reactor_, unmanaged_};
+  UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
   Grace grace_{run_, reactor_, unknown_children_,
                [this](Moment moment) { signals_.Sent(0, moment); }};
 

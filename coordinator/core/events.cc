@@ -40,26 +40,26 @@ constexpr int kExitTurns = 20;
 
 Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
   task.executes = false;
-  if (Slot(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
-  if (turn_.IsOf(task)) {
-    if (gates_only_ && MayGoOn(task)) return {.looks_again = true};
-    turn_.notified = true;
+  if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
+  if (run_.turn.IsOf(task)) {
+    if (run_.gates_only && MayGoOn(task)) return {.looks_again = true};
+    run_.turn.notified = true;
   } else if (task.state == TaskState::kWaiting &&
-             Slot(task).note.kind == shm::NotificationKind::kInterrupted) {
-    MakeReady(task, shm::WakeReason::kSignal, moment);
+             SlotOf(task).note.kind == shm::NotificationKind::kInterrupted) {
+    waker_.Wake(task, shm::WakeReason::kSignal, moment);
     task.reply[0] = 1;
   } else if (task.state == TaskState::kUnseen) {
-    MakeReady(task, shm::WakeReason::kGo, moment);
+    waker_.Wake(task, shm::WakeReason::kGo, moment);
     task.parked = true;
     host_cpu_.Check(task, CpuClockOf(task));
-    const shm::Notification note = Slot(task).note;
+    const shm::Notification note = SlotOf(task).note;
     Reactor::Found found = kConcernsAll;
     found.looks_again = notifications_.Handle(task, note);
     return found;
   } else if (!task.parked || task.trap_id != 0) {
     // It ran on while the coordinator slept for a thread that the kernel held; or a signal from
     // outside has ended its trapped call.
-    if (task.state == TaskState::kWaiting) MakeReady(task, shm::WakeReason::kSignal, moment);
+    if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
     ChargeUndispatched(task);
     task.trap_id = 0;
     task.notified_early = true;
@@ -80,7 +80,7 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
     if (task == nullptr || task->state == TaskState::kDead) continue;
     const auto arrive = [this, task, tid = task->tid](Moment at) {
       // It may have ended meanwhile.
-      if (KnownTask(tid) != task) return Reactor::Found{};
+      if (run_.table.Living(tid) != task) return Reactor::Found{};
       task->is_put_off = false;
       return NotificationArrived(*task, at);
     };
@@ -94,7 +94,7 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
 // Without it the first thread that waits in the kernel would make everybody wait with it.
 void Engine::DetectorEnded() {
   reactor_.Remove(host_cpu_.detector().end_fd());
-  if (header_->shutdown.load() == 0) report_.error = host_cpu_.detector().HowItEnded();
+  if (run_.header->shutdown.load() == 0) run_.report.error = host_cpu_.detector().HowItEnded();
 }
 
 void Engine::LookAtDetector() {
@@ -105,18 +105,18 @@ void Engine::LookAtDetector() {
 // starting, or in the disk's hands, and its virtual CPU stands still until it goes on.
 bool Engine::BlockedInKernel() {
   if (says_call_) return false;  // it waits for us
-  Task& task = *turn_.task();
+  Task& task = *run_.turn.task();
   const char state = ThreadState(task.tid);
-  if (gates_only_ && state == 'R') {
+  if (run_.gates_only && state == 'R') {
     // The detector, too, has had a moment of the processor beside it. It is armed again soon.
-    turn_.held_looks = 0;
+    run_.turn.held_looks = 0;
     // Under set costs it is armed again when the thread is looked at, which is found silent by how
     // often it was looked at after an undisturbed while.
-    if (run_.Preempts()) ++turn_.false_alarms;
+    if (run_.Preempts()) ++run_.turn.false_alarms;
     return false;
   }
   if (state != 'S' && task.process->threads > 1) held_.LetDie(*task.process);
-  if ((state == 'Z' || state == 'X') && turn_.held_looks > kExitTurns &&
+  if ((state == 'Z' || state == 'X') && run_.turn.held_looks > kExitTurns &&
       HeldThreads::HasExited(task)) {
     Settle(task);
     deaths_.EndAndWake(task, {task.reached_ns});
@@ -134,19 +134,22 @@ bool Engine::BlockedInKernel() {
   // Where others would go on without it, it gets a moment to come back: the world must not pass a
   // program because of a short system call.
   const bool alone = task.process->threads == 1;
-  const int turns = !alone ? 0 : IsFixed() ? kHeldTurnsFixed : world_.present() ? kHeldTurns : 0;
+  const int turns = !alone             ? 0
+                    : run_.IsFixed()   ? kHeldTurnsFixed
+                    : world_.present() ? kHeldTurns
+                                       : 0;
   const bool expected = task.expects_kernel;
-  if (!stopped && !expected && turn_.held_looks < turns) return false;
-  SetState(task, TaskState::kUnseen);
+  if (!stopped && !expected && run_.turn.held_looks < turns) return false;
+  waker_.SetState(task, TaskState::kUnseen);
   task.parked = false;
   if (expected && !stopped) return true;
   if (stopped) {
-    const Moment moment{WrittenAt()};
+    const Moment moment{run_.WrittenAt()};
     stops_.Look(*task.process, moment);
     dds_.NoteWhetherStopped(*task.process, moment.ns);
     return true;
   }
-  Warn(fmt::format(
+  run_.Warn(fmt::format(
       "{} blocked in system call {}, which the shim does not see; that time is not charged",
       task.process->name, ThreadSystemCall(task.tid)));
   return true;
@@ -155,21 +158,21 @@ bool Engine::BlockedInKernel() {
 // The running thread is at its gate, but its notification has not come: its process has closed the
 // pipe, or put another file in its place. It is told, and says so itself; or else is ended.
 bool Engine::CutsOff(Task& task) {
-  if (task.slot < 0 || Slot(task).gate.load() != shm::kGateWaiting) return false;
+  if (task.slot < 0 || SlotOf(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
   fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n",
-          task.order, (int)Slot(task).note.kind, (int)turn_.is_sent_to_gate,
+          task.order, (int)SlotOf(task).note.kind, (int)run_.turn.is_sent_to_gate,
           (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches,
-          Slot(task).clock.executed_adjust.load() >> 48);
+          SlotOf(task).clock.executed_adjust.load() >> 48);
   if (std::exchange(task.is_cut_off, true)) {
     expulsion_.Expel(*task.process, "a notification that was never sent");
     return true;
   }
-  shm::ThreadSlot& slot = Slot(task);
+  shm::ThreadSlot& slot = SlotOf(task);
   slot.wake_reason.store(shm::WakeReason::kCutOff);
   HostCpu::OpenGate(slot);
-  turn_.held_looks = 0;
+  run_.turn.held_looks = 0;
   host_cpu_.detector().Arm();
   return true;
 }
@@ -186,34 +189,37 @@ Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
 
 // `is_rest`: a further look at an instant, at which the running thread stands as it was found.
 Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
-  const bool held = turn_.held_looks > 0 && turn_.lasts() && !host_cpu_.detector().is_armed();
-  const bool rearms = turn_.lasts() && turn_.false_alarms > 0 && !host_cpu_.detector().is_armed();
+  const bool held =
+      run_.turn.held_looks > 0 && run_.turn.lasts() && !host_cpu_.detector().is_armed();
+  const bool rearms =
+      run_.turn.lasts() && run_.turn.false_alarms > 0 && !host_cpu_.detector().is_armed();
   const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs
-                               : held
-                                   ? kHeldTurnNs
-                                   : kHeldTurnNs << std::min(turn_.false_alarms, kMostFalseAlarms);
+                               : held                       ? kHeldTurnNs
+                                                            : kHeldTurnNs
+                                            << std::min(run_.turn.false_alarms, kMostFalseAlarms);
   const bool is_cut_short = (held || rearms) && timeout_ns > turn_ns;
   if (is_cut_short) timeout_ns = turn_ns;
-  const bool counts = !is_rest && turn_.HasClock() && timeout_ns >= 0;
-  const shm::ClockReading before = counts ? host_cpu_.ClockOf(*turn_.task()) : shm::ClockReading{};
+  const bool counts = !is_rest && run_.turn.HasClock() && timeout_ns >= 0;
+  const shm::ClockReading before =
+      counts ? host_cpu_.ClockOf(*run_.turn.task()) : shm::ClockReading{};
   const std::size_t n = reactor_.Wait(timeout_ns);
   if (!is_rest) host_cpu_.Woke();
   if (n == 0 && is_rest) return {};
-  if (counts) TakeOutUntold(*turn_.task(), before, timeout_ns);
-  if (n == 0 && turn_.lasts()) {
+  if (counts) TakeOutUntold(*run_.turn.task(), before, timeout_ns);
+  if (n == 0 && run_.turn.lasts()) {
     if (held || (rearms && is_cut_short)) {
       host_cpu_.active().TakeBack();
       host_cpu_.detector().Arm();
     } else {
-      turn_.timed_out = true;
+      run_.turn.timed_out = true;
     }
     return {};
   }
-  if (turn_.lasts()) moment = {WrittenAt()};
+  if (run_.turn.lasts()) moment = {run_.WrittenAt()};
   Reactor::Found found = reactor_.Handle(moment);
   found |= WakeReadyAwaiters(moment);
-  if (!turn_.lasts() || found.stops_running || !found.blocks_running) return found;
-  ++turn_.held_looks;
+  if (!run_.turn.lasts() || found.stops_running || !found.blocks_running) return found;
+  ++run_.turn.held_looks;
   found.stops_running = BlockedInKernel();
   return found;
 }
@@ -223,8 +229,8 @@ bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
   while (waker_.counts().for_signals() + waker_.counts().for_stops() > 0 &&
          timeout_ns > SignalCalls::kLookEveryNs) {
     if (PollEvents(SignalCalls::kLookEveryNs, {}).stops_running) return true;
-    if (!turn_.timed_out) return false;
-    turn_.timed_out = false;
+    if (!run_.turn.timed_out) return false;
+    run_.turn.timed_out = false;
     if (signals_.Poll()) return true;
     timeout_ns -= SignalCalls::kLookEveryNs;
     host_cpu_.Continue(task);
@@ -239,10 +245,10 @@ Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
   std::erase_if(awaiters,
                 [](const Task* task) { return task->Awaits<awaited::Descriptors>() == nullptr; });
   if (awaiters.empty()) return {};
-  const bool beside =
-      turn_.HasClock() && std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
-        return turn_.IsOn(*task->process->robot);
-      });
+  const bool beside = run_.turn.HasClock() &&
+                      std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
+                        return run_.turn.IsOn(*task->process->robot);
+                      });
   shared_events_.Wake(awaiters, moment);
   if (beside) GoOnBesideWoken();
   return {.stops_running = !beside, .wakes_others = true};

@@ -26,8 +26,8 @@ constexpr int kMostGateLooks = 400;
 
 // True if what `by` does happens later.
 bool Engine::PutOff(const Task* by, Late late) {
-  if (!gates_only_ || (turn_.lasts() && by == turn_.task())) return false;
-  if (!turn_.lasts() && put_off_.empty()) return false;  // nothing came before it
+  if (!run_.gates_only || (run_.turn.lasts() && by == run_.turn.task())) return false;
+  if (!run_.turn.lasts() && put_off_.empty()) return false;  // nothing came before it
   put_off_.push_back(std::move(late));
   return true;
 }
@@ -40,8 +40,8 @@ Reactor::Found Engine::TakePutOff(Moment moment) {
 
 // Of the running thread's: true if it does not end its turn.
 bool Engine::MayGoOn(Task& task) {
-  if (turn_.is_sent_to_gate) return false;
-  const shm::ThreadSlot& slot = Slot(task);
+  if (run_.turn.is_sent_to_gate) return false;
+  const shm::ThreadSlot& slot = SlotOf(task);
   HostCpu::FollowOrigin(task);
   if (slot.note.kind == shm::NotificationKind::kCall) {
     says_call_ = true;
@@ -55,16 +55,16 @@ bool Engine::MayGoOn(Task& task) {
 // All events of this instant have been handled. If nobody has to run instead, the running thread
 // goes on with its call.
 Reactor::Found Engine::EndCall(Reactor::Found found) {
-  if (!turn_.lasts() || !says_call_) return found;
-  const Moment moment{WrittenAt()};
+  if (!run_.turn.lasts() || !says_call_) return found;
+  const Moment moment{run_.WrittenAt()};
   found |= TakePutOff(moment);
   while (std::exchange(found.looks_again, false)) found |= TakeEvents(0, moment, true);
   says_call_ = false;
   if (found.stops_running) {
-    Task& task = *turn_.task();
+    Task& task = *run_.turn.task();
     task.parked = true;
     // It was found held by the kernel, and has come back at the same instant.
-    if (task.state == TaskState::kUnseen) SetState(task, TaskState::kReady);
+    if (task.state == TaskState::kUnseen) waker_.SetState(task, TaskState::kReady);
   } else {
     opens_gate_ = true;
   }
@@ -76,15 +76,15 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
 // the signal, or the kernel has it) it computes on, and owes what it computes.
 void Engine::BringToGate(Task& task) {
   const bool computes = run_.Preempts() && task.slot >= 0 && Waker::IsRunnable(task) &&
-                        !task.parked && !turn_.HasSpoken() && !task.is_brief && !task.executes &&
-                        !task.process->expelled;
+                        !task.parked && !run_.turn.HasSpoken() && !task.is_brief &&
+                        !task.executes && !task.process->expelled;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const std::int64_t sent_ns = HostClockOf(task);
-  turn_.is_sent_to_gate = task.has_signal = true;
+  run_.turn.is_sent_to_gate = task.has_signal = true;
   host_cpu_.SendToGate(task.process->pid, task);
   for (int look = 0; look < kMostGateLooks; ++look) {
     PollEvents(kGateLookNs, {});
-    if (turn_.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
+    if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
     if (HostClockOf(task) > sent_ns + kMostWayToGateNs || ThreadState(task.tid) != 'R') return;
   }
 }
@@ -96,7 +96,7 @@ void Engine::ChargeUndispatched(Task& task) {
   const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
   task.charged_ns += ns;
   task.debt_ns += ns;
-  report_.client_ns += task.metered.HostNs(ns);
+  run_.report.client_ns += task.metered.HostNs(ns);
 }
 
 }  // namespace tcs

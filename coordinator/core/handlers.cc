@@ -41,7 +41,7 @@ void Engine::RegisterHandlers() {
 }
 
 Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
-  return TakeNotifications(table_.ProcessAt(process.index), moment);
+  return TakeNotifications(run_.table.ProcessAt(process.index), moment);
 }
 
 Reactor::Found Engine::OnListener(Subject listener, std::uint32_t, Moment) {
@@ -55,18 +55,18 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 }
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
-  const bool runs = turn_.IsIn(table_.ProcessAt(process.index));
+  const bool runs = run_.turn.IsIn(run_.table.ProcessAt(process.index));
   const auto end = [this, process](Moment at) {
     deaths_.ProcessEnded(process.index, at);
     return kConcernsAll;
   };
-  if (!PutOff(runs ? turn_.task() : nullptr, end)) return end(moment);
-  reactor_.Remove(table_.ProcessAt(process.index).pidfd.get());  // it is readable for ever
+  if (!PutOff(runs ? run_.turn.task() : nullptr, end)) return end(moment);
+  reactor_.Remove(run_.table.ProcessAt(process.index).pidfd.get());  // it is readable for ever
   return {};
 }
 
 Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
-  Task& task = TaskAt(static_cast<int>(subject.index));
+  Task& task = run_.table.At(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
   if (std::exchange(wait->skips_event, false)) return {};
@@ -100,10 +100,11 @@ Reactor::Found Engine::OnSignal(Subject, std::uint32_t, Moment) {
   signalfd_siginfo info;
   if (read(signal_fd_.get(), &info, sizeof info) != sizeof info) return {};
   // ^C is for the program that has the terminal.
-  if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL && options_.output_directory.empty()) {
+  if (info.ssi_signo == SIGINT && info.ssi_code == SI_KERNEL &&
+      run_.options.output_directory.empty()) {
     return {};
   }
-  stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
+  run_.stop.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
   return {.stops_running = true};
 }
 

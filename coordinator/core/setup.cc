@@ -40,20 +40,20 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 std::string Engine::Prepare() {
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  if (gates_only_ && !TrapsHoldSignals()) {
+  if (run_.gates_only && !TrapsHoldSignals()) {
     return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
   }
-  if (std::string error = world_.Open(scenario_, dds_.ends()); !error.empty()) return error;
+  if (std::string error = world_.Open(run_.scenario, dds_.ends()); !error.empty()) return error;
   std::string taken;
-  claim_ = ClaimCpu(options_.waits_for_cpu, &taken);
+  claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
   ClientsRunOn(claim_.cpu);
   if (std::string error = BindTo(claim_.cpu); !error.empty()) return error;
-  if (gates_only_) {
+  if (run_.gates_only) {
     IgnoreRealTimeLimits();
     BeWokenInTime();
-    if (options_.on_notice) {
-      options_.on_notice(
+    if (run_.options.on_notice) {
+      run_.options.on_notice(
           "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
           "longer (`tcsim doctor` says more)");
     }
@@ -61,13 +61,13 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
-  if (std::string error = PrepareFolders(scenario_, options_); !error.empty()) return error;
+  if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
-  if (world_.present()) root_.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+  if (world_.present()) run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
   if (world_.has_terminals()) waker_.AwaitTerminals();
   std::uint32_t inlet = 0;
@@ -84,20 +84,20 @@ std::string Engine::PrepareMemory() {
   memfd_ = std::move(memory.fd);
   registration_.ShareMemory(memfd_.get());
   memory_ = new (memory.at) shm::RunMemory{};
-  header_ = &memory_->header;
-  header_->magic = shm::kMagic;
-  header_->version = shm::kVersion;
-  header_->header_size = sizeof(shm::RunHeader);
-  header_->slot_size = sizeof(shm::ThreadSlot);
-  header_->slot_count = shm::kSlotCount;
-  header_->accounting = options_.accounting;
-  header_->sync = options_.sync;
-  header_->monotonic_offset_ns = options_.uptime_ns;
-  header_->realtime_offset_ns =
-      options_.date_ns.value_or(IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
-  header_->coordinator_pid = getpid();
-  header_->gates_only = gates_only_ ? 1 : 0;
-  header_->preempts = run_.Preempts() ? 1 : 0;
+  run_.header = &memory_->header;
+  run_.header->magic = shm::kMagic;
+  run_.header->version = shm::kVersion;
+  run_.header->header_size = sizeof(shm::RunHeader);
+  run_.header->slot_size = sizeof(shm::ThreadSlot);
+  run_.header->slot_count = shm::kSlotCount;
+  run_.header->accounting = run_.options.accounting;
+  run_.header->sync = run_.options.sync;
+  run_.header->monotonic_offset_ns = run_.options.uptime_ns;
+  run_.header->realtime_offset_ns =
+      run_.options.date_ns.value_or(run_.IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
+  run_.header->coordinator_pid = getpid();
+  run_.header->gates_only = run_.gates_only ? 1 : 0;
+  run_.header->preempts = run_.Preempts() ? 1 : 0;
   return {};
 }
 
@@ -114,18 +114,18 @@ std::string Engine::PrepareSignals() {
 }
 
 void Engine::MakeRobots() {
-  for (const RobotSpec& spec : scenario_.robots) {
+  for (const RobotSpec& spec : run_.scenario.robots) {
     const auto cores = static_cast<std::uint32_t>(spec.cores);
-    Robot& robot = robots_.emplace_back(spec.name, spec.speed,
-                                        RobotScheduler(cores, !IsCallback(), [this](int order) {
-                                          return waker_.WaitOf(TaskAt(order));
-                                        }));
+    Robot& robot = run_.robots.emplace_back(
+        spec.name, spec.speed, RobotScheduler(cores, !run_.IsCallback(), [this](int order) {
+          return waker_.WaitOf(run_.table.At(order));
+        }));
     robot.is_ideal = spec.is_ideal;
     for (std::uint32_t core = 0; core < cores; ++core) {
-      VirtualCpu& cpu = cpus_.emplace_back();
+      VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;
       cpu.core = core;
-      cpu.leaf = root_.AddLeaf(static_cast<int>(robots_.size()));
+      cpu.leaf = run_.root.AddLeaf(static_cast<int>(run_.robots.size()));
       robot.cpus.push_back(&cpu);
     }
   }
@@ -133,9 +133,9 @@ void Engine::MakeRobots() {
 
 std::string Engine::PrepareHostCpu() {
   std::unique_ptr<Meter> meter;
-  if (IsFixed()) {
+  if (run_.IsFixed()) {
     meter = std::make_unique<FixedMeter>();
-  } else if (gates_only_) {
+  } else if (run_.gates_only) {
     meter = std::make_unique<SharedCpuMeter>(clock_.rate());
   } else {
     meter = std::make_unique<MeasuredMeter>(clock_.rate());

@@ -9,9 +9,9 @@ namespace tcs {
 // A trapped call has arrived. That of the running thread stops it like a notification.
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
-  if (!call.has_value()) return {.stops_running = !gates_only_, .wakes_others = true};
+  if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
-  Task* by = KnownTask(call->tid);
+  Task* by = run_.table.Living(call->tid);
   if (IsExecution(*call)) {
     if (by != nullptr) by->executes = true;
     guard_.LetThrough(*call);
@@ -23,22 +23,22 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
 
 Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
-  Task* task = KnownTask(call.tid);
+  Task* task = run_.table.Living(call.tid);
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
   if (!ours) {
     trapped_.HandleUnmanaged(call, moment);
-    return {.stops_running = !gates_only_, .wakes_others = true};
+    return {.stops_running = !run_.gates_only, .wakes_others = true};
   }
-  if (turn_.IsOf(*task)) {
-    turn_.trapped = call;
+  if (run_.turn.IsOf(*task)) {
+    run_.turn.trapped = call;
     return kConcernsAll;
   }
   // It ran although it was not dispatched: a signal has ended its call, and the kernel makes it
   // again, or it came back from a call that nobody saw.
-  if (task->state == TaskState::kUnseen) MakeReady(*task, shm::WakeReason::kGo, moment);
-  if (task->state == TaskState::kWaiting) MakeReady(*task, shm::WakeReason::kSignal, moment);
+  if (task->state == TaskState::kUnseen) waker_.Wake(*task, shm::WakeReason::kGo, moment);
+  if (task->state == TaskState::kWaiting) waker_.Wake(*task, shm::WakeReason::kSignal, moment);
   ChargeUndispatched(*task);
   task->early_trap = call;
   task->trap_id = 0;
