@@ -11,7 +11,7 @@ struct TimerFd {
   int fd = -1;
   Clock clock = Clock::kMonotonic;
   std::int64_t id = 0;    // the coordinator's
-  bool is_short = false;  // its interval: see coordinator/calls/process_timers.h
+  bool is_short = false;  // its interval: see coordinator/queues/process_timers.h
 };
 
 // False if no room is left.

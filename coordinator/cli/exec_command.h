@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/coordinator.h"
+#include "coordinator/tasks/coordinator.h"
 
 namespace tcs {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "coordinator/cli/terminal_line.h"
-#include "coordinator/core/coordinator.h"
+#include "coordinator/tasks/coordinator.h"
 
 namespace tcs {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "coordinator/core/coordinator.h"
+#include "coordinator/tasks/coordinator.h"
 
 namespace tcs {
 

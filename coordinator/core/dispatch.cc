@@ -7,14 +7,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/core/cpu_clock.h"
+#include "coordinator/calls/ipc_notes.h"
 #include "coordinator/core/engine.h"
-#include "coordinator/core/ipc_notes.h"
 #include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
 #include "coordinator/host/starvation_watch.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
 #include "shm/clock_page.h"
 
 namespace tcs {

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
 #include "shm/attach_protocol.h"
 #include "shm/clock_page.h"
 

@@ -8,9 +8,9 @@
 
 #include <utility>
 
-#include "coordinator/core/cpu_clock.h"
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
 
 namespace tcs {
 

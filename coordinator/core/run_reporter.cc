@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "coordinator/core/slot_check.h"
 #include "coordinator/dds/topics_table.h"
+#include "coordinator/processes/slot_check.h"
 
 namespace tcs {
 

@@ -5,13 +5,13 @@
 
 #include <cstdint>
 
-#include "coordinator/core/coordinator.h"
-#include "coordinator/core/dds_records.h"
-#include "coordinator/core/launches.h"
-#include "coordinator/core/run_clock.h"
-#include "coordinator/core/run_state.h"
-#include "coordinator/core/usage_book.h"
+#include "coordinator/calls/dds_records.h"
 #include "coordinator/core/world.h"
+#include "coordinator/processes/launches.h"
+#include "coordinator/processes/usage_book.h"
+#include "coordinator/tasks/coordinator.h"
+#include "coordinator/tasks/run_clock.h"
+#include "coordinator/tasks/run_state.h"
 
 namespace tcs {
 

@@ -15,10 +15,8 @@
 #include <new>
 #include <utility>
 
-#include "coordinator/core/client_folders.h"
+#include "coordinator/calls/scheduling_rights.h"
 #include "coordinator/core/engine.h"
-#include "coordinator/core/scheduling_rights.h"
-#include "coordinator/core/signal_sets.h"
 #include "coordinator/host/fixed_meter.h"
 #include "coordinator/host/measured_meter.h"
 #include "coordinator/host/shared_cpu_meter.h"
@@ -26,6 +24,8 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/shared_memory.h"
+#include "coordinator/processes/client_folders.h"
+#include "coordinator/tasks/signal_sets.h"
 #include "shm/check.h"
 
 namespace tcs {

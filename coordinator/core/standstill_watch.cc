@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "coordinator/core/wait_text.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/tasks/wait_text.h"
 
 namespace tcs {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/run_state.h"
-#include "coordinator/core/unknown_children.h"
-#include "coordinator/core/unmanaged_threads.h"
+#include "coordinator/processes/unknown_children.h"
+#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/tasks/run_state.h"
 
 namespace tcs {
 

@@ -13,7 +13,7 @@ namespace tcs {
 // the 32-bit one, which programs of this one can call, too. They refuse with EPERM what names one
 // of the `guarded` (but not the question whether it is there, kill's signal 0). What names it in
 // ways that a filter cannot follow, such as a process group or a pidfd, they hand to the
-// coordinator, even where it carries the shim's mark (core/guarded_calls.cc); or refuse it where
+// coordinator, even where it carries the shim's mark (calls/guarded_calls.cc); or refuse it where
 // there is no coordinator for it, in 32-bit calls. Otherwise the number is loaded again at their
 // end.
 enum class CallTable { kNative, kOf32Bits };

@@ -102,7 +102,7 @@ def problems(families, build):
 
     exported = found_in("libtcs_preload/exports.map", r"^ +(\w+);$")
     yield from differences("exports.map", exported, named("shim"))
-    trapped = found_in("coordinator/core/futex_calls.cc", r"^    case (FUTEX_\w+):")
+    trapped = found_in("coordinator/calls/futex_calls.cc", r"^    case (FUTEX_\w+):")
     trapped |= found_in("coordinator/os/trap.cc", r"\b(SYS_\w+)") - {"SYS_futex", "SYS_seccomp"}
     yield from differences("futex_calls.cc and trap.cc", trapped, named("trapped"))
     limitations = set(re.findall(r"\w+", (ROOT / "docs/LIMITATIONS.md").read_text()))

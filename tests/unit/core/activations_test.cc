@@ -1,4 +1,4 @@
-#include "coordinator/core/activations.h"
+#include "coordinator/tasks/activations.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

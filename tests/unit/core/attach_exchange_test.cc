@@ -1,4 +1,4 @@
-#include "coordinator/core/attach_exchange.h"
+#include "coordinator/processes/attach_exchange.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/dds_gateway.h"
+#include "coordinator/calls/dds_gateway.h"
 
 #include <gtest/gtest.h>
 

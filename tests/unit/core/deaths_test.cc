@@ -1,4 +1,4 @@
-#include "coordinator/core/deaths.h"
+#include "coordinator/processes/deaths.h"
 
 #include <gtest/gtest.h>
 

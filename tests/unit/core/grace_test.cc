@@ -1,4 +1,4 @@
-#include "coordinator/core/grace.h"
+#include "coordinator/processes/grace.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/launches.h"
+#include "coordinator/processes/launches.h"
 
 #include <gtest/gtest.h>
 

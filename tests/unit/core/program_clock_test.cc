@@ -1,4 +1,4 @@
-#include "coordinator/core/program_clock.h"
+#include "coordinator/tasks/program_clock.h"
 
 #include <gtest/gtest.h>
 

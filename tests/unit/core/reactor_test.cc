@@ -1,4 +1,4 @@
-#include "coordinator/core/reactor.h"
+#include "coordinator/tasks/reactor.h"
 
 #include <gtest/gtest.h>
 #include <sys/epoll.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/registration_sockets.h"
+#include "coordinator/processes/registration_sockets.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,11 +1,11 @@
-#include "coordinator/core/slot_check.h"
+#include "coordinator/processes/slot_check.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <string>
 
-#include "coordinator/core/task_table.h"
+#include "coordinator/tasks/task_table.h"
 
 namespace tcs {
 namespace {

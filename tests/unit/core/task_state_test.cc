@@ -1,4 +1,4 @@
-#include "coordinator/core/task_state.h"
+#include "coordinator/tasks/task_state.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "coordinator/core/task_table.h"
+#include "coordinator/tasks/task_table.h"
 
 #include <gtest/gtest.h>
 

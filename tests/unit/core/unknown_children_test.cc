@@ -1,4 +1,4 @@
-#include "coordinator/core/unknown_children.h"
+#include "coordinator/processes/unknown_children.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-#include "coordinator/core/usage.h"
+#include "coordinator/tasks/usage.h"
 
 #include <gtest/gtest.h>
 

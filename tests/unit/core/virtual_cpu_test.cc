@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "coordinator/core/task.h"
+#include "coordinator/tasks/task.h"
 
 namespace tcs {
 namespace {

@@ -1,4 +1,4 @@
-#include "coordinator/core/wait.h"
+#include "coordinator/tasks/wait.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,40 @@
+// Processes that a signal stops, and that go on: at once, as far as others can see, though their
+// threads may be at nobody's turn; and their parents hear of it.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <sys/types.h>
+
+#include "coordinator/calls/signal_wakes.h"
+#include "coordinator/host/active_threads.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class ChildStops {
+ public:
+  ChildStops(RunState& run, Waker& waker, SignalWakes& wakes, ActiveThreads& active)
+      : run_(run), waker_(waker), wakes_(wakes), active_(active) {}
+
+  // Has it stopped or gone on since the last look? Then its parent hears of it.
+  void Look(Process& process, Moment moment);
+  // Nobody says that a process has been stopped from outside: those whose parents wait for it are
+  // looked at.
+  void LookAtAwaited(Moment moment);
+  // A child has ended, or, `by_stop`, has stopped or gone on: the parent's threads that wait for
+  // such a change look at it, and its signal is there.
+  void ChildChanged(Process& parent, pid_t child, bool by_stop, Moment moment);
+
+ private:
+  void LetStop(const Process& process);
+  void LetGoOn(const Process& process);
+
+  RunState& run_;
+  Waker& waker_;
+  SignalWakes& wakes_;
+  ActiveThreads& active_;
+};
+
+}  // namespace tcs

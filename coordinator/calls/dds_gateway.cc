@@ -1,0 +1,224 @@
+#include "coordinator/calls/dds_gateway.h"
+
+#include <dds/version.h>
+#include <errno.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
+#include "coordinator/scenario/own_topics.h"
+#include "coordinator/tasks/signal_sets.h"
+
+namespace tcs {
+
+std::string DdsGateway::Open() {
+  if (std::string error = records_.Open(); !error.empty()) return error;
+  world_.Begin(run_.header->realtime_offset_ns);
+  records_.ReadNewTopics(0);
+  return {};
+}
+
+dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
+  if (number == shm::kDdsCoordinator) return {"tcsim", ""};
+  for (const Process* process : joined_) {
+    if (process->dds_number == number) return {process->name, process->robot->name};
+  }
+  return {};
+}
+
+void DdsGateway::TakeOwnMessages() {
+  const std::int64_t until = std::min(run_.root.Least(), run_.end_ns);
+  if (hub_.OwnDueNs() > until) return;
+  if (world_.present() && !run_.IsInGrace()) world_.ReceiveUntold(until);
+  // What was for none of the channels, or is from after their end.
+  while (ends_.Take(until).has_value()) {
+  }
+  ShowDeliverersTheirDeadlines();
+}
+
+void DdsGateway::Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
+  Process& process = *task.process;
+  switch (note.kind) {
+    case shm::NotificationKind::kDdsJoin:
+      Join(task);
+      break;
+    case shm::NotificationKind::kDdsSend:
+      Send(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
+      break;
+    case shm::NotificationKind::kDdsWait:
+      AwaitMessages(task);
+      break;
+    case shm::NotificationKind::kDdsRoom: {
+      const auto receiver = static_cast<dds::Hub::Number>(note.args[0]);
+      if (hub_.IsFull(receiver)) waker_.Wait(task, {awaited::Room{receiver}, deadline_ns});
+      break;
+    }
+    case shm::NotificationKind::kDdsSockets:
+      WarnOfSockets(process, static_cast<shm::WhySockets>(note.args[0]));
+      break;
+    default:
+      AwaitDeliverer(task, deadline_ns);
+  }
+}
+
+// The deliverer inherits the priority of the threads that wait for it.
+void DdsGateway::AwaitDeliverer(Task& task, std::int64_t deadline_ns) {
+  Process& process = *task.process;
+  if (!IsDelivering(process, task.reached_ns)) return;
+  waker_.Wait(task, {awaited::Deliverer{}, deadline_ns});
+  PriorityInheritance::BlockOn(task, process.deliverer);
+  inheritance_.Find(*process.deliverer);
+}
+
+// What is wrong is said once of each process: it may send as often as it likes.
+void DdsGateway::Send(Process& process, std::size_t bytes, std::int64_t at_ns) {
+  const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns);
+  if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
+    run_.Warn(fmt::format("{} {}", process.name, wrong));
+  }
+  records_.ReadNewTopics(at_ns);
+  ShowDeliverersTheirDeadlines();
+}
+
+// It says so itself on its stderr, which is a file here that nobody may look into.
+void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
+  if (run_.options.output_directory.empty()) return;
+  const char* reason = "libtcs_dds.so cannot be loaded into it";
+  const char* mend = "see its .err.log";
+  switch (why) {
+    case shm::WhySockets::kOtherLibrary:
+      reason = "its Cyclone DDS is not Debian's libddsc.so." DDS_VERSION;
+      mend = "link it with that one";
+      break;
+    case shm::WhySockets::kLooksUpItself:
+      reason = "it looks up Cyclone DDS's functions by itself, as Python's ctypes does";
+      mend = "use a program that is linked with libddsc";
+      break;
+    case shm::WhySockets::kNoRoom:
+      reason = "there is no room for it in shared memory";
+      mend = "a run has room for 1024 of them, those that have ended included: start fewer";
+      break;
+    case shm::WhySockets::kNoLibraryOfOurs:
+      break;
+  }
+  const std::string topics = NamesOfOwnTopics(run_.scenario);
+  const std::string missed = topics.empty()
+                                 ? "programs whose DDS is in shared memory"
+                                 : "the scenario's topics in shared memory (" + topics + ")";
+  const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
+  run_.Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
+                        process.name, reason, missed, mend, other_way));
+}
+
+void DdsGateway::Join(Task& task) {
+  Process& process = *task.process;
+  Leave(process, {task.reached_ns});
+  process.dds_number = hub_.Join(task.reached_ns);
+  task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
+  task.reply[1] = run_.scenario.drift_bound.ns();
+  if (process.dds_number != 0) joined_.push_back(&process);
+}
+
+void DdsGateway::Leave(Process& process, Moment moment) {
+  if (Task* deliverer = std::exchange(process.deliverer, nullptr); deliverer != nullptr) {
+    deliverer->is_deliverer = false;
+    ReleaseThoseAwaitingDeliverer(process, moment);
+  }
+  if (process.dds_number == 0) return;
+  std::erase(joined_, &process);
+  const std::uint32_t number = std::exchange(process.dds_number, 0);
+  hub_.Leave(number, moment.ns);
+  ReleaseThoseAwaitingRoom(number, moment);
+  ShowDeliverersTheirDeadlines();
+}
+
+// The deliverer has nothing more to hand over, and waits until something is due.
+void DdsGateway::AwaitMessages(Task& task) {
+  Process& process = *task.process;
+  if (process.deliverer != &task) {
+    process.deliverer = &task;
+    task.is_deliverer = true;
+  }
+  hub_.CameBack(process.dds_number);
+  ReleaseThoseAwaitingRoom(process.dds_number, {task.reached_ns});
+  waker_.Wait(task, {awaited::Messages{}, hub_.DueNs(process.dds_number)});
+  ReleaseThoseAwaitingDeliverer(process, {task.reached_ns});
+}
+
+// Whether what is due at `now_ns` is being handed over, or is about to be.
+bool DdsGateway::IsDelivering(const Process& process, std::int64_t now_ns) const {
+  const Task* deliverer = process.deliverer;
+  if (deliverer == nullptr) return false;
+  if (deliverer->Awaits<awaited::Messages>() != nullptr) {
+    return hub_.DueNs(process.dds_number) <= now_ns;
+  }
+  return Waker::IsRunnable(*deliverer);
+}
+
+void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment) {
+  if (waker_.counts().for_deliverer() == 0) return;
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
+    if (!IsDelivering(process, task->reached_ns)) {
+      waker_.Wake(*task, shm::WakeReason::kGo, moment);
+    }
+  }
+}
+
+// Those that sent to a process more than it can take at once.
+void DdsGateway::ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment) {
+  if (waker_.counts().for_room() == 0 || hub_.IsFull(number)) return;
+  for (Task& task : run_.table.tasks()) {
+    const auto* wait = task.Awaits<awaited::Room>();
+    if (wait == nullptr || wait->process != number) continue;
+    waker_.Wake(task, shm::WakeReason::kGo, moment);
+  }
+}
+
+void DdsGateway::ShowDeliverersTheirDeadlines() {
+  for (const Process* process : joined_) {
+    Task* deliverer = process->deliverer;
+    if (deliverer == nullptr || deliverer->Awaits<awaited::Messages>() == nullptr) continue;
+    const std::int64_t due = hub_.DueNs(process->dds_number);
+    if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
+    const bool inside = run_.turn.IsOn(*process->robot);
+    if (due != shm::kNeverNs && !inside) {
+      waker_.NoteLateness(*deliverer, due,
+                          SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
+    }
+    waker_.Refresh(*process->robot);
+  }
+}
+
+// It is stopped as a whole from when a signal that does so is there, though its threads notice one
+// after another.
+void DdsGateway::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
+  if (process.dds_number == 0) return;
+  bool stopped = false;
+  for (Task& task : run_.table.tasks()) {
+    if (task.process != &process || task.state == TaskState::kDead) continue;
+    const SignalSets sets = SignalsOf(run_, task);
+    const std::uint64_t ignored = sets.blocked | sets.caught;
+    stopped |= ThreadState(task.tid) == 'T' ||
+               ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;
+  }
+  if (stopped) {
+    hub_.Stop(process.dds_number, at_ns);
+  } else {
+    hub_.Continue(process.dds_number, at_ns);
+  }
+  ShowDeliverersTheirDeadlines();
+}
+
+void DdsGateway::HandOver(Task& task) {
+  const std::int64_t until = std::exchange(task.messages_until_ns, -1);
+  if (until < 0) return;
+  const std::size_t bytes =
+      hub_.Deliver(task.process->dds_number, std::max(until, task.cpu->progress_ns));
+  task.reply[0] = static_cast<std::int64_t>(bytes);
+}
+
+}  // namespace tcs

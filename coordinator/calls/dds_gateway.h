@@ -1,0 +1,80 @@
+// Programs that speak DDS: who has joined, what they send each other, and the thread of each that
+// takes what is for it, its deliverer (shm/dds_exchange.h). The hub keeps messages in order; this
+// has threads wait and go on for it. The world's channels on DDS are part of it, too.
+//
+// For the coordinator's thread only. Trusts nothing that processes say; what is wrong is warned of
+// once per client.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/calls/dds_records.h"
+#include "coordinator/calls/priority_inheritance.h"
+#include "coordinator/core/world.h"
+#include "coordinator/dds/hub.h"
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/topic_log.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class DdsGateway {
+ public:
+  DdsGateway(RunState& run, Waker& waker, World& world, PriorityInheritance& inheritance)
+      : run_(run), waker_(waker), world_(world), inheritance_(inheritance) {}
+
+  // Once the run's header has its times, and the world is open. Empty on success, else one
+  // sentence.
+  [[nodiscard]] std::string Open();
+  DdsRecords& records() { return records_; }
+  // The coordinator's own, for the world's channels on DDS.
+  dds::OwnEndpoints& ends() { return ends_; }
+  const DdsRecords& records() const { return records_; }
+  // The world, if there is one, takes what is for it, as far as nothing can come before that any
+  // more.
+  void TakeOwnMessages();
+
+  // What a thread notifies of DDS; what it asks for is in its reply, or it waits.
+  void Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
+  // The process has died, or executes another program.
+  void Leave(Process& process, Moment moment);
+  // Others miss a stopped program when its leases are over. Looks whether it is.
+  void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
+
+  // The memory through which the process exchanges messages; -1 if it has not joined.
+  int AreaOf(const Process& process) const { return hub_.AreaOf(process.dds_number); }
+  // At the dispatch of a deliverer whose wait is over.
+  void HandOver(Task& task);
+  // Something may have been sent: deliverers wait until what is for them is due.
+  void ShowDeliverersTheirDeadlines();
+  // Those that wait until the process's deliverer has handed over what is due, if it is not about
+  // to any more.
+  void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
+
+ private:
+  dds::Speaker WhoIs(dds::Hub::Number number) const;
+  void Join(Task& task);
+  void Send(Process& process, std::size_t bytes, std::int64_t at_ns);
+  void WarnOfSockets(const Process& process, shm::WhySockets why);
+  void AwaitMessages(Task& task);
+  void AwaitDeliverer(Task& task, std::int64_t deadline_ns);
+  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
+  void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
+
+  RunState& run_;
+  Waker& waker_;
+  World& world_;
+  PriorityInheritance& inheritance_;
+  dds::Hub hub_;
+  dds::OwnEndpoints ends_{hub_};
+  DdsRecords records_{run_, hub_, ends_, [this](dds::Hub::Number number) { return WhoIs(number); }};
+  std::vector<Process*> joined_;
+};
+
+}  // namespace tcs

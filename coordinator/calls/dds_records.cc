@@ -1,0 +1,77 @@
+#include "coordinator/calls/dds_records.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "coordinator/dds/topics_file.h"
+
+namespace tcs {
+
+std::string DdsRecords::Open() {
+  const std::string& directory = run_.options.output_directory;
+  if (!directory.empty()) {
+    std::error_code ignored;  // of an earlier run into the same folder
+    std::filesystem::remove(directory + "/topics.json", ignored);
+    std::filesystem::remove_all(directory + "/bag", ignored);
+    hub_.Observe(&topic_log_);
+  }
+  if (!run_.options.record) return {};
+  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns);
+  topic_log_.Tell(&*recording_);
+  std::string error = recording_->Open(directory + "/bag");
+  if (!error.empty()) {
+    topic_log_.Tell(nullptr);
+    recording_.reset();
+  }
+  return error;
+}
+
+void DdsRecords::ReadNewTopics(std::int64_t now_ns) {
+  if (recording_.has_value()) recording_->ReadNewTopics(now_ns);
+}
+
+std::string DdsRecords::Close() {
+  const std::vector<dds::TopicReport>& topics = topic_log_.reports();
+  std::string error;
+  if (!topics.empty()) {
+    error = dds::WriteTopics(topics, run_.options.output_directory + "/topics.json");
+  }
+  if (recording_.has_value()) {
+    if (std::string missing = recording_->Close(); error.empty()) error = std::move(missing);
+  }
+  return error;
+}
+
+void DdsRecords::Stop() {
+  hub_.Observe(nullptr);
+  topic_log_.Tell(nullptr);
+  recording_.reset();
+}
+
+void DdsRecords::WarnOfDrops() const {
+  const dds::Hub::Drops& drops = hub_.drops();
+  const auto say = [this](std::uint64_t count, const char* what) {
+    if (count > 0) run_.Warn(fmt::format("{} DDS samples {}", count, what));
+  };
+  say(drops.lost,
+      "were dropped, because a program has stopped taking what is sent to it and 256 MiB were "
+      "waiting: look for a listener that never returns");
+  say(drops.unreliable,
+      "that no reader was promised (best effort) were dropped, because 1 MiB was waiting for a "
+      "program that takes more slowly: tcsim topics says of which topics");
+  say(drops.replaced,
+      "were replaced by later ones of writers that keep the last, because 1 MiB was waiting for a "
+      "program that takes more slowly: tcsim topics says of which topics");
+  if (!topic_log_.is_whole()) {
+    run_.Warn(fmt::format(
+        "the programs have made more than {} different writers and readers of DDS "
+        "topics: topics.json{} of the first ones only; do names or QoS have a counter "
+        "in them?",
+        dds::TopicLog::kMostEnds, recording_.has_value() ? " and bag/ tell" : " tells"));
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,50 @@
+// What a run keeps of what goes over its DDS topics: topics.json, and with RunOptions::record a bag
+// (docs/RESULTS.md).
+//
+// For the coordinator's thread only. Errors are one sentence; empty is success.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "coordinator/dds/hub.h"
+#include "coordinator/dds/own_endpoints.h"
+#include "coordinator/dds/topic_log.h"
+#include "coordinator/record/recording.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class DdsRecords {
+ public:
+  using WhoIs = std::function<dds::Speaker(dds::Hub::Number)>;
+
+  // The hub and the endpoints outlive this.
+  DdsRecords(RunState& run, dds::Hub& hub, dds::OwnEndpoints& ends, WhoIs who)
+      : run_(run), hub_(hub), ends_(ends), topic_log_(std::move(who)) {}
+
+  // Once the run's header has its times. What an earlier run has left is removed.
+  [[nodiscard]] std::string Open();
+  // Endpoints may have come since the last call: a recording reads their topics. Not from within
+  // the hub.
+  void ReadNewTopics(std::int64_t now_ns);
+  [[nodiscard]] std::string Close();
+  // What is sent from now on is no part of the run.
+  void Stop();
+
+  // Of samples that nobody got, and of topics that nobody knows of.
+  void WarnOfDrops() const;
+  const dds::TopicLog& topics() const { return topic_log_; }
+
+ private:
+  RunState& run_;
+  dds::Hub& hub_;
+  dds::OwnEndpoints& ends_;
+  dds::TopicLog topic_log_;
+  std::optional<record::Recording> recording_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,41 @@
+// The descriptors that threads wait for, as the coordinator has them in its epoll set: copies of
+// the clients' own.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/task.h"
+#include "coordinator/tasks/wait.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class DescriptorWaits {
+ public:
+  explicit DescriptorWaits(Reactor& reactor) : reactor_(reactor) {}
+
+  // Those of the thread's process with these numbers are watched from now on. One that cannot be
+  // watched is left out: a file is always ready, and of what is closed nobody hears.
+  awaited::Descriptors Watch(const Task& task, const shm::WaitFd* fds, std::size_t count);
+  // What the notification asks for: whether one event is for one waiter, and whether signals end
+  // it.
+  awaited::Descriptors WatchAsAsked(Task& task, const shm::Notification& note);
+  // The wait is a new one, behind all others that want to take from the same descriptor.
+  void GoBehind(Task& task, awaited::Descriptors& watched);
+  // The wait is over.
+  void Leave(const awaited::Descriptors& watched);
+
+  // By which the reactor tells of its events.
+  static Subject SubjectOf(const Task& task, const awaited::Descriptors& watched);
+
+ private:
+  Reactor& reactor_;
+  std::uint32_t wait_counter_ = 0;
+  std::uint64_t fds_order_counter_ = 0;
+};
+
+}  // namespace tcs

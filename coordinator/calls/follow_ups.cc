@@ -1,0 +1,40 @@
+#include "coordinator/calls/follow_ups.h"
+
+namespace tcs {
+
+void FollowUps::Do(Task& task, Moment call, bool last) {
+  // Something else may have stopped it before it has even come to the call: then once more. And
+  // once more in any case, for how far it has come is not known.
+  const FollowUp what = task.follow_up;
+  if (last || run_.turn.HasSpoken()) {
+    task.follow_up = FollowUp::kNone;
+    task.brief_done = false;
+  }
+  switch (what) {
+    case FollowUp::kNone:
+      break;
+    case FollowUp::kBacklogs:
+      objects_.Wake(static_cast<std::int64_t>(shm::WaitKey::kBacklogs), 0, call);
+      shared_events_.PassOn(task, call);
+      break;
+    case FollowUp::kTaken:
+      shared_events_.PassOn(task, call);
+      break;
+    case FollowUp::kSignals:
+      signals_.Sent(0, call);
+      break;
+    case FollowUp::kKernelWaits:
+      objects_.LookAtKernelWaits(call);
+      break;
+    case FollowUp::kTerminals:
+      objects_.FlushTerminals(call);
+      break;
+    case FollowUp::kContinued:
+      if (Process* parent = run_.table.LivingProcess(task.process->parent); parent != nullptr) {
+        signal_wakes_.WakeForSignals(*parent, call);
+      }
+      break;
+  }
+}
+
+}  // namespace tcs

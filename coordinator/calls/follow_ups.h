@@ -1,0 +1,38 @@
+// What is due after a call that was let through to the kernel: others may go on by what it did, at
+// the time of the call. So its thread runs just long enough for the kernel to carry it out, and is
+// stopped for that.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/calls/kernel_object_waits.h"
+#include "coordinator/calls/shared_events.h"
+#include "coordinator/calls/signal_calls.h"
+#include "coordinator/calls/signal_wakes.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class FollowUps {
+ public:
+  FollowUps(RunState& run, KernelObjectWaits& objects, SharedEvents& shared_events,
+            SignalCalls& signals, SignalWakes& signal_wakes)
+      : run_(run),
+        objects_(objects),
+        shared_events_(shared_events),
+        signals_(signals),
+        signal_wakes_(signal_wakes) {}
+
+  // The thread has run since the kernel got the call, which it made at `call`. `last`: it is known
+  // to have come back from it.
+  void Do(Task& task, Moment call, bool last);
+
+ private:
+  RunState& run_;
+  KernelObjectWaits& objects_;
+  SharedEvents& shared_events_;
+  SignalCalls& signals_;
+  SignalWakes& signal_wakes_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,162 @@
+#include "coordinator/calls/futex_words.h"
+
+#include <errno.h>
+#include <linux/futex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "coordinator/os/host.h"
+#include "shm/time_values.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
+// How long a joiner gives the kernel to be through with a thread that has ended.
+constexpr int kEndTurns = 200;
+constexpr useconds_t kEndTurnUs = 50;
+
+constexpr std::uint64_t kMostWords = 128;      // FUTEX_WAITV_MAX
+constexpr std::uint32_t kWordOf32Bits = 0x02;  // FUTEX_32, the only size that there is
+
+// Of linux/futex.h since 5.16.
+struct WaitedWord {
+  std::uint64_t value, address;
+  std::uint32_t flags, reserved;
+};
+
+}  // namespace
+
+FutexKey FutexWords::KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address) {
+  return KeyOf(task.process->pid, address, (call.args[1] & FUTEX_PRIVATE_FLAG) != 0);
+}
+
+FutexKey FutexWords::WokenKeyFor(const Process& process, const TrappedCall& call,
+                                 std::uint64_t address) const {
+  const bool is_private = (call.args[1] & FUTEX_PRIVATE_FLAG) != 0;
+  return KeyOf(process.pid, address, is_private || !table_.MayBeWaitedAt(address));
+}
+
+std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int command,
+                                  const timespec& timeout, std::int64_t* deadline_ns) {
+  *deadline_ns = shm::kNeverNs;
+  if (call.args[3] == 0) return 0;
+  if (!shm::IsValid(timeout)) return -EINVAL;
+  const std::int64_t ns = shm::ToNs(timeout);
+  if (ns > shm::kFarNs) return 0;
+  const std::int64_t now = task.reached_ns;
+  if (command == FUTEX_WAIT) {
+    *deadline_ns = now + ns;
+    return 0;
+  }
+  const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
+  const std::int64_t offset =
+      realtime ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
+  const ProgramTime deadline = OwnTime(ns - offset);
+  *deadline_ns = std::max(now, task.process->clock.RobotTimeOf(deadline).ns());
+  return 0;
+}
+
+// The thread has said that it ends, but the kernel may not be through with it yet.
+bool FutexWords::IsEnding(const Task& joiner, pid_t tid) const {
+  return std::any_of(run_.table.tasks().begin(), run_.table.tasks().end(), [&](const Task& task) {
+    return task.tid == tid && task.process == joiner.process && task.state == TaskState::kDead;
+  });
+}
+
+std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) {
+  const auto bits = static_cast<std::uint32_t>(call.args[5]);
+  std::uint32_t value = 0;
+  timespec timeout{};
+  const RemotePiece word{call.args[0], &value, sizeof value};
+  if (!(call.args[3] == 0
+            ? ReadMemory(task.process->pid, word.address, word.to, word.size)
+            : ReadMemory(task.process->pid, word, {call.args[3], &timeout, sizeof timeout}))) {
+    return -EFAULT;
+  }
+  std::int64_t deadline_ns = 0;
+  if (const auto wrong = Deadline(task, call, command, timeout, &deadline_ns); wrong != 0) {
+    return wrong;
+  }
+  // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
+  if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
+  if (const pid_t joined = static_cast<pid_t>(value & FUTEX_TID_MASK); IsEnding(task, joined)) {
+    // A join: the kernel clears the word when the thread has gone, which it is about to be. If it
+    // has gone and the word is still the same, that is only a number like the thread's.
+    for (int turn = 0;; ++turn) {
+      const char state = ThreadState(joined);
+      if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
+      if (value != static_cast<std::uint32_t>(call.args[2])) return -EAGAIN;
+      if (state == 'X' || state == 'Z' || turn == kEndTurns) break;
+      usleep(kEndTurnUs);
+    }
+  }
+  table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
+  Enter(task, {.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK)}, deadline_ns);
+  return 0;
+}
+
+void FutexWords::Enter(Task& task, awaited::Futex wait, std::int64_t deadline_ns) {
+  waker_.Wait(task, {wait, deadline_ns, true});
+}
+
+std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
+  const std::uint64_t count = static_cast<std::uint32_t>(call.args[1]);
+  if (static_cast<std::uint32_t>(call.args[2]) != 0 || count == 0 || count > kMostWords ||
+      call.args[0] == 0) {
+    return -EINVAL;
+  }
+  const pid_t pid = task.process->pid;
+  timespec timeout{};
+  std::int64_t deadline_ns = shm::kNeverNs;
+  if (call.args[3] != 0) {
+    const auto clock = static_cast<int>(call.args[4]);
+    if (clock != CLOCK_MONOTONIC && clock != CLOCK_REALTIME) return -EINVAL;
+    if (!ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
+    TrappedCall timed = call;  // in the form of FUTEX_WAIT_BITSET
+    timed.args[1] = clock == CLOCK_REALTIME ? FUTEX_CLOCK_REALTIME : 0;
+    const auto wrong = Deadline(task, timed, FUTEX_WAIT_BITSET, timeout, &deadline_ns);
+    if (wrong != 0) return wrong;
+  }
+  std::vector<WaitedWord> words(count);
+  if (!ReadMemory(pid, call.args[0], words.data(), count * sizeof words[0])) return -EFAULT;
+  for (const WaitedWord& word : words) {
+    if ((word.flags & ~static_cast<std::uint32_t>(FUTEX_PRIVATE_FLAG)) != kWordOf32Bits ||
+        word.reserved != 0 || word.address % sizeof(std::uint32_t) != 0) {
+      return -EINVAL;
+    }
+  }
+  std::vector<FutexKey> keys;
+  for (const WaitedWord& word : words) {
+    std::uint32_t value = 0;
+    if (!ReadMemory(pid, word.address, &value, sizeof value)) return -EFAULT;
+    if (value != static_cast<std::uint32_t>(word.value)) return -EAGAIN;
+    keys.push_back(KeyOf(pid, word.address, (word.flags & FUTEX_PRIVATE_FLAG) != 0));
+  }
+  table_.WaitForAny(task.order, std::move(keys), kAnyBit);
+  Enter(task, {}, deadline_ns);
+  return 0;
+}
+
+Task* FutexWords::MostUrgent(const FutexKey& key, std::uint32_t bits) {
+  const FutexTable::Thread thread = table_.MostUrgent(key, bits);
+  return thread == FutexTable::kNobody ? nullptr : &run_.table.At(thread);
+}
+
+std::int64_t FutexWords::Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits,
+                              Moment moment) {
+  std::int64_t woken = 0;
+  for (; woken < most; ++woken) {
+    Task* best = MostUrgent(key, bits);
+    if (best == nullptr) break;
+    best->Awaits<awaited::Futex>()->woken_word = table_.IndexOf(best->order, key);
+    waker_.Wake(*best, shm::WakeReason::kGo, moment);
+  }
+  return woken;
+}
+
+}  // namespace tcs

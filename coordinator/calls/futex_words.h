@@ -1,0 +1,53 @@
+// Waits at futex words, and wakes there: what all futex commands are made of. A waiter sleeps to
+// its virtual deadline, and is woken at its waker's virtual time; wakes go to the most urgent
+// waiter, among equals to the one that waits longest.
+//
+// Results are the kernel's: negative for an errno. For the coordinator's thread only.
+#pragma once
+
+#include <time.h>
+
+#include <cstdint>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/queues/futex_table.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class FutexWords {
+ public:
+  FutexWords(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
+
+  // FUTEX_WAIT and FUTEX_WAIT_BITSET; futex_waitv.
+  std::int64_t Wait(Task& task, const TrappedCall& call, int command);
+  std::int64_t WaitForAny(Task& task, const TrappedCall& call);
+  // A wait begins, after the table knows where.
+  void Enter(Task& task, awaited::Futex wait, std::int64_t deadline_ns);
+  // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
+  std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
+
+  // Null: nobody waits there.
+  Task* MostUrgent(const FutexKey& key, std::uint32_t bits);
+  // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
+  // 0, or the call's error.
+  std::int64_t Deadline(const Task& task, const TrappedCall& call, int command,
+                        const timespec& timeout, std::int64_t* deadline_ns);
+  static FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
+  // The same for a wake. What a shared address is mapped to takes a look at the process, and where
+  // nobody waits at the same place of any page, nobody can be woken.
+  FutexKey WokenKeyFor(const Process& process, const TrappedCall& call,
+                       std::uint64_t address) const;
+
+  FutexTable& table() { return table_; }
+
+ private:
+  bool IsEnding(const Task& joiner, pid_t tid) const;
+
+  RunState& run_;
+  Waker& waker_;
+  FutexTable table_{[this](int order) { return PriorityOf(run_.table.At(order)); }};
+};
+
+}  // namespace tcs

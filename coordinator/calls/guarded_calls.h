@@ -1,0 +1,40 @@
+// Calls that could do something to tcsim's own processes, and that no filter can judge
+// (os/protection.h): signals to whole groups, and what names a process by a descriptor. Clients act
+// as the same user, so the kernel would let them.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class GuardedCalls {
+ public:
+  // tcsim's own processes.
+  void Guard(std::vector<pid_t> own) { guarded_ = std::move(own); }
+  const std::vector<pid_t>& guarded() const { return guarded_; }
+
+  // The kernel carries the call out, unless it is about one of them.
+  void LetThrough(const TrappedCall& call) const;
+  // The same of the call that the task has stopped in.
+  void Continue(const Task& task) const;
+
+ private:
+  bool IsGuarded(pid_t pid) const;
+  bool MeansGuarded(pid_t caller, pid_t receiver) const;
+  std::int64_t SignalOurs(pid_t caller, pid_t receiver, int signal) const;
+  std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
+
+  std::vector<pid_t> guarded_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,67 @@
+#include "coordinator/calls/kernel_object_waits.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
+  const KernelObject object{.kind = note.args[0], .id = note.args[1]};
+  objects_.Wait(task.order, object, note.args[2] != 0);
+  waker_.Wait(task, {awaited::Queue{object}, deadline_ns});
+}
+
+bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) {
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kTerminals)) {
+    FlushTerminals(moment);
+    return false;
+  }
+  if (kind == static_cast<std::int64_t>(shm::WaitKey::kKernelWaits)) {
+    return LookAtKernelWaits(moment);
+  }
+  const std::vector<WaitQueues::Thread> waiters = objects_.WaitersFor({.kind = kind, .id = id});
+  // A nanosecond apart, so that they try in this order on whatever cores they are.
+  for (const WaitQueues::Thread thread : waiters) {
+    waker_.Wake(run_.table.At(thread), shm::WakeReason::kGo, moment);
+    ++moment.ns;
+  }
+  return !waiters.empty();
+}
+
+bool KernelObjectWaits::LookAtKernelWaits(Moment moment) {
+  bool found = false;
+  for (Task& task : run_.table.tasks()) {
+    if (task.state != TaskState::kUnseen || ThreadState(task.tid) != 'R') continue;
+    waker_.Wake(task, shm::WakeReason::kGo, moment);
+    task.parked = false;
+    found = true;
+  }
+  return found;
+}
+
+// What is written to one end of a terminal comes to the other one by a worker of the kernel, in its
+// own time; but a poll waits for that worker. Twice, for what arrives at one end may be echoed to
+// another.
+void KernelObjectWaits::FlushTerminals(Moment moment) {
+  for (int turn = 0; turn < 2; ++turn) {
+    for (const Task& task : run_.table.tasks()) {
+      const auto* wait = task.Awaits<awaited::Descriptors>();
+      if (wait == nullptr || !wait->has_terminal) continue;
+      for (const UniqueFd& fd : wait->fds) {
+        pollfd probe{fd.get(), POLLIN, 0};
+        poll(&probe, 1, 0);
+      }
+    }
+  }
+  terminals_written_(moment);
+}
+
+void KernelObjectWaits::WakeAll(Moment moment) {
+  for (const KernelObject& object : objects_.AwaitedObjects()) {
+    Wake(object.kind, object.id, moment);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,50 @@
+// Waits for kernel objects that cannot be polled (queues/wait_queues.h), and what else others tell
+// of when they do it: locks of files, and what is written to terminals.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "coordinator/queues/wait_queues.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class KernelObjectWaits {
+ public:
+  // `terminals_written`: what was written to terminals until that moment can be read.
+  KernelObjectWaits(RunState& run, Waker& waker, std::function<void(Moment)> terminals_written)
+      : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
+
+  // As the notification kWaitKey says.
+  void Wait(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
+  // The thread waits no longer.
+  void Leave(const Task& task) { objects_.Leave(task.order); }
+  // It has ended.
+  void Forget(const Task& task) { objects_.Forget(task.order); }
+
+  // Something of that kind (shm::WaitKey) has been done to the object. True if it has woken
+  // anybody.
+  bool Wake(std::int64_t kind, std::int64_t id, Moment moment);
+  // A process that ends may change any object: the kernel undoes what it did to semaphores.
+  void WakeAll(Moment moment);
+  // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are
+  // any.
+  bool LookAtKernelWaits(Moment moment);
+
+  // Something was written to a terminal.
+  void FlushTerminals(Moment moment);
+
+ private:
+  RunState& run_;
+  Waker& waker_;
+  std::function<void(Moment)> terminals_written_;
+  WaitQueues objects_;
+};
+
+}  // namespace tcs

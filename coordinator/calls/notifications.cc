@@ -1,0 +1,143 @@
+#include "coordinator/calls/notifications.h"
+
+#include <sys/epoll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr int kYieldsBeforeLook = 100;
+
+// Sleeps, with a mask of their own or without, and waits for signals.
+Wait::What IdleFor(const shm::Notification& note) {
+  const auto set = static_cast<std::uint64_t>(note.args[1]);
+  if (note.args[0] == 2 && set != 0) return awaited::Signals{set};
+  return note.args[0] == 1 ? awaited::Time{.mask = set} : awaited::Time{};
+}
+
+}  // namespace
+
+// From the program's clock to the robot's.
+std::int64_t Notifications::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
+  if (note.deadline_ns == shm::kNeverNs) return shm::kNeverNs;
+  const ProgramTime deadline = OwnTime(std::max<std::int64_t>(0, note.deadline_ns));
+  return std::max(task.process->clock.RobotTimeOf(deadline).ns(), task.reached_ns);
+}
+
+// Equals have their turn.
+bool Notifications::Yield(Task& task) {
+  SchedulerOf(task).Yield(task.order);
+  if (++task.yields < kYieldsBeforeLook) return false;
+  task.yields = 0;
+  return parts_.unknown_children.LetRunBeside(*task.process);
+}
+
+bool Notifications::Handle(Task& task, const shm::Notification& note) {
+  using Kind = shm::NotificationKind;
+  Robot& robot = *task.process->robot;
+  const Moment moment{task.reached_ns};
+  bool looks_again = false;
+  if (task.process->expelled) {
+    parts_.expulsion.AwaitDeath(task);
+    return false;
+  }
+  if (const char* what = SlotCheck::WhatIsImpossible(note); what != nullptr) {
+    parts_.expulsion.Expel(*task.process, what);
+    return false;
+  }
+  task.reason = shm::WakeReason::kGo;
+  task.expects_kernel = note.kind == Kind::kKernelWait;
+  const std::int64_t deadline_ns = WaitDeadlineOf(task, note);
+  switch (note.kind) {
+    case Kind::kRead:
+    case Kind::kWrite:
+      waker_.Hold(task, note.kind);
+      break;
+    case Kind::kIdle:
+      waker_.Wait(task, {IdleFor(note), deadline_ns});
+      break;
+    case Kind::kWaitFds:
+      waker_.Wait(task, {parts_.descriptors.WatchAsAsked(task, note), deadline_ns});
+      looks_again = true;
+      break;
+    case Kind::kWaitChild:
+      waker_.Wait(task, {awaited::Child{static_cast<pid_t>(note.args[0]), note.args[1] != 0}});
+      parts_.unknown_children.LookFor(*task.process);
+      // It has looked, and found none; but since then one may have ended. One that it does not wait
+      // for stays there, so a look at who is there would never let it wait.
+      if (std::exchange(task.children_looked, task.process->children_changed) !=
+          task.process->children_changed) {
+        waker_.Wake(task, shm::WakeReason::kGo, moment);
+      }
+      break;
+    case Kind::kTimerCreate:
+    case Kind::kTimerSet:
+    case Kind::kTimerGet:
+    case Kind::kTimerDelete:
+    case Kind::kTimerOverrun:
+      looks_again = parts_.timers.Handle(*task.process, task, note);
+      break;
+    case Kind::kSpawned:
+      parts_.spawns.Handle(task, note);
+      break;
+    case Kind::kYield:
+      looks_again = Yield(task);
+      break;
+    case Kind::kPriority:
+    case Kind::kPriorityGet:
+    case Kind::kAffinity:
+      parts_.scheduling.Handle(task, note);
+      break;
+    case Kind::kStrangers:
+      task.process->has_unmanaged_threads = true;
+      break;
+    case Kind::kSignalled:
+      parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);
+      break;
+    case Kind::kWaitKey:
+      parts_.objects.Wait(task, note, deadline_ns);
+      break;
+    case Kind::kWakeKey:
+      looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
+      // The kernel would have given those who wait what they wait for, before the waker could take
+      // it again. So they go first, where its policy lets them.
+      if (parts_.objects.Wake(note.args[0], note.args[1], moment) &&
+          ParametersOf(task).policy == SCHED_OTHER) {
+        SchedulerOf(task).Yield(task.order);
+      }
+      break;
+    case Kind::kDdsJoin:
+    case Kind::kDdsSend:
+    case Kind::kDdsWait:
+    case Kind::kDdsSync:
+    case Kind::kDdsRoom:
+    case Kind::kDdsSockets:
+      parts_.dds.Handle(task, note, deadline_ns);
+      break;
+    case Kind::kQueueNotifies:
+      run_.header->queues_notify.store(1);
+      break;
+    case Kind::kNone:
+    case Kind::kHorizon:
+    case Kind::kInterrupted:
+    case Kind::kResumed:
+    case Kind::kKernelWait:
+    case Kind::kPassOn:  // any stop does it
+    case Kind::kCall:
+    case Kind::kPreempted:
+      break;
+  }
+  waker_.Refresh(robot);
+  return looks_again;
+}
+
+}  // namespace tcs

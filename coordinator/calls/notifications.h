@@ -1,0 +1,55 @@
+// What threads notify, each to where it belongs. Everything in a notification is untrusted: it is a
+// copy, and it is checked.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/calls/dds_gateway.h"
+#include "coordinator/calls/descriptor_waits.h"
+#include "coordinator/calls/kernel_object_waits.h"
+#include "coordinator/calls/scheduling_calls.h"
+#include "coordinator/calls/signal_calls.h"
+#include "coordinator/calls/spawns.h"
+#include "coordinator/calls/timer_calls.h"
+#include "coordinator/processes/expulsion.h"
+#include "coordinator/processes/slot_check.h"
+#include "coordinator/processes/unknown_children.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class Notifications {
+ public:
+  struct Parts {
+    Expulsion& expulsion;
+    DescriptorWaits& descriptors;
+    UnknownChildren& unknown_children;
+    TimerCalls& timers;
+    Spawns& spawns;
+    SchedulingCalls& scheduling;
+    SignalCalls& signals;
+    KernelObjectWaits& objects;
+    DdsGateway& dds;
+  };
+
+  Notifications(RunState& run, Waker& waker, Parts parts)
+      : run_(run), waker_(waker), parts_(parts) {}
+
+  // True: there may be more by now that belongs to this moment.
+  bool Handle(Task& task, const shm::Notification& note);
+  // Equals have their turn. As Handle.
+  bool Yield(Task& task);
+
+ private:
+  static std::int64_t WaitDeadlineOf(const Task& task, const shm::Notification& note);
+
+  RunState& run_;
+  Waker& waker_;
+  Parts parts_;
+};
+
+}  // namespace tcs

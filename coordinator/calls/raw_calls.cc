@@ -1,0 +1,135 @@
+#include "coordinator/calls/raw_calls.h"
+
+#include <errno.h>
+#include <sys/syscall.h>
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint64_t kSetOwnerEx = 15;  // F_SETOWN_EX
+
+bool IsOfOwner(const TrappedCall& call) {
+  return call.number == SYS_fcntl && call.args[1] == kSetOwnerEx;
+}
+
+}  // namespace
+
+// As the shim does it for those that it sees; and those that the C library makes for it inside come
+// here, too.
+void RawCalls::Signal(Task& task) {
+  task.trap_continues = true;
+  if (SlotOf(task).signals.load() != 0) return;
+  task.follow_up = FollowUp::kSignals;
+  waker_.HoldInCall(task, shm::NotificationKind::kWrite);
+}
+
+// The kernel keeps the order of those who wait for a lock.
+void RawCalls::Lock(Task& task) {
+  task.trap_continues = true;
+  task.expects_kernel = true;
+  task.follow_up = FollowUp::kKernelWaits;
+  waker_.HoldInCall(task, shm::NotificationKind::kWrite);
+}
+
+bool RawCalls::Handle(Task& task, const TrappedCall& call) {
+  task.trapped_call = call;
+  switch (call.number) {
+    case SYS_clock_gettime:
+    case SYS_gettimeofday:
+    case SYS_time:
+      task.trap_result = parts_.times.ReadClock(task, call);
+      break;
+    case SYS_nanosleep:
+    case SYS_clock_nanosleep:
+      task.trap_result = parts_.times.Sleep(task, call);
+      break;
+    case SYS_read:
+    case SYS_readv:
+    case SYS_write:
+    case SYS_writev:
+    case SYS_recvfrom:
+    case SYS_recvmsg:
+    case SYS_recvmmsg:
+    case SYS_sendto:
+    case SYS_sendmsg:
+    case SYS_sendmmsg:
+    case SYS_accept:
+    case SYS_accept4:
+    case SYS_connect:
+      parts_.transfers.Handle(task, call);
+      break;
+    case SYS_poll:
+    case SYS_ppoll:
+    case SYS_select:
+    case SYS_pselect6:
+    case SYS_epoll_wait:
+    case SYS_epoll_pwait:
+    case SYS_epoll_pwait2:
+      task.trap_result = parts_.polls.Poll(task, call);
+      break;
+    case SYS_wait4:
+    case SYS_waitid:
+      parts_.children.Await(task, call);
+      break;
+    case SYS_kill:
+    case SYS_tkill:
+    case SYS_tgkill:
+    case SYS_rt_sigqueueinfo:
+    case SYS_rt_tgsigqueueinfo:
+    case SYS_pidfd_send_signal:
+      Signal(task);
+      break;
+    case SYS_sched_yield:
+      return yield_(task);
+    case SYS_exit:
+      exit_(task, call);
+      break;
+    case SYS_sched_setscheduler:
+    case SYS_sched_setparam:
+    case SYS_sched_setattr:
+    case SYS_sched_setaffinity:
+    case SYS_sched_getaffinity:
+    case SYS_sched_getscheduler:
+    case SYS_sched_getparam:
+    case SYS_sched_getattr:
+    case SYS_sched_rr_get_interval:
+      task.trap_result = parts_.scheduling.Call(task, call);
+      break;
+    case SYS_timer_create:
+    case SYS_timer_settime:
+    case SYS_timer_gettime:
+    case SYS_timer_getoverrun:
+    case SYS_timer_delete:
+    case SYS_timerfd_create:
+    case SYS_timerfd_settime:
+    case SYS_timerfd_gettime:
+    case SYS_setitimer:
+    case SYS_getitimer:
+    case SYS_alarm:
+      parts_.timers.Call(task, call);
+      return true;  // it may have written to its descriptor
+    case SYS_flock:
+    case SYS_fcntl:
+      if (IsOfOwner(call)) {
+        task.trap_continues = true;
+      } else {
+        Lock(task);
+      }
+      break;
+    case SYS_ioctl:
+    case SYS_ptrace:
+    case SYS_pidfd_getfd:
+    case SYS_process_madvise:
+      task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
+      break;
+    case SYS_futex_waitv:
+      task.trap_result = parts_.words.WaitForAny(task, call);
+      break;
+    default:  // SYS_io_uring_setup
+      task.trap_result = -ENOSYS;
+  }
+  return task.Awaits<awaited::Descriptors>() != nullptr;
+}
+
+}  // namespace tcs

@@ -1,0 +1,54 @@
+// Trapped calls other than futex: made raw, or by the C library from inside, where no interposed
+// symbol sees them. What they wait for is waited for here; then the kernel carries them out, and
+// does not have to wait.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "coordinator/calls/futex_words.h"
+#include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/raw_scheduling.h"
+#include "coordinator/calls/raw_timers.h"
+#include "coordinator/calls/raw_times.h"
+#include "coordinator/calls/raw_transfers.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class RawCalls {
+ public:
+  struct Parts {
+    RawTimes& times;
+    RawTimers& timers;
+    RawPolls& polls;
+    RawTransfers& transfers;
+    RawChildWaits& children;
+    RawScheduling& scheduling;
+    FutexWords& words;
+  };
+
+  // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.
+  RawCalls(Waker& waker, Parts parts, std::function<bool(Task&)> yield,
+           std::function<void(Task&, const TrappedCall&)> exit)
+      : waker_(waker), parts_(parts), yield_(std::move(yield)), exit_(std::move(exit)) {}
+
+  // task.trap_result is what the call returns, unless the thread waits or the kernel carries it
+  // out (task.trap_continues). True: there may be more by now that belongs to this moment.
+  bool Handle(Task& task, const TrappedCall& call);
+
+ private:
+  void Signal(Task& task);
+  void Lock(Task& task);
+
+  Waker& waker_;
+  Parts parts_;
+  std::function<bool(Task&)> yield_;
+  std::function<void(Task&, const TrappedCall&)> exit_;
+};
+
+}  // namespace tcs

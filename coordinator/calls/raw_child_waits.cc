@@ -1,0 +1,47 @@
+#include "coordinator/calls/raw_child_waits.h"
+
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+void RawChildWaits::ForgetNews(const Process& parent) {
+  for (Process& child : run_.table.processes()) {
+    if (child.parent == parent.pid) child.stop_is_news = child.continue_is_news = false;
+  }
+}
+
+void RawChildWaits::Await(Task& task, const TrappedCall& call) {
+  const std::uint64_t options = call.args[call.number == SYS_wait4 ? 2 : 3];
+  task.trap_continues = true;
+  const bool stops = (options & (WUNTRACED | WCONTINUED)) != 0;
+  unknown_.LookFor(*task.process);
+  const bool has_living =
+      unknown_.AreOf(*task.process) ||
+      std::any_of(run_.table.processes().begin(), run_.table.processes().end(),
+                  [&](const Process& p) { return p.parent == task.process->pid && !p.dead; });
+  if ((options & WNOHANG) != 0 || !has_living) {
+    waker_.HoldInCall(task, shm::NotificationKind::kRead);
+    return;
+  }
+  pid_t which = 0;  // any
+  if (call.number == SYS_wait4) which = std::max(0, static_cast<int>(call.args[0]));
+  if (call.number == SYS_waitid && call.args[0] == P_PID) which = static_cast<int>(call.args[1]);
+  const bool has_news = std::any_of(
+      run_.table.processes().begin(), run_.table.processes().end(), [&](const Process& p) {
+        if (p.parent != task.process->pid || p.is_client || (which != 0 && p.pid != which))
+          return false;
+        if (p.dead) return ThreadState(p.pid) == 'Z';
+        return ((options & WUNTRACED) != 0 && p.stop_is_news) ||
+               ((options & WCONTINUED) != 0 && p.continue_is_news);
+      });
+  if (stops) ForgetNews(*task.process);
+  if (has_news) return waker_.HoldInCall(task, shm::NotificationKind::kRead);
+  waker_.Wait(task, {awaited::Child{which, stops}, shm::kNeverNs, true});
+}
+
+}  // namespace tcs

@@ -1,0 +1,29 @@
+// wait4 and waitid, made raw.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/os/trap.h"
+#include "coordinator/processes/unknown_children.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class RawChildWaits {
+ public:
+  RawChildWaits(RunState& run, Waker& waker, UnknownChildren& unknown)
+      : run_(run), waker_(waker), unknown_(unknown) {}
+
+  // The thread waits, or the kernel has what the call asks for and carries it out.
+  void Await(Task& task, const TrappedCall& call);
+  // The kernel is about to tell the parent of its children's stops.
+  void ForgetNews(const Process& parent);
+
+ private:
+  RunState& run_;
+  Waker& waker_;
+  UnknownChildren& unknown_;
+};
+
+}  // namespace tcs

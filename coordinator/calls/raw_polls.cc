@@ -1,0 +1,206 @@
+#include "coordinator/calls/raw_polls.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/resource.h>
+#include <sys/select.h>
+#include <sys/syscall.h>
+#include <time.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
+#include "coordinator/os/signal_bits.h"
+#include "coordinator/tasks/borrowed.h"
+#include "coordinator/tasks/client_values.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::size_t kMostPolled = 65'536, kSets = 3;
+
+// What goes with a mask, if there is one.
+bool IsSoundMask(std::uint64_t mask, std::uint64_t size) { return mask == 0 || size == 8; }
+
+std::optional<std::vector<shm::WaitFd>> PolledFds(const Task& task, const TrappedCall& call) {
+  rlimit most{};
+  prlimit(task.process->pid, RLIMIT_NOFILE, nullptr, &most);
+  if (call.args[1] > most.rlim_cur) return std::nullopt;
+  if (call.number == SYS_ppoll && !IsSoundMask(call.args[3], call.args[4])) return std::nullopt;
+  std::vector<pollfd> fds(std::min<std::size_t>(call.args[1], kMostPolled));
+  if (!fds.empty() &&
+      !ReadMemory(task.process->pid, call.args[0], fds.data(), fds.size() * sizeof fds[0])) {
+    return std::nullopt;
+  }
+  std::vector<shm::WaitFd> waited;
+  for (const pollfd& fd : fds) {
+    if (fd.fd >= 0) waited.push_back({fd.fd, static_cast<unsigned short>(fd.events)});
+  }
+  return waited;
+}
+
+// So many descriptors the kernel looks at: no more than the process's table has room for.
+std::size_t SelectedCount(const Task& task, const TrappedCall& call) {
+  const auto count = static_cast<std::size_t>(std::max(0, static_cast<int>(call.args[0])));
+  return count <= FD_SETSIZE ? count : std::min(count, RoomForDescriptors(task.process->pid));
+}
+
+std::size_t WordsOf(std::size_t fds) { return (fds + 63) / 64; }
+
+std::optional<std::vector<shm::WaitFd>> SelectedFds(const Task& task, const TrappedCall& call) {
+  if (static_cast<int>(call.args[0]) < 0) return std::nullopt;
+  const std::size_t count = SelectedCount(task, call);
+  std::vector<std::uint64_t> sets[kSets];
+  for (std::size_t i = 0; i < kSets; ++i) {
+    sets[i].resize(WordsOf(count));
+    if (call.args[i + 1] == 0 || count == 0) continue;
+    if (!ReadMemory(task.process->pid, call.args[i + 1], sets[i].data(),
+                    sets[i].size() * sizeof sets[i][0])) {
+      return std::nullopt;
+    }
+  }
+  constexpr std::uint32_t kEvents[kSets] = {EPOLLIN, EPOLLOUT, EPOLLPRI};
+  std::vector<shm::WaitFd> waited;
+  for (std::size_t fd = 0; fd < count; ++fd) {
+    std::uint32_t events = 0;
+    for (std::size_t i = 0; i < kSets; ++i) {
+      if ((sets[i][fd / 64] >> (fd % 64) & 1) != 0) events |= kEvents[i];
+    }
+    if (events != 0) waited.push_back({static_cast<int>(fd), events});
+  }
+  return waited;
+}
+
+bool IsSoundEpollWait(const Task& task, const TrappedCall& call) {
+  constexpr int kMostEvents = INT_MAX / static_cast<int>(sizeof(epoll_event));
+  const int most = static_cast<int>(call.args[2]);
+  if (most <= 0 || most > kMostEvents || static_cast<std::int64_t>(call.args[1]) < 0) return false;
+  if (call.number != SYS_epoll_wait && !IsSoundMask(call.args[4], call.args[5])) return false;
+  return IsAnonymous(task.process->pid, static_cast<int>(call.args[0]), kEpollSet);
+}
+
+}  // namespace
+
+std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
+  std::int64_t timeout_ns = 0;
+  task.trap_continues = true;
+  // What is wrong with it the kernel says best.
+  if (!TimeoutOf(task, call, &timeout_ns)) return 0;
+  const auto waited = FdsOf(task, call);
+  if (!waited.has_value()) return 0;
+  const bool ready = std::any_of(waited->begin(), waited->end(), [&](const shm::WaitFd& fd) {
+    return Borrowed(task, fd.fd).IsReady(static_cast<short>(fd.events));
+  });
+  if (timeout_ns == 0 || ready) {
+    waker_.HoldInCall(task, shm::NotificationKind::kRead);
+    return 0;
+  }
+  const std::int64_t deadline_ns =
+      timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
+  awaited::Descriptors watched = descriptors_.Watch(task, waited->data(), waited->size());
+  watched.signals = SignalsOf(task, call);
+  waker_.Wait(task, {std::move(watched), deadline_ns, true});
+  return 0;
+}
+
+// The timeout of a call that waits for descriptors: false if it is not there, or not valid.
+bool RawPolls::TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns) {
+  const auto in_ms = [](std::uint64_t argument) {
+    return shm::MillisecondsToNs(static_cast<int>(argument));
+  };
+  *ns = -1;
+  timespec t{};
+  switch (call.number) {
+    case SYS_poll:
+      *ns = in_ms(call.args[2]);
+      return true;
+    case SYS_epoll_wait:
+    case SYS_epoll_pwait:
+      *ns = in_ms(call.args[3]);
+      return true;
+    case SYS_select: {
+      timeval tv{};
+      if (call.args[4] == 0) return true;
+      if (!Read(task, call.args[4], &tv)) return false;
+      t = {tv.tv_sec + tv.tv_usec / 1'000'000, tv.tv_usec % 1'000'000 * 1000};
+      break;
+    }
+    default: {
+      const std::uint64_t address = call.args[call.number == SYS_ppoll      ? 2
+                                              : call.number == SYS_pselect6 ? 4
+                                                                            : 3];
+      if (address == 0) return true;
+      if (!Read(task, address, &t)) return false;
+    }
+  }
+  if (!IsValid(t)) return false;
+  *ns = ToTimeoutNs(t);
+  return true;
+}
+
+// What the call waits for; none where something is wrong with it, which the kernel says best.
+std::optional<std::vector<shm::WaitFd>> RawPolls::FdsOf(const Task& task, const TrappedCall& call) {
+  switch (call.number) {
+    case SYS_poll:
+    case SYS_ppoll:
+      return PolledFds(task, call);
+    case SYS_select:
+    case SYS_pselect6:
+      return SelectedFds(task, call);
+    default:
+      if (!IsSoundEpollWait(task, call)) return std::nullopt;
+      return std::vector{shm::WaitFd{static_cast<int>(call.args[0]), EPOLLIN}};
+  }
+}
+
+// The signals that end the call though the thread blocks them: its mask lets them in. Those that do
+// nothing, or only stop the thread, do not.
+std::uint64_t RawPolls::SignalsOf(const Task& task, const TrappedCall& call) {
+  constexpr std::uint64_t kNoEnd = SignalBit(SIGCHLD) | SignalBit(SIGCONT) | SignalBit(SIGURG) |
+                                   SignalBit(SIGWINCH) | SignalBit(SIGTSTP) | SignalBit(SIGTTIN) |
+                                   SignalBit(SIGTTOU);
+  constexpr std::uint64_t kNeverHeld = SignalBit(SIGKILL) | SignalBit(SIGSTOP);
+  std::uint64_t address = 0, mask = 0;
+  switch (call.number) {
+    case SYS_ppoll:
+      address = call.args[3];
+      break;
+    case SYS_pselect6:
+      if (call.args[5] != 0 && !Read(task, call.args[5], &address)) return 0;
+      break;
+    case SYS_epoll_pwait:
+    case SYS_epoll_pwait2:
+      address = call.args[4];
+      break;
+    default:
+      break;
+  }
+  if (address == 0 || !Read(task, address, &mask)) return 0;
+  const SignalSets sets = ReadSignalSets(task.tid);
+  return ~mask & ~kNeverHeld & ~sets.ignored & ~(kNoEnd & ~sets.caught);
+}
+
+void RawPolls::ClearResult(const Task& task, const TrappedCall& call) {
+  if (call.number == SYS_poll || call.number == SYS_ppoll) {
+    const short none = 0;
+    const std::size_t count = std::min<std::size_t>(call.args[1], kMostPolled);
+    for (std::size_t i = 0; i < count; ++i) {
+      Write(task, call.args[0] + i * sizeof(pollfd) + offsetof(pollfd, revents), none);
+    }
+  }
+  if (call.number == SYS_select || call.number == SYS_pselect6) {
+    const std::vector<std::uint64_t> none(WordsOf(SelectedCount(task, call)));
+    for (std::size_t i = 1; i <= kSets; ++i) {
+      if (call.args[i] == 0) continue;
+      WriteMemory(task.process->pid, call.args[i], none.data(), none.size() * sizeof none[0]);
+    }
+  }
+}
+
+}  // namespace tcs

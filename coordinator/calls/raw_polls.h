@@ -1,0 +1,36 @@
+// poll, select, epoll_wait and their kin, made raw: what they wait for is waited for here; then the
+// kernel carries them out, and does not have to wait.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "coordinator/calls/descriptor_waits.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class RawPolls {
+ public:
+  RawPolls(Waker& waker, DescriptorWaits& descriptors) : waker_(waker), descriptors_(descriptors) {}
+
+  // What the call returns where the kernel does not carry it out.
+  std::int64_t Poll(Task& task, const TrappedCall& call);
+  // A wait for descriptors has timed out: none is ready.
+  static void ClearResult(const Task& task, const TrappedCall& call);
+
+ private:
+  static bool TimeoutOf(Task& task, const TrappedCall& call, std::int64_t* ns);
+  static std::optional<std::vector<shm::WaitFd>> FdsOf(const Task& task, const TrappedCall& call);
+  static std::uint64_t SignalsOf(const Task& task, const TrappedCall& call);
+
+  Waker& waker_;
+  DescriptorWaits& descriptors_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,32 @@
+// Calls to the scheduler that are made without the C library: the robot's scheduler answers them,
+// with the errors of the kernel's.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/calls/scheduling_calls.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class RawScheduling {
+ public:
+  RawScheduling(RunState& run, SchedulingCalls& calls) : run_(run), calls_(calls) {}
+
+  // What the call returns: negative for an errno.
+  std::int64_t Call(Task& task, const TrappedCall& call);
+
+ private:
+  std::int64_t SetScheduling(Task& task, Task& of, const TrappedCall& call);
+  static std::int64_t GetScheduling(Task& task, Task& of, const TrappedCall& call);
+  std::int64_t SetAttributes(Task& task, Task& of, const TrappedCall& call);
+  static std::int64_t GetAttributes(Task& task, const Task& of, const TrappedCall& call);
+
+  RunState& run_;
+  SchedulingCalls& calls_;
+};
+
+}  // namespace tcs

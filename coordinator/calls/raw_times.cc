@@ -1,0 +1,59 @@
+#include "coordinator/calls/raw_times.h"
+
+#include <errno.h>
+#include <sys/syscall.h>
+#include <sys/time.h>
+#include <time.h>
+
+#include <algorithm>
+
+#include "coordinator/tasks/client_values.h"
+#include "shm/clock_ids.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr int kTimerAbsolute = 1;  // TIMER_ABSTIME
+
+}  // namespace
+
+std::int64_t RawTimes::ReadClock(const Task& task, const TrappedCall& call) const {
+  const std::int64_t now = OwnNow(task).ns();
+  const std::int64_t real = now + run_.header->realtime_offset_ns;
+  if (call.number == SYS_gettimeofday) {
+    return call.args[0] == 0 || Write(task, call.args[0], shm::ToTimeval(real)) ? 0 : -EFAULT;
+  }
+  if (call.number == SYS_time) {
+    const time_t seconds = real / shm::kNsPerSecond;
+    return call.args[0] == 0 || Write(task, call.args[0], seconds) ? seconds : -EFAULT;
+  }
+  const shm::ClockOfId clock = shm::ClockOf(static_cast<clockid_t>(call.args[0]));
+  if (!clock.IsOfTime()) return -EINVAL;
+  const bool is_real = clock.kind == shm::ClockKind::kRealtime;
+  const std::int64_t shown = is_real ? real : now + run_.header->monotonic_offset_ns;
+  return Write(task, call.args[1], ToTimespec(shown)) ? 0 : -EFAULT;
+}
+
+std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
+  const bool plain = call.number == SYS_nanosleep;
+  const clockid_t clock = plain ? CLOCK_MONOTONIC : static_cast<clockid_t>(call.args[0]);
+  if (const int error = shm::ErrorOfSleepOn(clock, task.tid); error != 0) return -error;
+  timespec request{};
+  if (!tcs::Read(task, call.args[plain ? 0 : 2], &request)) return -EFAULT;
+  if (!IsValid(request)) return -EINVAL;
+  const bool absolute = !plain && (call.args[1] & kTimerAbsolute) != 0;
+  std::int64_t until = task.reached_ns + ToTimeoutNs(request);
+  if (absolute) {
+    const bool is_real = shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
+    const std::int64_t offset =
+        is_real ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
+    until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset)).ns();
+  }
+  const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
+  waker_.Wait(task, {awaited::Time{.remaining_address = remaining_address},
+                     std::max(until, task.reached_ns), true});
+  return 0;
+}
+
+}  // namespace tcs

@@ -1,0 +1,26 @@
+// Clocks that are read, and sleeps, made raw. Results are the kernel's: negative for an errno.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class RawTimes {
+ public:
+  RawTimes(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
+
+  std::int64_t ReadClock(const Task& task, const TrappedCall& call) const;
+  std::int64_t Sleep(Task& task, const TrappedCall& call);
+
+ private:
+  RunState& run_;
+  Waker& waker_;
+};
+
+}  // namespace tcs

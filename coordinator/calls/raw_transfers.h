@@ -1,0 +1,32 @@
+// Trapped calls that transfer data, or connect: each waits here until the kernel can carry it out,
+// or would have refused it at once.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/calls/descriptor_waits.h"
+#include "coordinator/calls/raw_timers.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/activations.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class RawTransfers {
+ public:
+  RawTransfers(Waker& waker, Activations& activations, DescriptorWaits& descriptors,
+               RawTimers& timers)
+      : waker_(waker), activations_(activations), descriptors_(descriptors), timers_(timers) {}
+
+  // The call goes on once it is ready, or can find all that was sent until now.
+  void Handle(Task& task, const TrappedCall& call);
+  static bool Receives(const TrappedCall& call);
+
+ private:
+  Waker& waker_;
+  Activations& activations_;
+  DescriptorWaits& descriptors_;
+  RawTimers& timers_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,60 @@
+#include "coordinator/calls/scheduling_rights.h"
+
+#include <linux/capability.h>
+#include <sched.h>
+#include <sys/resource.h>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+bool ignores_real_time_limits = false;
+
+bool IsPrivileged(const Credentials& credentials) {
+  return (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
+}
+
+bool IsSameOwner(const Credentials& asking, pid_t tid) {
+  const Credentials owner = ReadCredentials(tid);
+  return asking.effective_uid == owner.effective_uid || asking.effective_uid == owner.real_uid;
+}
+
+rlim_t LimitOf(pid_t tid, __rlimit_resource resource) {
+  if (resource == RLIMIT_RTPRIO && ignores_real_time_limits) return RLIM_INFINITY;
+  rlimit limit{};
+  return prlimit(tid, resource, nullptr, &limit) == 0 ? limit.rlim_cur : 0;
+}
+
+}  // namespace
+
+void IgnoreRealTimeLimits() { ignores_real_time_limits = true; }
+
+bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
+                      const SchedulingParameters& wanted) {
+  const Credentials credentials = ReadCredentials(asking);
+  if (IsPrivileged(credentials)) return true;
+  if (wanted.policy == SCHED_DEADLINE) return false;
+  if (IsRealTime(wanted.policy)) {
+    const rlim_t most = LimitOf(tid, RLIMIT_RTPRIO);
+    if (wanted.policy != now.policy && most == 0) return false;
+    const auto priority = static_cast<rlim_t>(wanted.priority);
+    if (wanted.priority > now.priority && priority > most) return false;
+  }
+  // To leave SCHED_IDLE is to raise one's priority: to that of the nice value, which is 0 here.
+  constexpr rlim_t kNiceLimitOfZero = 20;
+  if (now.policy == SCHED_IDLE && wanted.policy != SCHED_IDLE &&
+      LimitOf(tid, RLIMIT_NICE) < kNiceLimitOfZero) {
+    return false;
+  }
+  if (now.resets_on_fork && !wanted.resets_on_fork) return false;
+  return IsSameOwner(credentials, tid);
+}
+
+bool MaySetAffinity(pid_t asking, pid_t tid) {
+  const Credentials credentials = ReadCredentials(asking);
+  return IsPrivileged(credentials) || IsSameOwner(credentials, tid);
+}
+
+}  // namespace tcs

@@ -1,0 +1,51 @@
+// Signals that clients send to each other, and those that come from outside.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "coordinator/calls/child_stops.h"
+#include "coordinator/calls/signal_wakes.h"
+#include "coordinator/tasks/run_clock.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class SignalCalls {
+ public:
+  // In real time, how often it is looked at what nobody tells of.
+  static constexpr std::int64_t kLookEveryNs = 10'000'000;
+
+  // `looked_at`: a signal may have stopped the process or let it go on, at that time.
+  SignalCalls(RunState& run, Waker& waker, SignalWakes& wakes, ChildStops& stops,
+              const RunClock& clock, std::function<void(const Process&, std::int64_t)> looked_at)
+      : run_(run),
+        waker_(waker),
+        wakes_(wakes),
+        stops_(stops),
+        clock_(clock),
+        looked_at_(std::move(looked_at)) {}
+
+  // Somebody has sent one to that process; 0: to whomever.
+  void Sent(pid_t receiver, Moment moment);
+  // Nobody says that a signal has come from outside, so those who wait for one are looked at now
+  // and then. True if one goes on.
+  bool Poll();
+
+ private:
+  RunState& run_;
+  Waker& waker_;
+  SignalWakes& wakes_;
+  ChildStops& stops_;
+  const RunClock& clock_;
+  std::function<void(const Process&, std::int64_t)> looked_at_;
+  std::uint64_t next_look_tsc_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,65 @@
+#include "coordinator/calls/signal_wakes.h"
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
+#include "coordinator/tasks/signal_sets.h"
+
+namespace tcs {
+
+namespace {
+
+// What of `pending` makes a thread with these sets run or end. What only stops it does so when it
+// runs next.
+std::uint64_t Deliverable(std::uint64_t pending, const SignalSets& sets, std::uint64_t blocked) {
+  return pending & ~blocked & ~(kStopSignals & ~sets.caught);
+}
+
+}  // namespace
+
+bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
+  const std::uint64_t pending = sets.own_pending | sets.shared_pending;
+  if (!task.wait.has_value() || (pending & SignalsThatEnd(*task.wait)) == 0) return false;
+  waker_.Wake(task, shm::WakeReason::kGo, moment);
+  return true;
+}
+
+void SignalWakes::WakeForSignals(Process& process, Moment moment) {
+  std::uint64_t taken = 0;
+  for (Task& task : run_.table.tasks()) {
+    if (task.process != &process || task.state == TaskState::kDead) continue;
+    // A thread that waits may have kept the level of its last dispatch. With a signal it would run
+    // before its next one, and lose what its call is to return.
+    if (!active_.IsLast(task)) active_.Hold(task);
+    const SignalSets sets = SignalsOf(run_, task);
+    if (EndAwait(task, sets, moment)) continue;
+    const std::uint64_t mine =
+        Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, BlockedOf(task, sets));
+    taken |= mine;
+    if (mine == 0) continue;
+    if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
+    AnswerAhead(task);
+  }
+}
+
+// A thread that runs a handler at its next dispatch gets the result of its trapped call now: should
+// it run before (while the running thread waits for the disk), the kernel would end the call with
+// an error of its own, and the result would be lost.
+void SignalWakes::AnswerAhead(Task& task) {
+  // Without levels the kernel keeps the signal until the call is answered (os/trap.cc).
+  if (run_.gates_only || run_.turn.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
+      task.state != TaskState::kReady) {
+    return;
+  }
+  active_.Hold(task);
+  if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) task.handed_lock = 0;
+  task.trap_id = 0;
+  task.parked = false;
+}
+
+bool SignalWakes::HasSignalForTrapped(Task& task) const {
+  if (!run_.gates_only || run_.turn.lasts() || !task.wait->is_in_trapped_call) return false;
+  const SignalSets sets = SignalsOf(run_, task);
+  return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0;
+}
+
+}  // namespace tcs

@@ -1,0 +1,37 @@
+// Threads that go on because a signal is there for them. The kernel delivers signals; but a thread
+// that waits runs its handler only when it is dispatched, and that is to be at the sender's virtual
+// time. So is the end of a wait for the signal itself.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/host/active_threads.h"
+#include "coordinator/os/host.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class SignalWakes {
+ public:
+  SignalWakes(RunState& run, Waker& waker, ActiveThreads& active)
+      : run_(run), waker_(waker), active_(active) {}
+
+  // True if the thread waits for a signal that is pending: then it goes on.
+  bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
+  // What is for the whole process goes to the first of its threads that does not block it, as the
+  // kernel has it.
+  void WakeForSignals(Process& process, Moment moment);
+  // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
+  // that nobody but who looks learns of one from outside. One from inside is told by who sends it.
+  bool HasSignalForTrapped(Task& task) const;
+
+ private:
+  void AnswerAhead(Task& task);
+
+  RunState& run_;
+  Waker& waker_;
+  ActiveThreads& active_;
+};
+
+}  // namespace tcs

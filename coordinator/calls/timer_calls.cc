@@ -1,0 +1,155 @@
+#include "coordinator/calls/timer_calls.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/timer_descriptor.h"
+#include "coordinator/processes/usage_book.h"
+
+namespace tcs {
+
+namespace {
+
+// True if a descriptor was written to.
+bool TellDescriptors(const Process& process, const std::vector<ProcessTimers::RanOut>& ran_out) {
+  bool wrote = false;
+  for (const ProcessTimers::RanOut& timer : ran_out) {
+    const auto fd = process.timer_fds.find(timer.id);
+    if (fd != process.timer_fds.end()) wrote |= AddExpirations(fd->second.get(), timer.count);
+  }
+  return wrote;
+}
+
+bool IsAwaited(const Process& process) {
+  return std::ranges::any_of(process.robot->tasks, [&](const Task* task) {
+    return task->process == &process &&
+           (task->state == TaskState::kWaiting || task->state == TaskState::kUnseen);
+  });
+}
+
+}  // namespace
+
+UniqueFd TimerCalls::DescriptorOf(const Process& process, int number) {
+  UniqueFd fd(DuplicateFd(process.pidfd.get(), number));
+  return fd && IsTimerDescriptor(fd.get()) ? std::move(fd) : UniqueFd();
+}
+
+void TimerCalls::Create(Task& task, const shm::Notification& note) {
+  Process& process = *task.process;
+  if (process.timers.IsFull()) return;
+  shm::TimerKind kind;
+  static_assert(sizeof kind == sizeof note.args - sizeof note.args[0]);
+  memcpy(static_cast<void*>(&kind), &note.args[1], sizeof kind);
+  if (kind.signal < 0 || kind.signal > SIGRTMAX) return;
+  UniqueFd fd;
+  if (note.args[0] >= 0) {
+    fd = DescriptorOf(process, static_cast<int>(note.args[0]));
+    if (!fd) return;
+  }
+  task.reply[0] = process.timers.Create(kind);
+  if (fd) process.timer_fds[task.reply[0]] = std::move(fd);
+}
+
+void TimerCalls::Delete(Process& process, std::int64_t id) {
+  process.timers.Delete(id);
+  process.timer_fds.erase(id);
+}
+
+void TimerCalls::DeletePosix(Process& process) {
+  process.timers.DeletePosix();
+  std::erase_if(process.timer_fds,
+                [&](const auto& entry) { return !process.timers.KindOf(entry.first).has_value(); });
+}
+
+bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& note) {
+  const std::int64_t id = note.args[0];
+  ProcessTimers& timers = process.timers;
+  if (note.kind == shm::NotificationKind::kTimerCreate) {
+    Create(task, note);
+    return false;
+  }
+  if (note.kind == shm::NotificationKind::kTimerDelete) {
+    Delete(process, id);
+    return false;
+  }
+  if (!timers.KindOf(id).has_value()) return false;
+  if (note.kind == shm::NotificationKind::kTimerOverrun) {
+    bool wrote = false;
+    if (note.args[1] == 0) {
+      wrote = BringUpToDate(process, task, id);
+    } else {
+      timers.AcceptAt(id, task.reached_ns);
+    }
+    TimerSignals::NoteAccepted(process);
+    task.reply[0] = timers.Overruns(id);
+    return wrote;
+  }
+  const bool wrote = BringUpToDate(process, task, id);
+  const ProcessTimers::Setting before = timers.Get(id);
+  task.reply[0] = before.next_ns;
+  task.reply[1] = before.interval_ns;
+  if (note.kind != shm::NotificationKind::kTimerSet) return wrote;
+  timers.Set(id, {note.args[1], note.args[2]}, process.clock.lead());
+  const auto fd = process.timer_fds.find(id);
+  if (fd != process.timer_fds.end()) ForgetExpirations(fd->second.get());
+  return wrote;
+}
+
+// What has run out by the time of the call is there when it returns.
+bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
+  if (!owner.timers.IsBehind(id, asking.reached_ns)) return false;
+  const Moment moment{asking.reached_ns};
+  const bool wrote = Expire(owner, moment.ns);
+  if (owner.timers.HasSignals()) signals_.Route(owner, moment);
+  return wrote;
+}
+
+// Fires what has run out for one process; true if a descriptor was written to.
+bool TimerCalls::Expire(Process& process, std::int64_t now_ns) {
+  TimerSignals::NoteAccepted(process);
+  const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now_ns);
+  for (const ProcessTimers::RanOut& timer : ran_out) {
+    process.clock.ComeTo(OwnTime(timer.clock_ns));
+    if (timer.is_periodic) process.ended.CountOverruns(timer.count - (IsAwaited(process) ? 1 : 0));
+  }
+  return TellDescriptors(process, ran_out);
+}
+
+ProcessTimers::CpuUsed TimerCalls::CpuUsedBy(const Task& task) {
+  return {.process_ns = UsageBook::ChargedTo(*task.process),
+          .tid = task.tid,
+          .thread_ns = task.charged_ns};
+}
+
+void TimerCalls::ExpireCpu(const Task& ran) {
+  Process& process = *ran.process;
+  if (!process.timers.HasCpuTimers()) return;
+  TimerSignals::NoteAccepted(process);
+  TellDescriptors(process, process.timers.ExpireCpu(CpuUsedBy(ran)));
+}
+
+bool TimerCalls::FireDue(Robot& robot, std::int64_t now_ns) {
+  const Moment moment{.ns = now_ns, .from_outside = true};
+  run_.latest_ns = now_ns;
+  bool wrote = false;
+  for (Task* task : robot.tasks) {
+    if (waker_.HasRunOut(*task, now_ns)) {
+      task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));
+      waker_.Wake(*task, shm::WakeReason::kDeadline, moment);
+    }
+    Process& process = *task->process;
+    if (process.timers.NextExpiry() <= now_ns) {
+      process.expired_ns = process.timers.NextExpiry();
+      wrote |= Expire(process, now_ns);
+    }
+    if (process.timers.HasSignals()) signals_.Route(process, moment);
+  }
+  return wrote;
+}
+
+}  // namespace tcs

@@ -1,0 +1,49 @@
+// The timers of clients: setitimer, alarm, timerfd and timer_create. What runs out at one instant
+// fires there. The rules of one process's timers are ProcessTimers'.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/calls/timer_signals.h"
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+class TimerCalls {
+ public:
+  TimerCalls(RunState& run, Waker& waker, TimerSignals& signals)
+      : run_(run), waker_(waker), signals_(signals) {}
+
+  // What a notification asks for of a timer of `process`, by one of its threads, or of its
+  // children, which have its descriptors. True: a timer descriptor was written to.
+  bool Handle(Process& process, Task& task, const shm::Notification& note);
+
+  // Deadlines of threads and timers that have come on the robot. True: a timer descriptor was
+  // written to.
+  bool FireDue(Robot& robot, std::int64_t now_ns);
+  // Timers on processor time run out while their process runs; it is told at its next dispatch.
+  static void ExpireCpu(const Task& ran);
+  static ProcessTimers::CpuUsed CpuUsedBy(const Task& task);
+
+  static void Delete(Process& process, std::int64_t id);
+  // A process's timer_create timers end when it executes another program.
+  static void DeletePosix(Process& process);
+  // Our copy of a process's descriptor; none if that is no timer.
+  static UniqueFd DescriptorOf(const Process& process, int number);
+
+ private:
+  static void Create(Task& task, const shm::Notification& note);
+  bool BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
+  static bool Expire(Process& process, std::int64_t now_ns);
+
+  RunState& run_;
+  Waker& waker_;
+  TimerSignals& signals_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,99 @@
+#include "coordinator/calls/timer_signals.h"
+
+#include <signal.h>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/signal_bits.h"
+#include "coordinator/tasks/signal_sets.h"
+
+namespace tcs {
+
+namespace {
+
+// Would a thread of these sets run a handler for it?
+bool Handles(const Task& task, const SignalSets& sets, int signal) {
+  return (sets.caught & ~BlockedOf(task, sets) & SignalBit(signal)) != 0;
+}
+
+void Send(Process& process, const TimerSignal& signal, pid_t tid) {
+  if (signal.timer_id != 0) {
+    process.timers.NoteSent(signal, tid);
+    SendTimerSignal({.pid = process.pid,
+                     .tid = tid,
+                     .number = signal.number,
+                     .timer_id = static_cast<int>(signal.timer_id),
+                     .overruns = static_cast<int>(signal.overruns),
+                     .value = signal.value});
+  } else if (tid == 0 || process.threads == 1) {
+    kill(process.pid, signal.number);
+  } else {
+    tgkill(process.pid, tid, signal.number);
+  }
+}
+
+}  // namespace
+
+// The thread that waits to accept it, 0 if there is none. The kernel, too, prefers it to others.
+pid_t TimerSignals::AccepterOf(const Process& process, const TimerSignal& signal) {
+  for (const Task* task : process.robot->tasks) {
+    const auto* wait = task->Awaits<awaited::Signals>();
+    if (wait == nullptr || task->process != &process) continue;
+    if (signal.tid != 0 && task->tid != signal.tid) continue;
+    if ((wait->set & SignalBit(signal.number)) != 0) return task->tid;
+  }
+  return 0;
+}
+
+// Null if nobody runs a handler, or only one that the kernel holds in a call.
+Task* TimerSignals::TakerOf(const Process& process, const TimerSignal& signal) const {
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->slot < 0) continue;
+    if (signal.tid != 0 && task->tid != signal.tid) continue;
+    if (Handles(*task, SignalsOf(run_, *task), signal.number))
+      return task->state == TaskState::kUnseen ? nullptr : task;
+  }
+  return nullptr;
+}
+
+void TimerSignals::Route(Process& process, Moment moment) {
+  bool sent = false;
+  for (TimerSignal& signal : process.timers.TakeSignals()) {
+    if (signal.taker == 0 || run_.table.Living(signal.taker) == nullptr) {
+      const pid_t accepter = AccepterOf(process, signal);
+      Task* taker = accepter != 0 ? nullptr : TakerOf(process, signal);
+      if (taker == nullptr) {
+        Send(process, signal, accepter != 0 ? accepter : signal.tid);
+        sent = true;
+        continue;
+      }
+      signal.taker = taker->tid;
+      if (taker->state == TaskState::kWaiting) {
+        waker_.Wake(*taker, shm::WakeReason::kSignal, moment);
+      }
+    }
+    process.timers.GiveBack(signal);
+  }
+  if (sent) wakes_.WakeForSignals(process, moment);
+}
+
+void TimerSignals::SendTo(const Task& task) {
+  Process& process = *task.process;
+  if (!process.timers.HasSignals()) return;
+  for (const TimerSignal& signal : process.timers.TakeSignals()) {
+    if (signal.taker != 0 && signal.taker != task.tid) {
+      process.timers.GiveBack(signal);
+    } else {
+      Send(process, signal, signal.taker);
+    }
+  }
+}
+
+void TimerSignals::NoteAccepted(Process& process) {
+  for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
+    const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
+    const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
+    if ((pending & SignalBit(sent.number)) == 0) process.timers.Accept(sent.timer_id);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,62 @@
+#include "coordinator/calls/trapped_calls.h"
+
+#include <sys/syscall.h>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
+  task.trap_id = call.id;
+  task.trap_listener = call.listener;
+  task.trap_result = 0;
+  task.trap_continues = false;
+  task.follow_up = FollowUp::kNone;
+  task.brief_done = false;
+  task.expects_kernel = false;
+  bool looks_again = false;
+  if (call.number == SYS_futex) {
+    futexes_.Handle(task, call);
+  } else {
+    looks_again = raw_.Handle(task, call);
+  }
+  waker_.Refresh(*task.process->robot);
+  return looks_again;
+}
+
+// A thread that tcs does not know: the C library has made it for itself (asynchronous I/O), or it
+// has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
+// here.
+void TrappedCalls::HandleUnmanaged(const TrappedCall& call, Moment moment) {
+  const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
+  Process* process = run_.table.LivingProcess(pid);
+  if (process != nullptr && run_.table.Living(call.tid) == nullptr) {
+    process->has_unmanaged_threads = true;
+    futexes_.CarryOutWake(*process, call, moment);
+  }
+  guard_.LetThrough(call);
+}
+
+// The last call of a thread, whichever way it ends: it has no destructors to run any more, and no
+// signals to handle.
+void TrappedCalls::Exit(Task& task, const TrappedCall& call) {
+  task.trap_id = 0;
+  deaths_.EndAndWake(task, {task.reached_ns});
+  ContinueTrapped(call.listener, call.id);
+  // Who waits for it looks at a word that the kernel clears.
+  if (run_.gates_only) executor_.LetKernelFinish(call.tid);
+}
+
+void TrappedCalls::ReleaseAll() {
+  for (Task& task : run_.table.tasks()) {
+    if (task.state == TaskState::kDead) continue;
+    if (task.trap_id != 0) guard_.Continue(task);
+    if (task.early_trap.has_value()) guard_.LetThrough(*task.early_trap);
+    task.trap_id = 0;
+    task.early_trap.reset();
+  }
+  if (run_.turn.trapped.has_value()) guard_.LetThrough(*run_.turn.trapped);
+  run_.turn.trapped.reset();
+}
+
+}  // namespace tcs

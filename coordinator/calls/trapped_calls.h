@@ -1,0 +1,49 @@
+// System calls of clients that the kernel hands over.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/calls/futex_calls.h"
+#include "coordinator/calls/guarded_calls.h"
+#include "coordinator/calls/raw_calls.h"
+#include "coordinator/host/executor.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/processes/deaths.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class TrappedCalls {
+ public:
+  TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, RawCalls& raw,
+               const GuardedCalls& guard, Deaths& deaths, Executor& executor)
+      : run_(run),
+        waker_(waker),
+        futexes_(futexes),
+        raw_(raw),
+        guard_(guard),
+        deaths_(deaths),
+        executor_(executor) {}
+
+  // That of a thread that has stopped in it. True: there may be more by now that belongs to this
+  // moment.
+  bool Handle(Task& task, const TrappedCall& call);
+  // That of a thread that tcs does not know, or that has not registered yet.
+  void HandleUnmanaged(const TrappedCall& call, Moment moment);
+  // The last call of a thread.
+  void Exit(Task& task, const TrappedCall& call);
+  // At the end of a run the kernel carries out all calls, those that wait included.
+  void ReleaseAll();
+
+ private:
+  RunState& run_;
+  Waker& waker_;
+  FutexCalls& futexes_;
+  RawCalls& raw_;
+  const GuardedCalls& guard_;
+  Deaths& deaths_;
+  Executor& executor_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,60 @@
+#include "coordinator/calls/trapped_waits.h"
+
+#include <errno.h>
+
+#include <algorithm>
+
+#include "coordinator/calls/raw_polls.h"
+#include "coordinator/calls/raw_transfers.h"
+#include "coordinator/tasks/client_values.h"
+
+namespace tcs {
+
+// A signal's handler ends a trapped call that waits; the result may be the kernel's ERESTARTSYS or
+// ERESTARTNOINTR, which it never shows to programs: then it makes the call again.
+void TrappedWaits::Interrupt(Task& task) {
+  constexpr int kRestart = 512, kRestartAlways = 513;
+  const Wait& wait = *task.wait;
+  task.trap_continues = false;
+  task.trap_result = wait.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
+  if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
+    // A lock is never given up for a signal: the C library would take it for acquired.
+    if (futex->owner != awaited::kNobody || words_.table().ExpectedLock(task.order).has_value()) {
+      task.trap_result = -kRestartAlways;
+    }
+    if (futex->was_requeued) task.trap_result = -EAGAIN;
+    if (words_.table().WaitsForAny(task.order)) task.trap_result = -kRestart;
+  }
+  const auto* sleep = wait.As<awaited::Time>();
+  if (sleep != nullptr && sleep->remaining_address != 0) {
+    const std::int64_t left = std::max<std::int64_t>(0, wait.deadline_ns - task.reached_ns);
+    Write(task, sleep->remaining_address, ToTimespec(left));
+  }
+}
+
+void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
+  if (reason == shm::WakeReason::kSignal) return Interrupt(task);
+  const bool timed_out = reason == shm::WakeReason::kDeadline;
+  task.trap_result = 0;
+  if (const auto* futex = task.Awaits<awaited::Futex>(); futex != nullptr) {
+    task.trap_result = timed_out ? -ETIMEDOUT : static_cast<std::int64_t>(futex->woken_word);
+  }
+  if (const auto* child = task.Awaits<awaited::Child>(); child != nullptr && child->stops) {
+    children_.ForgetNews(*task.process);
+  }
+  const auto* watched = task.Awaits<awaited::Descriptors>();
+  if (watched == nullptr) return;
+  if (!timed_out) {
+    if (watched->transfers && RawTransfers::Receives(task.trapped_call))
+      activations_.ReceivedRaw(task, false);
+    return;
+  }
+  task.trap_continues = false;
+  if (watched->transfers) {
+    task.trap_result = -EAGAIN;
+  } else {
+    RawPolls::ClearResult(task, task.trapped_call);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,94 @@
+#include "coordinator/processes/births.h"
+
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+// Further threads and processes have no name of their own; their place in the order is the same in
+// every run.
+std::string NumberedName(const Task& task) {
+  return fmt::format("{} #{}", task.process->name, task.order);
+}
+
+}  // namespace
+
+Task& Births::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
+  Task& task = run_.table.AddTask(tid);
+  task.process = &process;
+  task.parked = false;
+  task.metered.speed = process.robot->speed;
+  task.metered.is_ideal = process.robot->is_ideal;
+  task.reached_ns = task.activation.release_ns = std::max(at_ns, waker_.EarliestWake());
+  process.robot->tasks.push_back(&task);
+  SchedulerOf(task).Add(task.order, process.priority);
+  if (process.deadline_ns > 0) {
+    SchedulerOf(task).SetClientDeadline(task.order, process.deadline_ns, task.reached_ns);
+  }
+  waker_.SetState(task, TaskState::kStarting);
+  waker_.Refresh(*process.robot);
+  return task;
+}
+
+Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
+  Process& process = run_.table.AddProcess(pid);
+  process.parent = parent;
+  process.robot = &robot;
+  process.pidfd.Reset(OpenPidfd(pid));
+  if (process.pidfd) {
+    reactor_.Add(process.pidfd.get(), EPOLLIN, {Tag::kProcess, process.index});
+  }
+  return process;
+}
+
+Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, std::int64_t at_ns) {
+  Process& process = AddProcess(pid, getpid(), robot);
+  process.is_client = true;
+  process.client = &process;
+  process.spec = &client;
+  process.name = client.name;
+  process.priority = client.priority;
+  process.deadline_ns = client.deadline.ns();
+  process.call_cost_ns = client.fixed_call_cost.ns();
+  process.allocation_cost_ns = client.fixed_allocation_cost.ns();
+  process.patch_vdso = client.patch_vdso;
+  process.dds_endpoints = client.dds == DdsTransport::kEndpoints;
+  Task& task = AddTask(process, pid, at_ns);
+  process.started_at_ns = task.reached_ns;
+  task.row = records_.AddRow(robot.name, client.name);
+  return task;
+}
+
+Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns) {
+  Process& process = AddProcess(pid, parent, *maker.robot);
+  process.client = maker.client;
+  process.name = maker.name;
+  process.priority = maker.priority;
+  process.deadline_ns = maker.deadline_ns;
+  process.call_cost_ns = maker.call_cost_ns;
+  process.allocation_cost_ns = maker.allocation_cost_ns;
+  process.patch_vdso = maker.patch_vdso;
+  process.dds_endpoints = maker.dds_endpoints;
+  process.clock = maker.clock.Fork();
+  Task& task = AddTask(process, pid, at_ns);
+  task.is_further = true;
+  task.row = records_.AddRow(process.robot->name, NumberedName(task));
+  return task;
+}
+
+Task& Births::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
+  ++process.threads;
+  Task& task = AddTask(process, tid, at_ns);
+  task.is_further = true;
+  task.row = records_.AddRow(process.robot->name, NumberedName(task));
+  return task;
+}
+
+}  // namespace tcs

@@ -1,0 +1,111 @@
+#include "coordinator/processes/deaths.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "coordinator/os/host.h"
+#include "coordinator/processes/slot_check.h"
+#include "coordinator/tasks/cpu_clock.h"
+
+namespace tcs {
+
+void Deaths::End(Task& task, Moment moment) {
+  Process& process = *task.process;
+  usage_.Keep(task);
+  task.cpu_clock_fd.Reset();
+  if (task.slot >= 0) {
+    std::int64_t& stalest_ns = run_.report.staleness_ns;
+    stalest_ns = std::max(stalest_ns, SlotCheck::StalenessOf(task));
+    process.link->FreeSlot(task.slot);
+  }
+  if (process.deliverer == &task) process.deliverer = nullptr;
+  listeners_.thread_ends(task, moment);
+  waker_.Leave(task);
+  waker_.SetState(task, TaskState::kDead);
+  listeners_.thread_has_ended(task);
+  SchedulerOf(task).Remove(task.order);
+  task.parked = true;
+  std::erase(process.robot->tasks, &task);
+  cpu_.active().Ended(task);
+  run_.table.TaskEnded(task);
+  waker_.Refresh(*process.robot);
+}
+
+void Deaths::EndAndWake(Task& task, Moment moment) {
+  End(task, moment);
+  listeners_.wake_those_waiting_for(task, moment);
+}
+
+void Deaths::EndThreadsOf(const Process& process, const Task* except, Moment moment) {
+  const std::vector<Task*> threads = process.robot->tasks;
+  for (Task* task : threads) {
+    if (task->process == &process && task != except) EndAndWake(*task, moment);
+  }
+}
+
+bool Deaths::EndThreadsLostInExec(pid_t pid, Moment moment) {
+  Task* first = run_.table.Living(pid);
+  Process* of = run_.table.LivingProcess(pid);
+  if (of == nullptr || of->threads == 1) return true;
+  const std::vector<Task*>& threads = of->robot->tasks;
+  const bool lives_on = std::any_of(threads.begin(), threads.end(), [&](const Task* task) {
+    return task->process == of && task != first && IsThreadOf(pid, task->tid) &&
+           !IsDying(task->tid);
+  });
+  if (lives_on) return false;
+  const bool by_another = run_.turn.IsIn(*of) && run_.turn.task() != first;
+  if (by_another) {
+    listeners_.settle(*run_.turn.task());
+    moment.ns = run_.turn.task()->reached_ns;
+  }
+  EndThreadsOf(*of, first, moment);
+  of->has_unmanaged_threads = false;
+  if (first == nullptr || !by_another) return true;
+  of->ended.NoteChangedClocks();
+  // The processor clock under its number is another thread's from now on.
+  first->cpu_clock_fd.Reset();
+  first->metered.host_origin_ns = HostClockOf(*first) - first->metered.HostNs(first->charged_ns);
+  return true;
+}
+
+void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
+  Process& process = run_.table.ProcessAt(index);
+  if (process.dead) return;
+  if (run_.turn.IsIn(process)) {
+    listeners_.settle(*run_.turn.task());
+    moment.ns = run_.turn.task()->reached_ns;
+  }
+  process.dead = true;
+  run_.table.ProcessEnded(process);
+  process.ended_at_ns = moment.ns;
+  EndThreadsOf(process, nullptr, moment);
+  UsageBook::Keep(process);
+  process.timer_fds.clear();
+  reactor_.Remove(process.pidfd.get());
+  process.pidfd.Reset();
+  if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
+  if (Process* parent = run_.table.LivingProcess(process.parent); parent != nullptr) {
+    parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;
+    listeners_.child_has_ended(*parent, process.pid, moment);
+  }
+  listeners_.process_has_ended(process, moment);
+  if (!process.is_client) run_.table.GiveUp(process);
+  Reap(process);
+}
+
+// If it is the coordinator's own child.
+void Deaths::Reap(Process& process) {
+  const std::optional<int> status = WaitStatusOf(process.pid);
+  if (!status.has_value()) return;  // its parent's to reap
+  process.wait_status = *status;
+  // Of several threads the last may still be at what HeldThreads::LetDie says: those are reaped at
+  // the run's end, when nobody here is at a real-time priority any more.
+  if (process.threads == 1) waitpid(process.pid, nullptr, WNOHANG);
+  if (process.index == 0) {
+    run_.report.exit_status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
+  }
+}
+
+}  // namespace tcs

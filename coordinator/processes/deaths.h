@@ -1,0 +1,73 @@
+// How threads and processes end: what they have used is kept, what they held is given up, and
+// others are told.
+//
+// For the coordinator's thread only. Times are virtual nanoseconds.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/processes/usage_book.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/process_link.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class Deaths {
+ public:
+  // Others who keep something for threads and processes. All must be set.
+  struct Listeners {
+    // The thread is running, or was right now: it is to be charged up to here.
+    std::function<void(Task&)> settle;
+    // The thread ends: what was to come to it goes to others. It may still wait.
+    std::function<void(Task&, Moment)> thread_ends;
+    // It has: nothing is kept for it any more.
+    std::function<void(Task&)> thread_has_ended;
+    // The kernel's own wake does not reach those that wait for its end, or for a lock of its.
+    std::function<void(Task&, Moment)> wake_those_waiting_for;
+    std::function<void(Process& parent, pid_t child, Moment)> child_has_ended;
+    // After its threads, and after its parent was told.
+    std::function<void(Process&, Moment)> process_has_ended;
+  };
+
+  Deaths(RunState& run, Waker& waker, Reactor& reactor, HostCpu& cpu, const UsageBook& usage)
+      : run_(run), waker_(waker), reactor_(reactor), cpu_(cpu), usage_(usage) {}
+  void Tell(Listeners listeners) { listeners_ = std::move(listeners); }
+
+  // The thread is gone, or is about to; its number may be another's already.
+  void End(Task& task, Moment moment);
+  // And nobody but the coordinator can tell those that wait for it.
+  void EndAndWake(Task& task, Moment moment);
+
+  // The process has ended, as the kernel says.
+  void ProcessEnded(std::uint32_t index, Moment moment);
+  // A thread that executes another program becomes its process's first one; all others have ended,
+  // and nobody else says so. False where they have not: it has executed nothing.
+  bool EndThreadsLostInExec(pid_t pid, Moment moment);
+
+  // Between two steps of the loop: slots of processes that have ended can be read until then.
+  void DropLinks() { ended_links_.clear(); }
+
+ private:
+  void EndThreadsOf(const Process& process, const Task* except, Moment moment);
+  void Reap(Process& process);
+
+  RunState& run_;
+  Waker& waker_;
+  Reactor& reactor_;
+  HostCpu& cpu_;
+  const UsageBook& usage_;
+  Listeners listeners_;
+  std::vector<std::unique_ptr<ProcessLink>> ended_links_;
+};
+
+}  // namespace tcs

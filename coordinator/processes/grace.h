@@ -1,0 +1,65 @@
+// The end of a run for the clients that still live. Each gets a signal, and a grace of virtual time
+// in which it may write what it has and exit; then it is killed. The results stand already: the
+// world has stopped, and nothing of this is recorded. The engine's loop goes on meanwhile, from one
+// client's kill to the next one's:
+//
+//   Begin()                    all get their signals
+//   while GoOnToNextKill()     the end of the loop is now then
+//     the loop, until that end, or IsOver()
+//     KillOverdue()
+//   WarnOfThoseLeft()
+//
+// For the coordinator's thread only. Times are virtual nanoseconds where not said otherwise; in
+// real time the grace is bounded, too (Tag::kGraceRanOut).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/processes/unknown_children.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class Grace {
+ public:
+  // `signalled` is told that signals have been sent, to whomever.
+  Grace(RunState& run, Reactor& reactor, const UnknownChildren& unknown_children,
+        std::function<void(Moment)> signalled)
+      : run_(run),
+        reactor_(reactor),
+        unknown_children_(unknown_children),
+        signalled_(std::move(signalled)) {}
+
+  // RunState::grace_began_ns is set.
+  void Begin();
+  // Sets the run's end to when the next one is to be killed. False if nobody is: all have ended, or
+  // have been killed, or the grace is over.
+  bool GoOnToNextKill();
+  void KillOverdue();
+  void WarnOfThoseLeft();
+
+  // No real time is left; or the user insists.
+  void RanOut();
+  bool IsOver() const { return ran_out_ || run_.stop.insists(); }
+
+ private:
+  void LimitRealTime();
+  int StopSignalOf(const Process& process) const;
+  std::int64_t KillTimeOf(const Process& process) const;
+  void WarnOfKill(const Process& process, const std::string& within);
+
+  RunState& run_;
+  Reactor& reactor_;
+  const UnknownChildren& unknown_children_;
+  std::function<void(Moment)> signalled_;
+  UniqueFd timer_;  // of real time
+  bool ran_out_ = false;
+};
+
+}  // namespace tcs

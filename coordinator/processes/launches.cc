@@ -1,0 +1,125 @@
+#include "coordinator/processes/launches.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/os/files.h"
+#include "coordinator/os/host.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+namespace {
+
+// What the user has preloaded comes first, as the shim itself has it for what programs execute
+// (libtcs_preload/environment.cc).
+std::string WithOurLibraries(const std::string& users, const std::string& ours) {
+  return users.empty() ? ours : users + ":" + ours;
+}
+
+SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunOptions& options) {
+  const bool is_fixed = options.accounting == shm::Accounting::kFixed;
+  SpawnRequest request;
+  request.command = client.command;
+  request.working_directory = client.working_directory;
+  request.environment = client.environment;
+  const bool counts_allocations =
+      options.counts_work || (is_fixed && !robot.is_ideal && client.fixed_allocation_cost.ns() > 0);
+  std::string& preload = request.environment["LD_PRELOAD"];
+  preload = WithOurLibraries(
+      client.environment.contains("LD_PRELOAD") ? preload : options.user_preload,
+      options.preload_library + (counts_allocations ? ":" + options.allocation_library : ""));
+  request.fixed_layout = is_fixed;
+  if (!options.output_directory.empty()) {
+    const std::string base = options.output_directory + "/" + FileNameOf(client);
+    request.log_stdout = base + ".out.log";
+    request.log_stderr = base + ".err.log";
+  }
+  return request;
+}
+
+}  // namespace
+
+std::string Launches::Begin() {
+  auto robot = run_.robots.begin();
+  for (const RobotSpec& spec : run_.scenario.robots) {
+    for (const ClientSpec& client : spec.clients) {
+      const std::int64_t start_ns = client.after.empty() ? client.start.ns() : shm::kNeverNs;
+      launches_.push_back({&client, &*robot, start_ns, nullptr});
+    }
+    ++robot;
+  }
+  for (Robot& each : run_.robots) FindNext(each);
+  for (Robot& each : run_.robots) StartDue(each, 0);
+  return run_.report.error;
+}
+
+void Launches::StartDue(Robot& robot, std::int64_t now_ns) {
+  if (robot.next_launch_ns > now_ns) return;
+  for (Launch& launch : launches_) {
+    if (launch.robot != &robot || launch.process != nullptr || launch.start_ns > now_ns) continue;
+    if (std::string error = Start(launch, now_ns); !error.empty() && run_.report.error.empty()) {
+      run_.report.error = std::move(error);
+      return;
+    }
+  }
+  FindNext(robot);
+}
+
+void Launches::FindNext(Robot& robot) {
+  robot.next_launch_ns = shm::kNeverNs;
+  for (const Launch& launch : launches_) {
+    if (launch.robot != &robot || launch.process != nullptr) continue;
+    robot.next_launch_ns = std::min(robot.next_launch_ns, launch.start_ns);
+  }
+  waker_.Refresh(robot);
+}
+
+bool Launches::AreAhead() const {
+  return std::any_of(run_.robots.begin(), run_.robots.end(),
+                     [this](const Robot& robot) { return robot.next_launch_ns < run_.end_ns; });
+}
+
+void Launches::ClientHasEnded(const Process& client) {
+  if (run_.IsInGrace()) return;
+  for (Launch& launch : launches_) {
+    if (launch.spec->after != client.name || launch.process != nullptr) continue;
+    launch.start_ns = std::max(launch.spec->start.ns(), client.ended_at_ns);
+    FindNext(*launch.robot);
+  }
+}
+
+void Launches::Stop() {
+  for (Robot& robot : run_.robots) {
+    robot.next_launch_ns = shm::kNeverNs;
+    waker_.Refresh(robot);
+  }
+}
+
+std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
+  const ClientSpec& client = *launch.spec;
+  SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
+  request.guarded = guarded_;
+  const std::string socket_name = sockets_.Open();
+  if (socket_name.empty()) return "the socket that clients register at cannot be made";
+  request.environment["TCS_SOCKET"] = socket_name;
+  if (const std::string aliases = world_.AliasesOf(launch.robot->name); !aliases.empty()) {
+    request.environment[shm::kAliasesVariable] = aliases;
+  }
+  Spawned spawned = Spawn(request);
+  if (spawned.pid < 0) return client.name + " cannot be started: " + strerror(errno);
+  if (spawned.trap) {
+    traps_.Add(std::move(spawned.trap));
+  } else {
+    run_.Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
+              "): threads wait for each other in real time");
+  }
+  launch.process = births_.AddClient(spawned.pid, *launch.robot, client, at_ns).process;
+  sockets_.AssignTo(*launch.process);
+  return {};
+}
+
+}  // namespace tcs

@@ -1,0 +1,74 @@
+// When the clients of a scenario start: at the run's beginning, at a virtual time, or once another
+// one has ended. Until then that time is one at which their robot's idle core acts
+// (Robot::next_launch_ns).
+//
+// For the coordinator's thread only. Times are virtual nanoseconds; errors are one sentence.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/core/world.h"
+#include "coordinator/processes/births.h"
+#include "coordinator/processes/registration_sockets.h"
+#include "coordinator/processes/trap_listeners.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class Launches {
+ public:
+  struct Launch {
+    const ClientSpec* spec;
+    Robot* robot;
+    std::int64_t start_ns;  // never: it waits for another one to end
+    Process* process;       // once started
+  };
+
+  // The processes in `guarded` are tcsim's own. All of these outlive this.
+  Launches(RunState& run, Waker& waker, Births& births, RegistrationSockets& sockets,
+           TrapListeners& traps, const World& world, const std::vector<pid_t>& guarded)
+      : run_(run),
+        waker_(waker),
+        births_(births),
+        sockets_(sockets),
+        traps_(traps),
+        world_(world),
+        guarded_(guarded) {}
+
+  // Of all clients, once their robots are there; then starts those that start at 0. Empty on
+  // success.
+  [[nodiscard]] std::string Begin();
+  // Starts those of the robot that are due. An error ends the run.
+  void StartDue(Robot& robot, std::int64_t now_ns);
+  // Those that wait for the client to end, however it has ended, are started now, or later if they
+  // are to.
+  void ClientHasEnded(const Process& client);
+  // Nobody starts any more.
+  void Stop();
+
+  // Whether a client is still to be started, at a time that is known.
+  bool AreAhead() const;
+  // As in the scenario.
+  const std::vector<Launch>& all() const { return launches_; }
+
+ private:
+  std::string Start(Launch& launch, std::int64_t at_ns);
+  void FindNext(Robot& robot);
+
+  RunState& run_;
+  Waker& waker_;
+  Births& births_;
+  RegistrationSockets& sockets_;
+  TrapListeners& traps_;
+  const World& world_;
+  const std::vector<pid_t>& guarded_;
+  std::vector<Launch> launches_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,177 @@
+#include "coordinator/processes/registration.h"
+
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "coordinator/os/host.h"
+#include "coordinator/processes/attach_exchange.h"
+
+namespace tcs {
+
+bool Registration::Heard(int fd, Moment moment) {
+  std::optional<Connection> connection = parts_.sockets.Take(fd);
+  if (!connection.has_value()) return false;
+  const std::optional<shm::AttachHello> hello = PeekHello(fd);
+  if (hello.has_value() && RegistersLater(*hello)) {
+    parts_.reactor.Remove(fd);
+    early_.insert_or_assign(hello->tid, std::move(*connection));
+    return false;
+  }
+  return Register(*connection, moment);
+}
+
+bool Registration::RegistersLater(const shm::AttachHello& hello) const {
+  if (hello.wants == shm::AttachWants::kDdsArea || early_.contains(hello.tid) ||
+      early_.size() >= RegistrationSockets::kMostSilent) {
+    return false;
+  }
+  if (const Task* task = run_.table.Living(hello.tid); task != nullptr) {
+    const bool waits_for_dispatch =
+        !run_.turn.IsOf(*task) && task->slot < 0 && Waker::IsRunnable(*task);
+    return waits_for_dispatch && task->process->pid == hello.pid;
+  }
+  if (!run_.turn.lasts()) return false;
+  const pid_t running = run_.turn.task()->process->pid;
+  const bool is_of_running =
+      run_.turn.HasClock() && (hello.pid == running || ParentOf(hello.pid) == running);
+  return run_.gates_only || is_of_running;
+}
+
+void Registration::RegisterUnannounced(Moment moment) {
+  std::vector<pid_t> unknown;
+  for (const auto& [tid, connection] : early_) {
+    if (run_.table.Living(tid) == nullptr) unknown.push_back(tid);
+  }
+  for (const pid_t tid : unknown) {
+    const auto early = early_.extract(tid);
+    if (!early.empty()) Register(early.mapped(), moment);
+  }
+}
+
+void Registration::LetRegister(const Task& dispatched) {
+  auto early = early_.extract(dispatched.tid);
+  if (!early.empty()) parts_.sockets.Add(std::move(early.mapped()));
+}
+
+// True if the running thread has to be stopped.
+bool Registration::Register(const Connection& connection, Moment moment) {
+  const int fd = connection.fd.get();
+  const TakenHello taken = TakeHello(fd);
+  if (taken.has_gone) return false;
+  if (!taken.hello.has_value()) {
+    Refuse(fd, "it comes from another version of tcs");
+    return false;
+  }
+  const shm::AttachHello& hello = *taken.hello;
+  if (hello.wants == shm::AttachWants::kDdsArea) {
+    GiveDdsArea(fd, hello.pid);
+    return false;
+  }
+  if (const char* why = WhyNot(hello, moment); why != nullptr) {
+    Refuse(fd, why);
+    return false;
+  }
+  return TakePlace(fd, hello, *connection.client, moment);
+}
+
+// Why it cannot be what it says that it is; null if it is.
+const char* Registration::WhyNot(const shm::AttachHello& hello, Moment moment) {
+  const bool is_known = run_.table.LivingProcess(hello.pid) != nullptr;
+  if (!IsThreadOf(hello.pid, hello.tid) || (!is_known && !DescendsFrom(hello.pid, getpid()))) {
+    return "it was not started there";
+  }
+  const Task* known = run_.table.Living(hello.tid);
+  const bool is_anothers =
+      known != nullptr && run_.turn.IsOf(*known) && known->process->pid != hello.pid;
+  const bool is_first = hello.tid == hello.pid;
+  if (is_anothers || (is_first && !parts_.deaths.EndThreadsLostInExec(hello.pid, moment))) {
+    return "it has a place there already";
+  }
+  return nullptr;
+}
+
+// True if the running thread has to be stopped.
+bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Process& client,
+                             Moment moment) {
+  Task& task = TaskFor(hello.pid, hello.tid, client, moment);
+  Process& process = *task.process;
+  const bool wants_all = hello.wants == shm::AttachWants::kAll;
+  if (process.expelled) return false;
+  if (process.link == nullptr && wants_all) Connect(process);
+  if (process.link == nullptr ||
+      (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0)) {
+    Refuse(connection, "there is no room for more threads");
+    return true;
+  }
+  task.slot_memory = &process.link->SlotAt(task.slot);
+  task.metered.page = &task.slot_memory->clock;
+  if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
+  if (hello.tid == hello.pid) starts_anew_(process, moment);
+  PlaceAtGate(task, moment.ns);
+  const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
+                                        process.link->notify_fd()};
+  Accept(connection, static_cast<std::uint32_t>(task.slot),
+         wants_all ? std::span<const int>(fds) : std::span<const int>());
+  return true;
+}
+
+// The thread that registers: known already (a client, an announced child), a further thread of a
+// known process, or a process that nobody announced. If whoever made it has ended, it is at least
+// known which client's descendant it is: by the socket that it has come to.
+Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment) {
+  if (Task* known = run_.table.Living(tid); known != nullptr) {
+    if (known->process->pid == pid) return *known;
+    parts_.deaths.End(*known, moment);  // its number is another's now
+  }
+  if (Process* known = run_.table.LivingProcess(pid); known != nullptr) {
+    return parts_.births.AddThread(*known, tid, moment.ns);
+  }
+  const pid_t parent_pid = ParentOf(pid);
+  const Process* parent = run_.table.LivingProcess(parent_pid);
+  return parts_.births.AddChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.ns);
+}
+
+void Registration::GiveDdsArea(int connection, pid_t pid) {
+  const Process* process = run_.table.LivingProcess(pid);
+  const int fd = process == nullptr ? -1 : parts_.dds.AreaOf(*process);
+  if (fd < 0) return Refuse(connection, "it has not joined");
+  Accept(connection, 0, std::span(&fd, 1));
+}
+
+// It may still be null afterwards.
+void Registration::Connect(Process& process) {
+  process.link = ProcessLink::Make();
+  if (process.link == nullptr) return;
+  parts_.reactor.Add(process.link->incoming_fd(), EPOLLIN, {Tag::kPipe, process.index});
+}
+
+// Ready for its first dispatch; or for the first of another program.
+void Registration::PlaceAtGate(Task& task, std::int64_t at_ns) {
+  shm::ThreadSlot& slot = SlotOf(task);
+  slot.pid = task.process->pid;
+  slot.tid = task.tid;
+  slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
+  slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
+  slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
+  slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
+  slot.signals.store(0);
+  slot.receipts.count.store(0);
+  shm::NoteStarted(slot.receipts);
+  slot.gate.store(shm::kGateClosed);
+  parts_.waker.Leave(task);
+  task.early_trap.reset();
+  task.trap_id = 0;
+  task.notified_early = false;
+  task.reached_ns = std::max({task.reached_ns, at_ns, parts_.waker.EarliestWake()});
+  parts_.waker.SetState(task, TaskState::kReady);
+  task.parked = true;
+  task.reason = shm::WakeReason::kGo;
+  parts_.waker.Refresh(*task.process->robot);
+}
+
+}  // namespace tcs

@@ -1,0 +1,84 @@
+// Threads that register themselves (shm/attach_protocol.h): who has connected, what it becomes, and
+// when. Whoever can connect can say anything: what the kernel says of it is what counts.
+//
+// While the kernel holds the thread whose turn it is, others of the run get the processor, and so
+// come as far as here. When they do depends on the host, so it must not show: such a thread
+// registers later, at its own first dispatch; or, if its maker runs and has not said yet that it
+// has made it, once it has.
+//
+// For the coordinator's thread only. Never waits. `moment` is when it happens, for those that did
+// not have to wait for it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "coordinator/calls/dds_gateway.h"
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/processes/births.h"
+#include "coordinator/processes/deaths.h"
+#include "coordinator/processes/registration_sockets.h"
+#include "coordinator/tasks/moment.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+class Registration {
+ public:
+  // The parts that it needs. They outlive it.
+  struct Parts {
+    RunState& run;
+    Waker& waker;
+    Reactor& reactor;
+    HostCpu& cpu;
+    RegistrationSockets& sockets;
+    Births& births;
+    Deaths& deaths;
+    DdsGateway& dds;
+  };
+
+  // `starts_anew` is told of a process that is new, or executes another program: what it had before
+  // is gone.
+  Registration(const Parts& parts, std::function<void(Process&, Moment)> starts_anew)
+      : parts_(parts), run_(parts.run), starts_anew_(std::move(starts_anew)) {}
+
+  // The run's memory, which all that register get to see.
+  void ShareMemory(int fd) { memory_fd_ = fd; }
+
+  // Somebody who has connected says what it wants, at that descriptor. True if the running thread
+  // has to be stopped.
+  bool Heard(int fd, Moment moment);
+  // The thread is dispatched, and registers now if it has wanted to before.
+  void LetRegister(const Task& dispatched);
+  // Makers' turns are over, and they have said nothing of those who are waiting.
+  void RegisterUnannounced(Moment moment);
+  // The thread has ended.
+  void Forget(const Task& ended) { early_.erase(ended.tid); }
+
+ private:
+  using Connection = RegistrationSockets::Connection;
+
+  bool RegistersLater(const shm::AttachHello& hello) const;
+  bool Register(const Connection& connection, Moment moment);
+  const char* WhyNot(const shm::AttachHello& hello, Moment moment);
+  bool TakePlace(int connection, const shm::AttachHello& hello, Process& client, Moment moment);
+  Task& TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
+  void GiveDdsArea(int connection, pid_t pid);
+  void Connect(Process& process);
+  void PlaceAtGate(Task& task, std::int64_t at_ns);
+
+  const Parts parts_;
+  RunState& run_;
+  std::function<void(Process&, Moment)> starts_anew_;
+  int memory_fd_ = -1;
+  std::map<pid_t, Connection> early_;  // of threads that register later, by their numbers
+};
+
+}  // namespace tcs

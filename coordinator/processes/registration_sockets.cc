@@ -1,0 +1,63 @@
+#include "coordinator/processes/registration_sockets.h"
+
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+RegistrationSockets::RegistrationSockets(Reactor& reactor)
+    : reactor_(reactor),
+      name_(fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC))) {}
+
+std::string RegistrationSockets::Open() {
+  const auto number = static_cast<std::uint32_t>(sockets_.size());
+  const std::string name = fmt::format("{}.{}", name_, number);
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (fd < 0) return {};
+  sockets_.push_back({UniqueFd(fd), nullptr});
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  memcpy(address.sun_path + 1, name.data(), name.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (bind(fd, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(fd, 256) != 0) {
+    return {};
+  }
+  reactor_.Add(fd, EPOLLIN, {Tag::kListener, number});
+  return name;
+}
+
+void RegistrationSockets::Accept(std::uint32_t number) {
+  const Socket& socket = sockets_[number];
+  UniqueFd fd(accept4(socket.fd.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (!fd) return;
+  Add({std::move(fd), socket.client});
+}
+
+void RegistrationSockets::Add(Connection connection) {
+  while (silent_.size() >= kMostSilent) silent_.pop_front();
+  const int fd = connection.fd.get();
+  silent_.push_back(std::move(connection));
+  reactor_.Add(fd, EPOLLIN, {Tag::kConnection, static_cast<std::uint32_t>(fd)});
+}
+
+std::optional<RegistrationSockets::Connection> RegistrationSockets::Take(int fd) {
+  const auto found = std::find_if(silent_.begin(), silent_.end(),
+                                  [fd](const Connection& one) { return one.fd.get() == fd; });
+  if (found == silent_.end()) return std::nullopt;
+  Connection connection = std::move(*found);
+  silent_.erase(found);
+  return connection;
+}
+
+}  // namespace tcs

@@ -1,0 +1,57 @@
+// Where processes register (shm/attach_protocol.h): a socket for each client and all that it
+// starts, so that it is known whose descendant somebody is whose parents have ended; and those who
+// have connected, until they say what they want.
+//
+// For the coordinator's thread only. The reactor says who has come (Tag::kListener, with the
+// socket's number) and who has said something (Tag::kConnection, with the descriptor).
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class RegistrationSockets {
+ public:
+  // Who has connected says at once what it wants. Of those who do not the earliest are cut off.
+  static constexpr std::size_t kMostSilent = 256;
+
+  // Somebody who has not said yet what it wants.
+  struct Connection {
+    UniqueFd fd;
+    Process* client;  // that the socket is for
+  };
+
+  explicit RegistrationSockets(Reactor& reactor);
+
+  // A socket for the next client and its descendants. Its name, or nothing: errno is set.
+  std::string Open();
+  // The socket that was opened last is that client's. Before anybody can have connected there.
+  void AssignTo(Process& client) { sockets_.back().client = &client; }
+
+  void Accept(std::uint32_t number);
+  // It has not been heard yet, or will be heard again.
+  void Add(Connection connection);
+  // It says something; nothing if it was cut off.
+  std::optional<Connection> Take(int fd);
+
+ private:
+  struct Socket {
+    UniqueFd fd;
+    Process* client;
+  };
+
+  Reactor& reactor_;
+  const std::string name_;  // of all; each has its number behind it
+  std::vector<Socket> sockets_;
+  std::deque<Connection> silent_;  // the earliest first
+};
+
+}  // namespace tcs

@@ -1,0 +1,54 @@
+#include "coordinator/processes/run_records.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace tcs {
+
+std::string RunRecords::Open() {
+  std::string error = OpenFiles();
+  if (error.empty() && world_.present()) world_row_ = schedule_.AddRow("dynamics", "dynamics");
+  return error;
+}
+
+std::string RunRecords::OpenFiles() {
+  const std::string& directory = run_.options.output_directory;
+  if (directory.empty()) return {};
+  // It says that a run has ended, and that of an earlier one would say it of this one.
+  std::error_code ignored;
+  for (const char* file : {"/summary.json", "/unfinished.json"}) {
+    std::filesystem::remove(directory + file, ignored);
+  }
+  std::string error = schedule_.Open(directory, !run_.IsFixed());
+  if (error.empty()) error = world_.OpenCsv(directory + "/bodies.csv");
+  if (error.empty()) {
+    error = activations_.Open(directory + "/activations.csv", run_.options.counts_work);
+  }
+  return error;
+}
+
+void RunRecords::StartAt(const RunClock& clock) {
+  schedule_.StartAt(clock.start_tsc(), clock.rate().ticks_per_ns);
+}
+
+void RunRecords::Flush() {
+  schedule_.Flush();
+  activations_.Flush();
+  world_.FlushCsv();
+}
+
+std::string RunRecords::Close() {
+  const std::string errors[] = {schedule_.Close(), activations_.Close(), world_.CloseCsv()};
+  for (const std::string& error : errors) {
+    if (!error.empty()) return error;
+  }
+  return {};
+}
+
+void RunRecords::Ran(const Task& task, Span shown, Span world, std::uint64_t until_tsc) {
+  const std::uint64_t since_tsc = std::exchange(run_.turn.recorded_tsc, until_tsc);
+  schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
+}
+
+}  // namespace tcs

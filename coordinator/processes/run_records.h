@@ -1,0 +1,55 @@
+// What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, when clients
+// were activated, who had the processor when, and where bodies were. Nothing is written by a run
+// without a folder for its results.
+//
+// For the coordinator's thread only. Errors are one sentence; empty is success.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "coordinator/core/world.h"
+#include "coordinator/tasks/activations.h"
+#include "coordinator/tasks/run_clock.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/trace/schedule_records.h"
+
+namespace tcs {
+
+class RunRecords {
+ public:
+  using Span = ScheduleRecords::Span;
+  using TscSpan = ScheduleRecords::TscSpan;
+
+  RunRecords(RunState& run, World& world, Activations& activations)
+      : run_(run), world_(world), activations_(activations) {}
+
+  // Once the world is open; what an earlier run has left there is removed.
+  [[nodiscard]] std::string Open();
+  // From when real times count.
+  void StartAt(const RunClock& clock);
+  // So that what is left of a run that is killed ends shortly before.
+  void Flush();
+  [[nodiscard]] std::string Close();
+
+  // Where a thread is drawn: Task::row.
+  int AddRow(const std::string& group, const std::string& name) {
+    return schedule_.AddRow(group, name);
+  }
+  // The running thread has stopped at `until_tsc`. It may be settled again in the same turn.
+  void Ran(const Task& task, Span shown, Span world, std::uint64_t until_tsc);
+  // The dynamics were integrated.
+  void Integrated(Span span, TscSpan real) { schedule_.Slice(world_row_, span, span, real); }
+  void SentSensors(std::int64_t at_ns) { schedule_.Instant(world_row_, "sensors", at_ns); }
+
+ private:
+  std::string OpenFiles();
+
+  RunState& run_;
+  World& world_;
+  Activations& activations_;
+  ScheduleRecords schedule_;
+  int world_row_ = 0;
+};
+
+}  // namespace tcs

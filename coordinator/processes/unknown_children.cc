@@ -1,0 +1,70 @@
+#include "coordinator/processes/unknown_children.h"
+
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr useconds_t kTurnUs = 1'000;
+
+}  // namespace
+
+void UnknownChildren::LookFor(const Process& parent) {
+  std::erase_if(untaken_, [](pid_t pid) { return ThreadState(pid) != 'Z'; });
+  for (const pid_t pid : ChildrenOf(parent.pid)) {
+    if (living_.contains(pid) || untaken_.contains(pid)) continue;
+    const bool known = std::any_of(table_.processes().begin(), table_.processes().end(),
+                                   [pid](const Process& p) { return p.pid == pid; });
+    if (known) continue;
+    UniqueFd pidfd(OpenPidfd(pid));
+    if (!pidfd) continue;
+    reactor_.Add(pidfd.get(), EPOLLIN, {Tag::kUnknownChild, static_cast<std::uint32_t>(pid)});
+    living_[pid] = {parent.pid, std::move(pidfd)};
+  }
+}
+
+Process* UnknownChildren::Ended(pid_t pid) {
+  const auto found = living_.find(pid);
+  if (found == living_.end()) return nullptr;
+  const Child child = std::move(found->second);
+  reactor_.Remove(child.pidfd.get());
+  living_.erase(found);
+  // A parent that waits for children of another kind leaves it there.
+  untaken_.insert(pid);
+  return table_.LivingProcess(child.parent);
+}
+
+bool UnknownChildren::LetRunBeside(const Process& parent) {
+  LookFor(parent);
+  if (!AnyRuns()) return false;
+  usleep(kTurnUs);
+  return true;
+}
+
+bool UnknownChildren::AreOf(const Process& parent) const {
+  return std::any_of(living_.begin(), living_.end(),
+                     [&](const auto& child) { return child.second.parent == parent.pid; });
+}
+
+bool UnknownChildren::AnyCounts() const {
+  return std::any_of(living_.begin(), living_.end(),
+                     [this](const auto& child) { return !unmanaged_.IsAstray(child.first); });
+}
+
+bool UnknownChildren::AnyRuns() const {
+  return std::any_of(living_.begin(), living_.end(), [&](const auto& child) {
+    if (table_.Living(child.first) != nullptr || unmanaged_.IsAstray(child.first)) return false;
+    const char state = ThreadState(child.first);
+    return state == 'R' || state == 'D';
+  });
+}
+
+}  // namespace tcs

@@ -1,0 +1,58 @@
+// Children of a bare clone, or of the system call itself, that make no call that tcs knows: nobody
+// has announced them, and they do not register. Their parent learns of their end, and time waits
+// while they run.
+//
+// For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends
+// (Tag::kUnknownChild, with their numbers).
+#pragma once
+
+#include <sys/types.h>
+
+#include <map>
+#include <set>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/processes/unmanaged_threads.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/task_table.h"
+
+namespace tcs {
+
+class UnknownChildren {
+ public:
+  // A child that was not announced and has not registered, perhaps never will.
+  struct Child {
+    pid_t parent = 0;
+    UniqueFd pidfd;
+  };
+
+  UnknownChildren(TaskTable& table, Reactor& reactor, const UnmanagedThreads& unmanaged)
+      : table_(table), reactor_(reactor), unmanaged_(unmanaged) {}
+
+  // When a thread of the parent comes to wait for its children.
+  void LookFor(const Process& parent);
+  // A child has ended. Its parent, which is to be told; null if it has none that lives.
+  Process* Ended(pid_t pid);
+  // The parent has yielded again and again: perhaps it waits for a process that shares its memory
+  // and never registers (a sanitizer's that looks for leaks). If one runs it gets a little real
+  // time, and true is returned.
+  bool LetRunBeside(const Process& parent);
+
+  bool AreOf(const Process& parent) const;
+  // There are some whose end time waits for.
+  bool AnyCounts() const;
+  // Time waits: one is at work.
+  bool AnyRuns() const;
+
+  // The living, by their numbers.
+  const std::map<pid_t, Child>& living() const { return living_; }
+
+ private:
+  TaskTable& table_;
+  Reactor& reactor_;
+  const UnmanagedThreads& unmanaged_;
+  std::map<pid_t, Child> living_;
+  std::set<pid_t> untaken_;  // those that have ended, and were not waited for yet
+};
+
+}  // namespace tcs

@@ -1,0 +1,53 @@
+// Threads that tcs does not manage: made by a bare clone that nobody has announced, or by libraries
+// for themselves, or computing on after they have said that they end. They have the level of the
+// thread that made them, and time waits for them; but one that computes for ever there would keep
+// the CPU from those that are dispatched, so it loses its level, and is waited for no longer.
+//
+// For the coordinator's thread only. Reads /proc and CPU clocks, and changes levels. Times are of
+// the host's processor.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "coordinator/os/strays.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class UnmanagedThreads {
+ public:
+  explicit UnmanagedThreads(RunState& run) : run_(run) {}
+
+  // The dispatched thread has not had the host's processor `cpu` for a while. Others of the host
+  // may have it, too: so an unmanaged thread loses its level only if it has computed since the look
+  // before, in this dispatch. The threads of `detector` are tcsim's own.
+  void LowerThoseThatCompute(int cpu, pid_t detector);
+  // It loses its level at once.
+  void Lower(pid_t tid);
+  bool IsLowered(pid_t tid) const { return lowered_.contains(tid); }
+  // It has lost its level, has had its time since, and is not waited for any more.
+  bool IsAstray(pid_t tid) const;
+
+  // A thread of a process that has registered does so itself before it computes anything: this one,
+  // which has no slot, never will.
+  static bool NeverRegisters(Task& task);
+
+  // Time waits: one is at work in a process that has said that it has such threads.
+  bool AnyRuns() const;
+
+ private:
+  std::string NameOfMakerOf(pid_t tid) const;
+
+  RunState& run_;
+  const int most_pids_ = MostPids();
+  // Time waits for them until their CPU clocks show that.
+  std::map<pid_t, std::int64_t> lowered_;
+  std::int64_t seen_dispatch_ = -1;             // in which they were seen last,
+  std::map<pid_t, std::int64_t> seen_used_ns_;  // and what they had used by then
+};
+
+}  // namespace tcs

@@ -1,0 +1,84 @@
+#include "coordinator/processes/usage_book.h"
+
+#include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
+
+namespace tcs {
+
+namespace {
+
+// What the thread's own CPU clock says that it has used since it was first charged; 0 where it can
+// no longer be asked.
+std::int64_t HostCpuOf(Task& task) {
+  if (task.metered.host_origin_ns < 0) return 0;
+  const std::int64_t now = HostClockOf(task);
+  return now < 0 ? 0 : now - task.metered.host_origin_ns;
+}
+
+}  // namespace
+
+std::int64_t UsageBook::ChargedTo(const Process& process) {
+  std::int64_t charged = process.ended.usage().charged_ns;
+  for (const Task* task : process.robot->tasks) {
+    if (task->process == &process) charged += task->charged_ns;
+  }
+  return charged;
+}
+
+std::int64_t UsageBook::ChargedToAllOf(const Process& client) const {
+  std::int64_t charged = client.descendants.charged_ns;
+  for (const Process& process : table_.processes()) {
+    if (process.client != &client || (process.dead && !process.is_client)) continue;
+    charged += ChargedTo(process);
+  }
+  return charged;
+}
+
+Usage UsageBook::UsageOf(const Process& process) const {
+  Usage usage = process.ended.usage();
+  for (Task* task : process.robot->tasks) {
+    if (task->process != &process || task->slot < 0) continue;
+    usage += {.charged_ns = task->charged_ns,
+              .host_cpu_ns = HostCpuOf(*task),
+              .stolen_ns = check_.StolenOf(*task),
+              .activations = task->activations,
+              .work = task->work};
+  }
+  return usage;
+}
+
+Usage UsageBook::UsageOfAll(const Process& client) const {
+  Usage usage = client.descendants;
+  for (const Process& process : table_.processes()) {
+    // The others' that have ended is kept already, and their places may be others'.
+    if (process.client != &client || (process.dead && !process.is_client)) continue;
+    usage += UsageOf(process);
+  }
+  return usage;
+}
+
+void UsageBook::Keep(Task& ended) const {
+  Process& process = *ended.process;
+  const Usage usage{
+      .charged_ns = ended.charged_ns,
+      .stolen_ns = ended.slot < 0 ? 0 : check_.StolenOf(ended),
+      .activations = ended.activations,
+      .work = ended.work,
+  };
+  if (ended.metered.host_origin_ns < 0) {  // it never ran under its clock
+    process.ended.Add(usage, 0, 0, 0);
+    return;
+  }
+  const auto fallback_ns =
+      static_cast<std::int64_t>(static_cast<double>(ended.charged_ns) * process.robot->speed);
+  process.ended.Add(usage, HostClockOf(ended), ended.metered.host_origin_ns, fallback_ns);
+}
+
+void UsageBook::Keep(Process& ended) {
+  ended.ended.Complete(ProcessCpuClockNs(ended.pid));
+  if (ended.client != nullptr && !ended.is_client) {
+    ended.client->descendants += ended.ended.usage();
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,37 @@
+// What clients have used: they, and all that they have started, however far down and whoever waits
+// for it. Of those that live it is read where it arises; of those that have ended it is kept.
+//
+// For the coordinator's thread only. What the kernel's CPU clocks say costs a system call.
+#pragma once
+
+#include <cstdint>
+
+#include "coordinator/processes/slot_check.h"
+#include "coordinator/tasks/task_table.h"
+#include "coordinator/tasks/usage.h"
+
+namespace tcs {
+
+class UsageBook {
+ public:
+  UsageBook(const TaskTable& table, const SlotCheck& check) : table_(table), check_(check) {}
+
+  // Virtual nanoseconds of its threads, those that have ended among them.
+  static std::int64_t ChargedTo(const Process& process);
+  // With its descendants.
+  std::int64_t ChargedToAllOf(const Process& client) const;
+  Usage UsageOfAll(const Process& client) const;
+
+  // The thread ends: what it has had goes to its process.
+  void Keep(Task& ended) const;
+  // The process has ended, and its threads' has been kept: what it has had goes to its client.
+  static void Keep(Process& ended);
+
+ private:
+  Usage UsageOf(const Process& process) const;
+
+  const TaskTable& table_;
+  const SlotCheck& check_;
+};
+
+}  // namespace tcs

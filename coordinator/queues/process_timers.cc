@@ -1,0 +1,277 @@
+#include "coordinator/queues/process_timers.h"
+
+#include <signal.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <climits>
+#include <iterator>
+#include <utility>
+
+#include "shm/check.h"
+#include "shm/time_values.h"
+
+namespace tcs {
+
+namespace {
+
+using shm::TimerClock;
+
+constexpr std::int64_t kLeastCpuNs = 1'000;
+// So often, at most, a running thread is stopped for a timer of a short interval.
+constexpr std::int64_t kLookNs = shm::kShortIntervalNs;
+
+bool IsItimer(std::int64_t id) { return id >= ITIMER_REAL && id <= ITIMER_PROF; }
+
+shm::TimerKind KindOfItimer(std::int64_t which) {
+  shm::TimerKind kind;
+  kind.signal = which == ITIMER_REAL ? SIGALRM : which == ITIMER_VIRTUAL ? SIGVTALRM : SIGPROF;
+  kind.clock = which == ITIMER_REAL ? TimerClock::kTime : TimerClock::kProcessCpu;
+  return kind;
+}
+
+}  // namespace
+
+// How often it has run out by then, on its clock; sets it to the next time.
+std::int64_t ProcessTimers::Timer::TakeExpirations(std::int64_t clock_ns) {
+  auto& [next_ns, interval_ns] = setting;
+  if (next_ns == 0 || next_ns > clock_ns) return 0;
+  if (interval_ns == 0) {
+    next_ns = 0;
+    return 1;
+  }
+  const std::int64_t count = 1 + (clock_ns - next_ns) / interval_ns;
+  const std::int64_t last_ns = next_ns + (count - 1) * interval_ns;
+  next_ns = shm::AddSaturated(last_ns, interval_ns);
+  return count;
+}
+
+bool ProcessTimers::Timer::IsShort() const {
+  return setting.interval_ns > 0 && setting.interval_ns < shm::kShortIntervalNs;
+}
+
+std::int64_t ProcessTimers::Timer::NextOnVirtualCpu() const {
+  return setting.next_ns == shm::kNeverNs ? shm::kNeverNs : setting.next_ns - lead.ns();
+}
+
+std::int64_t ProcessTimers::Timer::CpuTimeLeft(std::int64_t used_ns) const {
+  const bool is_looked_at = IsShort() && seen_ns != 0;
+  const std::int64_t due_ns =
+      is_looked_at ? std::max(setting.next_ns, seen_ns + kLookNs) : setting.next_ns;
+  return due_ns - used_ns;
+}
+
+void ProcessTimers::Timer::AddOverruns(std::int64_t count) {
+  overruns += std::min<std::int64_t>(INT_MAX - overruns, count);
+}
+
+void ProcessTimers::Timer::Accept() {
+  is_signal_underway = false;
+  accepted_overruns = std::exchange(overruns, 0);
+}
+
+const ProcessTimers::Timer* ProcessTimers::Find(Id id) const {
+  const auto found = timers_.find(id);
+  return found == timers_.end() ? nullptr : &found->second;
+}
+
+ProcessTimers::Timer* ProcessTimers::Find(Id id) {
+  if (IsItimer(id)) timers_.try_emplace(id, Timer{.kind = KindOfItimer(id)});
+  const auto found = timers_.find(id);
+  return found == timers_.end() ? nullptr : &found->second;
+}
+
+bool ProcessTimers::IsFull() const {
+  const auto itimers = std::distance(timers_.begin(), timers_.lower_bound(shm::kFirstTimerId));
+  return timers_.size() - static_cast<std::size_t>(itimers) >= kMost;
+}
+
+ProcessTimers::Id ProcessTimers::Create(const shm::TimerKind& kind) {
+  TCS_CHECK(!IsFull());
+  timers_[next_id_].kind = kind;
+  return next_id_++;
+}
+
+void ProcessTimers::Delete(Id id) {
+  if (IsItimer(id) || timers_.erase(id) == 0) return;
+  std::erase_if(signals_, [id](const TimerSignal& signal) { return signal.timer_id == id; });
+  FindNext();
+}
+
+void ProcessTimers::DeletePosix() {
+  std::vector<Id> ended;
+  for (const auto& [id, timer] : timers_) {
+    if (timer.kind.is_posix != 0) ended.push_back(id);
+  }
+  for (const Id id : ended) Delete(id);
+}
+
+std::optional<shm::TimerKind> ProcessTimers::KindOf(Id id) const {
+  if (IsItimer(id)) return KindOfItimer(id);
+  const Timer* timer = Find(id);
+  return timer == nullptr ? std::nullopt : std::optional(timer->kind);
+}
+
+ProcessTimers::Setting ProcessTimers::Get(Id id) const {
+  const Timer* timer = Find(id);
+  return timer == nullptr ? Setting{} : timer->setting;
+}
+
+void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
+  Timer* timer = Find(id);
+  if (timer == nullptr) return;
+  timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
+  timer->setting.interval_ns = std::max<std::int64_t>(0, setting.interval_ns);
+  timer->lead = lead;
+  timer->is_signal_underway = timer->rests = false;
+  timer->overruns = timer->accepted_overruns = 0;
+  FindNext();
+}
+
+void ProcessTimers::FindNext() {
+  next_expiry_ns_ = shm::kNeverNs;
+  has_cpu_timers_ = false;
+  for (const auto& [id, timer] : timers_) {
+    if (!timer.IsArmed()) continue;
+    if (timer.IsOnCpuTime()) {
+      has_cpu_timers_ = true;
+    } else if (!timer.rests) {
+      next_expiry_ns_ = std::min(next_expiry_ns_, timer.NextOnVirtualCpu());
+    }
+  }
+}
+
+std::vector<ProcessTimers::RanOut> ProcessTimers::Expire(std::int64_t now_ns) {
+  std::vector<RanOut> ran_out;
+  for (auto& [id, timer] : timers_) {
+    if (timer.IsOnCpuTime()) continue;
+    const std::int64_t clock_ns = now_ns + timer.lead.ns();
+    const std::int64_t count = timer.TakeExpirations(clock_ns);
+    if (count == 0) continue;
+    if (timer.IsShort()) {
+      timer.rests = has_resting_timers_ = true;
+      timer.seen_ns = clock_ns;
+    }
+    Signal(id, timer, count);
+    ran_out.push_back({id, count, clock_ns, timer.setting.interval_ns > 0});
+  }
+  FindNext();
+  return ran_out;
+}
+
+bool ProcessTimers::IsBehind(Id id, std::int64_t now_ns) const {
+  const Timer* timer = Find(id);
+  return timer != nullptr && timer->IsShort() && !timer->IsOnCpuTime() && timer->IsArmed() &&
+         timer->NextOnVirtualCpu() <= now_ns;
+}
+
+std::optional<std::int64_t> ProcessTimers::CpuClockOf(const Timer& timer, const CpuUsed& used) {
+  if (timer.kind.clock == TimerClock::kProcessCpu) return used.process_ns;
+  return timer.kind.clock_tid == used.tid ? std::optional(used.thread_ns) : std::nullopt;
+}
+
+std::int64_t ProcessTimers::CpuTimeToExpiry(const CpuUsed& used) const {
+  if (!has_cpu_timers_) return shm::kNeverNs;
+  std::int64_t left = shm::kNeverNs;
+  for (const auto& [id, timer] : timers_) {
+    if (!timer.IsArmed() || !timer.IsOnCpuTime()) continue;
+    const auto clock_ns = CpuClockOf(timer, used);
+    if (clock_ns.has_value()) left = std::min(left, timer.CpuTimeLeft(*clock_ns));
+  }
+  return std::max(kLeastCpuNs, left);
+}
+
+std::vector<ProcessTimers::RanOut> ProcessTimers::ExpireCpu(const CpuUsed& used) {
+  std::vector<RanOut> ran_out;
+  for (auto& [id, timer] : timers_) {
+    if (!timer.IsOnCpuTime()) continue;
+    const auto clock_ns = CpuClockOf(timer, used);
+    const std::int64_t count = clock_ns.has_value() ? timer.TakeExpirations(*clock_ns) : 0;
+    if (count == 0) continue;
+    timer.seen_ns = *clock_ns;
+    Signal(id, timer, count);
+    ran_out.push_back({id, count, *clock_ns, timer.setting.interval_ns > 0});
+  }
+  FindNext();
+  return ran_out;
+}
+
+void ProcessTimers::EndRests(std::int64_t now_ns) {
+  if (!std::exchange(has_resting_timers_, false)) return;
+  for (auto& [id, timer] : timers_) timer.rests = false;
+  FindNext();
+  // What has run out meanwhile is made up now, and not on a core that is still behind.
+  next_expiry_ns_ = std::max(next_expiry_ns_, now_ns);
+}
+
+std::int64_t ProcessTimers::NextLook() const {
+  std::int64_t next_ns = shm::kNeverNs;
+  if (!has_resting_timers_) return next_ns;
+  for (const auto& [id, timer] : timers_) {
+    if (timer.rests) next_ns = std::min(next_ns, timer.seen_ns + kLookNs - timer.lead.ns());
+  }
+  return next_ns;
+}
+
+void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count) {
+  if (timer.kind.signal == 0) return;
+  if (timer.kind.is_posix == 0) {
+    // Such signals are not counted.
+    const bool is_underway = std::ranges::any_of(signals_, [&](const TimerSignal& signal) {
+      return signal.timer_id == 0 && signal.number == timer.kind.signal;
+    });
+    if (!is_underway) signals_.push_back({.number = timer.kind.signal});
+    return;
+  }
+  if (timer.is_signal_underway) return timer.AddOverruns(count);
+  timer.is_signal_underway = true;
+  timer.overruns = 0;
+  timer.AddOverruns(count - 1);
+  signals_.push_back({.number = timer.kind.signal,
+                      .tid = timer.kind.signal_tid,
+                      .timer_id = id,
+                      .value = timer.kind.value,
+                      .overruns = timer.overruns});
+}
+
+std::vector<TimerSignal> ProcessTimers::TakeSignals() { return std::exchange(signals_, {}); }
+
+void ProcessTimers::NoteSent(const TimerSignal& signal, pid_t to) {
+  if (signal.timer_id == 0) return;
+  if (Timer* timer = Find(signal.timer_id); timer != nullptr) timer->sent_to = to;
+}
+
+bool ProcessTimers::IsUnsent(Id id) const {
+  return std::ranges::any_of(signals_, [id](const TimerSignal& s) { return s.timer_id == id; });
+}
+
+std::vector<ProcessTimers::SentSignal> ProcessTimers::SentSignals() const {
+  std::vector<SentSignal> sent;
+  for (const auto& [id, timer] : timers_) {
+    if (!timer.is_signal_underway || IsUnsent(id)) continue;
+    sent.push_back({id, timer.kind.signal, timer.sent_to});
+  }
+  return sent;
+}
+
+void ProcessTimers::Accept(Id id) {
+  Timer* timer = Find(id);
+  if (timer != nullptr && timer->is_signal_underway) timer->Accept();
+}
+
+void ProcessTimers::AcceptAt(Id id, std::int64_t now_ns) {
+  Timer* timer = Find(id);
+  if (timer == nullptr || !timer->is_signal_underway) return;
+  if (!timer->IsOnCpuTime()) {
+    timer->AddOverruns(timer->TakeExpirations(now_ns + timer->lead.ns()));
+  }
+  timer->Accept();
+  FindNext();
+}
+
+std::int64_t ProcessTimers::Overruns(Id id) const {
+  const Timer* timer = Find(id);
+  return timer == nullptr ? 0 : timer->accepted_overruns;
+}
+
+}  // namespace tcs

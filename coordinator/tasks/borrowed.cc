@@ -1,0 +1,66 @@
+#include "coordinator/tasks/borrowed.h"
+
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <stdio.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
+#include "coordinator/os/timer_descriptor.h"
+#include "shm/time_values.h"
+
+namespace tcs {
+
+Borrowed::Borrowed(const Task& task, int fd) : fd_(DuplicateFd(task.process->pidfd.get(), fd)) {}
+
+bool Borrowed::CanWait() const {
+  struct stat status;
+  if (fd() < 0 || fstat(fd(), &status) != 0) return false;
+  return !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode) && !S_ISBLK(status.st_mode);
+}
+
+bool Borrowed::IsNonBlocking() const { return (fcntl(fd(), F_GETFL) & O_NONBLOCK) != 0; }
+
+void Borrowed::AcknowledgeAtOnce() const {
+  const int on = 1;
+  setsockopt(fd(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof on);
+}
+
+bool Borrowed::IsReady(short events) const {
+  pollfd probe{fd(), events, 0};
+  return poll(&probe, 1, 0) != 0;
+}
+
+bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd); }
+
+bool Borrowed::IsTimer() const { return IsTimerDescriptor(fd()); }
+
+bool Borrowed::IsTerminal() const {
+  struct stat status;
+  return fd() >= 0 && fstat(fd(), &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd()) != 0;
+}
+
+bool Borrowed::CanBeRead() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_WRONLY; }
+
+bool Borrowed::CanBeWritten() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_RDONLY; }
+
+int Borrowed::SocketOption(int option, int otherwise) const {
+  int value = 0;
+  socklen_t size = sizeof value;
+  return getsockopt(fd(), SOL_SOCKET, option, &value, &size) == 0 ? value : otherwise;
+}
+
+std::int64_t Borrowed::SocketTimeout(int option) const {
+  timeval timeout{};
+  socklen_t size = sizeof timeout;
+  if (getsockopt(fd(), SOL_SOCKET, option, &timeout, &size) != 0) return shm::kNeverNs;
+  const std::int64_t ns = shm::ToNs(timeout);
+  return ns == 0 ? shm::kNeverNs : ns;
+}
+
+}  // namespace tcs

@@ -1,0 +1,42 @@
+// A descriptor of a client, for as long as it is looked at.
+#pragma once
+
+#include <poll.h>
+#include <sys/types.h>
+
+#include <cstdint>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class Borrowed {
+ public:
+  Borrowed(const Task& task, int fd);
+
+  int fd() const { return fd_.get(); }  // -1: there is none of that number
+
+  // False for files and folders, and for what is no descriptor.
+  bool CanWait() const;
+  bool IsNonBlocking() const;
+  bool IsReady(short events) const;
+  bool IsEventFd() const;
+  bool IsTimer() const;
+  bool IsTerminal() const;
+  // As the shim does it for what it reads itself: what TCP's sender waits for must not wait for a
+  // timer of the host's. Nothing happens to other descriptors.
+  void AcknowledgeAtOnce() const;
+  // False if it was opened for the other direction only.
+  bool CanBeRead() const;
+  bool CanBeWritten() const;
+  // An integer option of SOL_SOCKET; `otherwise` where it has none.
+  int SocketOption(int option, int otherwise) const;
+  // SO_RCVTIMEO or SO_SNDTIMEO in ns; shm::kNeverNs for none.
+  std::int64_t SocketTimeout(int option) const;
+
+ private:
+  UniqueFd fd_;
+};
+
+}  // namespace tcs

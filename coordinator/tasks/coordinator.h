@@ -1,0 +1,81 @@
+// The scheduler process: keeps every leaf's progress together, dispatches threads on the one CPU
+// they share, charges them, and answers what they notify. One call runs one scenario, on the
+// calling thread, which must be the process's only one. All times are nanoseconds: virtual, or real
+// where the name says so.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/usage.h"
+#include "shm/layout.h"
+
+namespace tcs {
+
+// How a run is going, for people who watch.
+struct RunProgress {
+  struct Load {
+    std::string client;
+    std::int64_t charged_ns = 0;
+  };
+  std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0;
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, as in RunReport
+  std::vector<Load> clients;
+};
+
+struct RunOptions {
+  shm::Accounting accounting = shm::Accounting::kMeasured;
+  shm::Sync sync = shm::Sync::kConsistent;
+  std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
+  bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
+  bool record = false;           // all DDS topics, into a bag in output_directory
+  bool waits_for_cpu = true;     // where other runs have them all
+  std::string preload_library;
+  std::string user_preload;        // LD_PRELOAD as the user has it for programs
+  std::string allocation_library;  // preloaded besides where allocations are counted
+  // What CLOCK_MONOTONIC shows at the start. 0 would look like a clock that was never set.
+  std::int64_t uptime_ns = 1'000'000'000'000;
+  // The same of CLOCK_REALTIME; if not set the host's date, or a fixed one under fixed accounting.
+  std::optional<std::int64_t> date_ns;
+  // Called about five times a real second, if set; what it takes is the coordinator's.
+  std::function<void(const RunProgress&)> on_progress;
+  // Called with each warning when it arises, if set.
+  std::function<void(const std::string&)> on_warning;
+  // Called with what people who wait for the run are to know now, if set.
+  std::function<void(const std::string&)> on_notice;
+};
+
+struct ClientReport {
+  std::string name;
+  Usage usage;                      // of all that it has started, too
+  std::int64_t started_at_ns = -1;  // -1: never
+  std::int64_t ended_at_ns = -1;    // before the run did; -1: it lived to the end
+  int wait_status = 0;              // as of waitpid, if it ended
+};
+
+struct RunReport {
+  std::string error;    // one sentence; empty if the run went to its end
+  int exit_status = 0;  // of the first client, as a shell would report it
+  bool interrupted = false;
+  int stop_signal = 0;  // which did that
+  std::int64_t virtual_ns = 0;
+  std::int64_t drift_ns = 0;      // largest difference of progress between two leaves
+  std::int64_t staleness_ns = 0;  // largest, over all reads
+  // Between the sending of something and the instant at which the thread that it woke, and that was
+  // to run at once, could run: the largest.
+  std::int64_t lateness_ns = 0;
+  std::int64_t real_ns = 0;
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
+  std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
+  std::int64_t switches = 0, samples = 0, commands = 0;
+  std::vector<ClientReport> clients;
+  std::vector<std::string> warnings;
+};
+
+RunReport RunScenario(const Scenario& scenario, const RunOptions& options);
+
+}  // namespace tcs

@@ -1,0 +1,92 @@
+#include "coordinator/tasks/reactor.h"
+
+#include <poll.h>
+#include <sys/epoll.h>
+#include <time.h>
+
+#include <utility>
+
+#include "shm/check.h"
+#include "shm/time_values.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::uint64_t Packed(const Subject& subject) {
+  return (static_cast<std::uint64_t>(subject.tag) << 56) |
+         (std::uint64_t{subject.number & Subject::kNumberMask} << 32) | subject.index;
+}
+
+constexpr Subject Unpacked(std::uint64_t data) {
+  return {static_cast<Tag>(data >> 56), static_cast<std::uint32_t>(data),
+          static_cast<std::uint32_t>(data >> 32) & Subject::kNumberMask};
+}
+
+}  // namespace
+
+Reactor::Found& Reactor::Found::operator|=(const Found& other) {
+  stops_running |= other.stops_running;
+  wakes_others |= other.wakes_others;
+  blocks_running |= other.blocks_running;
+  looks_again |= other.looks_again;
+  return *this;
+}
+
+Reactor::Reactor() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
+
+void Reactor::On(Tag tag, Handler handler) {
+  handlers_[static_cast<std::size_t>(tag)] = std::move(handler);
+}
+
+bool Reactor::Add(int fd, std::uint32_t events, const Subject& subject) {
+  epoll_event event{};
+  event.events = events;
+  event.data.u64 = Packed(subject);
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event) == 0;
+}
+
+bool Reactor::Modify(int fd, std::uint32_t events, const Subject& subject) {
+  epoll_event event{};
+  event.events = events;
+  event.data.u64 = Packed(subject);
+  return epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event) == 0;
+}
+
+void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr); }
+
+std::size_t Reactor::Wait(std::int64_t timeout_ns) {
+  TCS_CHECK(!is_handling_);
+  epoll_event events[kAtOnce];
+  const timespec timeout = shm::ToTimespec(timeout_ns);
+  const int found = epoll_pwait2(epoll_.get(), events, static_cast<int>(kAtOnce),
+                                 timeout_ns < 0 ? nullptr : &timeout, nullptr);
+  count_ = found < 0 ? 0 : static_cast<std::size_t>(found);
+  for (std::size_t i = 0; i < count_; ++i) {
+    queue_[i] = {Unpacked(events[i].data.u64), events[i].events};
+  }
+  is_full_ = count_ == kAtOnce;
+  return count_;
+}
+
+bool Reactor::HasMore() const {
+  pollfd any{epoll_.get(), POLLIN, 0};
+  return poll(&any, 1, 0) > 0;
+}
+
+Reactor::Found Reactor::Handle(Moment moment) {
+  Found found;
+  TCS_CHECK(!is_handling_);
+  is_handling_ = true;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Queued& one = queue_[i];
+    const Handler& handler = handlers_[static_cast<std::size_t>(one.subject.tag)];
+    TCS_CHECK(handler);
+    found |= handler(one.subject, one.events, moment);
+  }
+  count_ = 0;
+  is_handling_ = false;
+  return found;
+}
+
+}  // namespace tcs

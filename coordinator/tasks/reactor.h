@@ -1,0 +1,96 @@
+// The descriptors that the coordinator waits at: an epoll set, and for each kind of descriptor the
+// handler of its events. The reactor takes what the kernel has into a queue and hands it on in that
+// order; a handler says what it has found, and waiting for events in one is a bug.
+//
+// Not thread-safe. Descriptors stay their owners'.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/tasks/moment.h"
+
+namespace tcs {
+
+// What a descriptor is.
+enum class Tag : std::uint32_t {
+  kPipe,
+  kListener,
+  kConnection,
+  kProcess,
+  kAwaited,
+  kUnknownChild,
+  kTrap,
+  kCommand,
+  kSignal,
+  kGraceRanOut,
+  kDetector,
+  kDetectorEnd,
+  kCount
+};
+
+// Of whom or what the events at a descriptor are. Fits into what epoll keeps with it.
+struct Subject {
+  static constexpr std::uint32_t kNumberMask = 0xffffff;
+
+  Tag tag = Tag::kPipe;
+  std::uint32_t index = 0;
+  std::uint32_t number = 0;  // tells events of this wait from those of earlier ones; 24 bits count
+
+  bool operator==(const Subject&) const = default;
+};
+
+class Reactor {
+ public:
+  // What handlers have found, together.
+  struct Found {
+    bool stops_running = false;   // the running thread has to be stopped
+    bool wakes_others = false;    // somebody may act now who could not before
+    bool blocks_running = false;  // the kernel holds the running thread
+    bool looks_again = false;     // there may be more by now that belongs to this moment
+    Found& operator|=(const Found& other);
+  };
+  // `events` as epoll has them.
+  using Handler = std::function<Found(const Subject&, std::uint32_t events, Moment)>;
+
+  Reactor();
+  Reactor(const Reactor&) = delete;
+  Reactor& operator=(const Reactor&) = delete;
+
+  void On(Tag tag, Handler handler);
+
+  // False: errno is set (ENOENT, EEXIST and the like, as epoll_ctl has it).
+  bool Add(int fd, std::uint32_t events, const Subject& subject);
+  bool Modify(int fd, std::uint32_t events, const Subject& subject);
+  // Nothing happens if it is not there.
+  void Remove(int fd);
+
+  // Waits until there is an event, at most so long in real time (negative: without limit), and
+  // queues what there is. Returns the number of events.
+  std::size_t Wait(std::int64_t timeout_ns);
+  // True if the kernel may have more at this instant than the last wait took.
+  bool IsFull() const { return is_full_; }
+  // True if something has come since that the next wait takes.
+  bool HasMore() const;
+  // Has what is queued handled, all of it at that moment.
+  Found Handle(Moment moment);
+
+ private:
+  static constexpr std::size_t kAtOnce = 64;
+
+  struct Queued {
+    Subject subject;
+    std::uint32_t events;
+  };
+
+  UniqueFd epoll_;
+  bool is_full_ = false, is_handling_ = false;
+  std::array<Queued, kAtOnce> queue_;
+  std::size_t count_ = 0;  // in it
+  std::array<Handler, static_cast<std::size_t>(Tag::kCount)> handlers_;
+};
+
+}  // namespace tcs

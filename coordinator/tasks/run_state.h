@@ -1,0 +1,75 @@
+// What the parts of a run share: what it was asked for, who takes part, how far it has come, and
+// what it is to report. Plain data, and what follows from it alone; what happens to it is the
+// parts' business.
+//
+// For the coordinator's thread only. All times are virtual nanoseconds.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "coordinator/os/stop_request.h"
+#include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/coordinator.h"
+#include "coordinator/tasks/task_table.h"
+#include "coordinator/tasks/turn.h"
+#include "shm/layout.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+struct RunState {
+  RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates);
+
+  const Scenario scenario;
+  const RunOptions options;
+  const bool gates_only;  // there is no right to real-time priorities
+  RunReport report;
+
+  TaskTable table;
+  std::deque<Robot> robots;
+  std::deque<VirtualCpu> cpus;  // of all robots, by leaf
+  TemporalConsistency root;
+  Turn turn;
+  double ticks_per_ns = 1.0;         // of the TSC
+  shm::RunHeader* header = nullptr;  // which all clients can read; null before the set-up
+
+  std::int64_t end_ns;
+  // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
+  std::int64_t latest_ns = 0;
+  VirtualDuration most_lead;  // of all programs' clocks
+  StopRequest stop;
+  std::int64_t grace_began_ns = shm::kNeverNs;
+
+  bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
+  bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
+  // Without levels a thread that computes is told by a signal to stop.
+  bool Preempts() const { return gates_only && !IsFixed(); }
+  bool IsInGrace() const { return grace_began_ns != shm::kNeverNs; }
+
+  // The furthest that two leaves, or a program's clock and the world, have been apart.
+  std::int64_t DriftNs() const { return std::max(root.drift_ns(), most_lead.ns()); }
+
+  // Each sentence once.
+  void Warn(const std::string& text);
+
+  // The virtual time of what the running thread has just done to others: the time that its clock
+  // showed when it held for the write.
+  std::int64_t WrittenAt() const;
+};
+
+inline shm::ThreadSlot& SlotOf(const Task& task) { return *task.slot_memory; }
+
+// The robot's scheduler, as far as it concerns a thread.
+inline RobotScheduler& SchedulerOf(const Task& task) { return task.process->robot->scheduler; }
+inline const SchedulingParameters& ParametersOf(const Task& task) {
+  return SchedulerOf(task).ParametersOf(task.order);
+}
+inline RobotScheduler::Priority PriorityOf(const Task& task) {
+  return SchedulerOf(task).PriorityOf(task.order);
+}
+
+}  // namespace tcs

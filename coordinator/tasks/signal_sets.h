@@ -1,0 +1,17 @@
+// The signals of a thread, as its program knows them.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include "coordinator/os/host.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+// Without the one that the coordinator has sent it (gates_only.cc), which is nothing of its
+// program's. One of this number that it was not sent is the C library's: every thread has to handle
+// it, whatever it waits in. At its gate a thread blocks more than its program does, until it waits
+// there.
+SignalSets SignalsOf(const RunState& run, Task& task);
+
+}  // namespace tcs

@@ -1,0 +1,183 @@
+// The coordinator's own idea of threads, processes and virtual CPUs. Nothing here is shared with
+// clients.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/host/host_thread.h"
+#include "coordinator/os/host.h"
+#include "coordinator/os/trap.h"
+#include "coordinator/os/unique_fd.h"
+#include "coordinator/policy/robot_scheduler.h"
+#include "coordinator/policy/temporal_consistency.h"
+#include "coordinator/queues/process_timers.h"
+#include "coordinator/tasks/process_link.h"
+#include "coordinator/tasks/program_clock.h"
+#include "coordinator/tasks/task_state.h"
+#include "coordinator/tasks/usage.h"
+#include "coordinator/tasks/wait.h"
+#include "coordinator/trace/activation_log.h"
+#include "shm/check.h"
+#include "shm/layout.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+// Whom a trapped call concerns that the kernel carries out (follow_ups.cc).
+enum class FollowUp { kNone, kBacklogs, kTaken, kSignals, kKernelWaits, kContinued, kTerminals };
+
+struct ClientSpec;
+struct Process;
+struct Robot;
+struct VirtualCpu;
+
+struct Task : HostThread {
+  Process* process = nullptr;
+  VirtualCpu* cpu = nullptr;  // dispatched on last; null before the first time
+  int slot = -1;              // -1: it has not registered yet
+  int order = 0;              // of registration; its number in the scheduling policies
+  TaskState state = TaskState::kStarting;
+  // The virtual time that it has come to: of its last stop, or of what has made it ready since.
+  std::int64_t reached_ns = 0;
+  shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
+  std::optional<Wait> wait;                                   // while kWaiting
+  VirtualDuration lead;              // of its process's clock when it last stopped
+  std::int64_t children_looked = 0;  // of its process's children_changed when it last came to wait
+  std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
+  bool passes_on = false;            // others were passed over for it (one_waiter.cc)
+  bool is_deliverer = false;         // of DDS messages, to its process
+  std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
+  int trap_listener = -1;
+  std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;           // what that call is to return
+  std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
+  bool trap_continues = false;            // or the kernel carries it out
+  FollowUp follow_up = FollowUp::kNone;   // of the call that the kernel carries out
+  bool is_brief = false;                  // it runs for that call only,
+  bool brief_done = false;                // as has been seen,
+  std::uint64_t brief_id = 0;             // by which it was trapped; 0: it is making it,
+  std::int64_t brief_until_ns = 0;        // until then on its host's clock
+  bool expects_kernel = false;            // in its next call the kernel may hold it
+  TrappedCall trapped_call;               // the last but futex calls
+  // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
+  std::uint64_t handed_lock = 0;
+  shm::WakeReason reason = shm::WakeReason::kGo;
+  std::int64_t reply[2] = {0, 0};
+  std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
+  int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
+  std::int64_t charged_ns = 0;
+  bool is_cut_off = false;      // it has been told that its connection is not there any more
+  UniqueFd cpu_clock_fd;        // where its CPU clock is read, if it is not its process's
+  int yields = 0;               // since it last looked whether unknown children wait for theirs
+  bool spins = false;           // computes without calls where computing takes no time
+  bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
+  bool executes = false;        // another program, perhaps: it has no handlers there
+  bool has_signal = false;      // ours, to go to its gate, unless it has handled it by now
+  bool is_put_off = false;      // has notified, and is heard later (gates_only.cc)
+  shm::WorkCounts work{};       // so far,
+  std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
+  std::int64_t activations = 0;
+  Activation activation;    // this one, while it does not wait
+  bool is_further = false;  // not the first thread of a client
+  int row = 0;              // in the schedule trace and the log of dispatches
+
+  // What it waits for, if that is of this kind.
+  template <class Kind>
+  const Kind* Awaits() const {
+    return wait.has_value() ? wait->As<Kind>() : nullptr;
+  }
+  template <class Kind>
+  Kind* Awaits() {
+    return wait.has_value() ? wait->As<Kind>() : nullptr;
+  }
+};
+
+// The signals that do not reach the thread: those that it blocks, or its wait does.
+inline std::uint64_t BlockedOf(const Task& task, const SignalSets& sets) {
+  const auto mask = task.wait.has_value() ? MaskOf(*task.wait) : std::nullopt;
+  return mask.value_or(sets.blocked);
+}
+
+struct Process {
+  std::unique_ptr<ProcessLink> link;  // null before its first attach, and once it has ended
+  std::uint32_t index = 0;            // its place in TaskTable::processes
+  Process* client = nullptr;          // the client that it is or descends from
+  const ClientSpec* spec = nullptr;   // of a client
+  pid_t pid = 0, parent = 0;
+  UniqueFd pidfd;
+  Robot* robot = nullptr;
+  std::string name;
+  int priority = 0;
+  std::int64_t deadline_ns = 0;  // its client's, under scheduler: edf; 0: none
+  std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
+  bool patch_vdso = false, dds_endpoints = false;
+  ProgramClock clock;
+  ProcessTimers timers;
+  std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
+  // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
+  std::int64_t expired_ns = shm::kNeverNs;
+  EndedThreads ended;  // and how many periodic expiries found nobody waiting
+  Usage descendants;   // of processes that have ended and descended from this client
+  std::int64_t children_cpu_ns = 0;
+  std::int64_t children_changed = 0;  // how often one ended, stopped or went on
+  bool stopped = false;               // by a signal, when last looked at
+  // As long as its parent may not have been told.
+  bool stop_is_news = false, continue_is_news = false;
+  std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  bool dds_warned = false;       // a client: of what it, or a descendant, sends
+  bool has_erred = false;        // a client: it, or a descendant, was expelled
+  Task* deliverer = nullptr;     // its thread that takes what is for it
+  bool dead = false;
+  bool killed = false;                 // at the end of its grace
+  bool expelled = false;               // killed, for what it has written into shared memory
+  int threads = 1;                     // that ever attached
+  bool has_unmanaged_threads = false;  // threads that never will
+  bool is_client = false;              // named in the scenario, rather than a child of one
+  int wait_status = 0;                 // once dead, of the coordinator's own children
+  std::int64_t started_at_ns = 0, ended_at_ns = -1;
+};
+
+struct VirtualCpu {
+  Robot* robot = nullptr;
+  std::uint32_t core = 0;
+  std::int64_t progress_ns = 0;  // changed by ComeTo only
+  TemporalConsistency::Leaf leaf = -1;
+  // Of an ideal robot's: where it has been standing since when, of real time.
+  std::int64_t stands_at_ns = -1, stands_since_ns = 0;
+
+  void ComeTo(std::int64_t ns);
+};
+
+struct Robot {
+  Robot(std::string its_name, double its_speed, RobotScheduler its_scheduler)
+      : name(std::move(its_name)), speed(its_speed), scheduler(std::move(its_scheduler)) {}
+
+  std::string name;
+  double speed;
+  bool is_ideal = false;  // its threads are charged nothing
+  RobotScheduler scheduler;
+  std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
+  std::vector<VirtualCpu*> cpus;                // by core
+  std::vector<Task*> tasks;                     // the living
+};
+
+// What its process's clock shows where the thread is.
+inline ProgramTime OwnNow(const Task& task) {
+  return task.process->clock.At(RobotTime(task.reached_ns));
+}
+
+inline void VirtualCpu::ComeTo(std::int64_t ns) {
+  TCS_CHECK(ns >= progress_ns);
+  progress_ns = ns;
+  robot->scheduler.SetProgress(core, ns);
+}
+
+}  // namespace tcs

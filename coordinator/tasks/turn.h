@@ -1,0 +1,55 @@
+// One turn of a thread on a processor of the host: from its dispatch until it has stopped and was
+// charged. While it lasts, whatever the kernel tells of is the thread's doing, or finds it stopped
+// halfway.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class Turn {
+ public:
+  // What is known of the turn before stays until the next one begins.
+  void Begin(Task& task, std::int64_t horizon_ns) {
+    *this = {};
+    task_ = &task;
+    horizon_ns_ = horizon_ns;
+  }
+  void End() { task_ = nullptr; }
+
+  // Whose it is; null between two turns.
+  Task* task() const { return task_; }
+  bool lasts() const { return task_ != nullptr; }
+  bool IsOf(const Task& task) const { return &task == task_; }
+  bool IsIn(const Process& process) const { return lasts() && task_->process == &process; }
+  bool IsOn(const Robot& robot) const { return lasts() && task_->process->robot == &robot; }
+  // Its thread has registered, so that it has a clock.
+  bool HasClock() const { return lasts() && task_->slot >= 0; }
+
+  // How far the thread may come, as its virtual CPU's time.
+  std::int64_t horizon_ns() const { return horizon_ns_; }
+  void LimitTo(std::int64_t horizon_ns) { horizon_ns_ = std::min(horizon_ns_, horizon_ns); }
+
+  // Why the thread was stopped. It has said what it wants, either way; or its time was over, which
+  // is also so where it only has to be looked at, and then it goes on.
+  bool notified = false;
+  std::optional<TrappedCall> trapped;
+  bool timed_out = false;
+  bool HasSpoken() const { return notified || trapped.has_value(); }
+
+  bool is_sent_to_gate = false;    // whatever the thread says next is its stop
+  int false_alarms = 0;            // of the detector, which shares the processor with the thread
+  int held_looks = 0;              // since the thread was found blocked in the kernel
+  std::uint64_t recorded_tsc = 0;  // up to here its slices have been recorded
+
+ private:
+  Task* task_ = nullptr;
+  std::int64_t horizon_ns_ = 0;
+};
+
+}  // namespace tcs

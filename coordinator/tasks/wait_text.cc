@@ -1,0 +1,92 @@
+#include "coordinator/tasks/wait_text.h"
+
+#include <fmt/format.h>
+#include <sys/epoll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+namespace {
+
+std::string KindOf(int fd) {
+  struct stat status {};
+  if (fstat(fd, &status) != 0) return "gone";
+  if (S_ISFIFO(status.st_mode)) return "a pipe";
+  if (S_ISSOCK(status.st_mode)) return "a socket";
+  if (S_ISCHR(status.st_mode)) return isatty(fd) ? "a terminal" : "a device";
+  if (IsAnonymous(getpid(), fd, kEpollSet)) return "an epoll set";
+  char target[64] = {};
+  const ssize_t size =
+      readlink(fmt::format("/proc/self/fd/{}", fd).c_str(), target, sizeof target - 1);
+  return "a " + std::string(target, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+}
+
+std::string TextOf(const KernelObject& object) {
+  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kSemaphores)) {
+    return "for a System V semaphore";
+  }
+  if (object.kind == static_cast<std::int64_t>(shm::WaitKey::kMessages)) {
+    return "at a System V message queue";
+  }
+  return "for room in a listener's backlog";
+}
+
+// The descriptors as the program numbers them, as far as it has said so.
+std::string DescriptorsOf(const Task& task, const awaited::Descriptors& wait) {
+  const bool raw = task.wait->is_in_trapped_call;
+  const shm::Notification& note = SlotOf(task).note;
+  const bool writes = (raw ? 0 : note.fds[0].events & EPOLLOUT) != 0;
+  const std::string what = writes ? "room to write" : "input";
+  if (wait.fds.empty()) return "waits for " + what;
+  const std::string kind = KindOf(wait.fds[0].get());
+  if (wait.fds.size() > 1) {
+    return fmt::format("waits for {} of {} descriptors", writes ? "one" : "input at one",
+                       wait.fds.size());
+  }
+  if (raw && !wait.transfers) return fmt::format("waits for {} ({})", what, kind);
+  const auto number = raw ? static_cast<std::int32_t>(task.trapped_call.args[0]) : note.fds[0].fd;
+  return fmt::format("waits for {} at descriptor {} ({})", what, number, kind);
+}
+
+}  // namespace
+
+WaitText TextOfWait(const Task& task, bool has_child) {
+  if (task.process->stopped || ThreadState(task.tid) == 'T') {
+    return {0, "is stopped by a signal (SIGCONT lets it go on)"};
+  }
+  if (task.state == TaskState::kUnseen) {
+    return {1, fmt::format("is in system call {}, whose end only the kernel knows",
+                           ThreadSystemCall(task.tid))};
+  }
+  if (task.state == TaskState::kStarting) return {8, "is being started"};
+  if (task.state != TaskState::kWaiting) return {9, "is about to act"};
+  if (const auto* wait = task.Awaits<awaited::Descriptors>(); wait != nullptr) {
+    return {2, DescriptorsOf(task, *wait)};
+  }
+  if (const auto* wait = task.Awaits<awaited::Queue>(); wait != nullptr) {
+    return {2, "waits " + TextOf(wait->of)};
+  }
+  if (task.Awaits<awaited::Messages>() != nullptr) return {6, "waits for DDS messages"};
+  if (task.Awaits<awaited::Room>() != nullptr) {
+    return {3, "waits until others have taken its DDS messages"};
+  }
+  if (const auto* wait = task.Awaits<awaited::Child>(); wait != nullptr) {
+    return {4, wait->which > 0 ? fmt::format("waits for its child {} to end", wait->which)
+                               : "waits for a child to end"};
+  }
+  if (const auto* wait = task.Awaits<awaited::Futex>(); wait != nullptr) {
+    if (wait->names_tid > 0) return {5, fmt::format("waits for thread {}", wait->names_tid)};
+    return {5, "waits for a lock or a condition that nobody gives it"};
+  }
+  return {7, has_child ? "waits for a signal, as of a child's end" : "waits for a signal"};
+}
+
+}  // namespace tcs

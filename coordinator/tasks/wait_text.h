@@ -1,0 +1,22 @@
+// What a thread waits for, in words, for a user who sees nothing happen (standstill_watch.h).
+#pragma once
+
+#include <string>
+
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+struct WaitText {
+  // The least of a program's threads is what the program waits for: what others of the same program
+  // can end comes last.
+  int rank = 0;
+  std::string text;  // goes on after the program's name
+
+  auto operator<=>(const WaitText&) const = default;
+};
+
+// `has_child`: its process has a child that lives. For the coordinator's thread; reads /proc.
+WaitText TextOfWait(const Task& task, bool has_child);
+
+}  // namespace tcs

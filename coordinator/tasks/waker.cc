@@ -1,0 +1,168 @@
+#include "coordinator/tasks/waker.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "shm/check.h"
+
+namespace tcs {
+
+bool Waker::IsRunnable(const Task& task) {
+  return task.state == TaskState::kReady || task.state == TaskState::kHolding ||
+         task.state == TaskState::kStarting;
+}
+
+void Waker::SetState(Task& task, TaskState state, bool goes_first) {
+  TCS_CHECK(MayFollow(task.state, state));
+  TCS_CHECK(task.wait.has_value() == (state == TaskState::kWaiting));
+  const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
+  if (ends && task.state != TaskState::kWaiting) activations_.Idles(task);
+  if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
+      more != 0) {
+    unseen_ += more;
+    run_.header->kernel_waiters.store(static_cast<std::uint32_t>(unseen_));
+  }
+  task.state = state;
+  Requeue(task, goes_first);
+  // A deliverer that waits for something else must not be waited for: it may need what those hold.
+  if (task.is_deliverer && !IsRunnable(task) && task.Awaits<awaited::Messages>() == nullptr) {
+    const bool runs = run_.turn.IsOf(task);
+    listeners_.deliverer_is_held_up(*task.process, {runs ? run_.WrittenAt() : task.reached_ns});
+  }
+}
+
+void Waker::Requeue(Task& task, bool goes_first) {
+  if (IsRunnable(task)) {
+    SchedulerOf(task).Enqueue(task.order, task.reached_ns, goes_first);
+  } else {
+    SchedulerOf(task).Dequeue(task.order);
+  }
+}
+
+void Waker::Refresh(Robot& robot) {
+  robot.scheduler.Assign(robot.next_launch_ns);
+  for (const VirtualCpu* cpu : robot.cpus) {
+    run_.root.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core));
+  }
+}
+
+bool Waker::HasRunOut(const Task& task, std::int64_t now_ns) const {
+  if (!task.wait.has_value()) return false;
+  const std::int64_t deadline_ns = task.wait->deadline_ns;
+  if (deadline_ns <= now_ns) return true;
+  return run_.IsCallback() && OwnDeadlineOf(task) <= task.process->clock.shown();
+}
+
+ProgramTime Waker::OwnDeadlineOf(const Task& task) {
+  return ProgramClock::At(RobotTime(task.wait->deadline_ns), task.lead);
+}
+
+RobotScheduler::Wait Waker::WaitOf(const Task& task) const {
+  const Process& process = *task.process;
+  RobotScheduler::Wait wait{.process = process.index,
+                            .next_expiry_ns = process.timers.NextExpiry()};
+  wait.waits = task.wait.has_value() && task.Awaits<awaited::OthersRun>() == nullptr;
+  if (!wait.waits) return wait;
+  wait.for_input = IsForInput(*task.wait);
+  wait.for_thread = task.Awaits<awaited::Futex>() != nullptr;
+  wait.from_ns = task.reached_ns;
+  wait.until_ns = task.wait->deadline_ns;
+  if (run_.IsCallback() && wait.until_ns != shm::kNeverNs) {
+    wait.is_over = HasRunOut(task, 0);
+    wait.own_until_ns = process.clock.RobotTimeOf(OwnDeadlineOf(task)).ns();
+  }
+  return wait;
+}
+
+bool Waker::IsSafe(const Task& task) const {
+  if (task.state != TaskState::kHolding) return true;
+  const VirtualCpu& cpu = *task.cpu;
+  return cpu.progress_ns <= (task.hold == shm::NotificationKind::kRead
+                                 ? run_.root.ReadSafe(cpu.leaf)
+                                 : run_.root.WriteSafe(cpu.leaf));
+}
+
+void Waker::Hold(Task& task, shm::NotificationKind for_what) {
+  SetState(task, TaskState::kHolding);
+  task.hold = for_what;
+}
+
+void Waker::Wait(Task& task, tcs::Wait wait) {
+  TCS_CHECK(!task.wait.has_value());
+  counts_.Entered(wait);
+  ShowObjectWaiters();
+  const bool ends_by_signal = SignalsThatEnd(wait) != 0;
+  task.wait = std::move(wait);
+  SetState(task, TaskState::kWaiting);
+  if (ends_by_signal) listeners_.began_by_signal(task);
+}
+
+void Waker::Leave(Task& task) {
+  const std::optional<tcs::Wait> left = std::exchange(task.wait, std::nullopt);
+  if (!left.has_value()) return;
+  counts_.Left(*left);
+  ShowObjectWaiters();
+  listeners_.left(task, *left);
+}
+
+// So that those whom nobody waits for need not tell of what they do.
+void Waker::ShowObjectWaiters() {
+  const auto waiters = static_cast<std::uint32_t>(counts_.for_objects());
+  if (run_.header->key_waiters.load(std::memory_order_relaxed) != waiters) {
+    run_.header->key_waiters.store(waiters);
+  }
+}
+
+void Waker::Wake(Task& task, shm::WakeReason reason, Moment moment) {
+  if (task.state == TaskState::kDead) return;
+  const bool waited = task.wait.has_value(), reads = waited && LooksAtOthers(*task.wait);
+  const bool for_messages = task.Awaits<awaited::Messages>() != nullptr;
+  const bool outside =
+      moment.from_outside || (run_.turn.lasts() && !run_.turn.IsOn(*task.process->robot));
+  const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
+  if (outside && reads && !for_messages) NoteLateness(task, moment.ns, goes_first);
+  if (waited) {
+    ++task.activations;
+    activations_.Released(task, reason, moment.ns);
+    task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
+  }
+  task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
+  if (waited) {
+    // Where somebody more urgent ran on, the kernel's timer would still have been in time.
+    const bool timed = reason == shm::WakeReason::kDeadline;
+    const std::int64_t released_ns =
+        timed ? std::min(task.wait->deadline_ns, task.reached_ns) : task.reached_ns;
+    SchedulerOf(task).WakeUp(task.order, released_ns, outside);
+  }
+  // Others may have come further: what is due later than its own time it gets then.
+  if (for_messages) {
+    task.messages_until_ns =
+        reason == shm::WakeReason::kDeadline ? task.wait->deadline_ns : task.reached_ns;
+  }
+  if (waited && task.wait->is_in_trapped_call) listeners_.ends_in_trapped_call(task, reason);
+  Leave(task);
+  // Whoever waited for others looks at what they did: that must be all of it.
+  SetState(task, reads && !run_.IsCallback() ? TaskState::kHolding : TaskState::kReady, goes_first);
+  task.hold = shm::NotificationKind::kRead;
+  task.reason = reason;
+  Refresh(*task.process->robot);
+}
+
+std::int64_t Waker::EarliestWake() const {
+  if (run_.IsCallback()) return 0;
+  std::int64_t earliest = run_.root.EarliestWake();
+  if (run_.turn.lasts()) {
+    earliest = std::max(earliest, run_.WrittenAt() - run_.scenario.drift_bound.ns());
+  }
+  return earliest;
+}
+
+void Waker::NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first) {
+  if (run_.IsCallback()) return;
+  sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
+  const std::int64_t late_ns =
+      SchedulerOf(woken).LatenessOf(woken.order, sent_ns, EarliestWake(), goes_first);
+  run_.report.lateness_ns = std::max(run_.report.lateness_ns, late_ns);
+}
+
+}  // namespace tcs
