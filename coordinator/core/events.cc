@@ -161,10 +161,6 @@ bool Engine::CutsOff(Task& task) {
   if (task.slot < 0 || SlotOf(task).gate.load() != shm::kGateWaiting) return false;
   pollfd incoming{task.process->link->incoming_fd(), POLLIN, 0};
   if (poll(&incoming, 1, 0) != 0) return false;
-  fprintf(stderr, "CUTOFF task %d kind %d sent %d early %d says %d opens %d disp %lu word %lu\n",
-          task.order, (int)SlotOf(task).note.kind, (int)run_.turn.is_sent_to_gate,
-          (int)task.notified_early, (int)says_call_, (int)opens_gate_, task.dispatches,
-          SlotOf(task).clock.executed_adjust.load() >> 48);
   if (std::exchange(task.is_cut_off, true)) {
     expulsion_.Expel(*task.process, "a notification that was never sent");
     return true;
