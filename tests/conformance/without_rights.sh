@@ -3,13 +3,13 @@
 # priority among them, and sees to it that the run went without. What BUILD has is copied to where
 # everybody may read it; of COMMAND, words that name programs of BUILD are the copies then.
 set -euo pipefail
+source "$(dirname -- "${BASH_SOURCE[0]}")/../as_nobody.sh"
 build=$1
 shift
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 chmod 755 "$out"
-install -D -m 755 -t "$out/bin" "$build/bin/tcsim"
-install -D -m 755 -t "$out/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
+install_for_everybody "$build" "$out"
 words=()
 for word in "$@"; do
   if [[ $word == "$build"/bin/* ]]; then
@@ -20,12 +20,8 @@ for word in "$@"; do
 done
 mkdir -m 777 "$out/home"
 cd "$out/home"
-lowered=(prlimit --rtprio=0:0 --nice=0:0)
-if ((EUID == 0)); then
-  lowered+=(setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all --inh-caps=-all)
-fi
 status=0
-HOME=$out/home TMPDIR=$out/home "${lowered[@]}" "$out/bin/tcsim" "${words[@]}" 2>"$out/said" || status=$?
+HOME=$out/home TMPDIR=$out/home "${nobody[@]}" "$out/bin/tcsim" "${words[@]}" 2>"$out/said" || status=$?
 cat "$out/said" >&2
 grep -q 'SCHED_FIFO is not permitted here' "$out/said" || { echo 'FAILED: it had the right' >&2; exit 1; }
 exit $status

@@ -11,10 +11,9 @@ run=("$build/bin/in_own_network" "$build/bin/tcsim")
 if [[ -n $rights ]]; then
   ((EUID == 0)) || exit 77  # to have an own network, and give it up
   chmod 777 "$work"
-  install -D -m 755 -t "$work/bin" "$build/bin/tcsim"
-  install -D -m 755 -t "$work/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
-  run=("$build/bin/in_own_network" prlimit --rtprio=0:0 --nice=0:0 setpriv --reuid=65534 --regid=65534
-       --clear-groups --bounding-set=-all --inh-caps=-all "$work/bin/tcsim")
+  source "$(dirname -- "${BASH_SOURCE[0]}")/../as_nobody.sh"
+  install_for_everybody "$build" "$work"
+  run=("$build/bin/in_own_network" "${nobody[@]}" "$work/bin/tcsim")
 fi
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General>
   <Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>

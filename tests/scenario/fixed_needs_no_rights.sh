@@ -1,16 +1,14 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$source_root/tests/as_nobody.sh"
 # Who may not have a real-time priority runs the same worlds under --accounting fixed, and what is written is
 # the same to the byte: by threads, children, births and ends, signals, pipes, and the example's flight.
 ((EUID == 0)) || exit 77  # to have both
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 chmod 755 "$out"
-install -D -m 755 -t "$out/bin" "$tcsim" "$build/bin/soak_client"
-install -D -m 755 -t "$out/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
+install_for_everybody "$build" "$out" soak_client
 mkdir -m 777 "$out/with" "$out/without"
-nobody=(prlimit --rtprio=0:0 --nice=0:0 setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all
-        --inh-caps=-all)
 
 {
   printf 'duration: 2s\ndynamics: {}\nbodies: {ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}}\nrobots:\n'

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$source_root/tests/as_nobody.sh"
 # Who may not have a real-time priority runs the example under both accountings. Fixed, what is written is the
 # same to the byte. Measured, drift and staleness keep their bounds, charges agree with the threads' own CPU
 # clocks, and known work, computed with and without calls, beside others and alone, costs what it costs with rights.
@@ -7,13 +8,10 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 chmod 755 "$out"
-install -D -m 755 -t "$out/bin" "$tcsim" "$build/bin/steady_worker"
-install -D -m 755 -t "$out/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
+install_for_everybody "$build" "$out" steady_worker
 cp -r "$build/examples/predator_prey" "$out/example"
 chmod -R a+rX "$out/example"
 mkdir -m 777 "$out/with" "$out/without"
-nobody=(prlimit --rtprio=0:0 --nice=0:0 setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all
-        --inh-caps=-all)
 cat >"$out/work.yaml" <<END
 duration: 60s
 robots:

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$source_root/tests/as_nobody.sh"
 # A client cannot stop, kill, trace or starve tcsim's own processes, nor reach anybody outside the run
 # with a signal to all; and where somebody else stops them, the run goes on.
 out=$(mktemp -d)
@@ -19,9 +20,7 @@ attacked "$tcsim" exec --accounting fixed -- "$build/bin/attacker"
 if ((EUID == 0)) && prlimit --rtprio=20 true 2>/dev/null; then
   # As somebody who is not above all others, but has the priorities.
   chmod 755 "$out"
-  for file in bin/tcsim bin/attacker lib/libtcs_{preload,allocations,dds}.so; do
-    install -D -m 755 "$build/$file" "$out/$file"
-  done
+  install_for_everybody "$build" "$out" attacker
   attacked prlimit --rtprio=20 setpriv --reuid 65534 --regid 65534 --clear-groups --bounding-set -all \
     "$out/bin/tcsim" exec -- "$out/bin/attacker"
 fi

@@ -195,6 +195,19 @@ TEST_P(EachEngine, CommandsToABodyThatNobodyReadsDoNotPileUp) {
   EXPECT_GT(dynamics->work().changes, 900);
 }
 
+// A world that has one of the bodies only, with the commands to it, at that time.
+std::unique_ptr<Dynamics> Alone(const WorldSpec& world, int body,
+                                const std::vector<TimedCommand>& commands, std::int64_t end_ns) {
+  WorldSpec part = world;
+  part.bodies = {world.bodies[static_cast<std::size_t>(body)]};
+  auto alone = MakeDynamics(part);
+  for (const TimedCommand& command : commands) {
+    if (command.body == body) alone->Apply(0, command.wrench, At(command.at_ns));
+  }
+  alone->AdvanceTo(At(end_ns));
+  return alone;
+}
+
 TEST_P(EveryMethodsIslands, MoveABodyAsIfItWereAlone) {
   std::mt19937_64 random(3);
   const WorldSpec world = BusyWorld(GetParam());
@@ -203,13 +216,7 @@ TEST_P(EveryMethodsIslands, MoveABodyAsIfItWereAlone) {
   ApplyAll(commands, *both);
   const std::int64_t end_ns = commands.back().at_ns + 10'000'000;
   for (const int body : {0, 1}) {
-    WorldSpec part = world;
-    part.bodies = {world.bodies[static_cast<std::size_t>(body)]};
-    auto alone = MakeDynamics(part);
-    for (const TimedCommand& command : commands) {
-      if (command.body == body) alone->Apply(0, command.wrench, At(command.at_ns));
-    }
-    alone->AdvanceTo(At(end_ns));
+    auto alone = Alone(world, body, commands, end_ns);
     both->AdvanceTo(At(end_ns));
     EXPECT_TRUE(SameBits(alone->Read(0), both->Read(body)));
   }
@@ -233,13 +240,7 @@ TEST(Islands, OfUnlikeBodiesMoveAsIfTheyWereAlone) {
   all->AdvanceTo(At(end_ns));
   const auto states = StatesAt(*all, end_ns, kBodies);
   for (int body = 0; body < kBodies; ++body) {
-    WorldSpec part = world;
-    part.bodies = {world.bodies[static_cast<std::size_t>(body)]};
-    auto alone = MakeDynamics(part);
-    for (const TimedCommand& command : commands) {
-      if (command.body == body) alone->Apply(0, command.wrench, At(command.at_ns));
-    }
-    alone->AdvanceTo(At(end_ns));
+    auto alone = Alone(world, body, commands, end_ns);
     EXPECT_TRUE(SameBits(alone->Read(0), states[static_cast<std::size_t>(body)])) << body;
   }
 }

@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/host/meter_times.h"
+
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kUs = 1'000;
-constexpr std::uint64_t kTicksPerMs = 2'000'000, kTicksPerUs = 2'000;
-constexpr TscRate kRate{.ns_per_tick_q32 = std::uint64_t{1} << 31, .ticks_per_ns = 2.0};
-constexpr std::uint64_t kBegun = 1'000 * kTicksPerMs;
-constexpr std::int64_t kStart = 50 * kMs, kHorizon = kStart + 5 * kMs;
+constexpr std::int64_t kHorizon = kStart + 5 * kMs;
 
 // A thread's page, dispatched at kBegun, and a CPU clock whose time the test says.
 class SharedCpuMeterTest : public testing::Test {
