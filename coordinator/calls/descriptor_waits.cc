@@ -1,23 +1,13 @@
 #include "coordinator/calls/descriptor_waits.h"
 
 #include <sys/epoll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <utility>
 
 #include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
 
 namespace tcs {
-
-namespace {
-
-bool IsTerminal(int fd) {
-  struct stat status {};
-  return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd) != 0;
-}
-
-}  // namespace
 
 awaited::Descriptors DescriptorWaits::Watch(const Task& task, const shm::WaitFd* fds,
                                             std::size_t count) {

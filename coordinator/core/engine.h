@@ -223,7 +223,6 @@ class Engine {
   SlotCheck slot_check_{run_.IsFixed(), [this] { return clock_.NsAt(host_cpu_.stop_tsc()); }};
   UsageBook usage_{run_.table, slot_check_};
   Expulsion expulsion_{run_, waker_, host_cpu_};
-  // Threads and processes that come and go.
   Births births_{run_, waker_, reactor_, records_};
   Deaths deaths_{run_, waker_, reactor_, host_cpu_, usage_};
   TrapListeners traps_{reactor_};

@@ -22,9 +22,6 @@ namespace tcs {
 
 namespace {
 
-// Of what may concern anybody.
-constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
-
 constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
 constexpr std::int64_t kHeldTurnNs = 100'000;

@@ -12,13 +12,6 @@
 
 namespace tcs {
 
-namespace {
-
-// Of what may concern anybody.
-constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
-
-}  // namespace
-
 void Engine::RegisterHandlers() {
   const auto on = [this](Tag tag,
                          Reactor::Found (Engine::*handler)(Subject, std::uint32_t, Moment)) {

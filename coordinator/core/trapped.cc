@@ -22,7 +22,6 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
 }
 
 Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
-  constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
   Task* task = run_.table.Living(call.tid);
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.

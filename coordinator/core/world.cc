@@ -38,7 +38,7 @@ class Spent {
 World::World(std::function<void(const std::string&)> warn)
     : commands_(std::move(warn),
                 [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
-                  Apply(std::max(sent.ns(), settled_ns_) + latency.ns(), body, wrench);
+                  Apply(std::max(sent.ns(), settled_ns()) + latency.ns(), body, wrench);
                 }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
@@ -47,6 +47,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   dynamics_ = MakeDynamics(*scenario.world);
   all_bodies_.resize(scenario.world->bodies.size());
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
+  states_.resize(all_bodies_.size());
   sensors_ = Sensors(scenario_.world->gravity_mps2);
   commands_.Open(scenario_.commands);
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
@@ -108,8 +109,6 @@ void World::WriteCsv() {
   const std::int64_t now = progress_ns_;
   if (!csv_.is_open() || now < next_csv_ns_) return;
   next_csv_ns_ += scenario_.csv_period.ns();
-  states_.resize(all_bodies_.size());
-  dynamics_->Read(dynamics_->Now(), all_bodies_, states_);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BodyState& s = states_[i];
     csv_text_ += fmt::format(
@@ -121,22 +120,31 @@ void World::WriteCsv() {
 }
 
 // All that is read now at once: what many bodies need is integrated side by side.
-void World::IntegrateDue() {
-  due_.clear();
-  if (csv_.is_open() && next_csv_ns_ <= progress_ns_) due_ = all_bodies_;
-  sensors_.AddDueBodies(VirtualTime::FromNanoseconds(progress_ns_), &due_);
-  states_.resize(due_.size());
-  dynamics_->Read(dynamics_->Now(), due_, states_);
+void World::ReadDue() {
+  if (csv_.is_open() && next_csv_ns_ <= progress_ns_) {
+    due_ = all_bodies_;
+  } else {
+    due_.clear();
+    sensors_.AddDueBodies(VirtualTime::FromNanoseconds(progress_ns_), &due_);
+    std::ranges::sort(due_);
+    due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
+  }
+  read_.resize(due_.size());
+  dynamics_->Read(dynamics_->Now(), due_, read_);
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    states_[static_cast<std::size_t>(due_[i])] = read_[i];
+  }
 }
 
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
   progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
   Settle(progress_ns_);
-  IntegrateDue();
+  ReadDue();
   WriteCsv();
-  const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
-                                 [this](int body) { return dynamics_->Read(body); });
+  const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_), [this](int body) {
+    return states_[static_cast<std::size_t>(body)];
+  });
   if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
   FindNextStop();
   return sent;
@@ -149,10 +157,8 @@ void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
   progress_ns_ = to_ns;
 }
 
-void World::Settle(std::int64_t settled_ns) {
-  if (settled_ns <= settled_ns_) return;
-  settled_ns_ = settled_ns;
-  dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(settled_ns_));
+void World::Settle(std::int64_t ns) {
+  if (ns > settled_ns()) dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(ns));
 }
 
 void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {

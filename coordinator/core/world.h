@@ -72,15 +72,15 @@ class World {
   void WriteCsv();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
-  void Settle(std::int64_t settled_ns);
-  void IntegrateDue();
+  // Commands for earlier times do not come any more.
+  void Settle(std::int64_t ns);
+  std::int64_t settled_ns() const { return dynamics_->Now().ns(); }
+  void ReadDue();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
-  // Commands for earlier times do not come any more.
-  std::int64_t settled_ns_ = 0;
   Channels channels_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
@@ -89,7 +89,8 @@ class World {
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
   std::vector<int> all_bodies_, due_;
-  std::vector<BodyState> states_;  // memory of WriteCsv and IntegrateDue
+  std::vector<BodyState> states_;  // of all bodies, as each was read last
+  std::vector<BodyState> read_;    // memory of ReadDue
   std::int64_t host_ns_ = 0;
 };
 

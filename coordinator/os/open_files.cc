@@ -1,6 +1,7 @@
 #include "coordinator/os/open_files.h"
 
 #include <linux/kcmp.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -39,6 +40,11 @@ bool IsAnonymous(pid_t pid, int fd, std::string_view kind) {
   char target[64];
   const ssize_t size = readlink(link.c_str(), target, sizeof target);
   return size > 0 && std::string_view(target, static_cast<std::size_t>(size)) == kind;
+}
+
+bool IsTerminal(int fd) {
+  struct stat status {};
+  return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd) != 0;
 }
 
 std::size_t RoomForDescriptors(pid_t pid) {

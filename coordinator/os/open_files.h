@@ -31,6 +31,9 @@ inline constexpr std::string_view kEpollSet = "anon_inode:[eventpoll]",
                                   kTimerFd = "anon_inode:[timerfd]";
 bool IsAnonymous(pid_t pid, int fd, std::string_view kind);
 
+// False for what is no open descriptor.
+bool IsTerminal(int fd);
+
 // How large the process's table of descriptors is.
 std::size_t RoomForDescriptors(pid_t pid);
 

@@ -40,10 +40,7 @@ bool Borrowed::IsEventFd() const { return IsAnonymous(getpid(), fd(), kEventFd);
 
 bool Borrowed::IsTimer() const { return IsTimerDescriptor(fd()); }
 
-bool Borrowed::IsTerminal() const {
-  struct stat status;
-  return fd() >= 0 && fstat(fd(), &status) == 0 && S_ISCHR(status.st_mode) && isatty(fd()) != 0;
-}
+bool Borrowed::IsTerminal() const { return tcs::IsTerminal(fd()); }
 
 bool Borrowed::CanBeRead() const { return (fcntl(fd(), F_GETFL) & O_ACCMODE) != O_WRONLY; }
 

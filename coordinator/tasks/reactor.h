@@ -93,4 +93,7 @@ class Reactor {
   std::array<Handler, static_cast<std::size_t>(Tag::kCount)> handlers_;
 };
 
+// Of what may concern anybody.
+inline constexpr Reactor::Found kConcernsAll{.stops_running = true, .wakes_others = true};
+
 }  // namespace tcs
