@@ -27,14 +27,14 @@ std::string ScenarioFor(const FleetCase& fleet, double virtual_s) {
     const std::string body = fmt::format("drone{}", i), robot = fmt::format("robot{}", i);
     const int eyes = kFirstSensorPort + i, hands = kFirstCommandPort + i;
     bodies[body] = {{"mass", 2}, {"inertia", {0.1, 0.2, 0.25}}, {"position", {2 * i, 0, 1}}};
+    Json command = {TCS_FLEET_CONTROLLER, std::to_string(eyes)};
+    if (fleet.answers) command.push_back(std::to_string(hands));
     robots[robot]["clients"]["controller"] = {
-        {"command", {TCS_FLEET_CONTROLLER, std::to_string(eyes), std::to_string(hands)}},
-        {"class", "periodic"},
-        {"priority", 80},
-        {"body", body}};
+        {"command", command}, {"class", "periodic"}, {"priority", 80}, {"body", body}};
     channels[fmt::format("eyes{}", i)] = {
         {"type", "udp_json"},
         {"sensors", {{"bodies", {body}}, {"rate", fleet.rate_hz}, {"to", Address(eyes)}}}};
+    if (!fleet.answers) continue;
     channels[fmt::format("hands{}", i)] = {
         {"type", "udp_json"}, {"commands", {{"body", body}, {"listen", Address(hands)}}}};
   }
@@ -56,7 +56,7 @@ std::optional<Numbers> RunOnce(const FleetCase& fleet, double virtual_s) {
   const auto number = [&run](const char* key) { return run->summary().at(key).get<double>(); };
   const double samples = number("samples"), commands = number("commands");
   // The first sample comes before the programs have begun, the last one is not answered any more.
-  if (commands < samples - 2 * fleet.robots) {
+  if (fleet.answers && commands < samples - 2 * fleet.robots) {
     fmt::print(stderr, "tcs_bench: fleet: {} samples, but {} commands\n", samples, commands);
     return std::nullopt;
   }

@@ -11,13 +11,18 @@
 namespace tcs::bench {
 
 struct FleetCase {
-  int robots;
-  int rate_hz;  // of each one's sensor, and so of its program
-  double goal;  // times real time
+  int robots = 1;
+  int rate_hz = 100;    // of each one's sensor
+  bool answers = true;  // its program, to each sample; else it sleeps
+  double goal = 0;      // times real time; 0: none
 };
 
-inline constexpr std::array<FleetCase, 4> kFleets{
-    {{1, 100, 40}, {1, 250, 0}, {8, 250, 0}, {30, 250, 1}}};
+// A sample at 1 kHz of a body that nothing happens to is to take 50 µs: 20 times real time.
+inline constexpr std::array<FleetCase, 5> kFleets{{{.rate_hz = 1000, .answers = false, .goal = 20},
+                                                   {.rate_hz = 100, .goal = 40},
+                                                   {.rate_hz = 250},
+                                                   {.robots = 8, .rate_hz = 250},
+                                                   {.robots = 30, .rate_hz = 250, .goal = 1}}};
 
 struct FleetRow {
   FleetCase fleet;

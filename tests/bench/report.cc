@@ -114,22 +114,25 @@ std::string PhysicsTable(const PhysicsRows& physics) {
 }
 
 std::string FleetTable(const FleetRows& fleets) {
-  static constexpr char kLine[] = "{:>6}{:>5}{:>15}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
-  std::string text = fmt::format(kLine, "robots", "Hz", "x real time", "", "goal", "real µs",
-                                 "programs", "world", "coordinating", "dispatches");
+  static constexpr char kLine[] =
+      "{:>6}{:>6}{:>9}{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
+  std::string text = fmt::format(kLine, "robots", "Hz", "answers", "x real time", "", "goal",
+                                 "real µs", "programs", "world", "coordinating", "dispatches");
   for (const FleetRow& row : fleets.rows) {
     const std::string goal = row.fleet.goal > 0 ? fmt::format(">= {:g}", row.fleet.goal) : "";
-    text += fmt::format(kLine, row.fleet.robots, row.fleet.rate_hz, Brief(row.speed.median),
+    text += fmt::format(kLine, row.fleet.robots, row.fleet.rate_hz,
+                        row.fleet.answers ? "yes" : "no", Brief(row.speed.median),
                         fmt::format("{}-{}", Brief(row.speed.lowest), Brief(row.speed.highest)),
                         goal, Brief(row.real_us), Brief(row.programs_us), Brief(row.world_us),
                         Brief(row.coordinating_us), Brief(row.dispatches));
   }
   text += fmt::format(
-      "Robots with a body and a program each, which answers each sample by a command, for {:g} "
-      "virtual s on\n"
-      "one processor; medians of {} round{}. Microseconds and dispatches for each sample; what is "
-      "left of\n"
-      "the real ones is switching between programs.\n",
+      "Robots with a body and a program each, which answers each sample by a command or sleeps, "
+      "for "
+      "{:g}\n"
+      "virtual s on one processor; medians of {} round{}. Microseconds and dispatches for each "
+      "sample; what\n"
+      "is left of the real ones is switching between programs.\n",
       fleets.virtual_s, fleets.rounds, fleets.rounds == 1 ? "" : "s");
   return text;
 }
@@ -226,6 +229,7 @@ std::string ToJson(const Results& results) {
     for (const FleetRow& row : fleets->rows) {
       to["rows"].push_back({{"robots", row.fleet.robots},
                             {"rate_hz", row.fleet.rate_hz},
+                            {"answers", row.fleet.answers},
                             {"times_real_time", ToJson(row.speed)},
                             {"real_us", row.real_us},
                             {"programs_us", row.programs_us},

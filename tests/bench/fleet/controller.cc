@@ -1,7 +1,8 @@
-// controller SENSOR_PORT COMMAND_PORT: holds a drone where it is told to be. For each reading that
-// comes it sends a command. It knows nothing of tcs.
+// controller SENSOR_PORT [COMMAND_PORT]: holds a drone at a height. For each reading that comes it
+// sends a command; without a port for commands it reads nothing. It knows nothing of tcs.
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdint>
@@ -38,17 +39,21 @@ bool Read(const char* text, const char* key, Vector* vector) {
   return true;
 }
 
+int Complain() {
+  std::perror("controller");
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc != 2 && argc != 3) return 2;
   const int sensors = socket(AF_INET, SOCK_DGRAM, 0), commands = socket(AF_INET, SOCK_DGRAM, 0);
-  const sockaddr_in from = LocalPort(argv[1]), to = LocalPort(argv[2]);
-  if (bind(sensors, reinterpret_cast<const sockaddr*>(&from), sizeof from) != 0 ||
-      connect(commands, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
-    std::perror("controller");
-    return 1;
-  }
+  const sockaddr_in from = LocalPort(argv[1]);
+  if (bind(sensors, reinterpret_cast<const sockaddr*>(&from), sizeof from) != 0) return Complain();
+  for (; argc == 2;) pause();
+  const sockaddr_in to = LocalPort(argv[2]);
+  if (connect(commands, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) return Complain();
   for (;;) {
     char text[4096], command[256];
     const ssize_t size = recv(sensors, text, sizeof text - 1, 0);
