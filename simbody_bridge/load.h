@@ -16,7 +16,7 @@ struct Load {
 
 inline Load LoadOf(const Wrench& wrench) { return {wrench.force_n, wrench.torque_nm}; }
 
-// `load` and `times` of `more`.
+// Adds `more`, `times` over.
 inline void AddTo(Load* load, const Load& more, double times) {
   for (std::size_t i = 0; i < 3; ++i) {
     load->force_n[i] += times * more.force_n[i];

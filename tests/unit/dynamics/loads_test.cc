@@ -128,6 +128,24 @@ TEST_P(LoadsOfEveryPath, ACommandThatLagsBeginsWithWhatActs) {
       << "one without a lag acts at once";
 }
 
+// One system has one clock: what changes for one body begins a step of all.
+TEST_P(LoadsOfEveryPath, ACommandThatLagsGoesOnWhileOthersOfItsIslandAreCommanded) {
+  WorldSpec world = OneBody(GetParam());
+  world.bodies.push_back(world.bodies[0]);
+  world.together = {{0, 1}};
+  auto dynamics = MakeDynamics(world);
+  dynamics->Apply(0, SlowPush(4), At(0));
+  for (int ms = 7; ms <= 3000; ms += 7) {
+    dynamics->Apply(1, ms < 2500 ? Push(ms % 3) : SlowPush(ms % 3), AtMs(ms));
+  }
+  for (int ms = 1; ms <= 3000; ++ms) {
+    dynamics->AdvanceTo(AtMs(ms));
+    ASSERT_NEAR(dynamics->Read(0).linear_velocity_mps[0], LaggingVelocity(4, 1e-3 * ms),
+                IsOde() ? 1e-11 : 1e-6)
+        << ms;
+  }
+}
+
 TEST_P(LoadsOfEveryPath, ACommandThatLagsCostsNothingOnceItHasSettled) {
   auto repeated = MakeDynamics(OneBody(GetParam()));
   auto once = MakeDynamics(OneBody(GetParam()));
