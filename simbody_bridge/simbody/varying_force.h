@@ -2,6 +2,7 @@
 // from the time and from how the bodies are. For integrators that evaluate forces by themselves.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "simbody_bridge/loads.h"
