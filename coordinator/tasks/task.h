@@ -167,6 +167,8 @@ struct Robot {
   std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                // by core
   std::vector<Task*> tasks;                     // the living
+  bool keeps_timer_signals =
+      false;  // some of its processes' timers' wait to be sent (TimerSignals)
 };
 
 // What its process's clock shows where the thread is.
