@@ -160,6 +160,7 @@ class Engine {
   // moment.
   Reactor::Found TakeNotifications(const Process& process, Moment moment);
   Reactor::Found NotificationArrived(Task& task, Moment moment);
+  bool PutOffArrival(Task& task);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
   void DetectorEnded();
