@@ -99,6 +99,7 @@ struct RegionSpec {
 enum class EngineKind {
   kSimbody,
   kOde,
+  kMujoco,
 };
 
 // Simbody's.
@@ -115,15 +116,17 @@ struct IntegratorSpec {
   EngineKind engine = EngineKind::kSimbody;
   IntegratorKind kind = IntegratorKind::kRungeKutta3;  // Simbody alone has a choice
   // Steps of this length, counted from the last command that changed something. 0: what the engine
-  // does by itself: Simbody controls its error by `accuracy`, ODE takes kOdeStep. Between the ends
-  // of steps of a set length the state is what a step shortened to end there gives; between those
-  // of steps that the engine chooses, a cubic through both ends and their derivatives.
+  // does by itself: Simbody controls its error by `accuracy`, ODE and MuJoCo take steps of 1 ms.
+  // Between the ends of steps of a set length the state is what a step shortened to end there
+  // gives; between those of steps that the engine chooses, a cubic through both ends and their
+  // derivatives.
   VirtualDuration fixed_step{};
   double accuracy = 1e-5;  // relative error of one of Simbody's steps, between 0 and 1
 };
 
 // Gazebo's, too.
 inline constexpr VirtualDuration kOdeStep = VirtualDuration::Milliseconds(1);
+inline constexpr VirtualDuration kMujocoStep = VirtualDuration::Milliseconds(1);
 
 struct WorldSpec {
   std::vector<BodySpec> bodies;

@@ -17,9 +17,10 @@ struct EngineTraits {
   bool has_models;        // joints, contact and friction, not free bodies alone
 };
 
-inline constexpr std::array<EngineTraits, 2> kEngines = {{
+inline constexpr std::array<EngineTraits, 3> kEngines = {{
     {EngineKind::kSimbody, "simbody", true, true},
     {EngineKind::kOde, "ode", false, false},
+    {EngineKind::kMujoco, "mujoco", false, true},
 }};
 
 constexpr const EngineTraits& TraitsOf(EngineKind kind) {

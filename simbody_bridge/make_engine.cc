@@ -4,6 +4,7 @@
 #include "simbody_bridge/engines.h"
 #include "simbody_bridge/island_engine.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/ode/ode_engine.h"
 #include "simbody_bridge/simbody/simbody_engine.h"
 #include "simbody_bridge/simbody/tree/tree_engine.h"
@@ -17,6 +18,8 @@ std::unique_ptr<BodyEngine> MakeEngine(const WorldSpec& world,
       return MakeSimbodyEngine(world, islands);
     case EngineKind::kOde:
       return MakeOdeEngine(world, islands);
+    case EngineKind::kMujoco:
+      return MakeMujocoBodies(world, islands);
   }
   throw DynamicsError("engine: unknown kind");
 }
@@ -26,12 +29,14 @@ std::unique_ptr<ModelEngine> MakeModelEngine(const WorldSpec& world,
   switch (world.integrator.engine) {
     case EngineKind::kSimbody:
       return MakeTreeEngine(world, islands);
+    case EngineKind::kMujoco:
+      return MakeMujocoModels(world, islands);
     case EngineKind::kOde:
       break;
   }
   throw DynamicsError(
       fmt::format("model '{}': the engine {} moves free bodies only, without joints and contact; "
-                  "take simbody",
+                  "take simbody or mujoco",
                   world.models[0].name, TraitsOf(world.integrator.engine).name));
 }
 

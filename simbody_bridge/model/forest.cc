@@ -12,6 +12,7 @@ void Plant(const RobotModel& model, int index, Forest* forest) {
     body.parent = Shifted(body.parent, bodies);
     body.joint = Shifted(body.joint, joints);
     forest->bodies.push_back(std::move(body));
+    forest->model_of_body.push_back(index);
   }
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     TreeLink link = tree.links[i];

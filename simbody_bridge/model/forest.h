@@ -24,8 +24,9 @@ struct ForestShape {
 };
 
 struct Forest {
-  std::vector<TreeBody> bodies;  // TreeBody::joint counts `joints`
-  std::vector<TreeLink> links;   // of the first model, then of the second …
+  std::vector<TreeBody> bodies;    // TreeBody::joint counts `joints`
+  std::vector<int> model_of_body;  // counted as ForestShape::model
+  std::vector<TreeLink> links;     // of the first model, then of the second …
   std::vector<ForestJoint> joints;
   std::vector<ForestShape> shapes;       // fixtures last
   std::vector<bool> has_self_collision;  // of each model

@@ -118,6 +118,12 @@ TEST(Islands, OfOdeEqualTheRunWithoutLeadingAfterTenThousandCommands) {
   ExpectTakenBackToTheByte(BusyWorld(kOde), 10'000);
 }
 
+#ifdef TCS_HAS_MUJOCO
+TEST(Islands, OfMujocoEqualTheRunWithoutLeadingAfterTenThousandCommands) {
+  ExpectTakenBackToTheByte(BusyWorld({.engine = EngineKind::kMujoco}), 10'000);
+}
+#endif
+
 TEST_P(EveryMethodsIslands, TakeBackToTheByteWhatACommandMakesWrong) {
   WorldSpec world = BusyWorld(GetParam());
   ExpectTakenBackToTheByte(world, 40);

@@ -299,7 +299,7 @@ TEST(Models, AreRefusedByAnEngineOfFreeBodies) {
   } catch (const DynamicsError& error) {
     EXPECT_STREQ(error.what(),
                  "model 'pendulum': the engine ode moves free bodies only, without joints and "
-                 "contact; take simbody");
+                 "contact; take simbody or mujoco");
   }
 }
 

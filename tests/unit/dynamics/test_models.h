@@ -14,7 +14,13 @@ namespace tcs {
 inline constexpr double kG = 9.81;
 
 // The engines that have models, each as it is by default.
-inline std::vector<IntegratorSpec> ModelEngines() { return {IntegratorSpec{}}; }
+inline std::vector<IntegratorSpec> ModelEngines() {
+  std::vector<IntegratorSpec> engines = {IntegratorSpec{}};
+#ifdef TCS_HAS_MUJOCO
+  engines.push_back({.engine = EngineKind::kMujoco});
+#endif
+  return engines;
+}
 
 class EveryModelEngine : public testing::TestWithParam<IntegratorSpec> {};
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/engines.h"
 
 namespace tcs {
 
@@ -114,15 +115,22 @@ inline std::string NameOfParam(const testing::TestParamInfo<IntegratorSpec>& inf
 // The engines, each as it is by default.
 class EveryEngine : public testing::TestWithParam<IntegratorSpec> {};
 
-inline std::vector<IntegratorSpec> Engines() { return {IntegratorSpec{}, kOde}; }
+inline std::vector<IntegratorSpec> Engines() {
+  std::vector<IntegratorSpec> engines = {IntegratorSpec{}, kOde};
+#ifdef TCS_HAS_MUJOCO
+  engines.push_back({.engine = EngineKind::kMujoco});
+#endif
+  return engines;
+}
 
 inline std::string NameOfEngine(const testing::TestParamInfo<IntegratorSpec>& info) {
+  if (info.param.engine == EngineKind::kMujoco) return "Mujoco";
   return info.param.engine == EngineKind::kOde ? "Ode" : "Simbody";
 }
 
 // What GoogleTest shows of a parameter, instead of its bytes.
 inline void PrintTo(const IntegratorSpec& spec, std::ostream* out) {
-  *out << (spec.engine == EngineKind::kOde ? "ODE" : "Simbody") << ", "
+  *out << TraitsOf(spec.engine).name << ", "
        << (spec.fixed_step.ns() == 0 ? "steps of its own"
                                      : "steps of " + std::to_string(spec.fixed_step.ns()) + " ns");
 }
