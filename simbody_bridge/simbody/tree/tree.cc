@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "simbody_bridge/simbody/tree/link_force.h"
@@ -144,6 +145,21 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
   } catch (const std::exception&) {
     std::fill_n(rate, state.size(), std::numeric_limits<double>::quiet_NaN());
   }
+}
+
+void SimbodyTree::EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
+                                   double* rate) {
+  const bool is_known =
+      recalled_.state.size() == state.size() &&
+      std::memcmp(recalled_.state.data(), state.data(), state.size_bytes()) == 0 &&
+      std::equal(acting.begin(), acting.end(), recalled_.acting.begin(), recalled_.acting.end());
+  if (!is_known) {
+    recalled_.rate.resize(state.size());
+    Evaluate(state, acting, recalled_.rate.data());
+    recalled_.state.assign(state.begin(), state.end());
+    recalled_.acting.assign(acting.begin(), acting.end());
+  }
+  std::copy(recalled_.rate.begin(), recalled_.rate.end(), rate);
 }
 
 void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {

@@ -34,6 +34,10 @@ class SimbodyTree {
 
   // The derivatives of `state` where `acting` acts; NaN where Simbody cannot tell.
   void Evaluate(std::span<const double> state, std::span<const Wrench> acting, double* rate);
+  // The same, for free where it is what was asked for the last time: a step mostly begins where the
+  // one before has ended.
+  void EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
+                        double* rate);
   // Makes quaternions unit length again.
   void NormaliseQuaternions(std::span<double> state) const;
   // The same, and takes joints that mimic others to where these are.
@@ -77,6 +81,10 @@ class SimbodyTree {
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
   std::span<const Wrench> acting_;  // while a state is evaluated
+  struct {
+    std::vector<double> state, rate;
+    std::vector<Wrench> acting;
+  } recalled_;
 };
 
 }  // namespace tcs

@@ -13,6 +13,13 @@ constexpr double kShortestS = 1e-9;
 
 double Square(double x) { return x * x; }
 
+// In whole nanoseconds, as islands count: the next step then begins where this one ends, and its
+// first derivatives are known.
+double WholeNanoseconds(double seconds) {
+  const auto ns = static_cast<std::int64_t>(seconds * 1e9);
+  return ns > 0 ? VirtualDuration::Nanoseconds(ns).seconds() : seconds;
+}
+
 }  // namespace
 
 void TreeSteps::Begin(SimbodyTree& tree, IslandStep& step) {
@@ -22,7 +29,7 @@ void TreeSteps::Begin(SimbodyTree& tree, IslandStep& step) {
   state_.resize(size);
   middle_rate_.resize(size);
   end_rate_.resize(size);
-  tree.Evaluate(step.from, step.wrenches, step.from_rate.data());
+  tree.EvaluateOrRecall(step.from, step.wrenches, step.from_rate.data());
 }
 
 void TreeSteps::Try(SimbodyTree& tree, IslandStep& step, double h) {
@@ -62,6 +69,7 @@ void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit
   const double most_s = std::min(limit_s, std::max(kShortestS, tree.LongestStepFrom(step.from)));
   bool is_limited = step.try_s > most_s;
   double h = std::min(step.try_s, most_s);
+  if (h != step.limit.seconds()) h = WholeNanoseconds(h);
   for (;;) {
     Try(tree, step, h);
     const double error = ErrorOf(tree, step, h);
@@ -76,11 +84,12 @@ void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit
     is_limited = false;
     h = std::isfinite(error) ? std::clamp(promised_s, kMostShrinking * h, kLeastShrinking * h)
                              : kMostShrinking * h;
+    h = WholeNanoseconds(h);
     if (h < kShortestS) throw std::runtime_error("no step is short enough for the accuracy");
   }
   tree.Project(step.to);
   step.to_rate.resize(step.to.size());
-  tree.Evaluate(step.to, step.wrenches, step.to_rate.data());
+  tree.EvaluateOrRecall(step.to, step.wrenches, step.to_rate.data());
 }
 
 void TreeSteps::TakeWhole(SimbodyTree& tree, IslandStep& step) {
