@@ -73,7 +73,13 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     if (any_socket) AcknowledgeAtOnce(fd);
     BeginChange(*t);  // there is room again
     const long result = call();
-    if (result > 0 && reads.takes) NoteReceivedFrom(*t, fd);
+    if (result > 0 && reads.takes) {
+      if (any_socket) {
+        NoteReceived(*t);
+      } else {
+        NoteReceivedFrom(*t, fd);
+      }
+    }
     return ToErrno(result);
   };
   if (reads.dont_wait || IsNonBlocking(fd)) {
@@ -94,8 +100,8 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     }
     if (timeout != kNeverNs) return ReadTerminal(*t, fd, DeadlineAfter(*t, timeout), take);
   }
-  for (;; ready = false) {
-    const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline);
+  for (bool looked = !ready;; ready = looked = false) {
+    const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline, looked);
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, reads.socket) ||

@@ -2,9 +2,9 @@
 // until then.
 //
 // Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w.
-// Positions, orientations, velocities and wrenches are expressed in the world frame; a body's
-// position is its centre of mass. Ownership: the implementation owns the engine; values are copied
-// in and out. Not thread-safe: one thread, the coordinator's, calls it.
+// Positions, orientations, velocities and wrenches are expressed in the world frame unless they say
+// otherwise; a body's position is its centre of mass. Ownership: the implementation owns the
+// engine; values are copied in and out. Not thread-safe: one thread, the coordinator's, calls it.
 //
 // Lazy: time is a number, which costs nothing to advance. Bodies are integrated when somebody reads
 // them, each island (bodies that can touch or pull each other) by itself.
@@ -44,9 +44,15 @@ struct BodyState {
   std::array<double, 3> angular_velocity_radps{};
 };
 
+// What a command makes act on a body.
 struct Wrench {
   std::array<double, 3> force_n{};  // at the centre of mass
   std::array<double, 3> torque_nm{};
+  // Along the body's axes, and turning with them while it acts; else along the world's.
+  bool in_body_frame = false;
+  // A time constant: what acts goes from what acted before to this by w' = (this - w) / lag. 0: it
+  // acts at once.
+  VirtualDuration lag{};
 
   bool operator==(const Wrench&) const = default;
 };
@@ -80,11 +86,34 @@ struct LinkState {
 // Along which axes a wrench on a link is given; those of the link turn with it while it acts.
 enum class WrenchFrame { kWorld, kLink };
 
+// What the air does to a body that moves through it, whichever way the body is turned: the force
+// -(linear + quadratic |v|) v, v being the velocity relative to the wind; the torque of the same
+// form against the angular velocity.
+struct DragSpec {
+  double linear_nspm = 0;
+  double quadratic_ns2pm2 = 0;
+  double angular_linear_nmsprad = 0;
+  double angular_quadratic_nms2prad2 = 0;
+
+  bool operator==(const DragSpec&) const = default;
+};
+
 struct BodySpec {
   std::string name;
   double mass_kg = 1.0;
   std::array<double, 3> inertia_kgm2{0.1, 0.1, 0.1};  // principal moments, body frame
   BodyState initial;
+  DragSpec drag;
+};
+
+// How the air moves, everywhere alike.
+struct WindSpec {
+  std::array<double, 3> mean_mps{};
+  // Gusts on top of it: on each axis of this standard deviation, and correlated over about this
+  // time. They are a function of time and the seed.
+  double gusts_mps = 0;
+  VirtualDuration gust_time = VirtualDuration::Seconds(1);
+  std::uint64_t seed = 1;
 };
 
 // A cube around the origin whose walls push back. Per axis, a body whose centre is outside, |x| >
@@ -138,6 +167,7 @@ struct WorldSpec {
   std::array<double, 3> gravity_mps2{};
   bool has_region = false;
   RegionSpec region;
+  WindSpec wind;  // for bodies with drag
   IntegratorSpec integrator;
   // Bodies (by index) that are integrated as one system. Others are islands of one body each: free
   // bodies cannot touch or pull each other.

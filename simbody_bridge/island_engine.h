@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/lag.h"
 
 namespace tcs {
 
@@ -16,10 +17,12 @@ namespace tcs {
 // engine's own order. The engine resizes what it writes; vectors are used again.
 struct IslandStep {
   int island = 0;
+  VirtualTime at;  // its beginning
   std::vector<double> from;
-  std::vector<Wrench> wrenches;  // acting, one for each place of the island
-  VirtualDuration limit;         // the step is no longer than this, and more than 0
-  double try_s = 0;              // the length that the engine tries first, within the limit
+  std::vector<Wrench> wrenches;       // commanded, one for each place of the island
+  std::vector<Remainder> remainders;  // likewise; none where no command lags
+  VirtualDuration limit;              // the step is no longer than this, and more than 0
+  double try_s = 0;                   // the length that the engine tries first, within the limit
 
   std::vector<double> to;
   double length_s = 0;                     // exactly limit.seconds() if it is as long as that

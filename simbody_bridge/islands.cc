@@ -186,7 +186,10 @@ void Islands::ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, Vir
     throw DynamicsError(fmt::format("link '{}': a commanded wrench must be finite",
                                     LinkAt(models_, static_cast<std::size_t>(link)).name));
   }
-  Command(place.island, PlaceOfLink(place.place, frame), wrench, t);
+  // The frame says along whose axes it is, and models' engines know of no lag.
+  const Wrench acting{.force_n = wrench.force_n, .torque_nm = wrench.torque_nm};
+  Require(wrench == acting, "a wrench on a link does not lag, and its frame is an argument");
+  Command(place.island, PlaceOfLink(place.place, frame), acting, t);
 }
 
 void Islands::Drive(int joint, const JointDrive& drive, VirtualTime t) {

@@ -88,14 +88,13 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
                                 ChannelType type, const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  std::vector<std::string> keys = {"body", "latency", "limits"};
+  std::vector<std::string> keys = {"body", "latency", "limits", "axes", "lag"};
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
   channel.body = FindBody(map.Require("body", "body: predator"), scenario);
-  if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  if (const YamlValue* limits = map.Find("limits")) LoadCommandLimits(*limits, &channel);
+  LoadCommandEffect(map, &channel);
   switch (type) {
     case ChannelType::kUdpJson:
       channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/scenario/load_air.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "simbody_bridge/engines.h"
@@ -115,8 +116,8 @@ std::array<double, 4> LoadOrientation(const YamlValue& value) {
 BodySpec LoadBody(const YamlMap::Entry& entry) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly(
-      {"mass", "inertia", "position", "orientation", "linear_velocity", "angular_velocity"});
+  map.AllowOnly({"mass", "inertia", "position", "orientation", "linear_velocity",
+                 "angular_velocity", "drag"});
   BodySpec body;
   body.name = entry.key;
   body.mass_kg = map.Require("mass", "mass: 1.0").AsPositiveNumber(" (kilograms)");
@@ -130,7 +131,29 @@ BodySpec LoadBody(const YamlMap::Entry& entry) {
   if (const YamlValue* v = map.Find("angular_velocity")) {
     initial.angular_velocity_radps = v->AsVector3();
   }
+  if (const YamlValue* v = map.Find("drag")) body.drag = LoadDrag(*v);
   return body;
+}
+
+// Lists of bodies that are one island each.
+std::vector<std::vector<int>> LoadTogether(const YamlValue& value, const Scenario& scenario) {
+  std::vector<std::vector<int>> islands;
+  std::vector<int> placed;
+  for (const YamlValue& list : value.AsList("[[predator, prey]]")) {
+    const std::vector<YamlValue> names = list.AsList("[predator, prey]");
+    if (names.size() < 2) list.Fail("names one body, which is by itself already; name two or more");
+    std::vector<int>& island = islands.emplace_back();
+    for (const YamlValue& name : names) {
+      const int body = FindBody(name, scenario);
+      if (std::find(placed.begin(), placed.end(), body) != placed.end()) {
+        name.Fail("names the body '" + name.AsText() +
+                  "' a second time; bodies that all belong together stand in one list");
+      }
+      placed.push_back(body);
+      island.push_back(body);
+    }
+  }
+  return islands;
 }
 
 }  // namespace
@@ -143,7 +166,8 @@ void LoadWorld(const YamlMap& top, Scenario* scenario) {
     return;
   }
   const YamlMap map = dynamics->AsMap();
-  map.AllowOnly({"engine", "integrator", "accuracy", "step", "gravity", "region"});
+  map.AllowOnly(
+      {"engine", "integrator", "accuracy", "step", "gravity", "region", "wind", "together"});
   WorldSpec world;
   world.integrator = LoadIntegrator(map);
   if (const YamlValue* gravity = map.Find("gravity")) world.gravity_mps2 = gravity->AsVector3();
@@ -152,13 +176,25 @@ void LoadWorld(const YamlMap& top, Scenario* scenario) {
     world.region = LoadRegion(*region);
   }
 
+  if (const YamlValue* wind = map.Find("wind")) world.wind = LoadWind(*wind, scenario->seed);
+
   if (bodies == nullptr) {
     dynamics->Fail("has no bodies to move; add the key bodies, or remove dynamics");
   }
   const YamlMap body_map = bodies->AsMap();
   if (body_map.entries().empty()) bodies->Fail("is empty; describe at least one body");
   for (const YamlMap::Entry& entry : body_map.entries()) world.bodies.push_back(LoadBody(entry));
+  const auto feels_air = [](const BodySpec& body) { return body.drag != DragSpec{}; };
+  if (const YamlValue* wind = map.Find("wind");
+      wind != nullptr && std::none_of(world.bodies.begin(), world.bodies.end(), feels_air)) {
+    scenario->warnings.push_back(
+        wind->place().Prefix() + wind->name() +
+        " moves no body, for none has drag; give one a drag, like drag: {linear: 0.3}");
+  }
   scenario->world = std::move(world);
+  if (const YamlValue* together = map.Find("together")) {
+    scenario->world->together = LoadTogether(*together, *scenario);
+  }
 }
 
 int FindBody(const YamlValue& value, const Scenario& scenario) {

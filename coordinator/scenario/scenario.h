@@ -188,6 +188,8 @@ struct CommandChannelSpec {
   VirtualDuration latency{};
   // The most of each component, either way.
   std::array<double, 3> most_force_n = kNoWrenchLimit, most_torque_nm = kNoWrenchLimit;
+  bool in_body_frame = false;  // the components are along the body's axes
+  VirtualDuration lag{};       // Wrench's
   CommandEnd from;
 };
 

@@ -15,6 +15,8 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   ++on.taken;
   ++taken_;
   Wrench limited = wrench;
+  limited.in_body_frame = on.spec.in_body_frame;
+  limited.lag = on.spec.lag;
   for (std::size_t i = 0; i < 3; ++i) {
     const double force = on.spec.most_force_n[i], torque = on.spec.most_torque_nm[i];
     limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 
+#include "simbody_bridge/loads.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 #include "simbody_bridge/region_law.h"
@@ -32,7 +33,8 @@ class MujocoBodies : public BodyEngine {
       : has_region_(world.has_region),
         region_(world.region),
         step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kMujocoStep) {
+                                                              : kMujocoStep),
+        loads_(world, islands) {
     for (const BodySpec& body : world.bodies) models_.push_back(ModelOf(body));
     std::map<std::vector<std::array<double, 4>>, MujocoSystem*> known;
     for (const std::vector<int>& bodies : islands) {
@@ -106,16 +108,19 @@ class MujocoBodies : public BodyEngine {
     return positions;
   }
 
-  // Walls push as they do at the beginning of the step.
+  // Walls push as they do at the beginning of the step; what else acts has its mean over it.
   void Step(const IslandStep& step, double seconds, std::vector<double>* to) {
     const std::size_t bodies = step.wrenches.size();
     acting_.assign(2 * bodies, Wrench{});
     for (std::size_t i = 0; i < bodies; ++i) {
       const int place = static_cast<int>(i);
       Wrench& wrench = acting_[static_cast<std::size_t>(PlaceOfLink(place, WrenchFrame::kWorld))];
-      wrench = step.wrenches[i];
-      if (!has_region_) continue;
       const BodyState state = Read(step.island, place, step.from);
+      const Load load = loads_.IsConstant(step, i) ? LoadOf(step.wrenches[i])
+                                                   : loads_.MeanOver(step, i, seconds, state);
+      wrench.force_n = load.force_n;
+      wrench.torque_nm = load.torque_nm;
+      if (!has_region_) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         wrench.force_n[axis] +=
             WallForce(region_, state.position_m[axis], state.linear_velocity_mps[axis]);
@@ -127,6 +132,7 @@ class MujocoBodies : public BodyEngine {
   const bool has_region_;
   const RegionSpec region_;
   const VirtualDuration step_;
+  const Loads loads_;
   std::vector<RobotModel> models_;  // of all bodies
   std::deque<Forest> forests_;
   std::deque<MujocoSystem> systems_;

@@ -19,7 +19,7 @@ void Copy(const SimTK::Vector& from, std::vector<double>* to) {
 class IntegratorEngine : public BodyEngine {
  public:
   IntegratorEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : fixed_step_(world.integrator.fixed_step) {
+      : fixed_step_(world.integrator.fixed_step), loads_(world, islands) {
     for (const std::vector<int>& bodies : islands) AddIsland(world, bodies);
   }
 
@@ -55,6 +55,7 @@ class IntegratorEngine : public BodyEngine {
   void StepOnce(SimTK::Integrator& integrator, double limit_s) const;
 
   const VirtualDuration fixed_step_;
+  const Loads loads_;
   // Islands of equal bodies share a model.
   struct Model {
     Masses masses;
@@ -95,8 +96,11 @@ void IntegratorEngine::SetState(const Island& island, const IslandStep& step,
   state.updTime() = 0;
   std::copy(step.from.begin(), step.from.end(), &state.updY()[0]);
   for (std::size_t i = 0; i < step.wrenches.size(); ++i) {
-    island.model->SetWrench(state, static_cast<int>(i), step.wrenches[i]);
+    const bool is_constant = loads_.IsConstant(step, i);
+    island.model->SetLoad(state, static_cast<int>(i),
+                          is_constant ? LoadOf(step.wrenches[i]) : Load{});
   }
+  island.model->SetStep(loads_, step);
 }
 
 // An integrator remembers which length it tries next, and can be told another one only by setting

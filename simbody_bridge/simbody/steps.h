@@ -12,7 +12,8 @@ namespace tcs {
 // Simbody's messages run over several lines.
 std::string OnOneLine(std::string text);
 
-// How long a step of these bodies may be at the most for error control to see the walls.
+// How long a step of these bodies may be at the most for error control to see the walls
+// and the gusts.
 VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>& bodies);
 
 // The state of free bodies `after_s` from the beginning of a step that was taken, before its end: a

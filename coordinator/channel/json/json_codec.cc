@@ -11,6 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "coordinator/channel/json/plain_command.h"
+
 namespace tcs {
 namespace {
 
@@ -110,6 +112,7 @@ std::string EncodeReading(const Reading& reading, std::span<const SensorField> f
 }
 
 std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
+  if (const std::optional<Wrench> wrench = ReadPlainCommand(text)) return *wrench;
   Json command;
   try {
     command = Json::parse(text);

@@ -90,6 +90,31 @@ TEST_P(DynamicsErrors, NameTheFieldOfTheWorld) {
       "integrator: the fixed step must not be negative, but is -1 ns");
 }
 
+TEST_P(DynamicsErrors, NameWhatIsNoAir) {
+  WorldSpec world = OneBody(GetParam());
+  world.bodies[0].drag.quadratic_ns2pm2 = -1;
+  ExpectRefused(world,
+                "body 'ship': each factor of the drag must be finite and not negative, but one is "
+                "-1");
+  world = OneBody(GetParam());
+  world.wind.mean_mps[0] = kNan;
+  ExpectRefused(world, "wind: its velocity must be finite");
+  world.wind = {.gusts_mps = -1};
+  ExpectRefused(world, "wind: the gusts must be finite and not negative, but are -1 m/s");
+  world.wind = {.gusts_mps = 1, .gust_time = {}};
+  ExpectRefused(world, "wind: the time of the gusts must be more than 0, but is 0 ns");
+}
+
+TEST_P(DynamicsErrors, RefuseALagThatIsNegative) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
+  try {
+    dynamics->Apply(0, {.lag = VirtualDuration::Nanoseconds(-1)}, AtMs(1));
+    ADD_FAILURE() << "accepted";
+  } catch (const DynamicsError& e) {
+    EXPECT_STREQ(e.what(), "body 'ship': the lag of a command must not be negative, but is -1 ns");
+  }
+}
+
 TEST_P(DynamicsErrors, RefuseAWrenchThatIsNotFiniteAndGoOn) {
   auto dynamics = MakeDynamics(OneBody(GetParam()));
   try {

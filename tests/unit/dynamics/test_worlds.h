@@ -45,6 +45,20 @@ inline WorldSpec BusyWorld(const IntegratorSpec& integrator) {
   return world;
 }
 
+// The same in the air, with gusts.
+inline WorldSpec BusyWorldInTheWind(const IntegratorSpec& integrator) {
+  WorldSpec world = BusyWorld(integrator);
+  world.wind = {.mean_mps = {2, -1, 0},
+                .gusts_mps = 1.5,
+                .gust_time = VirtualDuration::Milliseconds(500),
+                .seed = 4};
+  world.bodies[1].drag = {.linear_nspm = 0.3,
+                          .quadratic_ns2pm2 = 0.1,
+                          .angular_linear_nmsprad = 0.02,
+                          .angular_quadratic_nms2prad2 = 0.01};
+  return world;
+}
+
 inline constexpr std::array kAllKinds = {
     IntegratorKind::kRungeKutta3, IntegratorKind::kRungeKuttaMerson, IntegratorKind::kVerlet,
     IntegratorKind::kSemiExplicitEuler2, IntegratorKind::kExplicitEuler};

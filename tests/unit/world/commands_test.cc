@@ -15,7 +15,11 @@ class CommandsTest : public testing::Test {
  protected:
   CommandsTest() {
     commands_.Open({{.name = "bow", .body = 3, .latency = VirtualDuration::Milliseconds(2)},
-                    {.name = "stern", .body = 4}});
+                    {.name = "stern",
+                     .body = 4,
+                     .most_force_n = {1, 1, 1},
+                     .in_body_frame = true,
+                     .lag = VirtualDuration::Milliseconds(50)}});
   }
   std::string Complaint(std::size_t channel) {
     return commands_.ComplaintAbout(channel, {.where = "there", .mend = "send some"}, "ship");
@@ -44,6 +48,16 @@ TEST_F(CommandsTest, ActOnTheirChannelsBody) {
   EXPECT_EQ(acted_[0].body, 3);
   EXPECT_THAT(acted_[0].wrench.force_n, ElementsAre(1, 2, 3));
   EXPECT_EQ(commands_.taken(), 1);
+}
+
+TEST_F(CommandsTest, ActAsTheirChannelSays) {
+  commands_.Take(0, {}, {.force_n = {1, 2, 3}});
+  commands_.Take(1, {}, {.force_n = {1, -2, 3}, .torque_nm = {7, 0, 0}});
+  EXPECT_EQ(acted_[0].wrench, (Wrench{.force_n = {1, 2, 3}}));
+  EXPECT_EQ(acted_[1].wrench, (Wrench{.force_n = {1, -1, 1},
+                                      .torque_nm = {7, 0, 0},
+                                      .in_body_frame = true,
+                                      .lag = VirtualDuration::Milliseconds(50)}));
 }
 
 TEST_F(CommandsTest, WhatIsNoneIsNamedOnceAndCounted) {
