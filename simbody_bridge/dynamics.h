@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "shm/virtual_time.h"
+#include "simbody_bridge/model/robot_model.h"
 
 namespace tcs {
 
@@ -95,6 +96,11 @@ inline constexpr VirtualDuration kOdeStep = VirtualDuration::Milliseconds(1);
 
 struct WorldSpec {
   std::vector<BodySpec> bodies;
+  // What has joints, or touches something: not every engine takes them (engines.h).
+  std::vector<RobotModel> models;
+  // What the models stand on and run into: the floor, walls. In the world's frame; they do not
+  // move. Free bodies touch nothing.
+  std::vector<Shape> fixtures;
   std::array<double, 3> gravity_mps2{};
   bool has_region = false;
   RegionSpec region;
