@@ -177,9 +177,9 @@ struct SensorChannelSpec {
                                      SensorField::kLinearVelocity, SensorField::kAngularVelocity};
 };
 
-inline constexpr std::array<double, 3> kNoLimit = {std::numeric_limits<double>::infinity(),
-                                                   std::numeric_limits<double>::infinity(),
-                                                   std::numeric_limits<double>::infinity()};
+inline constexpr std::array<double, 3> kNoWrenchLimit = {std::numeric_limits<double>::infinity(),
+                                                         std::numeric_limits<double>::infinity(),
+                                                         std::numeric_limits<double>::infinity()};
 
 // What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
@@ -187,7 +187,7 @@ struct CommandChannelSpec {
   int body = 0;
   VirtualDuration latency{};
   // The most of each component, either way.
-  std::array<double, 3> most_force_n = kNoLimit, most_torque_nm = kNoLimit;
+  std::array<double, 3> most_force_n = kNoWrenchLimit, most_torque_nm = kNoWrenchLimit;
   CommandEnd from;
 };
 
