@@ -24,9 +24,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shm/virtual_time.h"
@@ -48,6 +50,35 @@ struct Wrench {
 
   bool operator==(const Wrench&) const = default;
 };
+
+// What drives a joint that has one coordinate: effort + stiffness * (position - its position) +
+// damping * (velocity - its velocity), and no more than the joint's limit of effort either way. N m
+// and radians, or N and metres. A servo is one of these, evaluated as often as the physics are.
+struct JointDrive {
+  double effort = 0;
+  double stiffness = 0;
+  double position = 0;
+  double damping = 0;
+  double velocity = 0;
+
+  bool operator==(const JointDrive&) const = default;
+};
+
+struct JointState {
+  double position = 0;
+  double velocity = 0;
+  double effort = 0;  // what its drive gives
+};
+
+// Of a link's frame, in the world.
+struct LinkState {
+  Pose pose;
+  std::array<double, 3> linear_velocity_mps{};  // of the frame's origin
+  std::array<double, 3> angular_velocity_radps{};
+};
+
+// Along which axes a wrench on a link is given; those of the link turn with it while it acts.
+enum class WrenchFrame { kWorld, kLink };
 
 struct BodySpec {
   std::string name;
@@ -156,6 +187,23 @@ class Dynamics {
     Read(Now(), {&body, 1}, {&state, 1});
     return state;
   }
+
+  // The models' links and joints by index: those of the first model in its own order, then those of
+  // the next. Names are resolved once; none: there is no such one.
+  virtual std::optional<int> FindLink(std::string_view model, std::string_view link) const = 0;
+  virtual std::optional<int> FindJoint(std::string_view model, std::string_view joint) const = 0;
+
+  // As Apply, for links and joints. A wrench on a link acts at the origin of its frame; those along
+  // the world's axes and along the link's act beside each other. A joint that is driven has one
+  // coordinate and mimics none.
+  virtual void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) = 0;
+  virtual void Drive(int joint, const JointDrive& drive, VirtualTime t) = 0;
+
+  // As Read, for links and for joints, which have one coordinate or are fixed.
+  virtual void ReadLinks(VirtualTime t, std::span<const int> links,
+                         std::span<LinkState> states) = 0;
+  virtual void ReadJoints(VirtualTime t, std::span<const int> joints,
+                          std::span<JointState> states) = 0;
 
   // A checkpoint holds what a run goes on from: after Restore the same calls compute bitwise what
   // they computed in the run that was saved. It costs less than a step. With `reuse`, an earlier

@@ -171,6 +171,13 @@ void Island::StateAt(VirtualTime t, std::vector<double>* state) {
   StateOf(legs_[leg], t, state);
 }
 
+const std::vector<Wrench>& Island::ActingUntil(VirtualTime t) const {
+  if (t >= frontier_.at) return frontier_.wrenches;
+  std::size_t leg = used_ - 1;
+  while (leg > 0 && legs_[leg].start.at >= t) --leg;
+  return legs_[leg].start.at < t ? legs_[leg].step.wrenches : legs_[leg].start.wrenches;
+}
+
 void Island::Save(Saved* saved) const {
   saved->origin = Origin();
   saved->commands = commands_;

@@ -36,6 +36,8 @@ class Island {
 
   // Of a time since the one settled last, up to which no step is left to take.
   void StateAt(VirtualTime t, std::vector<double>* state);
+  // What acted until that time.
+  const std::vector<Wrench>& ActingUntil(VirtualTime t) const;
 
   // How many commands have taken effect by `t` and not been worked off.
   std::size_t CommandsUntil(VirtualTime t) const;

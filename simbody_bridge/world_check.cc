@@ -6,17 +6,11 @@
 #include <cmath>
 
 #include "simbody_bridge/engines.h"
+#include "simbody_bridge/model/finite.h"
+#include "simbody_bridge/model/model_check.h"
 
 namespace tcs {
 namespace {
-
-template <std::size_t N>
-bool AllFinite(const std::array<double, N>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
-
-bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
-bool IsNonNegative(double value) { return std::isfinite(value) && value >= 0; }
 
 // A moment may not exceed the sum of the two others; flat bodies reach it, so rounding is forgiven.
 bool SatisfiesTriangleInequality(const std::array<double, 3>& inertia) {
@@ -96,6 +90,16 @@ bool AllFinite(const BodyState& state) {
 
 void CheckWorld(const WorldSpec& world) {
   for (const BodySpec& body : world.bodies) CheckBody(body);
+  for (const RobotModel& model : world.models) {
+    if (const auto fault = CheckModel(model)) {
+      throw DynamicsError(fmt::format("model '{}': {}", model.name, fault->what));
+    }
+  }
+  for (const Shape& fixture : world.fixtures) {
+    if (const auto fault = CheckShape(fixture, true)) {
+      throw DynamicsError(fmt::format("fixture '{}': {}", fixture.name, *fault));
+    }
+  }
   if (!AllFinite(world.gravity_mps2)) throw DynamicsError("gravity: it must be finite");
   if (world.has_region) CheckRegion(world.region);
   CheckIntegrator(world.integrator);

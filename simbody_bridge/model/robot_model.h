@@ -106,6 +106,9 @@ struct RobotModel {
   // Links of one model pass through each other, unless this says that they collide; those that a
   // joint joins never do.
   bool has_self_collision = false;
+  // Whether it collides with other models that do. If not it touches the world's fixtures alone,
+  // and is integrated by itself: a swarm that keeps apart is many times faster so.
+  bool touches_models = true;
 };
 
 // How many numbers a joint's position and velocity have.

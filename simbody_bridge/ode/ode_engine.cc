@@ -22,7 +22,7 @@ BodyState Normalised(BodyState state) {
   return state;
 }
 
-class OdeEngine : public IslandEngine {
+class OdeEngine : public BodyEngine {
  public:
   OdeEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
@@ -88,8 +88,8 @@ class OdeEngine : public IslandEngine {
 
 }  // namespace
 
-std::unique_ptr<IslandEngine> MakeOdeEngine(const WorldSpec& world,
-                                            const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeOdeEngine(const WorldSpec& world,
+                                          const std::vector<std::vector<int>>& islands) {
   OpenOde();
   return std::make_unique<OdeEngine>(world, islands);
 }

@@ -16,7 +16,7 @@ void Copy(const SimTK::Vector& from, std::vector<double>* to) {
   to->assign(from.getContiguousScalarData(), from.getContiguousScalarData() + from.size());
 }
 
-class IntegratorEngine : public IslandEngine {
+class IntegratorEngine : public BodyEngine {
  public:
   IntegratorEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : fixed_step_(world.integrator.fixed_step) {
@@ -166,8 +166,8 @@ void IntegratorEngine::Within(const IslandStep& step, VirtualDuration after,
 
 }  // namespace
 
-std::unique_ptr<IslandEngine> MakeIntegratorEngine(const WorldSpec& world,
-                                                   const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeIntegratorEngine(const WorldSpec& world,
+                                                 const std::vector<std::vector<int>>& islands) {
   return std::make_unique<IntegratorEngine>(world, islands);
 }
 

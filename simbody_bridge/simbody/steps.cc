@@ -34,7 +34,7 @@ VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>
                   VirtualDuration::Nanoseconds(static_cast<std::int64_t>(longest_s * 1e9)));
 }
 
-void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state) {
+void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<double>* state) {
   const double h = step.length_s, d = after_s / h;
   const double to = d * d * (3 - 2 * d), from = 1 - to;
   const double from_rate = h * d * (1 - d) * (1 - d), to_rate = -h * d * d * (1 - d);
@@ -43,6 +43,10 @@ void Interpolate(const IslandStep& step, double after_s, std::vector<double>* st
     (*state)[i] = from * step.from[i] + to * step.to[i] + from_rate * step.from_rate[i] +
                   to_rate * step.to_rate[i];
   }
+}
+
+void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state) {
+  InterpolateNumbers(step, after_s, state);
   NormaliseQuaternions(*state, static_cast<int>(step.wrenches.size()));
 }
 

@@ -18,6 +18,8 @@ VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>
 // The state of free bodies `after_s` from the beginning of a step that was taken, before its end: a
 // cubic through both ends and their derivatives, of the same order as the methods.
 void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state);
+// The same of any numbers; quaternions among them lose some of their length.
+void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<double>* state);
 
 // What makes two islands the same system.
 using Masses = std::vector<std::pair<double, std::array<double, 3>>>;

@@ -1,0 +1,65 @@
+// An island of models as Simbody knows it: a mobilized body for each body of the forest. What the
+// island does is a function of its coordinates and speeds and of what acts; a SimTK::State is the
+// memory in which that function is evaluated, and nothing is left in it from one evaluation to the
+// next.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/simbody/simbody.h"
+
+namespace tcs {
+
+class SimbodyTree {
+ public:
+  // Of a body's coordinates and speeds in a state: where they begin, and how many there are.
+  struct Slots {
+    std::size_t q, q_count, u, u_count;
+  };
+
+  // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses it.
+  SimbodyTree(const Forest& forest, const std::array<double, 3>& gravity_mps2);
+  SimbodyTree(const SimbodyTree&) = delete;
+  SimbodyTree& operator=(const SimbodyTree&) = delete;
+
+  // The coordinates and then the speeds, at the start.
+  const std::vector<double>& start() const { return start_; }
+  std::span<const Slots> slots() const { return slots_; }
+
+  // The derivatives of `state` where `acting` acts; NaN where Simbody cannot tell.
+  void Evaluate(std::span<const double> state, std::span<const Wrench> acting, double* rate);
+  // Makes quaternions unit length again.
+  void NormaliseQuaternions(std::span<double> state) const;
+  // The same, and takes joints that mimic others to where these are.
+  void Project(std::span<double> state);
+  // No step from `state` on should be longer, so that error control does not miss what is touched.
+  double LongestStepFrom(std::span<const double> state);
+
+  void ReadLinks(std::span<const double> state, std::span<const int> links,
+                 std::span<LinkState> read);
+  void ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
+                  std::span<const int> joints, std::span<JointState> read) const;
+
+ private:
+  void AddBody(const TreeBody& body);
+  void AddMimics();
+  void SetStart();
+  void Load(std::span<const double> state);
+
+  const Forest& forest_;
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_{system_};
+  SimTK::GeneralForceSubsystem forces_{system_};
+  std::vector<SimTK::MobilizedBody> bodies_;
+  std::vector<Slots> slots_;
+  std::vector<double> start_;
+  bool has_mimics_ = false;
+  SimTK::State state_;
+  std::span<const Wrench> acting_;  // while a state is evaluated
+};
+
+}  // namespace tcs
