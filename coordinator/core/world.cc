@@ -48,6 +48,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   all_bodies_.resize(scenario.world->bodies.size());
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
   states_.resize(all_bodies_.size());
+  link_lines_ = LinkLines(*scenario.world);
   sensors_ = Sensors(scenario_.world->gravity_mps2);
   commands_.Open(scenario_.commands);
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
@@ -116,6 +117,7 @@ void World::WriteCsv() {
         fmt::join(s.position_m, ","), fmt::join(s.orientation_xyzw, ","),
         fmt::join(s.linear_velocity_mps, ","), fmt::join(s.angular_velocity_radps, ","));
   }
+  link_lines_.Append(*dynamics_, &csv_text_);
   if (csv_text_.size() > kCsvAtOnce) FlushCsv();
 }
 

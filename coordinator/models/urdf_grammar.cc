@@ -189,9 +189,11 @@ class Copy {
                    const XMLAttribute& value) const {
     constexpr std::size_t kLongest = 256;
     const std::string_view text = value.Value();
-    if (text.empty() || text.size() > kLongest || Visible(text) != text) {
+    const bool fits = text.find_first_of(",\"") == std::string_view::npos && Visible(text) == text;
+    if (text.empty() || text.size() > kLongest || !fits) {
       FailAt(path_, value.GetLineNum(),
-             fmt::format("{} of <{}> is {}; it must be a name of 1 to {} bytes that can be shown",
+             fmt::format("{} of <{}> is {}; it must be a name of 1 to {} bytes that can be shown, "
+                         "without commas and quotes",
                          attribute.name, from.Name(), Quoted(text), kLongest));
     }
     return std::string(text);

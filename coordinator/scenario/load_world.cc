@@ -1,4 +1,4 @@
-// `dynamics` and `bodies` of a scenario file.
+// `dynamics` and `bodies` of a scenario file; load_models.cc has `models`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "simbody_bridge/engines.h"
@@ -102,16 +103,6 @@ std::array<double, 3> LoadInertia(const YamlValue& value) {
   return inertia;
 }
 
-std::array<double, 4> LoadOrientation(const YamlValue& value) {
-  const std::vector<double> q = value.AsNumbers(4, "[0, 0, 0, 1] (x, y, z, w)");
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(std::abs(norm - 1) <= 1e-3)) {
-    value.Fail("is not a unit quaternion [x, y, z, w] (its norm is " + std::to_string(norm) +
-               "); normalise it");
-  }
-  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
-}
-
 BodySpec LoadBody(const YamlMap::Entry& entry) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
@@ -133,13 +124,32 @@ BodySpec LoadBody(const YamlMap::Entry& entry) {
   return body;
 }
 
+void LoadBodies(const YamlValue& value, WorldSpec* world) {
+  const YamlMap map = value.AsMap();
+  if (map.entries().empty()) value.Fail("is empty; describe at least one body");
+  for (const YamlMap::Entry& entry : map.entries()) world->bodies.push_back(LoadBody(entry));
+}
+
 }  // namespace
 
-void LoadWorld(const YamlMap& top, Scenario* scenario) {
+std::array<double, 4> LoadOrientation(const YamlValue& value) {
+  const std::vector<double> q = value.AsNumbers(4, "[0, 0, 0, 1] (x, y, z, w)");
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(std::abs(norm - 1) <= 1e-3)) {
+    value.Fail("is not a unit quaternion [x, y, z, w] (its norm is " + std::to_string(norm) +
+               "); normalise it");
+  }
+  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
+}
+
+void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenario) {
   const YamlValue* dynamics = top.Find("dynamics");
   const YamlValue* bodies = top.Find("bodies");
+  const YamlValue* models = top.Find("models");
   if (dynamics == nullptr) {
-    if (bodies != nullptr) bodies->Fail("need physics; add the key dynamics, like dynamics: {}");
+    for (const YamlValue* what : {bodies, models}) {
+      if (what != nullptr) what->Fail("need physics; add the key dynamics, like dynamics: {}");
+    }
     return;
   }
   const YamlMap map = dynamics->AsMap();
@@ -152,18 +162,20 @@ void LoadWorld(const YamlMap& top, Scenario* scenario) {
     world.region = LoadRegion(*region);
   }
 
-  if (bodies == nullptr) {
-    dynamics->Fail("has no bodies to move; add the key bodies, or remove dynamics");
+  if (bodies == nullptr && models == nullptr) {
+    dynamics->Fail("has no bodies to move; add the key bodies or models, or remove dynamics");
   }
-  const YamlMap body_map = bodies->AsMap();
-  if (body_map.entries().empty()) bodies->Fail("is empty; describe at least one body");
-  for (const YamlMap::Entry& entry : body_map.entries()) world.bodies.push_back(LoadBody(entry));
+  if (bodies != nullptr) LoadBodies(*bodies, &world);
   scenario->world = std::move(world);
+  if (models != nullptr) LoadModels(*models, variables, scenario);
+  if (scenario->world->bodies.empty() && scenario->world->models.empty()) {
+    models->Fail("has nothing that moves; give one of them mass, or remove dynamics");
+  }
 }
 
 int FindBody(const YamlValue& value, const Scenario& scenario) {
   const std::string name = value.AsText();
-  if (!scenario.world) {
+  if (!scenario.world || scenario.world->bodies.empty()) {
     value.Fail("names the body '" + name + "', but the scenario has none; add dynamics and bodies");
   }
   std::vector<std::string> known;

@@ -12,8 +12,11 @@
 
 namespace tcs {
 
-// `dynamics` and `bodies`, into scenario->world.
-void LoadWorld(const YamlMap& top, Scenario* scenario);
+// `dynamics`, `bodies` and `models`, into scenario->world.
+void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenario);
+
+// `models`, into scenario->world, which has its bodies and its engine.
+void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario);
 
 // `robots`. Reads the duration and the world's bodies from `scenario`.
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
