@@ -63,7 +63,7 @@ void Island::Settle(VirtualTime t) {
   const auto end_of = [this](std::size_t leg) {
     return leg + 1 < used_ ? legs_[leg + 1].start.at : frontier_.at;
   };
-  while (past < used_ && end_of(past) <= t) ++past;
+  while (past < used_ && end_of(past) < t) ++past;
   if (past == 0) return;
   const auto at = [this](std::size_t leg) {
     return legs_.begin() + static_cast<std::ptrdiff_t>(leg);

@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "simbody_bridge/model/convex_hull.h"
 #include "simbody_bridge/model/finite.h"
 
 namespace tcs {
@@ -70,6 +71,9 @@ std::optional<std::string> CheckMesh(const Mesh& mesh) {
                            vertex, mesh.vertices_m.size());
       }
     }
+  }
+  if (!HullOf(mesh.vertices_m).has_value()) {
+    return fmt::format("the mesh '{}' encloses nothing: it is flat", mesh.name);
   }
   return {};
 }

@@ -57,6 +57,40 @@ void JointForce::Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimT
   }
 }
 
+void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed,
+                        std::vector<double>* by_coordinate) const {
+  const auto all = static_cast<std::size_t>(state.getNU());
+  by_speed->assign(all, 0);
+  by_coordinate->assign(all, 0);
+  const int links = static_cast<int>(forest_.links.size());
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    if (forest_.joints[i].body == kWorldBody) continue;
+    const Joint& joint = *forest_.joints[i].joint;
+    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(forest_.joints[i].body)];
+    const auto first = static_cast<std::size_t>(body.getFirstUIndex(state));
+    const auto count = static_cast<std::size_t>(body.getNumU(state));
+    for (std::size_t u = first; u < first + count; ++u) {
+      const double speed = state.getU()[static_cast<int>(u)];
+      (*by_speed)[u] = joint.damping +
+                       joint.friction / kFrictionSpeed * SlopeOfSmoothSign(speed / kFrictionSpeed);
+    }
+    if (count != 1) continue;
+    const double q = state.getQ()[body.getFirstQIndex(state)];
+    const double speed = state.getU()[static_cast<int>(first)];
+    const JointLimits& limits = joint.limits;
+    const JointDrive drive =
+        AsDrive(acting_[static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)))]);
+    if (std::abs(EffortOf(drive, kNoLimit, q, speed)) < limits.effort) {
+      (*by_speed)[first] += std::max(0.0, drive.damping);
+      (*by_coordinate)[first] += std::max(0.0, drive.stiffness);
+    }
+    if (q < limits.lower || q > limits.upper) {
+      (*by_speed)[first] += 2 * inertia_[i] * kStopRadps;
+      (*by_coordinate)[first] += inertia_[i] * kStopRadps * kStopRadps;
+    }
+  }
+}
+
 void JointForce::calcForce(const SimTK::State& state,
                            SimTK::Vector_<SimTK::SpatialVec>& /*body_forces*/,
                            SimTK::Vector_<SimTK::Vec3>& /*particle_forces*/,

@@ -20,6 +20,11 @@ class JointForce : public SimTK::Force::Custom::Implementation {
   // How hard the stops have to be for what hangs on the joints at the start.
   void Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start);
 
+  // How the forces fall as each speed grows, and as each coordinate that is a joint's only one
+  // does. At least 0.
+  void Slopes(const SimTK::State& state, std::vector<double>* by_speed,
+              std::vector<double>* by_coordinate) const;
+
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                  SimTK::Vector_<SimTK::Vec3>& particle_forces,
                  SimTK::Vector& mobility_forces) const override;

@@ -18,5 +18,9 @@ inline double SmoothSign(double x) {
   const double inside = std::clamp(x, -1.0, 1.0);
   return inside * (1.5 - 0.5 * inside * inside);
 }
+inline double SlopeOfSmoothSign(double x) {
+  const double inside = std::clamp(x, -1.0, 1.0);
+  return 1.5 * (1 - inside * inside);
+}
 
 }  // namespace tcs

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "simbody_bridge/simbody/tree/joint_force.h"
 #include "simbody_bridge/simbody/tree/link_force.h"
 #include "simbody_bridge/simbody/tree/vectors.h"
 
@@ -44,6 +43,8 @@ SimbodyTree::SimbodyTree(const Forest& forest, const std::array<double, 3>& grav
   system_.realizeModel(state_);
   SetStart();
   joints->Measure(matter_, state_);
+  joint_force_ = joints;
+  contacts_ = std::make_unique<Contacts>(forest_, bodies_);
 }
 
 void SimbodyTree::AddBody(const TreeBody& body) {
@@ -168,7 +169,7 @@ void SimbodyTree::Project(std::span<double> state) {
   }
 }
 
-double SimbodyTree::LongestStepFrom(std::span<const double> state) {
+double SimbodyTree::LongestStepFrom(std::span<const double> state) const {
   double longest_s = std::numeric_limits<double>::infinity();
   for (const ForestJoint& joint : forest_.joints) {
     if (joint.body == kWorldBody) continue;
@@ -176,6 +177,13 @@ double SimbodyTree::LongestStepFrom(std::span<const double> state) {
     longest_s = std::min(longest_s, TimeToStop(*joint.joint, state[slots.q], state[slots.u]));
   }
   return longest_s;
+}
+
+double SimbodyTree::TimeToTouch(std::span<const double> state) {
+  if (!contacts_->has_pairs()) return std::numeric_limits<double>::infinity();
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  return contacts_->TimeToTouch(state_);
 }
 
 void SimbodyTree::ReadLinks(std::span<const double> state, std::span<const int> links,

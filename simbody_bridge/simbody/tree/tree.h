@@ -10,7 +10,9 @@
 
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/simbody/contact/contacts.h"
 #include "simbody_bridge/simbody/simbody.h"
+#include "simbody_bridge/simbody/tree/joint_force.h"
 
 namespace tcs {
 
@@ -36,8 +38,21 @@ class SimbodyTree {
   void NormaliseQuaternions(std::span<double> state) const;
   // The same, and takes joints that mimic others to where these are.
   void Project(std::span<double> state);
-  // No step from `state` on should be longer, so that error control does not miss what is touched.
-  double LongestStepFrom(std::span<const double> state);
+  // No step from `state` on should be longer, so that error control does not miss a joint's stop.
+  double LongestStepFrom(std::span<const double> state) const;
+  // At least so long nothing touches; 0 where something may.
+  double TimeToTouch(std::span<const double> state);
+
+  // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
+  // Acceleration.
+  const Forest& forest() const { return forest_; }
+  const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
+  const SimTK::State& evaluated() const { return state_; }
+  const SimTK::MobilizedBody& body(int index) const {
+    return bodies_[static_cast<std::size_t>(index)];
+  }
+  const JointForce& joint_force() const { return *joint_force_; }
+  Contacts& contacts() { return *contacts_; }
 
   void ReadLinks(std::span<const double> state, std::span<const int> links,
                  std::span<LinkState> read);
@@ -58,6 +73,8 @@ class SimbodyTree {
   std::vector<Slots> slots_;
   std::vector<double> start_;
   bool has_mimics_ = false;
+  const JointForce* joint_force_ = nullptr;  // Simbody owns it
+  std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
   std::span<const Wrench> acting_;  // while a state is evaluated
 };

@@ -1,14 +1,18 @@
 #include "simbody_bridge/simbody/tree/tree_engine.h"
 
+#include <algorithm>
 #include <deque>
 
 #include "simbody_bridge/simbody/steps.h"
+#include "simbody_bridge/simbody/tree/contact_step.h"
 #include "simbody_bridge/simbody/tree/tree_steps.h"
 
 namespace tcs {
 namespace {
 
 constexpr double kFirstTryS = 1e-3;
+// Where something touches, or is about to.
+constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 constexpr VirtualDuration kLongestStep = VirtualDuration::Seconds(1000);
 
 class TreeEngine : public ModelEngine {
@@ -31,10 +35,19 @@ class TreeEngine : public ModelEngine {
   bool has_set_steps() const override { return fixed_step_ > VirtualDuration{}; }
 
   void Take(IslandStep& step) override {
+    SimbodyTree& tree = At(step.island);
+    const double limit_s = step.limit.seconds();
+    const double free_s = tree.TimeToTouch(step.from);
     if (has_set_steps()) {
-      steps_.TakeWhole(At(step.island), step);
+      if (free_s < limit_s) {
+        contact_step_.Take(tree, step, limit_s);
+      } else {
+        steps_.TakeWhole(tree, step);
+      }
+    } else if (free_s < std::min(kContactStep, step.limit).seconds()) {
+      contact_step_.Take(tree, step, std::min(kContactStep, step.limit).seconds());
     } else {
-      steps_.TakeControlled(At(step.island), step);
+      steps_.TakeControlled(tree, step, std::min(limit_s, free_s));
     }
   }
 
@@ -66,6 +79,7 @@ class TreeEngine : public ModelEngine {
   const std::vector<Shape> fixtures_;
   const VirtualDuration fixed_step_;
   TreeSteps steps_;
+  ContactStep contact_step_;
   std::deque<Forest> forests_;
   std::deque<SimbodyTree> trees_;
   IslandStep shortened_;  // memory of Within

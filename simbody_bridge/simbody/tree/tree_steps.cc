@@ -57,9 +57,8 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
   return std::isfinite(all) ? std::sqrt(greatest) : all;
 }
 
-void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step) {
+void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit_s) {
   Begin(tree, step);
-  const double limit_s = step.limit.seconds();
   const double most_s = std::min(limit_s, std::max(kShortestS, tree.LongestStepFrom(step.from)));
   bool is_limited = step.try_s > most_s;
   double h = std::min(step.try_s, most_s);

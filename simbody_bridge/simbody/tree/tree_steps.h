@@ -14,9 +14,9 @@ class TreeSteps {
   // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds.
   explicit TreeSteps(double accuracy) : accuracy_(accuracy) {}
 
-  // As long as error control lets it be, and the step's limit. Throws std::runtime_error where no
-  // step is short enough for the accuracy.
-  void TakeControlled(SimbodyTree& tree, IslandStep& step);
+  // As long as error control lets it be, and no longer than `limit_s`, which is within the step's.
+  // Throws std::runtime_error where no step is short enough for the accuracy.
+  void TakeControlled(SimbodyTree& tree, IslandStep& step, double limit_s);
   // As long as its limit.
   void TakeWhole(SimbodyTree& tree, IslandStep& step);
 

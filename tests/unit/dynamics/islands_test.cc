@@ -155,6 +155,26 @@ TEST_P(EachEngine, CommandsThatChangeNothingCostNothing) {
   EXPECT_EQ(repeated->work().steps, once->work().steps);
 }
 
+// Of two commands for one instant the last one stays: if that is what acted already, nothing has
+// changed, and nothing of the first one is left.
+TEST_P(EachEngine, ACommandThatIsTakenBackInItsInstantLeavesNothing) {
+  const Wrench push{.force_n = {1, 0, 0}, .torque_nm = {0, 0.01, 0.02}};
+  WorldSpec world = OneBody(GetParam());
+  world.bodies[0].initial.angular_velocity_radps = {1, 2, 3};
+  auto changed = MakeDynamics(world);
+  auto plain = MakeDynamics(world);
+  for (int ms = 7; ms <= 700; ms += 7) {
+    for (Dynamics* dynamics : {changed.get(), plain.get()}) {
+      dynamics->AdvanceTo(At(1'000'000LL * ms + 300));
+      (void)dynamics->Read(0);
+    }
+    changed->Apply(0, push, changed->Now());
+    changed->Apply(0, {}, changed->Now());
+    ASSERT_TRUE(SameBits(changed->Read(0), plain->Read(0))) << "at " << ms << " ms";
+  }
+  EXPECT_EQ(changed->work().changes, 0);
+}
+
 TEST_P(EachEngine, TimeAndWhatNobodyReadsCostNothing) {
   auto dynamics = MakeDynamics(ManyBodies(3, GetParam()));
   for (int ms = 0; ms <= 1000; ++ms) {

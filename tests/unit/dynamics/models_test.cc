@@ -9,8 +9,9 @@
 namespace tcs {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Engines, EveryModelEngine, testing::ValuesIn(ModelEngines()),
-                         NameOfEngine);
+class ModelsInMotion : public EveryModelEngine {};
+
+INSTANTIATE_TEST_SUITE_P(Engines, ModelsInMotion, testing::ValuesIn(ModelEngines()), NameOfEngine);
 
 constexpr double kPi = std::numbers::pi;
 
@@ -26,7 +27,7 @@ double PeriodOf(double inertia, double torque, double angle) {
   return 2 * kPi * std::sqrt(inertia / torque) / a;
 }
 
-TEST_P(EveryModelEngine, APendulumKeepsItsPeriod) {
+TEST_P(ModelsInMotion, APendulumKeepsItsPeriod) {
   for (const double angle : {0.1, 1.0, 2.5}) {
     RobotModel model = Pendulum(1);
     model.joints[0].initial_position = {angle};
@@ -67,7 +68,7 @@ double EnergyOfDoublePendulum(Dynamics& dynamics, VirtualTime t) {
   return energy;
 }
 
-TEST_P(EveryModelEngine, ADoublePendulumKeepsItsEnergy) {
+TEST_P(ModelsInMotion, ADoublePendulumKeepsItsEnergy) {
   RobotModel model = Pendulum(2);
   model.joints[0].initial_position = {2.0};
   model.joints[1].initial_position = {1.0};
@@ -88,7 +89,7 @@ TEST_P(EveryModelEngine, ADoublePendulumKeepsItsEnergy) {
 }
 
 // A base that floats in free fall, turning as a free body does.
-TEST_P(EveryModelEngine, AFreeBaseFallsAndTurns) {
+TEST_P(ModelsInMotion, AFreeBaseFallsAndTurns) {
   RobotModel model;
   model.name = "stone";
   model.links.push_back(LinkOf("stone", MassAt(2, {0.1, 0, 0}, 0.05)));
@@ -110,7 +111,7 @@ TEST_P(EveryModelEngine, AFreeBaseFallsAndTurns) {
   EXPECT_NEAR(state.angular_velocity_radps[2], 3, 1e-9);
 }
 
-TEST_P(EveryModelEngine, AnEffortActsFromItsInstantOn) {
+TEST_P(ModelsInMotion, AnEffortActsFromItsInstantOn) {
   RobotModel model = Pendulum(1);
   WorldSpec world = WorldOf({model}, GetParam());
   world.gravity_mps2 = {};
@@ -124,7 +125,7 @@ TEST_P(EveryModelEngine, AnEffortActsFromItsInstantOn) {
   EXPECT_EQ(state.effort, 2.02);
 }
 
-TEST_P(EveryModelEngine, AJointTakesNoMoreEffortThanItsLimit) {
+TEST_P(ModelsInMotion, AJointTakesNoMoreEffortThanItsLimit) {
   RobotModel model = Pendulum(1);
   model.joints[0].limits.effort = 1.01;
   WorldSpec world = WorldOf({model}, GetParam());
@@ -137,7 +138,7 @@ TEST_P(EveryModelEngine, AJointTakesNoMoreEffortThanItsLimit) {
 }
 
 // A servo of natural frequency w and damping ratio 0.5 on a moment I: the step response.
-TEST_P(EveryModelEngine, AServosStepResponseIsTheClosedForm) {
+TEST_P(ModelsInMotion, AServosStepResponseIsTheClosedForm) {
   WorldSpec world = WorldOf({Pendulum(1)}, GetParam());
   world.gravity_mps2 = {};
   world.integrator.accuracy = 1e-7;
@@ -158,7 +159,7 @@ TEST_P(EveryModelEngine, AServosStepResponseIsTheClosedForm) {
   }
 }
 
-TEST_P(EveryModelEngine, DampingAndFrictionSlowAJointDown) {
+TEST_P(ModelsInMotion, DampingAndFrictionSlowAJointDown) {
   RobotModel model = Pendulum(1);
   model.joints[0].initial_velocity = {2};
   WorldSpec world = WorldOf({model}, GetParam());
@@ -172,7 +173,7 @@ TEST_P(EveryModelEngine, DampingAndFrictionSlowAJointDown) {
   EXPECT_NEAR(ReadJoint(*rubbing, 0, AtMs(3000)).velocity, 0, 1e-3);
 }
 
-TEST_P(EveryModelEngine, AJointStopsAtItsLimits) {
+TEST_P(ModelsInMotion, AJointStopsAtItsLimits) {
   RobotModel model = Pendulum(1);
   model.joints[0].limits = {.lower = -0.5, .upper = 0.7};
   model.joints[0].initial_velocity = {2};
@@ -188,7 +189,7 @@ TEST_P(EveryModelEngine, AJointStopsAtItsLimits) {
   EXPECT_NEAR(ReadJoint(*dynamics, 0, AtMs(4000)).position, -0.5, 1e-3);
 }
 
-TEST_P(EveryModelEngine, AMimicFollowsItsLeader) {
+TEST_P(ModelsInMotion, AMimicFollowsItsLeader) {
   RobotModel model = Pendulum(2);
   model.joints[0].initial_position = {1};
   model.joints[1].mimic = Mimic{0, -0.5, 0.2};
@@ -205,7 +206,7 @@ TEST_P(EveryModelEngine, AMimicFollowsItsLeader) {
 }
 
 // Along and about the axis (1, 1, 0) / sqrt(2), from a frame that is turned and moved.
-TEST_P(EveryModelEngine, JointsMoveTheirChildrenAsUrdfMeansIt) {
+TEST_P(ModelsInMotion, JointsMoveTheirChildrenAsUrdfMeansIt) {
   const double half = std::numbers::sqrt2 / 2;
   for (const JointKind kind :
        {JointKind::kPrismatic, JointKind::kRevolute, JointKind::kContinuous, JointKind::kPlanar}) {
@@ -248,7 +249,7 @@ TEST_P(EveryModelEngine, JointsMoveTheirChildrenAsUrdfMeansIt) {
 }
 
 // Links that are fixed to each other have the mass of all, wherever each of them is.
-TEST_P(EveryModelEngine, FixedLinksAreOneBody) {
+TEST_P(ModelsInMotion, FixedLinksAreOneBody) {
   RobotModel whole = Pendulum(1, 1, 2, 0.03);
   whole.joints[0].initial_position = {1};
   RobotModel parts = Pendulum(1);
@@ -273,7 +274,7 @@ TEST_P(EveryModelEngine, FixedLinksAreOneBody) {
 }
 
 // A rotor: the force turns with the link.
-TEST_P(EveryModelEngine, AWrenchAlongTheLinksAxesTurnsWithIt) {
+TEST_P(ModelsInMotion, AWrenchAlongTheLinksAxesTurnsWithIt) {
   RobotModel model;
   model.name = "disc";
   model.links.push_back(LinkOf("disc", MassAt(1, {}, 0.1)));
