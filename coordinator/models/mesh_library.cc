@@ -7,9 +7,9 @@
 #include <utility>
 #include <variant>
 
-#include "coordinator/models/convex_hull.h"
 #include "coordinator/models/file_text.h"
 #include "coordinator/models/in_child.h"
+#include "coordinator/models/mesh_hull.h"
 #include "coordinator/models/mesh_points.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/urdf_xml.h"
@@ -67,7 +67,7 @@ std::string HullInFile(const std::string& path) {
       if (!std::isfinite(x)) return std::string(1, kWhyNotFollows) + "a vertex in it is not finite";
     }
   }
-  const Hull hull = ConvexHull(points, kMostVertices);
+  const Hull hull = MeshHull(points, kMostVertices);
   if (hull.vertices.empty()) {
     return kWhyNotFollows + fmt::format("its {} vertices span no volume", points.size());
   }

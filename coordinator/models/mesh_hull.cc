@@ -1,4 +1,4 @@
-#include "coordinator/models/convex_hull.h"
+#include "coordinator/models/mesh_hull.h"
 
 extern "C" {
 #include <libqhull_r/qhull_ra.h>
@@ -116,7 +116,7 @@ std::vector<Point> Furthest(const std::vector<Point>& points, std::size_t count)
 
 }  // namespace
 
-Hull ConvexHull(const std::vector<Point>& points, std::size_t most_vertices) {
+Hull MeshHull(const std::vector<Point>& points, std::size_t most_vertices) {
   Hull hull = Exact(points);
   if (hull.vertices.size() <= most_vertices) return hull;
   return Exact(Furthest(hull.vertices, most_vertices));

@@ -16,6 +16,6 @@ struct Hull {
 // `most_vertices` at most: where there were more, those that are furthest along as many directions,
 // evenly spread, which lies within the hull and near it (for a ball of radius r by less than
 // 4 r / most_vertices). Empty if the points span no volume.
-Hull ConvexHull(const std::vector<std::array<double, 3>>& points, std::size_t most_vertices);
+Hull MeshHull(const std::vector<std::array<double, 3>>& points, std::size_t most_vertices);
 
 }  // namespace tcs

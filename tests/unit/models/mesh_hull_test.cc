@@ -1,4 +1,4 @@
-#include "coordinator/models/convex_hull.h"
+#include "coordinator/models/mesh_hull.h"
 
 #include <gtest/gtest.h>
 
@@ -37,33 +37,33 @@ Points OnTheBall(int count) {
   return points;
 }
 
-TEST(ConvexHull, HasTheCornersOfACubeAndNothingElse) {
+TEST(MeshHull, HasTheCornersOfACubeAndNothingElse) {
   Points points;
   for (const double x : {0, 1, 2}) {
     for (const double y : {0, 1, 2}) {
       for (const double z : {0, 1, 2}) points.push_back({x, y, z});
     }
   }
-  const Hull hull = ConvexHull(points, 512);
+  const Hull hull = MeshHull(points, 512);
   EXPECT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.triangles.size(), 12u);
   EXPECT_NEAR(Volume(hull), 8, 1e-12);
 }
 
-TEST(ConvexHull, IsTheSameWhateverIsWithin) {
+TEST(MeshHull, IsTheSameWhateverIsWithin) {
   Points points = OnTheBall(100);
-  const Hull before = ConvexHull(points, 512);
+  const Hull before = MeshHull(points, 512);
   EXPECT_EQ(before.vertices, points);
   for (int i = 0; i < 100; ++i) points.push_back({0.001 * i, 0, 0.1});
-  const Hull after = ConvexHull(points, 512);
+  const Hull after = MeshHull(points, 512);
   EXPECT_EQ(after.vertices, before.vertices);
   EXPECT_EQ(after.triangles, before.triangles);
 }
 
-TEST(ConvexHull, OfManyVerticesKeepsThoseThatMatter) {
+TEST(MeshHull, OfManyVerticesKeepsThoseThatMatter) {
   constexpr std::size_t kMost = 512;
   const Points points = OnTheBall(20'000);
-  const Hull hull = ConvexHull(points, kMost);
+  const Hull hull = MeshHull(points, kMost);
   EXPECT_LE(hull.vertices.size(), kMost);
   EXPECT_GT(hull.vertices.size(), kMost / 2);
   // Along any direction it reaches as far as the ball does, but for what the header says.
@@ -74,11 +74,11 @@ TEST(ConvexHull, OfManyVerticesKeepsThoseThatMatter) {
   }
 }
 
-TEST(ConvexHull, OfWhatIsFlatThereIsNone) {
-  EXPECT_TRUE(ConvexHull({}, 512).vertices.empty());
-  EXPECT_TRUE(ConvexHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 512).vertices.empty());
-  EXPECT_TRUE(ConvexHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 512).vertices.empty());
-  EXPECT_TRUE(ConvexHull(Points(100, {1, 2, 3}), 512).vertices.empty());
+TEST(MeshHull, OfWhatIsFlatThereIsNone) {
+  EXPECT_TRUE(MeshHull({}, 512).vertices.empty());
+  EXPECT_TRUE(MeshHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 512).vertices.empty());
+  EXPECT_TRUE(MeshHull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 512).vertices.empty());
+  EXPECT_TRUE(MeshHull(Points(100, {1, 2, 3}), 512).vertices.empty());
 }
 
 }  // namespace
