@@ -17,6 +17,7 @@
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs {
 
@@ -26,10 +27,16 @@ struct BodyReading {
   InertialReading felt;   // finite, too
 };
 
-// What a sensor reads at an instant.
+struct JointReading {
+  std::string_view name;  // UTF-8; outlives the reading
+  JointState state;       // finite
+};
+
+// What a sensor reads at an instant: bodies, or the joints of a robot.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
+  std::vector<JointReading> joints{};
 };
 
 // Where the readings of one sensor go out.

@@ -123,5 +123,47 @@ TEST(CommandDatagram, UnknownKeysAreNamed) {
   EXPECT_LT(ComplaintAbout("{\"" + std::string(5000, 'x') + "\":1}").size(), 200u);
 }
 
+TEST(JointDatagram, NamesTimeAndStates) {
+  const Reading reading{VirtualTime::FromNanoseconds(1'230'000'000),
+                        {},
+                        {{"elbow", {0.5, -1, 2}}, {"wrist", {1e-9, 0, 0}}}};
+  EXPECT_EQ(EncodeJoints(reading),
+            R"({"time":1.23,"joints":{"elbow":{"position":0.5,"velocity":-1.0,"effort":2.0},)"
+            R"("wrist":{"position":1e-09,"velocity":0.0,"effort":0.0}}})");
+}
+
+std::variant<std::vector<JointGoal>, DecodeError> DecodedJoints(std::string_view text) {
+  const std::vector<std::string> joints = {"elbow", "wrist"};
+  return DecodeJointCommand(text, joints, JointQuantity::kVelocity);
+}
+
+std::string JointComplaint(std::string_view text) {
+  const auto decoded = DecodedJoints(text);
+  const auto* error = std::get_if<DecodeError>(&decoded);
+  return error == nullptr ? "" : error->message;
+}
+
+TEST(JointCommandDatagram, IsForAnyOfTheJoints) {
+  const JointGoal wrist{.joint = 1, .velocity = 0.5};
+  EXPECT_THAT(std::get<0>(DecodedJoints(R"({"wrist": 0.5})")), ElementsAre(wrist));
+  const JointGoal elbow{.joint = 0, .position = 1, .velocity = 2, .effort = -3};
+  EXPECT_THAT(std::get<0>(DecodedJoints(
+                  R"({"elbow":{"effort":-3,"position":1,"velocity":2},"wrist":0.5})")),
+              ElementsAre(elbow, wrist));
+  EXPECT_TRUE(std::get<0>(DecodedJoints("{}")).empty());
+}
+
+TEST(JointCommandDatagram, ThatIsNoneIsSaid) {
+  EXPECT_THAT(JointComplaint("[1]"), HasSubstr("is of the type array"));
+  EXPECT_THAT(JointComplaint("{"), HasSubstr("is not valid JSON"));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names the joint \"knee\""));
+  EXPECT_THAT(JointComplaint(R"({"elbow":"up"})"), HasSubstr("value of \"elbow\" that is neither"));
+  EXPECT_THAT(JointComplaint(R"({"elbow":{"speed":1}})"), HasSubstr("unknown key \"speed\""));
+  EXPECT_THAT(JointComplaint(R"({"elbow":{"effort":null}})"),
+              HasSubstr("whose effort is not a finite number"));
+  EXPECT_THAT(JointComplaint(R"({"elbow":1e999})"), HasSubstr("too large"));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr(R"(send an object like {"elbow": 0.5})"));
+}
+
 }  // namespace
 }  // namespace tcs

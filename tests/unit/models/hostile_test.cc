@@ -63,7 +63,11 @@ TEST_P(HostileUrdfTest, EndsInASentenceSoon) {
   EXPECT_LT(loaded.mistake.size(), 1000u);
   EXPECT_LE(loaded.warnings.size(), 60u);
   EXPECT_LT(ProcessorSeconds() - before_s, 10);
+#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
   EXPECT_LT(MostMemoryKb() - before_kb, 400'000);
+#else
+  static_cast<void>(before_kb);
+#endif
 }
 
 std::string Label(const testing::TestParamInfo<Attack>& info) {
