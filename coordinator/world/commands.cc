@@ -23,6 +23,21 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   act_(sent, on.spec.latency, on.spec.body, limited);
 }
 
+void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  for (const JointGoal& goal : goals) {
+    drive_(sent, on.spec.latency, on.spec.joints->group.joints[goal.joint],
+           ToDrive(goal, on.spec.joints->gains[goal.joint]));
+  }
+}
+
+const JointDriveSpec* Commands::JointsOf(std::size_t channel) const {
+  const CommandChannelSpec& spec = channels_[channel].spec;
+  return spec.joints ? &*spec.joints : nullptr;
+}
+
 void Commands::Refuse(std::size_t channel, const std::string& why) {
   Channel& on = channels_[channel];
   if (++on.refused == 1) warn_("channel " + on.spec.name + ": " + why);

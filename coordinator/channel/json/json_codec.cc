@@ -111,6 +111,7 @@ void AppendField(const BodyReading& body, SensorField field, std::string& text) 
 
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
 std::string EncodeReading(const Reading& reading, std::span<const SensorField> fields) {
+  if (!reading.joints.empty()) return EncodeJoints(reading);
   // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
   std::string text = R"({"time":)";
   AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
@@ -204,6 +205,22 @@ std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
     goals.push_back(goal);
   }
   return goals;
+}
+
+void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
+                 VirtualTime sent, CommandSink& sink) {
+  const auto give = [&](const auto& decoded) {
+    if (const auto* error = std::get_if<DecodeError>(&decoded)) {
+      sink.Refuse(channel, std::string(what) + " " + error->message);
+    } else {
+      sink.Take(channel, sent, std::get<0>(decoded));
+    }
+  };
+  if (const JointDriveSpec* joints = sink.JointsOf(channel)) {
+    give(DecodeJointCommand(text, joints->group.names, joints->quantity));
+  } else {
+    give(DecodeCommand(text));
+  }
 }
 
 }  // namespace tcs

@@ -24,8 +24,8 @@ namespace tcs {
 [[nodiscard]] std::string EncodeReading(const Reading& reading,
                                         std::span<const SensorField> fields);
 
-// {"time":1.23,"joints":{"NAME":{"position":q,"velocity":v,"effort":e}}} in the same way, of a
-// reading of joints.
+// What EncodeReading makes of a reading of joints:
+// {"time":1.23,"joints":{"NAME":{"position":q,"velocity":v,"effort":e}}}, in the same way.
 [[nodiscard]] std::string EncodeJoints(const Reading& reading);
 
 struct DecodeError {
@@ -40,5 +40,9 @@ struct DecodeError {
 // itself is the joint's `quantity`. The same is an error.
 [[nodiscard]] std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
     std::string_view text, std::span<const std::string> joints, JointQuantity quantity);
+
+// Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
+void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
+                 VirtualTime sent, CommandSink& sink);
 
 }  // namespace tcs

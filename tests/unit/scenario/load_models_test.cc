@@ -328,5 +328,122 @@ TEST(LoadModels, SomethingMoves) {
               "s.yaml:3: models is empty; describe at least one model");
 }
 
+constexpr std::string_view kChannels = R"(channels:
+  states: {type: udp_json, sensors: {model: arm, rate: 50, to: "127.0.0.1:47010"}}
+  efforts:
+    type: udp_json
+    commands: {model: arm, joints: [elbow, shoulder], listen: "127.0.0.1:47011", latency: 2ms}
+  servos:
+    type: dds
+    commands:
+      model: arm
+      drive: position
+      stiffness: [100, 200]
+      damping: 7
+      message: std_msgs/msg/Float64MultiArray
+      topic: /commands
+  joint_states:
+    type: dds
+    sensors: {model: arm, joints: [elbow], message: sensor_msgs/msg/JointState, topic: /joint_states}
+)";
+
+// A model with two joints comes before the arm.
+std::string WithChannels() {
+  std::string text(kGood);
+  text.insert(text.find("  arm:"),
+              "  other: {urdf: arm.urdf, fixed_base: true, joints: {elbow: 1}}\n");
+  return text + std::string(kChannels);
+}
+
+TEST(LoadJoints, ChannelsAreAboutJointsOfAModel) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder, WithChannels());
+  ASSERT_EQ(scenario.sensors.size(), 2u);
+  const JointGroup& states = scenario.sensors[0].joints.value();
+  EXPECT_EQ(states.model, "arm");
+  EXPECT_THAT(states.names, ElementsAre("shoulder", "elbow"));
+  EXPECT_THAT(states.joints, ElementsAre(3, 4));  // after the three of the other one
+  EXPECT_THAT(scenario.sensors[1].joints.value().joints, ElementsAre(4));
+  ASSERT_EQ(scenario.commands.size(), 2u);
+  const JointDriveSpec& efforts = scenario.commands[0].joints.value();
+  EXPECT_THAT(efforts.group.joints, ElementsAre(4, 3));
+  EXPECT_EQ(efforts.quantity, JointQuantity::kEffort);
+  EXPECT_THAT(efforts.gains, ElementsAre(JointGains{}, JointGains{}));
+  EXPECT_EQ(scenario.commands[0].latency, VirtualDuration::Milliseconds(2));
+  const JointDriveSpec& servos = scenario.commands[1].joints.value();
+  EXPECT_EQ(servos.quantity, JointQuantity::kPosition);
+  EXPECT_THAT(servos.gains, ElementsAre(JointGains{100, 7}, JointGains{200, 7}));
+}
+
+class JointMistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(JointMistakeTest, IsOneSentenceWithItsPlace) {
+  const Folder folder;
+  const Mistake& mistake = GetParam();
+  const std::string path =
+      folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, WithChannels()));
+  const std::string complaint = Complaint(folder, LoadScenario(path));
+  EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(complaint, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kJointMistakes[] = {
+    {"UnknownModel",
+     "{model: arm, rate",
+     "{model: amr, rate",
+     "s.yaml:21",
+     {"model 'amr'", "'arm'?"}},
+    {"ModelWithoutJoints", "{model: arm, rate", "{model: crate, rate", "s.yaml:21", {"no joints"}},
+    {"UnknownJoint",
+     "[elbow, shoulder]",
+     "[elbw, shoulder]",
+     "s.yaml:24",
+     {"joint 'elbw' of arm", "'elbow'?"}},
+    {"FixedJoint",
+     "[elbow, shoulder]",
+     "[flange]",
+     "s.yaml:24",
+     {"'flange', which has 0 coordinates"}},
+    {"JointTwice", "[elbow, shoulder]", "[elbow, elbow]", "s.yaml:24", {"a second time"}},
+    {"ModelAndBodies",
+     "{model: arm, rate: 50",
+     "{model: arm, bodies: [x]",
+     "s.yaml:21",
+     {"beside bodies"}},
+    {"LimitsOfJoints", "latency: 2ms", "limits: {force: 1}", "s.yaml:24", {"unknown key 'limits'"}},
+    {"UnknownDrive",
+     "drive: position",
+     "drive: torque",
+     "s.yaml:29",
+     {"unknown 'torque'", "effort"}},
+    {"PositionWithoutStiffness",
+     "      stiffness: [100, 200]\n",
+     "",
+     "s.yaml:27",
+     {"lacks the key 'stiffness'"}},
+    {"VelocityWithoutDamping",
+     "drive: position\n      stiffness: [100, 200]\n      damping: 7",
+     "drive: velocity",
+     "s.yaml:27",
+     {"lacks the key 'damping'"}},
+    {"TooFewGains", "[100, 200]", "[100]", "s.yaml:30", {"has 1 numbers; write 2"}},
+    {"NegativeGain", "damping: 7", "damping: -7", "s.yaml:31", {"must not be negative"}},
+    {"NegativeGainInAList", "[100, 200]", "[100, -2]", "s.yaml:30", {"below 0"}},
+    {"WrenchOnJoints",
+     "std_msgs/msg/Float64MultiArray",
+     "geometry_msgs/msg/Wrench",
+     "s.yaml:32",
+     {"joints are driven by"}},
+    {"OdometryOfJoints",
+     "sensor_msgs/msg/JointState",
+     "nav_msgs/msg/Odometry",
+     "s.yaml:36",
+     {"JointState"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, JointMistakeTest, testing::ValuesIn(kJointMistakes), NameOf);
+
 }  // namespace
 }  // namespace tcs
