@@ -320,8 +320,12 @@ class Models {
 void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario) {
   const EngineTraits& engine = TraitsOf(scenario->world->integrator.engine);
   if (!engine.has_models) {
+    std::string others;
+    for (const EngineTraits& other : kEngines) {
+      if (other.has_models) others += (others.empty() ? "" : " or ") + std::string(other.name);
+    }
     value.Fail("need an engine that knows joints and contact, and dynamics.engine is " +
-               std::string(engine.name) + "; set it to simbody");
+               std::string(engine.name) + "; set it to " + others);
   }
   const YamlMap map = value.AsMap();
   if (map.entries().empty()) value.Fail("is empty; describe at least one model");
