@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/timer_fds.h"
@@ -38,6 +39,8 @@ bool AcceptWaits(int fd, int flags) {
 }
 
 bool WantsMore(int fd) { return SocketOption(fd, SO_RCVLOWAT, 1) > 1; }
+
+bool ReadingMakesRoom(int fd) { return SocketOption(fd, SO_PROTOCOL, 0) != IPPROTO_UDP; }
 
 bool ReceivesAtOnce(int fd, int flags) {
   if ((flags & MSG_DONTWAIT) != 0) return true;

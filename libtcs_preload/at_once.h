@@ -18,6 +18,10 @@ bool AcceptWaits(int fd, int flags);
 // answer.
 bool WantsMore(int fd);
 
+// False if nobody who sends to the socket waits for what is read to make room: what does not fit is
+// lost with UDP.
+bool ReadingMakesRoom(int fd);
+
 // True if a call with such flags never waits for data.
 bool ReceivesAtOnce(int fd, int flags);
 

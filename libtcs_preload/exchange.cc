@@ -26,7 +26,33 @@ using shm::WakeReason;
 constexpr timespec kGateTurn{1, 0};
 constexpr std::int64_t kMostGateNs = 10'000;
 constexpr std::int64_t kMostExchangeNs = 50'000;  // of the thread's own, both ways
+// More than a short system call takes, or one of its two ways.
+constexpr std::int64_t kMostCallNs = 1'000;
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
+
+// True where its own CPU clock alone tells what the thread computes: others have the processor as
+// it has.
+bool OnlyCpuClockTells(const shm::ClockPage& page) {
+  return g_header->gates_only != 0 && page.ns_per_tick_q32 != 0;
+}
+
+// What the thread's clock has counted since then.
+std::int64_t NsSince(const shm::ClockPage& page, std::uint64_t tsc) {
+  return shm::MulQ32(static_cast<std::int64_t>(__rdtsc() - tsc), page.ns_per_tick_q32);
+}
+
+// The thread's own CPU clock, and how far that was from either end of the call that has asked.
+struct OwnCpu {
+  std::int64_t ns, way_ns;
+};
+
+OwnCpu ReadOwnCpu(const shm::ClockPage& page) {
+  timespec cpu;
+  const std::uint64_t begun_tsc = __rdtsc();
+  RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
+  const std::int64_t way_ns = NsSince(page, begun_tsc) / 2;
+  return {shm::ToNs(cpu), shm::HostNsOf(page, way_ns < kMostCallNs ? way_ns : kMostCallNs)};
+}
 
 // Where only gates keep threads apart nothing stops the thread in the instant in which it notifies.
 // A handler that ran after the gate is shut, and before the coordinator is told, would take itself
@@ -34,25 +60,34 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 class NoHandlers {
  public:
   // `blocked`: by the program, if that is something else than by the thread.
-  NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) {
+  NoHandlers(shm::ThreadSlot& slot, const unsigned long* blocked) : page_(slot.clock) {
     if (g_header->gates_only == 0) return;
     const unsigned long all = ~0ul;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before_), kSetSize);
     slot.blocked_signals = blocked != nullptr ? *blocked : before_;
   }
-  ~NoHandlers() { Allow(0); }
+  // The thread has left its gate: that it has to do this, too, is not its own time.
+  ~NoHandlers() {
+    const std::uint64_t begun_tsc = __rdtsc();
+    if (Allow(0) && OnlyCpuClockTells(page_)) {
+      shm::TakeOut(page_, shm::ReadClock(page_), NsSince(page_, begun_tsc), kMostCallNs);
+    }
+  }
   NoHandlers(const NoHandlers&) = delete;
   NoHandlers& operator=(const NoHandlers&) = delete;
 
-  // They may run, but for those of `but`, which have to wait for the destructor.
-  void Allow(unsigned long but) {
-    if (g_header->gates_only == 0 || allows_all_) return;
+  // They may run, but for those of `but`, which have to wait for the destructor. False if they may
+  // already.
+  bool Allow(unsigned long but) {
+    if (g_header->gates_only == 0 || allows_all_) return false;
     const unsigned long mask = before_ | but;
     RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&mask), 0, kSetSize);
     allows_all_ = mask == before_;
+    return true;
   }
 
  private:
+  shm::ClockPage& page_;
   unsigned long before_ = 0;
   bool allows_all_ = false;
 };
@@ -62,18 +97,6 @@ struct Charged {
   std::uint64_t dispatch = ~std::uint64_t{0};
   std::int64_t cpu_ns = 0;
 };
-
-// True where its own CPU clock alone tells what the thread computes: others have the processor as
-// it has.
-bool OnlyCpuClockTells(const shm::ClockPage& page) {
-  return g_header->gates_only != 0 && page.ns_per_tick_q32 != 0;
-}
-
-std::int64_t OwnCpuNs() {
-  timespec cpu;
-  RawSyscall(SYS_clock_gettime, CLOCK_THREAD_CPUTIME_ID, Arg(&cpu));
-  return shm::ToNs(cpu);
-}
 
 void DieIfCoordinatorIsGone() {
   pollfd pipe{g_notify_fd, 0, 0};
@@ -86,10 +109,17 @@ void DieIfCoordinatorIsGone() {
 
 // What the thread has come to, before it does anything for the exchange itself.
 shm::ClockReading ReadForNote(shm::ClockPage& page) {
-  shm::ClockReading reading = shm::ReadClock(page);
-  if (!OnlyCpuClockTells(page)) return reading;
-  while (!shm::RemoveStolen(page, reading, OwnCpuNs())) reading = shm::ReadClock(page);
-  return shm::ReadClock(page);
+  for (;;) {
+    shm::ClockReading reading = shm::ReadClock(page);
+    if (!OnlyCpuClockTells(page)) return reading;
+    const OwnCpu own = ReadOwnCpu(page);
+    const std::int64_t cpu_ns = own.ns - own.way_ns;
+    const std::int64_t stolen_ns = reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu_ns);
+    if (!shm::RemoveStolen(page, reading, cpu_ns)) continue;
+    reading.cpu_ns -= stolen_ns;
+    reading.time_ns -= stolen_ns;
+    return reading;
+  }
 }
 
 Charged FillRecord(shm::ThreadSlot& slot, const Request& request,
@@ -117,10 +147,11 @@ void Notify(const GuestThread& thread) {
 
 // What the way to the gate and out of it has taken, and the time that others had meanwhile.
 void TakeOutWait(shm::ClockPage& page, const Charged& at_notification) {
+  const OwnCpu own = ReadOwnCpu(page);
   const shm::ClockReading now = shm::ReadClock(page);
   const bool goes_on = shm::DispatchNumber(now.executed_word) == at_notification.dispatch;
-  shm::LeaveGate(page, now, goes_on ? at_notification.cpu_ns : page.base_cpu_ns, OwnCpuNs(),
-                 kMostExchangeNs);
+  shm::LeaveGate(page, now, goes_on ? at_notification.cpu_ns : page.base_cpu_ns,
+                 own.ns + own.way_ns, kMostExchangeNs);
 }
 
 // False if a signal handler has run and the gate is still shut.

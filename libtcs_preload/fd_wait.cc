@@ -113,11 +113,11 @@ bool PollNow(int fd, short events) {
   return RawSyscall(SYS_ppoll, Arg(&probe), 1, Arg(&now), 0, 0) != 0;
 }
 
-FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns) {
-  if (IsNonBlocking(fd)) return FdState::kReady;
+FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns, bool looked) {
+  if (!looked && IsNonBlocking(fd)) return FdState::kReady;
   const OneEvent event = (events & POLLIN) != 0 ? OneEvent::kForTheFirst : OneEvent::kForAll;
-  for (FdState state = FdState::kReady;; state = FdState::kWaited) {
-    if (PollNow(fd, events)) return state;
+  for (FdState state = FdState::kReady;; state = FdState::kWaited, looked = false) {
+    if (!looked && PollNow(fd, events)) return state;
     const pollfd waited{fd, events, 0};
     const bool again = state == FdState::kWaited;
     switch (WaitForFds(thread, &waited, 1, deadline_ns, {event, again})) {

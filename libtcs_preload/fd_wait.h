@@ -32,9 +32,11 @@ void PassOn(GuestThread& thread);
 
 // Waits until `fd` shows one of `events`, unless it is non-blocking. kReady: it did at once, or
 // waiting is not wanted: hold, then make the call. kWaited: make the call now. kFailed: errno is
-// set (EAGAIN past `deadline_ns`, EINTR).
+// set (EAGAIN past `deadline_ns`, EINTR). `looked`: the caller has just found that it is none of
+// the former two.
 enum class FdState { kReady, kWaited, kFailed };
-FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns);
+FdState AwaitFd(GuestThread& thread, int fd, short events, std::int64_t deadline_ns,
+                bool looked = false);
 
 // True if `fd` shows one of `events` now.
 bool PollNow(int fd, short events);

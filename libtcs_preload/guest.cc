@@ -85,6 +85,8 @@ void CountCall(GuestThread& thread) {
       AwaitTurn(thread);
     }
     thread.in_call = is_fixed;
+  } else if ((thread.slot->clock.counts_work & shm::kIsAhead) != 0 && !IsAtGate(thread)) {
+    AwaitTurn(thread);
   }
   ++thread.slot->work.calls;
   shm::ClockPage& page = thread.slot->clock;

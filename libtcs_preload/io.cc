@@ -47,6 +47,13 @@ bool DontWait(int flags) { return (flags & MSG_DONTWAIT) != 0; }
 // Whether what a call with these flags receives is not there any more.
 bool Takes(int flags) { return (flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0; }
 
+// Who waits to write may find room after a read. Asked only where that has the thread wait for its
+// next call (CountCall).
+void BeginTaking(GuestThread& t, int fd, bool socket) {
+  if (socket && g_header->gates_only != 0 && !ReadingMakesRoom(fd)) return;
+  BeginChange(t);
+}
+
 struct Reads {
   bool dont_wait = false, socket = false, takes = true;
 };
@@ -71,9 +78,15 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
   if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
   auto take = [&] {
     if (any_socket) AcknowledgeAtOnce(fd);
-    BeginChange(*t);  // there is room again
+    BeginTaking(*t, fd, any_socket);
     const long result = call();
-    if (result > 0 && reads.takes) NoteReceivedFrom(*t, fd);
+    if (result > 0 && reads.takes) {
+      if (any_socket) {
+        NoteReceived(*t);
+      } else {
+        NoteReceivedFrom(*t, fd);
+      }
+    }
     return ToErrno(result);
   };
   if (reads.dont_wait || IsNonBlocking(fd)) {
@@ -94,8 +107,8 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     }
     if (timeout != kNeverNs) return ReadTerminal(*t, fd, DeadlineAfter(*t, timeout), take);
   }
-  for (;; ready = false) {
-    const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline);
+  for (bool looked = !ready;; ready = looked = false) {
+    const FdState state = ready ? FdState::kReady : AwaitFd(*t, fd, POLLIN, deadline, looked);
     if (state == FdState::kFailed) return -1;
     // While it holds, somebody else may take what is there.
     if (state == FdState::kWaited || !HoldForReadFrom(*t, fd, reads.socket) ||
@@ -306,7 +319,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (state == FdState::kFailed) return -1;
   // All that are there come along, so all that are from before must be there.
   if (state == FdState::kReady) HoldForRead(*t);
-  BeginChange(*t);
+  BeginTaking(*t, fd, true);
   const long result = at_once();
   if (result > 0 && Takes(flags)) NoteReceived(*t);
   PassOn(*t);

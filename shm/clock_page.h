@@ -123,21 +123,31 @@ inline void RemoveUntold(ClockPage& page, const ClockReading& r, std::int64_t ho
   page.stolen_ns.fetch_add(stolen, std::memory_order_relaxed);
 }
 
-// What has been executed since the dispatch was the way out of the gate: neither time nor charge of
-// the thread's. Nothing is taken out if that was more than `most_ns`: a handler has run.
-inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
-  const std::int64_t gate_ns = r.cpu_ns - page.base_cpu_ns;
-  if (page.ns_per_tick_q32 == 0 || gate_ns <= 0 || gate_ns > most_ns) return;
+// The host's nanoseconds for as many of the clock's.
+inline std::int64_t HostNsOf(const ClockPage& page, std::int64_t ns) {
+  return static_cast<std::int64_t>((static_cast<std::uint64_t>(ns) << 32) /
+                                   page.ns_per_host_ns_q32);
+}
+
+// The last `ns` before the reading were spent for the exchange with the coordinator: neither time
+// nor charge of the thread's. Nothing is taken out if that is more than `most_ns`: a handler has
+// run, or others have.
+inline void TakeOut(ClockPage& page, const ClockReading& r, std::int64_t ns, std::int64_t most_ns) {
+  if (page.ns_per_tick_q32 == 0 || ns <= 0 || ns > most_ns) return;
   std::uint64_t expected = r.executed_word;
-  const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - gate_ns);
+  const std::uint64_t desired = PackAdjust(r.executed_word, AdjustValue(r.executed_word) - ns);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
-  page.host_cpu_origin_ns += static_cast<std::int64_t>((static_cast<std::uint64_t>(gate_ns) << 32) /
-                                                       page.ns_per_host_ns_q32);
+  page.host_cpu_origin_ns += HostNsOf(page, ns);
+}
+
+// The same of what has been executed since the dispatch: the way out of the gate.
+inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
+  TakeOut(page, r, r.cpu_ns - page.base_cpu_ns, most_ns);
 }
 
 // Where others share the processor as ordinary tasks, the thread's clock goes on when it leaves its
 // gate, from where its charge was `cpu_ns`. What its CPU clock has counted since is the way to the
-// gate and out of it, as in TakeOutGate; `host_cpu_ns` must have been read after `r`.
+// gate and out of it, as in TakeOutGate; at the reading it says `host_cpu_ns`.
 inline void LeaveGate(ClockPage& page, const ClockReading& r, std::int64_t cpu_ns,
                       std::int64_t host_cpu_ns, std::int64_t most_ns) {
   const std::int64_t counted_ns = CpuTimeFromHostClock(page, host_cpu_ns) - cpu_ns;
@@ -148,10 +158,7 @@ inline void LeaveGate(ClockPage& page, const ClockReading& r, std::int64_t cpu_n
       PackAdjust(r.executed_word, AdjustValue(r.executed_word) - wrong_ns);
   if (!page.executed_adjust.compare_exchange_strong(expected, desired)) return;
   page.last_check_tsc.store(r.tsc, std::memory_order_relaxed);
-  if (is_ours) {
-    page.host_cpu_origin_ns += static_cast<std::int64_t>(
-        (static_cast<std::uint64_t>(counted_ns) << 32) / page.ns_per_host_ns_q32);
-  }
+  if (is_ours) page.host_cpu_origin_ns += HostNsOf(page, counted_ns);
 }
 
 }  // namespace tcs::shm

@@ -110,6 +110,8 @@ inline constexpr int kPreemptionSignal = 33;
 // Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
 // that the kernel carries out, so that the thread says once it is done (kCall).
 inline constexpr std::uint64_t kBeginsInCall = 2;
+// The same where the thread computes ahead of its turns: each of its calls begins at its gate.
+inline constexpr std::uint64_t kIsAhead = 4;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
 

@@ -2,9 +2,9 @@
 // until then.
 //
 // Frames and units (REP-103): SI units, right-handed, x forward, y left, z up; quaternions x y z w.
-// Positions, orientations, velocities and wrenches are expressed in the world frame; a body's
-// position is its centre of mass. Ownership: the implementation owns the engine; values are copied
-// in and out. Not thread-safe: one thread, the coordinator's, calls it.
+// Positions, orientations, velocities and wrenches are expressed in the world frame unless they say
+// otherwise; a body's position is its centre of mass. Ownership: the implementation owns the
+// engine; values are copied in and out. Not thread-safe: one thread, the coordinator's, calls it.
 //
 // Lazy: time is a number, which costs nothing to advance. Bodies are integrated when somebody reads
 // them, each island (bodies that can touch or pull each other) by itself.
@@ -24,12 +24,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shm/virtual_time.h"
+#include "simbody_bridge/model/robot_model.h"
 
 namespace tcs {
 
@@ -41,11 +44,58 @@ struct BodyState {
   std::array<double, 3> angular_velocity_radps{};
 };
 
+// What a command makes act on a body.
 struct Wrench {
   std::array<double, 3> force_n{};  // at the centre of mass
   std::array<double, 3> torque_nm{};
+  // Along the body's axes, and turning with them while it acts; else along the world's.
+  bool in_body_frame = false;
+  // A time constant: what acts goes from what acted before to this by w' = (this - w) / lag. 0: it
+  // acts at once.
+  VirtualDuration lag{};
 
   bool operator==(const Wrench&) const = default;
+};
+
+// What drives a joint that has one coordinate: effort + stiffness * (position - its position) +
+// damping * (velocity - its velocity), and no more than the joint's limit of effort either way. N m
+// and radians, or N and metres. A servo is one of these, evaluated as often as the physics are.
+struct JointDrive {
+  double effort = 0;
+  double stiffness = 0;
+  double position = 0;
+  double damping = 0;
+  double velocity = 0;
+
+  bool operator==(const JointDrive&) const = default;
+};
+
+struct JointState {
+  double position = 0;
+  double velocity = 0;
+  double effort = 0;  // what its drive gives
+};
+
+// Of a link's frame, in the world.
+struct LinkState {
+  Pose pose;
+  std::array<double, 3> linear_velocity_mps{};  // of the frame's origin
+  std::array<double, 3> angular_velocity_radps{};
+};
+
+// Along which axes a wrench on a link is given; those of the link turn with it while it acts.
+enum class WrenchFrame { kWorld, kLink };
+
+// What the air does to a body that moves through it, whichever way the body is turned: the force
+// -(linear + quadratic |v|) v, v being the velocity relative to the wind; the torque of the same
+// form against the angular velocity.
+struct DragSpec {
+  double linear_nspm = 0;
+  double quadratic_ns2pm2 = 0;
+  double angular_linear_nmsprad = 0;
+  double angular_quadratic_nms2prad2 = 0;
+
+  bool operator==(const DragSpec&) const = default;
 };
 
 struct BodySpec {
@@ -53,6 +103,17 @@ struct BodySpec {
   double mass_kg = 1.0;
   std::array<double, 3> inertia_kgm2{0.1, 0.1, 0.1};  // principal moments, body frame
   BodyState initial;
+  DragSpec drag;
+};
+
+// How the air moves, everywhere alike.
+struct WindSpec {
+  std::array<double, 3> mean_mps{};
+  // Gusts on top of it: on each axis of this standard deviation, and correlated over about this
+  // time. They are a function of time and the seed.
+  double gusts_mps = 0;
+  VirtualDuration gust_time = VirtualDuration::Seconds(1);
+  std::uint64_t seed = 1;
 };
 
 // A cube around the origin whose walls push back. Per axis, a body whose centre is outside, |x| >
@@ -67,6 +128,7 @@ struct RegionSpec {
 enum class EngineKind {
   kSimbody,
   kOde,
+  kMujoco,
 };
 
 // Simbody's.
@@ -83,21 +145,29 @@ struct IntegratorSpec {
   EngineKind engine = EngineKind::kSimbody;
   IntegratorKind kind = IntegratorKind::kRungeKutta3;  // Simbody alone has a choice
   // Steps of this length, counted from the last command that changed something. 0: what the engine
-  // does by itself: Simbody controls its error by `accuracy`, ODE takes kOdeStep. Between the ends
-  // of steps of a set length the state is what a step shortened to end there gives; between those
-  // of steps that the engine chooses, a cubic through both ends and their derivatives.
+  // does by itself: Simbody controls its error by `accuracy`, ODE and MuJoCo take steps of 1 ms.
+  // Between the ends of steps of a set length the state is what a step shortened to end there
+  // gives; between those of steps that the engine chooses, a cubic through both ends and their
+  // derivatives.
   VirtualDuration fixed_step{};
   double accuracy = 1e-5;  // relative error of one of Simbody's steps, between 0 and 1
 };
 
 // Gazebo's, too.
 inline constexpr VirtualDuration kOdeStep = VirtualDuration::Milliseconds(1);
+inline constexpr VirtualDuration kMujocoStep = VirtualDuration::Milliseconds(1);
 
 struct WorldSpec {
   std::vector<BodySpec> bodies;
+  // What has joints, or touches something: not every engine takes them (engines.h).
+  std::vector<RobotModel> models;
+  // What the models stand on and run into: the floor, walls. In the world's frame; they do not
+  // move. Free bodies touch nothing.
+  std::vector<Shape> fixtures;
   std::array<double, 3> gravity_mps2{};
   bool has_region = false;
   RegionSpec region;
+  WindSpec wind;  // for bodies with drag
   IntegratorSpec integrator;
   // Bodies (by index) that are integrated as one system. Others are islands of one body each: free
   // bodies cannot touch or pull each other.
@@ -150,6 +220,23 @@ class Dynamics {
     Read(Now(), {&body, 1}, {&state, 1});
     return state;
   }
+
+  // The models' links and joints by index: those of the first model in its own order, then those of
+  // the next. Names are resolved once; none: there is no such one.
+  virtual std::optional<int> FindLink(std::string_view model, std::string_view link) const = 0;
+  virtual std::optional<int> FindJoint(std::string_view model, std::string_view joint) const = 0;
+
+  // As Apply, for links and joints. A wrench on a link acts at the origin of its frame; those along
+  // the world's axes and along the link's act beside each other. A joint that is driven has one
+  // coordinate and mimics none.
+  virtual void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) = 0;
+  virtual void Drive(int joint, const JointDrive& drive, VirtualTime t) = 0;
+
+  // As Read, for links and for joints, which have one coordinate or are fixed.
+  virtual void ReadLinks(VirtualTime t, std::span<const int> links,
+                         std::span<LinkState> states) = 0;
+  virtual void ReadJoints(VirtualTime t, std::span<const int> joints,
+                          std::span<JointState> states) = 0;
 
   // A checkpoint holds what a run goes on from: after Restore the same calls compute bitwise what
   // they computed in the run that was saved. It costs less than a step. With `reuse`, an earlier

@@ -14,11 +14,13 @@ struct EngineTraits {
   EngineKind kind;
   std::string_view name;  // in scenarios and results
   bool has_integrators;   // several methods, which choose their steps by an accuracy
+  bool has_models;        // joints, contact and friction, not free bodies alone
 };
 
-inline constexpr std::array<EngineTraits, 2> kEngines = {{
-    {EngineKind::kSimbody, "simbody", true},
-    {EngineKind::kOde, "ode", false},
+inline constexpr std::array<EngineTraits, 3> kEngines = {{
+    {EngineKind::kSimbody, "simbody", true, true},
+    {EngineKind::kOde, "ode", false, false},
+    {EngineKind::kMujoco, "mujoco", false, true},
 }};
 
 constexpr const EngineTraits& TraitsOf(EngineKind kind) {

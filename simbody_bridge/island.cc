@@ -15,6 +15,13 @@ constexpr VirtualDuration kLeastAhead = VirtualDuration::Milliseconds(1);
 
 bool IsEarlier(VirtualTime t, const Island::Command& command) { return t < command.at; }
 
+bool HasSettled(const IslandStep& step) {
+  for (std::size_t place = 0; place < step.remainders.size(); ++place) {
+    if (!HasSettled(step.wrenches[place], step.remainders[place], step.at)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 VirtualDuration LengthOf(const IslandStep& step) {
@@ -63,7 +70,7 @@ void Island::Settle(VirtualTime t) {
   const auto end_of = [this](std::size_t leg) {
     return leg + 1 < used_ ? legs_[leg + 1].start.at : frontier_.at;
   };
-  while (past < used_ && end_of(past) <= t) ++past;
+  while (past < used_ && end_of(past) < t) ++past;
   if (past == 0) return;
   const auto at = [this](std::size_t leg) {
     return legs_.begin() + static_cast<std::ptrdiff_t>(leg);
@@ -95,8 +102,10 @@ void Island::Depart(Leg* leg) {
   const Node& start = leg->start;
   IslandStep& step = leg->step;
   step.island = index_;
+  step.at = start.at;
   step.from = start.state;
   step.wrenches = start.wrenches;
+  step.remainders = start.remainders;
   step.try_s = start.try_s;
   step.limit = engine_.LongestStep(index_);
   leg->changed_at = start.changed_at;
@@ -106,12 +115,41 @@ void Island::Depart(Leg* leg) {
       step.wrenches[static_cast<std::size_t>(command.place)] = command.wrench;
     }
   }
-  if (step.wrenches == start.wrenches) return;
-  ++work_.changes;
-  leg->changed_at = start.at;
+  if (step.wrenches != start.wrenches) {
+    ++work_.changes;
+    leg->changed_at = start.at;
+    LetLag(start, &step);
+    LimitAfterChange(start, &step);
+  }
+  if (HasSettled(step)) step.remainders.clear();
+}
+
+// Where a new command lags, what acted until now fades.
+void Island::LetLag(const Node& start, IslandStep* step) const {
+  const std::size_t bodies = step->wrenches.size();
+  for (std::size_t place = 0; place < bodies; ++place) {
+    const Wrench& before = start.wrenches[place];
+    const Wrench& now = step->wrenches[place];
+    if (now == before) continue;
+    if (now.lag == VirtualDuration{}) {
+      if (!step->remainders.empty()) step->remainders[place] = {};
+      continue;
+    }
+    step->remainders.resize(bodies);
+    const Remainder& left = start.remainders.empty() ? Remainder{} : start.remainders[place];
+    step->remainders[place] = RemainderAt(before, left, start.at);
+  }
+}
+
+void Island::LimitAfterChange(const Node& start, IslandStep* step) const {
   if (engine_.has_set_steps()) return;
   if (const VirtualDuration interval = start.at - start.changed_at; interval > VirtualDuration{}) {
-    step.limit = std::min(step.limit, std::max(interval * kIntervalsAhead, kLeastAhead));
+    step->limit = std::min(step->limit, std::max(interval * kIntervalsAhead, kLeastAhead));
+  }
+  for (std::size_t place = 0; place < step->remainders.size(); ++place) {
+    // Error control sees what fades when the step is not many times longer than that takes.
+    if (step->remainders[place].since != start.at) continue;
+    step->limit = std::min(step->limit, step->wrenches[place].lag);
   }
 }
 
@@ -145,6 +183,7 @@ void Island::FindFrontier() {
   frontier_.at = std::min(leg.to, ChangeWithin(leg));
   StateOf(leg, frontier_.at, &frontier_.state);
   frontier_.wrenches = leg.step.wrenches;
+  frontier_.remainders = leg.step.remainders;
   frontier_.try_s = leg.step.next_try_s;
   frontier_.changed_at = leg.changed_at;
 }
@@ -169,6 +208,13 @@ void Island::StateAt(VirtualTime t, std::vector<double>* state) {
   std::size_t leg = used_ - 1;
   while (legs_[leg].start.at > t) --leg;
   StateOf(legs_[leg], t, state);
+}
+
+const std::vector<Wrench>& Island::ActingUntil(VirtualTime t) const {
+  if (t >= frontier_.at) return frontier_.wrenches;
+  std::size_t leg = used_ - 1;
+  while (leg > 0 && legs_[leg].start.at >= t) --leg;
+  return legs_[leg].start.at < t ? legs_[leg].step.wrenches : legs_[leg].start.wrenches;
 }
 
 void Island::Save(Saved* saved) const {

@@ -36,6 +36,8 @@ class Island {
 
   // Of a time since the one settled last, up to which no step is left to take.
   void StateAt(VirtualTime t, std::vector<double>* state);
+  // What acted until that time.
+  const std::vector<Wrench>& ActingUntil(VirtualTime t) const;
 
   // How many commands have taken effect by `t` and not been worked off.
   std::size_t CommandsUntil(VirtualTime t) const;
@@ -47,11 +49,12 @@ class Island {
     int place;
     Wrench wrench;
   };
-  // Where a step begins.
+  // Where a step begins, and what acted until then.
   struct Node {
     VirtualTime at;
     std::vector<double> state;
-    std::vector<Wrench> wrenches;  // that acted until then
+    std::vector<Wrench> wrenches;
+    std::vector<Remainder> remainders;
     double try_s = 0;
     VirtualTime changed_at;  // the last change before
   };
@@ -74,6 +77,8 @@ class Island {
   const Wrench& ActingAfter(VirtualTime t, int place) const;
   void TakeBackTo(VirtualTime t);
   void Depart(Leg* leg);
+  void LetLag(const Node& start, IslandStep* step) const;
+  void LimitAfterChange(const Node& start, IslandStep* step) const;
   VirtualTime ChangeWithin(const Leg& leg);
   void FindFrontier();
   void StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/lag.h"
 
 namespace tcs {
 
@@ -16,10 +17,12 @@ namespace tcs {
 // engine's own order. The engine resizes what it writes; vectors are used again.
 struct IslandStep {
   int island = 0;
+  VirtualTime at;  // its beginning
   std::vector<double> from;
-  std::vector<Wrench> wrenches;  // acting, one for each body of the island
-  VirtualDuration limit;         // the step is no longer than this, and more than 0
-  double try_s = 0;              // the length that the engine tries first, within the limit
+  std::vector<Wrench> wrenches;       // commanded, one for each place of the island
+  std::vector<Remainder> remainders;  // likewise; none where no command lags
+  VirtualDuration limit;              // the step is no longer than this, and more than 0
+  double try_s = 0;                   // the length that the engine tries first, within the limit
 
   std::vector<double> to;
   double length_s = 0;                     // exactly limit.seconds() if it is as long as that
@@ -52,8 +55,12 @@ class IslandEngine {
   // The state `after` the beginning of a step that was taken, before its end.
   virtual void Within(const IslandStep& step, VirtualDuration after,
                       std::vector<double>* state) = 0;
+};
 
-  // How a body is in a state of its island; `place` counts the island's bodies.
+// Of free bodies: each place is a body.
+class BodyEngine : public IslandEngine {
+ public:
+  // How a body is in a state of its island.
   virtual BodyState Read(int island, int place, std::span<const double> state) const = 0;
 };
 
@@ -63,7 +70,7 @@ std::vector<std::vector<int>> IslandsOf(const WorldSpec& world);
 
 // The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if
 // the engine refuses it all the same.
-std::unique_ptr<IslandEngine> MakeEngine(const WorldSpec& world,
-                                         const std::vector<std::vector<int>>& islands);
+std::unique_ptr<BodyEngine> MakeEngine(const WorldSpec& world,
+                                       const std::vector<std::vector<int>>& islands);
 
 }  // namespace tcs

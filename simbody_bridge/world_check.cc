@@ -6,17 +6,11 @@
 #include <cmath>
 
 #include "simbody_bridge/engines.h"
+#include "simbody_bridge/model/finite.h"
+#include "simbody_bridge/model/model_check.h"
 
 namespace tcs {
 namespace {
-
-template <std::size_t N>
-bool AllFinite(const std::array<double, N>& values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
-
-bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
-bool IsNonNegative(double value) { return std::isfinite(value) && value >= 0; }
 
 // A moment may not exceed the sum of the two others; flat bodies reach it, so rounding is forgiven.
 bool SatisfiesTriangleInequality(const std::array<double, 3>& inertia) {
@@ -58,6 +52,30 @@ void CheckBody(const BodySpec& body) {
   }
 }
 
+void CheckDrag(const BodySpec& body) {
+  const DragSpec& drag = body.drag;
+  for (const double factor : {drag.linear_nspm, drag.quadratic_ns2pm2, drag.angular_linear_nmsprad,
+                              drag.angular_quadratic_nms2prad2}) {
+    if (IsNonNegative(factor)) continue;
+    throw DynamicsError(
+        fmt::format("body '{}': each factor of the drag must be finite and not negative, but one "
+                    "is {}",
+                    body.name, factor));
+  }
+}
+
+void CheckWind(const WindSpec& wind) {
+  if (!AllFinite(wind.mean_mps)) throw DynamicsError("wind: its velocity must be finite");
+  if (!IsNonNegative(wind.gusts_mps)) {
+    throw DynamicsError(fmt::format(
+        "wind: the gusts must be finite and not negative, but are {} m/s", wind.gusts_mps));
+  }
+  if (wind.gust_time <= VirtualDuration{}) {
+    throw DynamicsError(fmt::format("wind: the time of the gusts must be more than 0, but is {} ns",
+                                    wind.gust_time.ns()));
+  }
+}
+
 void CheckRegion(const RegionSpec& region) {
   if (!IsPositive(region.half_extent_m)) {
     throw DynamicsError(fmt::format(
@@ -95,7 +113,21 @@ bool AllFinite(const BodyState& state) {
 }
 
 void CheckWorld(const WorldSpec& world) {
-  for (const BodySpec& body : world.bodies) CheckBody(body);
+  for (const BodySpec& body : world.bodies) {
+    CheckBody(body);
+    CheckDrag(body);
+  }
+  CheckWind(world.wind);
+  for (const RobotModel& model : world.models) {
+    if (const auto fault = CheckModel(model)) {
+      throw DynamicsError(fmt::format("model '{}': {}", model.name, fault->what));
+    }
+  }
+  for (const Shape& fixture : world.fixtures) {
+    if (const auto fault = CheckShape(fixture, true)) {
+      throw DynamicsError(fmt::format("fixture '{}': {}", fixture.name, *fault));
+    }
+  }
   if (!AllFinite(world.gravity_mps2)) throw DynamicsError("gravity: it must be finite");
   if (world.has_region) CheckRegion(world.region);
   CheckIntegrator(world.integrator);
@@ -104,6 +136,11 @@ void CheckWorld(const WorldSpec& world) {
 void CheckWrench(const std::string& body, const Wrench& wrench) {
   if (!AllFinite(wrench.force_n) || !AllFinite(wrench.torque_nm)) {
     throw DynamicsError(fmt::format("body '{}': a commanded wrench must be finite", body));
+  }
+  if (wrench.lag < VirtualDuration{}) {
+    throw DynamicsError(
+        fmt::format("body '{}': the lag of a command must not be negative, but is {} ns", body,
+                    wrench.lag.ns()));
   }
 }
 

@@ -184,6 +184,7 @@ void DdsGateway::ShowDeliverersTheirDeadlines() {
     if (deliverer == nullptr || deliverer->Awaits<awaited::Messages>() == nullptr) continue;
     const std::int64_t due = hub_.DueNs(process->dds_number);
     if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
+    SchedulerOf(*deliverer).WaitChanged(deliverer->order);
     const bool inside = run_.turn.IsOn(*process->robot);
     if (due != shm::kNeverNs && !inside) {
       waker_.NoteLateness(*deliverer, due,

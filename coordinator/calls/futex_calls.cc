@@ -16,6 +16,13 @@ constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
 // The kernel looks at how many it was to wake only when it has woken one.
 int AtLeastOne(std::uint64_t count) { return std::max(1, static_cast<int>(count)); }
 
+// The kernel's word of a lock, which programs change, too, by themselves.
+bool ChangesWord(int command) {
+  return command == FUTEX_WAKE_OP || command == FUTEX_LOCK_PI || command == FUTEX_LOCK_PI2 ||
+         command == FUTEX_TRYLOCK_PI || command == FUTEX_UNLOCK_PI ||
+         command == FUTEX_WAIT_REQUEUE_PI || command == FUTEX_CMP_REQUEUE_PI;
+}
+
 }  // namespace
 
 std::int64_t FutexCalls::Requeue(const Task& task, const TrappedCall& call, int command) {
@@ -96,6 +103,10 @@ void FutexCalls::Handle(Task& task, const TrappedCall& call) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   task.trap_result = WrongFutexCall(task, call, command);
   if (task.trap_result != 0 || HoldsToWake(task, call, command)) return;
+  if (ChangesWord(command)) {
+    const bool is_shared = (static_cast<int>(call.args[1]) & FUTEX_PRIVATE_FLAG) == 0;
+    stands_still_(is_shared ? nullptr : task.process);
+  }
   switch (command) {
     case FUTEX_WAIT:
     case FUTEX_WAIT_BITSET:

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/lock_futexes.h"
@@ -16,8 +18,15 @@ namespace tcs {
 
 class FutexCalls {
  public:
-  FutexCalls(RunState& run, Waker& waker, FutexWords& words, LockFutexes& locks)
-      : run_(run), waker_(waker), words_(words), locks_(locks) {}
+  // `stands_still` has no thread run, from now on, that could change a word of the process's, or,
+  // if it is null, of any one's, while it is changed here.
+  FutexCalls(RunState& run, Waker& waker, FutexWords& words, LockFutexes& locks,
+             std::function<void(Process*)> stands_still)
+      : run_(run),
+        waker_(waker),
+        words_(words),
+        locks_(locks),
+        stands_still_(std::move(stands_still)) {}
 
   // Carries the call out, or has the thread wait; task.trap_result is what it returns.
   void Handle(Task& task, const TrappedCall& call);
@@ -34,6 +43,7 @@ class FutexCalls {
   Waker& waker_;
   FutexWords& words_;
   LockFutexes& locks_;
+  const std::function<void(Process*)> stands_still_;
 };
 
 }  // namespace tcs

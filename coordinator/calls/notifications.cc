@@ -98,7 +98,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.scheduling.Handle(task, note);
       break;
     case Kind::kStrangers:
-      task.process->has_unmanaged_threads = true;
+      task.process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
       break;
     case Kind::kSignalled:
       parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);

@@ -42,15 +42,18 @@ bool HasEvent(const Task& task) {
 
 bool IsExclusive(const EpollEntry& entry) { return (entry.events & EPOLLEXCLUSIVE) != 0; }
 
-// What the threads wait at, each looked at once: there may be hundreds of them.
+// The file of the only descriptor: where two wait at the same one, they may be offered the same
+// event. All epoll sets count as one.
+std::uint64_t PlaceOf(const Task& task) {
+  struct stat status {};
+  fstat(DescriptorOf(task), &status);
+  return static_cast<std::uint64_t>(status.st_ino) ^ static_cast<std::uint64_t>(status.st_dev)
+                                                         << 32;
+}
+
+// What is in the epoll sets that threads wait at, each looked at once: there may be hundreds.
 class Looks {
  public:
-  // False where they cannot offer the same event, as the descriptors' files tell.
-  bool MayBeOne(const Task& one, const Task& other) {
-    const File &file = FileOf(one), &other_file = FileOf(other);
-    return file.device == other_file.device && file.number == other_file.number;
-  }
-  // Of the epoll set that the thread waits at.
   const std::vector<EpollEntry>& EntriesOf(const Task& task) {
     const auto [found, is_new] = entries_.try_emplace(task.order);
     if (is_new) found->second = tcs::EntriesOf(DescriptorOf(task));
@@ -58,21 +61,6 @@ class Looks {
   }
 
  private:
-  struct File {
-    dev_t device;
-    ino_t number;  // all epoll sets have the same
-  };
-  const File& FileOf(const Task& task) {
-    const auto [found, is_new] = files_.try_emplace(task.order);
-    if (is_new) {
-      struct stat status {};
-      fstat(DescriptorOf(task), &status);
-      found->second = {status.st_dev, status.st_ino};
-    }
-    return found->second;
-  }
-
-  std::unordered_map<int, File> files_;
   std::unordered_map<int, std::vector<EpollEntry>> entries_;
 };
 
@@ -102,13 +90,16 @@ bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
 
 void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
   std::vector<EventWaiter> waiters;
-  for (const Task* task : awaiters) waiters.push_back(WaiterOf(*task));
+  for (const Task* task : awaiters) {
+    waiters.push_back(WaiterOf(*task));
+    if (awaiters.size() > 1 && waiters.back().takes) waiters.back().place = PlaceOf(*task);
+  }
   Looks looks;
   const std::vector<EventShare> shares =
       ShareEvents(std::move(waiters), [this, &looks](int first, int second) {
         const Task &one = run_.table.At(first), &other = run_.table.At(second);
-        return looks.MayBeOne(one, other) && (IsSameFile(DescriptorOf(one), DescriptorOf(other)) ||
-                                              OffersTheSameOnly(one, other, looks));
+        return IsSameFile(DescriptorOf(one), DescriptorOf(other)) ||
+               OffersTheSameOnly(one, other, looks);
       });
   for (const EventShare& share : shares) {
     if (share.passed_over_for == kNoThread) continue;

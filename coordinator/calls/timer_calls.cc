@@ -131,12 +131,16 @@ void TimerCalls::ExpireCpu(const Task& ran) {
   if (!process.timers.HasCpuTimers()) return;
   TimerSignals::NoteAccepted(process);
   TellDescriptors(process, process.timers.ExpireCpu(CpuUsedBy(ran)));
+  process.robot->keeps_timer_signals |= process.timers.HasSignals();
 }
 
 bool TimerCalls::FireDue(Robot& robot, std::int64_t now_ns) {
   const Moment moment{.ns = now_ns, .from_outside = true};
   run_.latest_ns = now_ns;
   bool wrote = false;
+  // Of most steps that is all: to look at each thread would cost more than the rest of the step.
+  if (!std::exchange(robot.keeps_timer_signals, false) && !robot.scheduler.IsAnythingDue(now_ns))
+    return wrote;
   for (Task* task : robot.tasks) {
     if (waker_.HasRunOut(*task, now_ns)) {
       task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));

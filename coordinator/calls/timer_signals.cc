@@ -72,6 +72,7 @@ void TimerSignals::Route(Process& process, Moment moment) {
       }
     }
     process.timers.GiveBack(signal);
+    process.robot->keeps_timer_signals = true;
   }
   if (sent) wakes_.WakeForSignals(process, moment);
 }

@@ -31,7 +31,7 @@ void TrappedCalls::HandleUnmanaged(const TrappedCall& call, Moment moment) {
   const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
   Process* process = run_.table.LivingProcess(pid);
   if (process != nullptr && run_.table.Living(call.tid) == nullptr) {
-    process->has_unmanaged_threads = true;
+    process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
     futexes_.CarryOutWake(*process, call, moment);
   }
   guard_.LetThrough(call);

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -17,8 +18,11 @@
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs {
+
+struct JointDriveSpec;
 
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
@@ -26,10 +30,16 @@ struct BodyReading {
   InertialReading felt;   // finite, too
 };
 
-// What a sensor reads at an instant.
+struct JointReading {
+  std::string_view name;  // UTF-8; outlives the reading
+  JointState state;       // finite
+};
+
+// What a sensor reads at an instant: bodies, or the joints of a robot.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
+  std::vector<JointReading> joints{};
 };
 
 // Where the readings of one sensor go out.
@@ -62,6 +72,9 @@ class CommandSink {
  public:
   // A command that was sent at `sent`.
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
+  virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
+  // The joints that the channel drives, which goals are for; null: wrenches are for its body.
+  virtual const JointDriveSpec* JointsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.
   virtual void Refuse(std::size_t channel, const std::string& why) = 0;
   // Something that the user should know at once: a sentence.

@@ -188,7 +188,13 @@ int main(int argc, char** argv) {
 
   std::string accounting = "measured";
   bool no_wait = false;
+  std::string host_cpus = "1";
   for (CLI::App* sub : {run, exec}) {
+    sub->add_option(
+           "--host-cpus", host_cpus,
+           "processors of the host to use at most, or auto for those that no other run has: on "
+           "further ones programs compute ahead (experimental); 1 unless told")
+        ->check(CLI::IsMember({"auto"}) | CLI::Range(1, 1024));
     sub->add_flag("--no-wait", no_wait,
                   "fail at once where other runs have all processors, and say which");
     sub->add_option("--accounting", accounting,
@@ -222,6 +228,7 @@ int main(int argc, char** argv) {
     }
   }
   options.record = record;
+  options.host_cpus = host_cpus == "auto" ? 0 : std::stoi(host_cpus);
   options.counts_work = for_fit;
   options.waits_for_cpu = !no_wait;
   if (seeded->count() > 0) arguments.seed = seed;

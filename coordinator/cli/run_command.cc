@@ -43,9 +43,11 @@ int SaySound(const Scenario& scenario) {
   for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
   std::size_t clients = 0;
   for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
-  Print("{} is sound: robots {}, clients {}, bodies {}\n", Visible(scenario.path),
-        scenario.robots.size(), clients,
-        scenario.world.has_value() ? scenario.world->bodies.size() : 0);
+  const std::size_t bodies = scenario.world.has_value() ? scenario.world->bodies.size() : 0;
+  const std::size_t models = scenario.world.has_value() ? scenario.world->models.size() : 0;
+  Print("{} is sound: robots {}, clients {}, bodies {}{}\n", Visible(scenario.path),
+        scenario.robots.size(), clients, bodies,
+        models > 0 ? fmt::format(", models {}", models) : "");
   return kSucceeded;
 }
 

@@ -35,7 +35,7 @@ std::string LastWordsOf(const std::string& base) {
 }
 
 std::int64_t NotOnOurCpu(const RunReport& r) {
-  return r.real_ns - r.client_ns - r.dynamics_ns - r.coordinating_ns;
+  return r.real_ns - (r.client_ns - r.ahead_ns) - r.awaited_ns - r.dynamics_ns - r.coordinating_ns;
 }
 
 // None where there is no world.
@@ -74,6 +74,10 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
       "not on our CPU {:.3f} s; {} dispatches, {} samples, {} commands\n",
       Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
       Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
+  if (r.ahead_ns > 0) {
+    Print("of the clients' {:.3f} s, {:.3f} s were computed ahead, on further processors\n",
+          Seconds(r.client_ns), Seconds(r.ahead_ns));
+  }
   if (r.untold > 0) {
     Print(
         "the processor was gone {} in the middle of a turn, and no clock told: {:.3f} ms that "
@@ -119,6 +123,8 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"staleness_ns", r.staleness_ns},
             {"lateness_ns", r.lateness_ns},
             {"clients_ns", r.client_ns},
+            {"ahead_ns", r.ahead_ns},
+            {"awaited_ns", r.awaited_ns},
             {"dynamics_ns", r.dynamics_ns},
             {"coordinating_ns", r.coordinating_ns},
             {"overhead_percent", OverheadPercent(r)},

@@ -128,7 +128,7 @@ bool NeedsHostNetwork(const Scenario& scenario) {
 
 RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scenario) {
   RunnerOptions options;
-  const std::vector<HostCpu> cpus = HostCpus();
+  const std::vector<CpuPlace> cpus = CpuPlaces();
   const auto cpu_count = static_cast<int>(cpus.size());
   options.whole_cores = arguments.options.accounting == "measured";
   options.at_once = arguments.jobs > 0 ? arguments.jobs : RunsAtOnce(cpus, options.whole_cores);

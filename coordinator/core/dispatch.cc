@@ -178,7 +178,8 @@ void Engine::Settle(Task& task) {
       .horizon_ns = run_.turn.horizon_ns(),
       .reached_ns = on_robot(reading.time_ns),
       .shown_ns = on_robot(page.last_shown_ns.load()),
-      .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate)};
+      .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
+      .credit_ns = -task.debt_ns};
   if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted_ns = on_robot(slot.note.time_ns);
   }

@@ -26,7 +26,6 @@ constexpr std::int64_t kLookEveryNs = 200'000'000;
 constexpr std::uint64_t kLookPause = 50;  // times what the last look took, at the least
 constexpr int kShowsPerFlush = 5;
 constexpr std::int64_t kLeastLookNs = 10'000;  // between looks at timers that rest
-constexpr int kComputes = 3;  // Task::used_up of a thread that is expected to go on
 
 std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
   if (gates_only) return std::make_unique<GateExecutor>();
@@ -133,7 +132,7 @@ void Engine::PayDebt(Task& task, std::int64_t ns) {
 
 void Engine::StepCpu(VirtualCpu& cpu) {
   Robot& robot = *cpu.robot;
-  cpu.ComeTo(std::max(cpu.progress_ns, run_.root.Least()));
+  if (!ahead_.IsNextOn(cpu)) cpu.ComeTo(std::max(cpu.progress_ns, run_.root.Least()));
   const Moment due{.ns = cpu.progress_ns, .from_outside = true};
   if (timers_.FireDue(robot, due.ns)) PollEvents(0, due);
   launches_.StartDue(robot, cpu.progress_ns);
@@ -153,7 +152,7 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     LetWorldGoOnWithout(task);
     return;
   }
-  if (!task.parked) ChargeUndispatched(task);
+  if (!task.parked && !task.owes_ahead) ChargeUndispatched(task);
   std::int64_t idle_until = 0;
   const std::int64_t start = cpu.progress_ns;
   const VirtualDuration lead = clock.lead();
@@ -171,10 +170,13 @@ void Engine::StepCpu(VirtualCpu& cpu) {
   idle_until = std::min(idle_until, horizon);
   // Time that passes only in waiting needs none to be left.
   if (robot.is_ideal) horizon = std::max(horizon, start + 1);
-  if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
+  if (ahead_.TakeTurn(task, horizon)) {
+    // It has computed that already.
+  } else if (task.state != TaskState::kStarting && start + task.debt_ns >= horizon) {
     PayDebt(task, horizon - start);
   } else {
     Dispatch(task, horizon, idle_until);
+    ahead_.SendIfItComputes(task);
     if (TakePutOff({run_.latest_ns}).looks_again) PollEvents(0, {run_.latest_ns});
     registration_.RegisterUnannounced({run_.latest_ns});
     if (has_spinners_ && !task.spins) WakeSpinners();
@@ -218,7 +220,7 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
   if (!WorldGoesOn() || run_.IsCallback()) return horizon_ns;
   const std::int64_t bound = std::min(run_.scenario.drift_bound.ns(), shm::kMaxDispatchNs);
   const std::int64_t now = task.cpu->progress_ns, world = world_.progress_ns();
-  const bool computes = task.used_up >= kComputes;
+  const bool computes = task.used_up >= Task::kComputes;
   const std::int64_t room = computes ? horizon_ns : std::min(horizon_ns, now + bound / 2);
   if (world + bound < room) {
     // As far as they may: the fewer slices, the better.
@@ -277,6 +279,7 @@ void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
+  ahead_.LookForClaims();
   if (run_.options.on_progress) {
     if (shows_++ % kShowsPerFlush == 0) records_.Flush();
     run_.options.on_progress(reporter_.Now());
@@ -329,6 +332,7 @@ bool Engine::Step() {
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();
+  ahead_.Look();
   if (StepWorld()) return true;
   const std::int64_t least = run_.root.Least();
   if (least >= run_.end_ns || least == shm::kNeverNs) {

@@ -40,6 +40,7 @@
 #include "coordinator/calls/timer_signals.h"
 #include "coordinator/calls/trapped_calls.h"
 #include "coordinator/calls/trapped_waits.h"
+#include "coordinator/core/computing_ahead.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/world.h"
@@ -160,6 +161,7 @@ class Engine {
   // moment.
   Reactor::Found TakeNotifications(const Process& process, Moment moment);
   Reactor::Found NotificationArrived(Task& task, Moment moment);
+  bool PutOffArrival(Task& task);
   bool BlockedInKernel();
   bool CutsOff(Task& task);
   void DetectorEnded();
@@ -191,6 +193,8 @@ class Engine {
   HostCpu host_cpu_;
   HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
+  ComputingAhead ahead_{{run_, waker_, host_cpu_, *executor_, clock_, records_},
+                        [this](Moment moment) { return PollEvents(0, moment); }};
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
   DdsGateway dds_{run_, waker_, world_, inheritance_};
@@ -198,7 +202,8 @@ class Engine {
   RawScheduling raw_scheduling_{run_, scheduling_};
   FutexWords words_{run_, waker_};
   LockFutexes locks_{run_, waker_, words_, inheritance_};
-  FutexCalls futexes_{run_, waker_, words_, locks_};
+  FutexCalls futexes_{run_, waker_, words_, locks_,
+                      [this](Process* process) { ahead_.StayHome(process); }};
   SignalWakes signal_wakes_{run_, waker_, host_cpu_.active()};
   ChildStops stops_{run_, waker_, signal_wakes_, host_cpu_.active()};
   SignalCalls signals_{run_,

@@ -38,6 +38,7 @@ constexpr int kExitTurns = 20;
 Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
   task.executes = false;
   if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
+  ahead_.HasSpoken(task);
   if (run_.turn.IsOf(task)) {
     if (run_.gates_only && MayGoOn(task)) return {.looks_again = true};
     run_.turn.notified = true;
@@ -64,6 +65,15 @@ Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
   return kConcernsAll;
 }
 
+bool Engine::PutOffArrival(Task& task) {
+  return PutOff(&task, [this, &task, tid = task.tid](Moment at) {
+    // It may have ended meanwhile.
+    if (run_.table.Living(tid) != &task) return Reactor::Found{};
+    task.is_put_off = false;
+    return NotificationArrived(task, at);
+  });
+}
+
 // Of one process, so many at a time: others have their turns, too.
 Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) {
   constexpr std::size_t kAtOnce = 64;
@@ -75,15 +85,9 @@ Reactor::Found Engine::TakeNotifications(const Process& process, Moment moment) 
   for (std::size_t i = 0; i < count; ++i) {
     Task* task = process.link == nullptr ? nullptr : process.link->TaskAt(messages[i].slot);
     if (task == nullptr || task->state == TaskState::kDead) continue;
-    const auto arrive = [this, task, tid = task->tid](Moment at) {
-      // It may have ended meanwhile.
-      if (run_.table.Living(tid) != task) return Reactor::Found{};
-      task->is_put_off = false;
-      return NotificationArrived(*task, at);
-    };
     // One that says so again and again is heard once.
-    if (!task->is_put_off) task->is_put_off = PutOff(task, arrive);
-    if (!task->is_put_off) found |= arrive(moment);
+    if (!task->is_put_off && run_.gates_only) task->is_put_off = PutOffArrival(*task);
+    if (!task->is_put_off) found |= NotificationArrived(*task, moment);
   }
   return found;
 }

@@ -48,7 +48,9 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 }
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
-  const bool runs = run_.turn.IsIn(run_.table.ProcessAt(process.index));
+  Process& ended = run_.table.ProcessAt(process.index);
+  const bool runs = run_.turn.IsIn(ended);
+  moment.ns = std::max(moment.ns, ahead_.EndOfDebtNs(ended));
   const auto end = [this, process](Moment at) {
     deaths_.ProcessEnded(process.index, at);
     return kConcernsAll;

@@ -10,7 +10,8 @@
 namespace tcs {
 
 std::int64_t RunReporter::CoordinatingNs() const {
-  return from_.clock.CoordinatorNs() - (from_.world.present() ? from_.world.host_ns() : 0);
+  return from_.clock.CoordinatorNs() - run_.report.awaited_ns -
+         (from_.world.present() ? from_.world.host_ns() : 0);
 }
 
 RunProgress RunReporter::Now() const {

@@ -48,6 +48,7 @@ std::string Engine::Prepare() {
   claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
   ClientsRunOn(claim_.cpu);
+  const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
   if (std::string error = BindTo(claim_.cpu); !error.empty()) return error;
   if (run_.gates_only) {
     IgnoreRealTimeLimits();
@@ -63,6 +64,7 @@ std::string Engine::Prepare() {
   if (std::string error = records_.Open(); !error.empty()) return error;
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
+  ahead_.Open(claim_.cpu, further);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
@@ -179,6 +181,7 @@ void Engine::TellOfWaits() {
           [this](const Process& process, Moment moment) {
             dds_.ReleaseThoseAwaitingDeliverer(process, moment);
           },
+      .does_nothing_before = [this](const VirtualCpu& cpu) { return ahead_.EndOfDebtNs(cpu); },
   });
 }
 
@@ -189,6 +192,7 @@ void Engine::TellOfEnds() {
       .thread_has_ended =
           [this](Task& task) {
             objects_.Forget(task);
+            ahead_.Forget(task);
             registration_.Forget(task);
           },
       .wake_those_waiting_for = [this](Task& task,

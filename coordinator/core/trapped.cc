@@ -30,6 +30,7 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
     trapped_.HandleUnmanaged(call, moment);
     return {.stops_running = !run_.gates_only, .wakes_others = true};
   }
+  ahead_.HasSpoken(*task);
   if (run_.turn.IsOf(*task)) {
     run_.turn.trapped = call;
     return kConcernsAll;

@@ -36,10 +36,14 @@ class Spent {
 }  // namespace
 
 World::World(std::function<void(const std::string&)> warn)
-    : commands_(std::move(warn),
-                [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
-                  Apply(std::max(sent.ns(), settled_ns()) + latency.ns(), body, wrench);
-                }) {}
+    : commands_(
+          std::move(warn),
+          [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
+            Apply(ActsAtNs(sent, latency), body, wrench);
+          },
+          [this](VirtualTime sent, VirtualDuration latency, int joint, const JointDrive& drive) {
+            dynamics_->Drive(joint, drive, VirtualTime::FromNanoseconds(ActsAtNs(sent, latency)));
+          }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   scenario_ = scenario;
@@ -48,6 +52,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   all_bodies_.resize(scenario.world->bodies.size());
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
   states_.resize(all_bodies_.size());
+  link_lines_ = LinkLines(*scenario.world);
   sensors_ = Sensors(scenario_.world->gravity_mps2);
   commands_.Open(scenario_.commands);
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
@@ -56,12 +61,16 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   }
   for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
     const SensorChannelSpec& spec = scenario_.sensors[i];
+    const SensorTiming timing{.period = spec.period, .latency = spec.latency};
+    if (spec.joints) {
+      sensors_.AddJoints(*spec.joints, timing, spec.errors, *channels_.outlets[i]);
+      continue;
+    }
     std::vector<Sensors::Body> bodies;
     for (const int body : spec.bodies) {
       bodies.push_back({body, scenario_.world->bodies[static_cast<std::size_t>(body)].name});
     }
-    sensors_.Add(std::move(bodies), {.period = spec.period, .latency = spec.latency}, spec.errors,
-                 *channels_.outlets[i]);
+    sensors_.Add(std::move(bodies), timing, spec.errors, *channels_.outlets[i]);
   }
   for (const auto& inlet : channels_.inlets) {
     if (inlet->IsTerminal()) terminals_.push_back(inlet.get());
@@ -116,6 +125,7 @@ void World::WriteCsv() {
         fmt::join(s.position_m, ","), fmt::join(s.orientation_xyzw, ","),
         fmt::join(s.linear_velocity_mps, ","), fmt::join(s.angular_velocity_radps, ","));
   }
+  link_lines_.Append(*dynamics_, &csv_text_);
   if (csv_text_.size() > kCsvAtOnce) FlushCsv();
 }
 
@@ -142,9 +152,12 @@ bool World::Advance(std::int64_t limit_ns) {
   Settle(progress_ns_);
   ReadDue();
   WriteCsv();
-  const bool sent = sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_), [this](int body) {
-    return states_[static_cast<std::size_t>(body)];
-  });
+  const bool sent = sensors_.Act(
+      VirtualTime::FromNanoseconds(progress_ns_),
+      [this](int body) { return states_[static_cast<std::size_t>(body)]; },
+      [this](std::span<const int> joints, std::span<JointState> states) {
+        dynamics_->ReadJoints(dynamics_->Now(), joints, states);
+      });
   if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
   FindNextStop();
   return sent;
@@ -159,6 +172,10 @@ void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
 
 void World::Settle(std::int64_t ns) {
   if (ns > settled_ns()) dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(ns));
+}
+
+std::int64_t World::ActsAtNs(VirtualTime sent, VirtualDuration latency) const {
+  return std::max(sent.ns(), settled_ns()) + latency.ns();
 }
 
 void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
@@ -179,9 +196,11 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
 std::vector<std::string> World::CommandComplaints() const {
   std::vector<std::string> complaints;
   for (std::size_t i = 0; i < channels_.inlet_of.size(); ++i) {
-    const auto body = static_cast<std::size_t>(scenario_.commands[i].body);
-    complaints.push_back(commands_.ComplaintAbout(i, channels_.inlet_of[i]->PlaceOf(i),
-                                                  scenario_.world->bodies[body].name));
+    const CommandChannelSpec& spec = scenario_.commands[i];
+    const auto body = static_cast<std::size_t>(spec.body);
+    complaints.push_back(commands_.ComplaintAbout(
+        i, channels_.inlet_of[i]->PlaceOf(i),
+        spec.joints ? spec.joints->group.model : scenario_.world->bodies[body].name));
   }
   std::erase(complaints, "");
   return complaints;

@@ -11,6 +11,7 @@
 #include "coordinator/channel/channels.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/world/commands.h"
+#include "coordinator/world/link_lines.h"
 #include "coordinator/world/sensors.h"
 
 namespace tcs {
@@ -77,6 +78,8 @@ class World {
   std::int64_t settled_ns() const { return dynamics_->Now().ns(); }
   void ReadDue();
   void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
+  // When a command acts that was sent at that time: not before what is settled.
+  std::int64_t ActsAtNs(VirtualTime sent, VirtualDuration latency) const;
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
@@ -88,6 +91,7 @@ class World {
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
+  LinkLines link_lines_;
   std::vector<int> all_bodies_, due_;
   std::vector<BodyState> states_;  // of all bodies, as each was read last
   std::vector<BodyState> read_;    // memory of ReadDue

@@ -27,6 +27,11 @@ std::vector<std::byte> SensorEncoder::Encode(std::int64_t stamp_ns,
   return {};
 }
 
+std::vector<std::byte> EncodeJoints(std::int64_t stamp_ns, std::span<const std::string> joints,
+                                    std::span<const JointState> states) {
+  return ToCdr(ToRobotJointState(stamp_ns, joints, states));
+}
+
 std::vector<std::byte> EncodeClock(std::int64_t stamp_ns) { return ToCdr(ToClock(stamp_ns)); }
 
 std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
@@ -35,6 +40,21 @@ std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
   const auto wrench = FromCdr<WrenchMessage>(cdr);
   if (const auto* error = std::get_if<CdrError>(&wrench)) return MessageError{error->message};
   return ToWrench(*std::get<Owned<WrenchMessage>>(wrench));
+}
+
+std::variant<std::vector<JointGoal>, MessageError> DecodeJointCommand(
+    CommandMessage message, std::span<const std::string> joints, JointQuantity quantity,
+    std::span<const std::byte> cdr) {
+  if (message == CommandMessage::kFloat64MultiArray) {
+    const auto numbers = FromCdr<Float64MultiArrayMessage>(cdr);
+    if (const auto* error = std::get_if<CdrError>(&numbers)) return MessageError{error->message};
+    return ToJointGoals(*std::get<Owned<Float64MultiArrayMessage>>(numbers), joints.size(),
+                        quantity);
+  }
+  TCS_CHECK(message == CommandMessage::kJointState);
+  const auto states = FromCdr<JointStateMessage>(cdr);
+  if (const auto* error = std::get_if<CdrError>(&states)) return MessageError{error->message};
+  return ToJointGoals(*std::get<Owned<JointStateMessage>>(states), joints);
 }
 
 }  // namespace tcs::dds

@@ -32,10 +32,20 @@ class SensorEncoder {
   std::vector<std::string> bodies_;
 };
 
+// The JointState of a robot's joints; `joints` and `states` go together.
+[[nodiscard]] std::vector<std::byte> EncodeJoints(std::int64_t stamp_ns,
+                                                  std::span<const std::string> joints,
+                                                  std::span<const JointState> states);
+
 [[nodiscard]] std::vector<std::byte> EncodeClock(std::int64_t stamp_ns);
 
 // `cdr` is whatever a client wrote. The error is the rest of a sentence about the sample.
+// kWrench is for bodies, all others are for joints: numbers without names are the `quantity` of
+// each of `joints`, in their order.
 [[nodiscard]] std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
                                                                std::span<const std::byte> cdr);
+[[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> DecodeJointCommand(
+    CommandMessage message, std::span<const std::string> joints, JointQuantity quantity,
+    std::span<const std::byte> cdr);
 
 }  // namespace tcs::dds

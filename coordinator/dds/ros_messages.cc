@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tcs::dds {
 namespace {
@@ -103,6 +104,25 @@ Owned<JointStateMessage> ToJointState(std::int64_t stamp_ns, std::span<const std
   return joints;
 }
 
+Owned<JointStateMessage> ToRobotJointState(std::int64_t stamp_ns,
+                                           std::span<const std::string> joints,
+                                           std::span<const JointState> states) {
+  TCS_CHECK(joints.size() == states.size());
+  Owned<JointStateMessage> message;
+  SetHeader(&message->header, stamp_ns, "");
+  Resize(&message->name, joints.size());
+  for (auto* list : {&message->position, &message->velocity, &message->effort}) {
+    Resize(list, joints.size());
+  }
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    SetText(&message->name._buffer[i], joints[i]);
+    message->position._buffer[i] = states[i].position;
+    message->velocity._buffer[i] = states[i].velocity;
+    message->effort._buffer[i] = states[i].effort;
+  }
+  return message;
+}
+
 Owned<ClockMessage> ToClock(std::int64_t stamp_ns) {
   Owned<ClockMessage> clock;
   clock->clock = ToTime(stamp_ns);
@@ -134,6 +154,58 @@ std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message) {
     return MessageError{"has a torque that is not finite"};
   }
   return wrench;
+}
+
+std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
+    const Float64MultiArrayMessage& message, std::size_t joints, JointQuantity quantity) {
+  if (message.data._length != joints) {
+    return MessageError{"has " + std::to_string(message.data._length) + " numbers for " +
+                        std::to_string(joints) + " joints"};
+  }
+  std::vector<JointGoal> goals(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double number = message.data._buffer[i];
+    if (!std::isfinite(number)) return MessageError{"has a number that is not finite"};
+    goals[i].joint = i;
+    goals[i].Of(quantity) = number;
+  }
+  return goals;
+}
+
+std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
+    const JointStateMessage& message, std::span<const std::string> joints) {
+  const std::size_t count = message.name._length;
+  std::vector<JointGoal> goals(count);
+  std::vector<char> is_named(joints.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string_view name = message.name._buffer[i];
+    const auto found = std::find(joints.begin(), joints.end(), name);
+    if (found == joints.end()) {
+      constexpr std::size_t kLongestQuote = 40;
+      return MessageError{"names the joint '" + std::string(name.substr(0, kLongestQuote)) +
+                          "', which the channel does not drive"};
+    }
+    goals[i].joint = static_cast<std::size_t>(found - joints.begin());
+    if (std::exchange(is_named[goals[i].joint], 1) != 0) {
+      return MessageError{"names the joint '" + std::string(name) + "' twice"};
+    }
+  }
+  const std::pair<const dds_sequence_double*, JointQuantity> lists[] = {
+      {&message.position, JointQuantity::kPosition},
+      {&message.velocity, JointQuantity::kVelocity},
+      {&message.effort, JointQuantity::kEffort}};
+  for (const auto& [list, quantity] : lists) {
+    if (list->_length == 0) continue;
+    if (list->_length != count) {
+      return MessageError{"has " + std::to_string(count) + " names, but a list of " +
+                          std::to_string(list->_length) + " numbers"};
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isfinite(list->_buffer[i])) return MessageError{"has a number that is not finite"};
+      goals[i].Of(quantity) = list->_buffer[i];
+    }
+  }
+  return goals;
 }
 
 }  // namespace tcs::dds

@@ -11,11 +11,13 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "coordinator/dds/ros_types.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs::dds {
 
@@ -42,6 +44,11 @@ struct MessageError {
                                                     std::span<const std::string> bodies,
                                                     std::span<const BodyState> states);
 
+// The joints of a robot, with the effort that their drives give. `joints` and `states` go together.
+[[nodiscard]] Owned<JointStateMessage> ToRobotJointState(std::int64_t stamp_ns,
+                                                         std::span<const std::string> joints,
+                                                         std::span<const JointState> states);
+
 [[nodiscard]] Owned<ClockMessage> ToClock(std::int64_t stamp_ns);
 
 // What a body feels, its frame called after it. Where there is no acceleration yet it says so as
@@ -52,5 +59,14 @@ struct MessageError {
 // Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
 // where they are not finite.
 [[nodiscard]] std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message);
+
+// A number for each of `joints` joints, in their order, as the forward controllers of ros2_control
+// have it: what of the joint is wanted says `quantity`.
+[[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
+    const Float64MultiArrayMessage& message, std::size_t joints, JointQuantity quantity);
+
+// For any of `joints`, by name; lists of positions, velocities and efforts may be empty.
+[[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
+    const JointStateMessage& message, std::span<const std::string> joints);
 
 }  // namespace tcs::dds

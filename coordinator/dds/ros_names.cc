@@ -27,7 +27,8 @@ const std::vector<std::string>& SensorMessageNames() {
 }
 
 const std::vector<std::string>& CommandMessageNames() {
-  static const std::vector<std::string> names = {"geometry_msgs/msg/Wrench"};
+  static const std::vector<std::string> names = {
+      "geometry_msgs/msg/Wrench", "std_msgs/msg/Float64MultiArray", "sensor_msgs/msg/JointState"};
   return names;
 }
 

@@ -13,8 +13,8 @@ namespace tcs::dds {
 
 // Messages that tell the state of bodies.
 enum class SensorMessage { kOdometry, kImu, kJointState, kTwist };
-// Messages that move them.
-enum class CommandMessage { kWrench };
+// Messages that move them; those after the first move joints.
+enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState };
 
 // In the order of the enumerators.
 [[nodiscard]] const std::vector<std::string>& SensorMessageNames();

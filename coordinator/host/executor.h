@@ -22,6 +22,8 @@ class Executor {
   // What the kernel has to do for it is done when this returns: it has stopped, say, or is back in
   // its wait. It is held.
   virtual void LetKernelFinish(pid_t tid) = 0;
+  // It is no concern of this processor's until it is held again: another one runs it.
+  virtual void LetGo(pid_t) {}
 
   // True if whoever may run stands still while the coordinator runs. Otherwise it shares the
   // processor with the coordinator and with those that are held, and has to be told to stop.

@@ -16,6 +16,7 @@ class FifoExecutor final : public Executor {
     SetLevel(tid, Level::kKernelOnly);
     SetLevel(tid, Level::kWaiting);
   }
+  void LetGo(pid_t tid) override { LeaveRealTime(tid); }
 };
 
 }  // namespace tcs

@@ -72,9 +72,7 @@ std::int64_t HostCpu::Uncharged(const HostThread& thread, std::int64_t charged_n
   if (metered.is_ideal) return 0;
   const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
   if (cpu_ns < 0) return 0;
-  const std::int64_t used_ns =
-      shm::MulQ32(cpu_ns - metered.host_origin_ns, metered.NsPerHostNsQ32());
-  return std::max<std::int64_t>(0, used_ns - charged_ns);
+  return std::max<std::int64_t>(0, metered.ChargeAt(cpu_ns) - charged_ns);
 }
 
 shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {

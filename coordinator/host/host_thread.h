@@ -20,6 +20,7 @@ struct HostThread {
   ClockGrant grant;      // of its last dispatch
   std::uint64_t dispatches = 0;
   MeteredThread metered;
+  bool is_ahead = false;  // it computes ahead, on another processor (further_cpu.h)
 
   // The word for the clock page that an adjustment of nothing in its last dispatch has.
   std::uint64_t DispatchWord() const { return dispatches << shm::kAdjustBits; }

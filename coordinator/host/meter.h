@@ -47,6 +47,11 @@ struct MeteredThread {
   std::int64_t HostNs(std::int64_t virtual_ns) const {
     return static_cast<std::int64_t>(static_cast<double>(virtual_ns) * speed);
   }
+  std::int64_t VirtualNs(std::int64_t host_ns) const {
+    return shm::MulQ32(host_ns, NsPerHostNsQ32());
+  }
+  // What it is to be charged in all once its CPU clock says `cpu_ns`.
+  std::int64_t ChargeAt(std::int64_t cpu_ns) const { return VirtualNs(cpu_ns - host_origin_ns); }
   // Virtual nanoseconds per one of the host's, times 2^32.
   std::uint64_t NsPerHostNsQ32() const { return static_cast<std::uint64_t>(4294967296.0 / speed); }
 };

@@ -29,7 +29,8 @@ struct StoppedRun {
   // When the thread began to notify. None if it did not, and of a yield, which is a system call of
   // the program's natively, too: who spins on it must get on.
   std::optional<std::int64_t> noted_ns;
-  bool is_preempted = false;  // by the timer, rather than by what it asked for
+  bool is_preempted = false;   // by the timer, rather than by what it asked for
+  std::int64_t credit_ns = 0;  // that it had at its dispatch
 };
 
 struct Settlement {
@@ -57,7 +58,7 @@ constexpr Settlement SettleRun(const StoppedRun& run) {
     result.progress_ns = std::max(result.progress_ns, run.horizon_ns);
   }
   result.debt_ns = reached_ns - result.progress_ns;
-  if (result.debt_ns < -kMostCreditNs) result.debt_ns = 0;
+  if (result.debt_ns < -std::max(kMostCreditNs, run.credit_ns)) result.debt_ns = 0;
   return result;
 }
 

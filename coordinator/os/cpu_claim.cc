@@ -45,10 +45,13 @@ std::optional<UniqueFd> TryToClaim(int cpu) {
   return UniqueFd();
 }
 
-// Who holds the lock on the CPU's folder; 0 if that cannot be found out.
-pid_t HolderOf(int cpu) {
+// Who holds the lock on the CPU's folder, 0 if it is nobody whom this process can see; none if
+// nobody holds it.
+std::optional<pid_t> HolderOf(int cpu) {
   struct stat folder;
-  if (stat(("/sys/devices/system/cpu/cpu" + std::to_string(cpu)).c_str(), &folder) != 0) return 0;
+  if (stat(("/sys/devices/system/cpu/cpu" + std::to_string(cpu)).c_str(), &folder) != 0) {
+    return std::nullopt;
+  }
   std::ifstream locks("/proc/locks");
   const std::string inode = ":" + std::to_string(folder.st_ino);
   // 1: FLOCK  ADVISORY  WRITE 1234 00:16:5678 0 EOF
@@ -59,10 +62,10 @@ pid_t HolderOf(int cpu) {
     if (!(fields >> number >> kind >> advisory >> access >> pid >> place)) continue;
     if (kind == "FLOCK" && place.size() > inode.size() &&
         place.compare(place.size() - inode.size(), inode.size(), inode) == 0) {
-      return pid;
+      return std::max(pid, 0);
     }
   }
-  return 0;
+  return std::nullopt;
 }
 
 // As it was typed; shortened.
@@ -97,8 +100,8 @@ std::int64_t AgeOf(pid_t pid) {
 std::string WhoHas(const std::vector<int>& cpus) {
   std::string who;
   for (const int cpu : cpus) {
-    const pid_t pid = HolderOf(cpu);
-    if (pid <= 0) continue;
+    const pid_t pid = HolderOf(cpu).value_or(0);
+    if (pid == 0) continue;
     who +=
         (who.empty() ? " (CPU " : "; CPU ") + std::to_string(cpu) + ": pid " + std::to_string(pid);
     if (const std::int64_t age = AgeOf(pid); age >= 0) who += ", for " + std::to_string(age) + " s";
@@ -108,6 +111,8 @@ std::string WhoHas(const std::vector<int>& cpus) {
 }
 
 }  // namespace
+
+bool IsClaimed(int cpu) { return HolderOf(cpu).has_value(); }
 
 int LastAllowedCpu() {
   const std::vector<int> cpus = AllowedCpus();

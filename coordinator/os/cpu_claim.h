@@ -20,6 +20,9 @@ struct CpuClaim {
 // Where that cannot be opened, the CPU is taken unclaimed.
 CpuClaim ClaimCpu(bool waits, std::string* taken);
 
+// Whether a tcsim has claimed it, also this one. False where that cannot be seen.
+bool IsClaimed(int cpu);
+
 // The CPU that ClaimCpu tries first.
 int LastAllowedCpu();
 

@@ -10,10 +10,10 @@ namespace {
 // One of each core, but not of the first one's; all but the first, if there is no other core. What
 // is left is for runs; without the first, a claim would leave out another one (cpu_claim.h), so it
 // comes along.
-std::vector<int> OneOfEachCore(const std::vector<HostCpu>& cpus) {
+std::vector<int> OneOfEachCore(const std::vector<CpuPlace>& cpus) {
   std::vector<int> chosen;
   std::vector<std::string> taken{cpus.front().core};
-  for (const HostCpu& cpu : cpus) {
+  for (const CpuPlace& cpu : cpus) {
     if (std::find(taken.begin(), taken.end(), cpu.core) != taken.end()) continue;
     taken.push_back(cpu.core);
     chosen.push_back(cpu.number);
@@ -24,11 +24,11 @@ std::vector<int> OneOfEachCore(const std::vector<HostCpu>& cpus) {
 
 }  // namespace
 
-std::vector<HostCpu> HostCpus() {
+std::vector<CpuPlace> CpuPlaces() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
-  std::vector<HostCpu> cpus;
+  std::vector<CpuPlace> cpus;
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &allowed)) continue;
     const std::string number = std::to_string(cpu);
@@ -40,12 +40,12 @@ std::vector<HostCpu> HostCpus() {
   return cpus;
 }
 
-int RunsAtOnce(const std::vector<HostCpu>& cpus, bool whole_cores) {
+int RunsAtOnce(const std::vector<CpuPlace>& cpus, bool whole_cores) {
   const std::size_t runs = whole_cores ? OneOfEachCore(cpus).size() : cpus.size() - 1;
   return static_cast<int>(std::max<std::size_t>(1, runs));
 }
 
-cpu_set_t PlaceOfRun(const std::vector<HostCpu>& cpus, bool whole_cores, int runs, int index) {
+cpu_set_t PlaceOfRun(const std::vector<CpuPlace>& cpus, bool whole_cores, int runs, int index) {
   cpu_set_t place;
   CPU_ZERO(&place);
   const auto allow = [&place](int cpu) { CPU_SET(static_cast<std::size_t>(cpu), &place); };
@@ -56,9 +56,23 @@ cpu_set_t PlaceOfRun(const std::vector<HostCpu>& cpus, bool whole_cores, int run
   if (whole_cores && runs <= RunsAtOnce(cpus, true)) {
     for (const int cpu : OneOfEachCore(cpus)) allow(cpu);
   } else {
-    for (const HostCpu& cpu : cpus) allow(cpu.number);
+    for (const CpuPlace& cpu : cpus) allow(cpu.number);
   }
   return place;
+}
+
+std::vector<int> FurtherCpusOf(const std::vector<CpuPlace>& cpus, int cpu, std::size_t most) {
+  std::vector<std::string> taken;
+  for (const CpuPlace& place : cpus) {
+    if (place.number == cpu) taken.push_back(place.core);
+  }
+  std::vector<int> further;
+  for (auto place = cpus.rbegin(); place != cpus.rend() && further.size() < most; ++place) {
+    if (std::find(taken.begin(), taken.end(), place->core) != taken.end()) continue;
+    taken.push_back(place->core);
+    further.push_back(place->number);
+  }
+  return further;
 }
 
 }  // namespace tcs

@@ -55,19 +55,24 @@ void RobotScheduler::Add(Thread thread, int client_priority) {
   places_[number] = static_cast<int>(entities_.size());
   Entity& entity = entities_.emplace_back();
   entity.thread = thread;
-  entity.client_priority = entity.priority = client_priority;
+  entity.client_priority = client_priority;
   entity.allowed = EveryCore();
+  glances_.emplace_back().priority = client_priority;
+  stale_.push_back(thread);
 }
 
 void RobotScheduler::Remove(Thread thread) {
   queue_.Remove(thread);
-  const auto place = static_cast<std::size_t>(&At(thread) - entities_.data());
+  const std::size_t place = PlaceOf(At(thread));
   places_[static_cast<std::size_t>(thread)] = -1;
   if (place + 1 != entities_.size()) {
     entities_[place] = entities_.back();
+    glances_[place] = glances_.back();
     places_[static_cast<std::size_t>(entities_[place].thread)] = static_cast<int>(place);
   }
   entities_.pop_back();
+  glances_.pop_back();
+  knows_first_due_ = false;
   for (Entity& entity : entities_) {
     if (entity.blocked_on == thread) entity.blocked_on = kNobody;
   }
@@ -87,7 +92,7 @@ RobotScheduler::Priority RobotScheduler::OwnPriority(const Entity& entity) {
 
 RobotScheduler::Priority RobotScheduler::PriorityIfWoken(const Entity& entity,
                                                          std::int64_t now_ns) const {
-  if (!HasDeadline(entity)) return entity.priority;
+  if (!HasDeadline(entity)) return PriorityAt(entity);
   return std::max(entity.inherited, OfDeadline(entity.server.DeadlineIfWoken(now_ns)));
 }
 
@@ -153,11 +158,10 @@ bool RobotScheduler::FindEffectivePriority(Thread thread) {
     next->inherited = kNoPriority;
     for (const Entity& waiter : entities_) {
       if (waiter.blocked_on != next->thread) continue;
-      next->inherited = std::max(next->inherited, waiter.priority);
+      next->inherited = std::max(next->inherited, PriorityAt(waiter));
     }
     const Priority priority = std::max(OwnPriority(*next), next->inherited);
-    if (priority != next->priority) {
-      next->priority = priority;
+    if (std::exchange(GlanceAt(*next).priority, priority) != priority) {
       queue_.SetPriority(next->thread, priority);
       changed = true;
     }
@@ -169,13 +173,59 @@ bool RobotScheduler::FindEffectivePriority(Thread thread) {
 void RobotScheduler::Enqueue(Thread thread, std::int64_t from_ns, bool goes_first) {
   const Entity& entity = At(thread);
   if (HasDeadline(entity)) from_ns = std::max(from_ns, entity.server.throttled_until_ns());
-  queue_.Add({thread, entity.priority, from_ns, entity.allowed, goes_first});
+  queue_.Add({thread, PriorityAt(entity), from_ns, entity.allowed, goes_first});
+  MarkStale(PlaceOf(entity));
+}
+
+void RobotScheduler::Dequeue(Thread thread) {
+  queue_.Remove(thread);
+  if (const Entity* entity = Find(thread); entity != nullptr) MarkStale(PlaceOf(*entity));
+}
+
+void RobotScheduler::WaitChanged(Thread thread) { MarkStale(PlaceOf(At(thread))); }
+
+void RobotScheduler::ExpiryChanged(std::uint32_t process) {
+  for (std::size_t place = 0; place < glances_.size(); ++place) {
+    if (glances_[place].process == process) MarkStale(place);
+  }
+}
+
+void RobotScheduler::MarkStale(std::size_t place) {
+  if (!std::exchange(glances_[place].is_stale, true)) stale_.push_back(entities_[place].thread);
+}
+
+void RobotScheduler::Ask(std::size_t place) {
+  Entity& entity = entities_[place];
+  Glance& glance = glances_[place];
+  const Wait& wait = entity.wait = wait_of_(entity.thread);
+  const std::int64_t before_ns = glance.due_ns;
+  glance.due_ns = wait.waits ? std::min(wait.until_ns, wait.next_expiry_ns) : wait.next_expiry_ns;
+  if (wait.waits && wait.is_over) glance.due_ns = INT64_MIN;
+  glance.process = wait.process;
+  glance.waits = wait.waits;
+  glance.for_others = wait.for_input || wait.for_thread;
+  glance.is_stale = false;
+  if (before_ns <= first_due_ns_ && glance.due_ns > before_ns) knows_first_due_ = false;
+  first_due_ns_ = std::min(first_due_ns_, glance.due_ns);
+}
+
+void RobotScheduler::AskForStaleWaits() {
+  if (!preempts_on_wakeup_) {
+    for (std::size_t place = 0; place < entities_.size(); ++place) Ask(place);
+  } else {
+    for (const Thread thread : stale_) {
+      const Entity* entity = Find(thread);
+      if (entity != nullptr && GlanceAt(*entity).is_stale) Ask(PlaceOf(*entity));
+    }
+  }
+  stale_.clear();
 }
 
 // A core without a turn, or before its turn begins, acts when somebody's wait ends by itself. One
 // core is enough for that: the least advanced, so that no end of a wait comes into sight only once
 // another core has a turn.
 void RobotScheduler::Assign(std::int64_t own_due_ns) {
+  AskForStaleWaits();
   queue_.Assign(progress_);
   const auto rank = [this](std::size_t core) {
     return std::pair(progress_[core], Next(core).start_ns != kNever);
@@ -192,11 +242,26 @@ void RobotScheduler::Assign(std::int64_t own_due_ns) {
   cores_[idle].next_action_ns = std::min(cores_[idle].next_action_ns, due);
 }
 
+std::int64_t RobotScheduler::FirstDue() const {
+  if (!std::exchange(knows_first_due_, true)) {
+    first_due_ns_ = kNever;
+    for (const Glance& glance : glances_) first_due_ns_ = std::min(first_due_ns_, glance.due_ns);
+  }
+  return first_due_ns_;
+}
+
+bool RobotScheduler::IsAnythingDue(std::int64_t now_ns) const {
+  return !preempts_on_wakeup_ || !stale_.empty() || FirstDue() <= now_ns;
+}
+
 // When the next wait ends by itself, or the next timer expires, for a core that has come so far.
 std::int64_t RobotScheduler::DueAt(std::int64_t progress_ns) const {
-  std::int64_t due = kNever;
-  for (const Entity& entity : entities_) {
-    const Wait wait = wait_of_(entity.thread);
+  std::int64_t due = FirstDue();
+  if (due > progress_ns) return due;
+  due = kNever;
+  for (std::size_t place = 0; place < entities_.size(); ++place) {
+    if (glances_[place].due_ns >= due) continue;
+    const Wait& wait = entities_[place].wait;
     if (wait.waits) {
       const bool over = wait.is_over || wait.until_ns <= progress_ns;
       due = std::min(due, over ? std::max(progress_ns, wait.from_ns) : wait.until_ns);
@@ -211,8 +276,8 @@ void RobotScheduler::Dispatch(std::size_t core, Thread thread) {
   TCS_CHECK(Allows(entity.allowed, core));
   queue_.Ran(core, thread);
   cores_[core].running = thread;
-  cores_[core].priority = entity.priority;
-  cores_[core].sharing = queue_.CountOf(entity.priority);
+  cores_[core].priority = PriorityAt(entity);
+  cores_[core].sharing = queue_.CountOf(PriorityAt(entity));
   cores_[core].charged_to_ns = progress_[core];
 }
 
@@ -278,10 +343,10 @@ void RobotScheduler::EndTurn(std::size_t core) {
 }
 
 void RobotScheduler::ShareOut(const Core& core, std::int64_t ns) {
-  for (Entity& entity : entities_) {
-    if (entity.priority == core.priority) entity.share.Earn(ns, core.sharing);
-    if (entity.thread == core.running) entity.share.Spend(ns);
+  for (Glance& glance : glances_) {
+    if (glance.priority == core.priority) glance.share.Earn(ns, core.sharing);
   }
+  if (const Entity* ran = Find(core.running); ran != nullptr) GlanceAt(*ran).share.Spend(ns);
 }
 
 bool RobotScheduler::CanPreemptOnWakeup(const Entity& entity) const {
@@ -290,7 +355,7 @@ bool RobotScheduler::CanPreemptOnWakeup(const Entity& entity) const {
 
 bool RobotScheduler::PreemptsOnWakeup(const Entity& entity, std::int64_t after_ns) const {
   return CanPreemptOnWakeup(entity) &&
-         entity.share.GoesFirst(after_ns, queue_.CountOf(entity.priority));
+         GlanceAt(entity).share.GoesFirst(after_ns, queue_.CountOf(PriorityAt(entity)));
 }
 
 bool RobotScheduler::PreemptsOnWakeup(Thread thread, std::int64_t after_ns) const {
@@ -301,7 +366,7 @@ bool RobotScheduler::PreemptsOnWakeup(Thread thread, std::int64_t after_ns) cons
 // would, the one that comes there last. The others need not.
 bool RobotScheduler::MakesRoom(std::size_t core, const Entity& woken, std::int64_t due_ns) const {
   const auto may_take = [&](std::size_t which) {
-    return Allows(woken.allowed, which) && queue_.YieldsTo(which, woken.priority);
+    return Allows(woken.allowed, which) && queue_.YieldsTo(which, PriorityAt(woken));
   };
   if (!may_take(core)) return false;
   for (std::size_t other = 0; other < cores_.size(); ++other) {
@@ -357,13 +422,14 @@ std::int64_t RobotScheduler::HorizonForInput(std::size_t core, const Entity& run
   const std::int64_t first =
       std::min(PastInput(core, outlook.input_ns, outlook), outlook.output_ns);
   const Priority priority = PriorityIfWoken(other, std::max(first, progress_[core]));
-  if (priority > running.priority) return first;
-  if (priority < running.priority || QuantumOf(running) == kNever || !wait.for_input ||
-      !CanPreemptOnWakeup(other) || !queue_.YieldsTo(core, other.priority)) {
+  const Priority own = PriorityAt(running);
+  if (priority > own) return first;
+  if (priority < own || QuantumOf(running) == kNever || !wait.for_input ||
+      !CanPreemptOnWakeup(other) || !queue_.YieldsTo(core, PriorityAt(other))) {
     return kNever;
   }
   const std::int64_t from =
-      progress_[core] + other.share.NsUntilFirst(queue_.CountOf(other.priority));
+      progress_[core] + GlanceAt(other).share.NsUntilFirst(queue_.CountOf(PriorityAt(other)));
   const std::int64_t sent = std::max(from, outlook.outside_input_ns);
   const std::int64_t at =
       std::min(PastInput(core, sent, outlook), std::max(from, outlook.output_ns));
@@ -376,19 +442,26 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
   const Entity* found = Find(thread);
   if (found == nullptr) return {.run_ns = limit_ns};  // it has ended since it was dispatched
   const Entity& running = *found;
-  const std::uint32_t process = wait_of_(thread).process;
+  const Priority own = PriorityAt(running);
+  const std::uint32_t process = running.wait.process;
   const std::int64_t now = progress_[core];
   const bool takes_turns = QuantumOf(running) != kNever;
   const std::int64_t turn_end = TurnEnd(core, running);
-  const bool yields = queue_.YieldsTo(core, running.priority);
+  const bool yields = queue_.YieldsTo(core, own);
   std::int64_t limit = limit_ns, idle = HasDeadline(running) ? 0 : limit_ns;
   if (HasDeadline(running) && running.server.budget_ns() != kNever) {
     limit = std::min(limit, now + running.server.budget_ns());
   }
-  for (const Entity& other : entities_) {
-    const Wait wait = wait_of_(other.thread);
+  const std::int64_t input = std::min(std::max(outlook.input_ns, now), outlook.output_ns);
+  for (std::size_t place = 0; place < entities_.size(); ++place) {
+    // Nothing that ends its wait comes before what limits the thread already.
+    const Glance& glance = glances_[place];
+    const std::int64_t end = glance.for_others ? std::min(glance.due_ns, input) : glance.due_ns;
+    if (glance.waits && end >= limit && end >= idle) continue;
+    const Entity& other = entities_[place];
+    const Wait& wait = other.wait;
     const auto precedes_at = [&](std::int64_t ns) {
-      return PriorityIfWoken(other, std::max(ns, now)) > running.priority;
+      return PriorityIfWoken(other, std::max(ns, now)) > own;
     };
     // A timer that releases it does so in time, also where it is not its turn yet.
     if (wait.process == process || HasDeadline(other) || precedes_at(wait.next_expiry_ns)) {
@@ -401,7 +474,7 @@ RobotScheduler::Horizon RobotScheduler::HorizonOf(std::size_t core, Thread threa
       continue;
     }
     idle = std::min(idle, wait.until_ns);
-    if (other.priority == running.priority && takes_turns) {
+    if (glance.priority == own && takes_turns) {
       const std::int64_t due = std::min(wait.until_ns, wait.next_expiry_ns);
       if (due != kNever && yields && PreemptsOnWakeup(other, due - now)) {
         if (MakesRoom(core, other, due)) limit = std::min(limit, std::max(due, now));
@@ -424,6 +497,7 @@ std::int64_t RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread th
   const Entity* found = Find(thread);
   if (found == nullptr) return kNever;  // it has ended since it was dispatched
   const Entity& running = *found;
+  const Priority own = PriorityAt(running);
   const std::uint32_t process = wait_of_(thread).process;
   const std::int64_t turn_end = TurnEnd(core, running);
   std::int64_t limit = queue_.HasWaitingEqual(core) ? turn_end : kNever;
@@ -432,8 +506,8 @@ std::int64_t RobotScheduler::HorizonWhileWorldStands(std::size_t core, Thread th
     if (wait.process != process || !wait.waits || wait.own_until_ns == kNever) continue;
     const std::int64_t due = wait.own_until_ns;
     const Priority priority = PriorityIfWoken(other, due);
-    if (priority < running.priority) continue;
-    limit = std::min(limit, priority > running.priority ? due : std::max(due, turn_end));
+    if (priority < own) continue;
+    limit = std::min(limit, priority > own ? due : std::max(due, turn_end));
   }
   return limit;
 }

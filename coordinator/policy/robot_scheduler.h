@@ -20,6 +20,10 @@
 // it over: as far as that is known, which is when waits end by themselves and when the rest of the
 // scheduler tree could send input.
 //
+// Cost. Most threads wait for long, and every step looks at all of them. So what each waits for is
+// asked for only when it has changed, and a step reads of most threads nothing but a Glance: these
+// stand close together in memory.
+//
 // Pure: knows threads by number, makes no system call, reads no clock. All times are virtual
 // nanoseconds; INT64_MAX is never.
 #pragma once
@@ -75,8 +79,9 @@ class RobotScheduler {
     std::int64_t idle_ns = 0;  // the thread may sleep that far without asking: nothing else happens
   };
 
-  // `wait_of` is asked for threads that were added and not removed. Where the world stands still
-  // while threads compute, nothing preempts on wake-up.
+  // `wait_of` is asked for threads that were added and not removed, by Assign, once for each
+  // change. Where the world stands still while threads compute, nothing preempts on wake-up; and
+  // since a wait's end is told by the process's own clock there, all are asked for each time.
   RobotScheduler(std::size_t cores, bool preempts_on_wakeup, WaitOf wait_of)
       : preempts_on_wakeup_(preempts_on_wakeup),
         wait_of_(std::move(wait_of)),
@@ -107,11 +112,15 @@ class RobotScheduler {
   Thread BlockedOn(Thread thread) const { return At(thread).blocked_on; }
   // Of the thread, and of those that it is blocked on, one after the other. True if one is another.
   bool FindEffectivePriority(Thread thread);
-  Priority PriorityOf(Thread thread) const { return At(thread).priority; }
+  Priority PriorityOf(Thread thread) const { return PriorityAt(At(thread)); }
 
-  // The thread is ready, from then on, and keeps its place if it was; it is not any more.
+  // The thread is ready, from then on, and keeps its place if it was; it is not any more, or has
+  // ended. Either way what it waits for may have changed.
   void Enqueue(Thread thread, std::int64_t from_ns, bool goes_first);
-  void Dequeue(Thread thread) { queue_.Remove(thread); }
+  void Dequeue(Thread thread);
+  // So may that of one that waits on; the next expiry of that process's timers has changed.
+  void WaitChanged(Thread thread);
+  void ExpiryChanged(std::uint32_t process);
   // Its wait is over: it has a whole turn before it. If time or another robot has ended the wait,
   // that is a release, and so it is if its deadline is over.
   void WakeUp(Thread thread, std::int64_t now_ns, bool is_release);
@@ -125,6 +134,8 @@ class RobotScheduler {
   void Assign(std::int64_t own_due_ns);
   const Turn& Next(std::size_t core) const { return queue_.Next(core); }
   std::int64_t NextActionOf(std::size_t core) const { return cores_[core].next_action_ns; }
+  // Whether a wait has ended by itself by then, or a timer has run out. As last assigned.
+  bool IsAnythingDue(std::int64_t now_ns) const;
 
   // A core's thread is about to run; it has stopped after its core has come so far, and it has used
   // so much of its turn. Its equals get their turn by EndTurn, so that those that are due by then
@@ -156,13 +167,22 @@ class RobotScheduler {
     int client_priority = 0;
     SchedulingParameters parameters;
     std::uint64_t allowed = kEveryCore;
-    Priority priority = 0;             // effective
     Priority inherited = kNoPriority;  // from those that are blocked on it
     Thread blocked_on = kNobody;
     std::int64_t client_deadline_ns = 0;  // 0: none
     DeadlineServer server;                // while it has a deadline
     std::int64_t turn_ns = 0;             // had since its equals last had a turn
-    Share share;                          // of what it and its equals have had
+    Wait wait;                            // as last asked for
+  };
+  // Of an entity, at the same place.
+  struct Glance {
+    Priority priority = 0;         // effective
+    Share share;                   // of what it and its equals have had
+    std::int64_t due_ns = kNever;  // neither its wait nor its process's timer ends before
+    std::uint32_t process = 0;
+    bool waits = false;
+    bool for_others = false;  // for input or another thread, and not for time alone
+    bool is_stale = true;     // what it waits for has to be asked for
   };
   struct Core {
     Thread running = kNobody;
@@ -177,6 +197,12 @@ class RobotScheduler {
   Entity* Find(Thread thread) { return const_cast<Entity*>(std::as_const(*this).Find(thread)); }
   const Entity& At(Thread thread) const;
   Entity& At(Thread thread) { return const_cast<Entity&>(std::as_const(*this).At(thread)); }
+  std::size_t PlaceOf(const Entity& entity) const {
+    return static_cast<std::size_t>(&entity - entities_.data());
+  }
+  const Glance& GlanceAt(const Entity& entity) const { return glances_[PlaceOf(entity)]; }
+  Glance& GlanceAt(const Entity& entity) { return glances_[PlaceOf(entity)]; }
+  Priority PriorityAt(const Entity& entity) const { return GlanceAt(entity).priority; }
   std::uint64_t EveryCore() const;
 
   static bool HasDeadline(const Entity& entity);
@@ -187,6 +213,10 @@ class RobotScheduler {
   void ChargeBudget(Core& core, std::int64_t now_ns);
   void ChargeBudgetOf(Thread thread);
 
+  void MarkStale(std::size_t place);
+  void Ask(std::size_t place);
+  void AskForStaleWaits();
+  std::int64_t FirstDue() const;
   std::int64_t DueAt(std::int64_t progress_ns) const;
   std::int64_t TurnEnd(std::size_t core, const Entity& running) const;
   std::int64_t PastInput(std::size_t core, std::int64_t input_ns, const Outlook& outlook) const;
@@ -203,7 +233,11 @@ class RobotScheduler {
   std::vector<Core> cores_;
   std::vector<std::int64_t> progress_;  // of the cores
   std::vector<Entity> entities_;
-  std::vector<int> places_;  // in entities_, by thread; -1: not here
+  std::vector<Glance> glances_;
+  std::vector<int> places_;    // in entities_, by thread; -1: not here
+  std::vector<Thread> stale_;  // whose waits are to be asked for; may have ended since
+  mutable std::int64_t first_due_ns_ = kNever;  // the least of the glances', if that is known
+  mutable bool knows_first_due_ = false;
 };
 
 }  // namespace tcs

@@ -16,7 +16,7 @@ constexpr std::int64_t kNoTimeNs = -1;
 
 TemporalConsistency::Leaf TemporalConsistency::AddLeaf(int computer) {
   const auto leaf = static_cast<Leaf>(leaves_.size());
-  leaves_.push_back({computer, 0, shm::kNeverNs, kNoTimeNs, {}});
+  leaves_.push_back({computer, 0, shm::kNeverNs, shm::kNeverNs, kNoTimeNs, {}});
   leaves_.back().rank = RankOf(leaf);
   order_.insert(leaves_.back().rank);
   return leaf;
@@ -54,13 +54,20 @@ bool TemporalConsistency::HasGivenWay(Leaf leaf) const {
   return At(leaf).gave_way_ns == At(leaf).next_ns;
 }
 
-void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns) {
+void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns,
+                                 std::int64_t quiet_ns) {
   next_ns = std::max(next_ns, EarliestWake());
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
   TCS_CHECK(progress_ns >= times.progress_ns);
   const bool progressed = times.progress_ns != progress_ns;
+  const bool was_quiet = times.next_ns > times.run_ns;
   times.progress_ns = progress_ns;
-  times.next_ns = next_ns;
+  times.run_ns = next_ns;
+  times.next_ns = std::max(next_ns, quiet_ns);
+  if (const bool is_quiet = times.next_ns > times.run_ns; is_quiet != was_quiet) {
+    if (is_quiet) quiet_.push_back(leaf);
+    if (was_quiet) std::erase(quiet_, leaf);
+  }
   Reorder(leaf);
   if (progressed) NoteDrift(progress_ns);
 }
@@ -74,7 +81,7 @@ void TemporalConsistency::UpdateDynamics(std::int64_t progress_ns, std::int64_t 
 
 void TemporalConsistency::NoteDrift(std::int64_t progress_ns) {
   furthest_ns_ = std::max(furthest_ns_, progress_ns);
-  std::int64_t least = Least();
+  std::int64_t least = std::min(Least(), LeastRun(-1));
   if (has_dynamics_) least = std::min(least, dynamics_ns_);
   if (least != shm::kNeverNs) drift_ns_ = std::max(drift_ns_, progress_ns - least);
 }
@@ -93,8 +100,18 @@ std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
   return other == order_.end() ? shm::kNeverNs : std::get<0>(*other);
 }
 
+// Of the quiet ones.
+std::int64_t TemporalConsistency::LeastRun(Leaf but) const {
+  std::int64_t least = shm::kNeverNs;
+  for (const Leaf leaf : quiet_) {
+    if (leaf != but) least = std::min(least, At(leaf).run_ns);
+  }
+  return least;
+}
+
 std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
-  return std::min(end_ns_, shm::AddSaturated(LeastOther(leaf), drift_bound_ns_));
+  const std::int64_t slowest_ns = std::min(LeastOther(leaf), LeastRun(leaf));
+  return std::min(end_ns_, shm::AddSaturated(slowest_ns, drift_bound_ns_));
 }
 
 std::int64_t TemporalConsistency::DynamicsHorizon() const {

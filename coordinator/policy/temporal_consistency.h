@@ -29,7 +29,9 @@ class TemporalConsistency {
   // its progress if it has something to run, later if it idles, never if only others can wake it.
   // A time that others have left behind further than the drift bound becomes the earliest possible
   // one.
-  void Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns);
+  // Before `quiet_ns` it does nothing, although it has something to run: others need not wait for
+  // it, but get no further away from it either.
+  void Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns, std::int64_t quiet_ns = 0);
   // The same for the dynamics, which can always be advanced; nothing leaves them before
   // `output_ns`.
   void UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns);
@@ -77,6 +79,7 @@ class TemporalConsistency {
   struct Times {
     int computer;
     std::int64_t progress_ns, next_ns;
+    std::int64_t run_ns;       // it has something to run then, though it acts only at `next_ns`
     std::int64_t gave_way_ns;  // it gives way to others that can act then
     Rank rank;                 // as it stands among the others
   };
@@ -84,13 +87,15 @@ class TemporalConsistency {
   Rank RankOf(Leaf leaf) const;
   void Reorder(Leaf leaf);
   std::int64_t LeastOther(Leaf leaf) const;
+  std::int64_t LeastRun(Leaf but) const;
   void NoteDrift(std::int64_t progress_ns);
 
   std::int64_t drift_bound_ns_, end_ns_;
   std::vector<Times> leaves_;
   bool has_dynamics_ = false;
   std::int64_t dynamics_ns_ = 0, output_ns_ = 0;
-  std::set<Rank> order_;  // of all leaves, the one that can act soonest first
+  std::set<Rank> order_;     // of all leaves, the one that can act soonest first
+  std::vector<Leaf> quiet_;  // those that act later than they have something to run
   Leaf acted_last_ = -1;
   std::int64_t drift_ns_ = 0, furthest_ns_ = 0;
 };

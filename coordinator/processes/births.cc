@@ -41,6 +41,8 @@ Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
   Process& process = run_.table.AddProcess(pid);
   process.parent = parent;
   process.robot = &robot;
+  process.timers.TellOfNextExpiry(
+      [&robot, index = process.index] { robot.scheduler.ExpiryChanged(index); });
   process.pidfd.Reset(OpenPidfd(pid));
   if (process.pidfd) {
     reactor_.Add(process.pidfd.get(), EPOLLIN, {Tag::kProcess, process.index});

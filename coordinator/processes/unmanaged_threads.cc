@@ -65,6 +65,7 @@ bool UnmanagedThreads::IsAstray(pid_t tid) const {
 }
 
 bool UnmanagedThreads::AnyRuns() const {
+  if (!run_.had_unmanaged_threads) return false;
   for (const Process& process : run_.table.processes()) {
     if (!process.has_unmanaged_threads || process.dead) continue;
     for (const pid_t tid : ThreadsOf(process.pid)) {

@@ -1,6 +1,7 @@
 #include "coordinator/queues/one_waiter.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace tcs {
 
@@ -8,11 +9,11 @@ namespace {
 
 // In the order of waiting, or of waiters in an epoll set the other way round.
 bool GoesBefore(const EventWaiter& one, const EventWaiter& other) {
-  const auto place = [](const EventWaiter& waiter) {
+  const auto turn = [](const EventWaiter& waiter) {
     const auto order = static_cast<std::int64_t>(waiter.order);
     return waiter.last_is_first ? -order : order;
   };
-  return place(one) < place(other);
+  return turn(one) < turn(other);
 }
 
 }  // namespace
@@ -21,15 +22,20 @@ std::vector<EventShare> ShareEvents(
     std::vector<EventWaiter> waiters,
     const std::function<bool(int first, int second)>& is_one_event) {
   std::stable_sort(waiters.begin(), waiters.end(), GoesBefore);
-  std::vector<EventWaiter> woken;
+  std::unordered_map<std::uint64_t, std::vector<int>> takers;  // that are woken, at each place
   std::vector<EventShare> shares;
   for (const EventWaiter& waiter : waiters) {
-    const auto first = std::find_if(woken.begin(), woken.end(), [&](const EventWaiter& one) {
-      return waiter.takes && one.takes && is_one_event(one.thread, waiter.thread);
+    shares.push_back({waiter.thread, kNoThread});
+    if (!waiter.takes) continue;
+    std::vector<int>& woken = takers[waiter.place];
+    const auto first = std::find_if(woken.begin(), woken.end(), [&](int thread) {
+      return is_one_event(thread, waiter.thread);
     });
-    const bool wakes = first == woken.end();
-    shares.push_back({waiter.thread, wakes ? kNoThread : first->thread});
-    if (wakes) woken.push_back(waiter);
+    if (first != woken.end()) {
+      shares.back().passed_over_for = *first;
+    } else {
+      woken.push_back(waiter.thread);
+    }
   }
   return shares;
 }

@@ -18,6 +18,7 @@ struct EventWaiter {
   bool takes = false;          // else the event is for it in any case
   bool last_is_first = false;  // the last that came goes first
   std::uint64_t order = 0;     // of waiting
+  std::uint64_t place = 0;     // events at different places are never one
 };
 
 inline constexpr int kNoThread = -1;

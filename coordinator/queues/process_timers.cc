@@ -128,8 +128,8 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   FindNext();
 }
 
-void ProcessTimers::FindNext() {
-  next_expiry_ns_ = shm::kNeverNs;
+void ProcessTimers::FindNext(std::int64_t earliest_ns) {
+  const std::int64_t before_ns = std::exchange(next_expiry_ns_, shm::kNeverNs);
   has_cpu_timers_ = false;
   for (const auto& [id, timer] : timers_) {
     if (!timer.IsArmed()) continue;
@@ -139,6 +139,8 @@ void ProcessTimers::FindNext() {
       next_expiry_ns_ = std::min(next_expiry_ns_, timer.NextOnVirtualCpu());
     }
   }
+  next_expiry_ns_ = std::max(next_expiry_ns_, earliest_ns);
+  if (next_expiry_ns_ != before_ns && listener_) listener_();
 }
 
 std::vector<ProcessTimers::RanOut> ProcessTimers::Expire(std::int64_t now_ns) {
@@ -199,9 +201,8 @@ std::vector<ProcessTimers::RanOut> ProcessTimers::ExpireCpu(const CpuUsed& used)
 void ProcessTimers::EndRests(std::int64_t now_ns) {
   if (!std::exchange(has_resting_timers_, false)) return;
   for (auto& [id, timer] : timers_) timer.rests = false;
-  FindNext();
   // What has run out meanwhile is made up now, and not on a core that is still behind.
-  next_expiry_ns_ = std::max(next_expiry_ns_, now_ns);
+  FindNext(now_ns);
 }
 
 std::int64_t ProcessTimers::NextLook() const {

@@ -24,8 +24,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "shm/layout.h"
@@ -88,6 +90,8 @@ class ProcessTimers {
 
   // On the process's clock: when the next one runs out, shm::kNeverNs for never.
   std::int64_t NextExpiry() const { return next_expiry_ns_; }
+  // Whoever keeps it is told when it has become another one.
+  void TellOfNextExpiry(std::function<void()> listener) { listener_ = std::move(listener); }
   std::vector<RanOut> Expire(std::int64_t now_ns);
   // Whether it is of a short interval and has run out by then: whoever is to see it calls Expire.
   bool IsBehind(Id id, std::int64_t now_ns) const;
@@ -145,12 +149,13 @@ class ProcessTimers {
   Timer* Find(Id id);
   bool IsUnsent(Id id) const;
   void Signal(Id id, Timer& timer, std::int64_t count);
-  void FindNext();
+  void FindNext(std::int64_t earliest_ns = 0);
 
   std::map<Id, Timer> timers_;
   Id next_id_ = shm::kFirstTimerId;
   std::vector<TimerSignal> signals_;
   std::int64_t next_expiry_ns_ = shm::kNeverNs;
+  std::function<void()> listener_;
   bool has_cpu_timers_ = false;
   bool has_resting_timers_ = false;
 };

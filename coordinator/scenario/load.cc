@@ -59,8 +59,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   }
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top = ParseYaml(path, ReadFile(path, "a scenario file"), settings).AsMap();
-  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "robots",
-                 "channels", "clock", "ros"});
+  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "models",
+                 "robots", "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -81,8 +81,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
-  LoadWorld(top, &scenario);
   const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
+  LoadWorld(top, variables, &scenario);
   LoadRobots(top, variables, &scenario);
   LoadChannels(top, variables, &scenario);
   CheckDdsTransports(top, &scenario);

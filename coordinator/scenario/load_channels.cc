@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
@@ -56,14 +57,23 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  std::vector<std::string> keys = {"bodies", "rate",    "latency", "noise",
-                                   "bias",   "dropout", "jitter"};
-  if (type != ChannelType::kDds) keys.push_back("fields");
+  const bool of_joints = IsAboutJoints(map, "bodies");
+  std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
+  if (of_joints) {
+    keys.insert(keys.begin(), {"model", "joints"});
+  } else {
+    keys.insert(keys.begin(), {"bodies", "noise", "bias"});
+    if (type != ChannelType::kDds) keys.push_back("fields");
+  }
   AddKeys(type, "to", &keys);
   map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
-  channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
+  if (of_joints) {
+    channel.joints = LoadJointGroup(map, scenario);
+  } else {
+    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
+  }
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
@@ -88,14 +98,20 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
                                 ChannelType type, const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  std::vector<std::string> keys = {"body", "latency", "limits"};
+  const bool of_joints = IsAboutJoints(map, "body");
+  std::vector<std::string> keys = {"body", "latency", "limits", "axes", "lag"};
+  if (of_joints) keys = {"model", "joints", "drive", "stiffness", "damping", "latency"};
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
-  channel.body = FindBody(map.Require("body", "body: predator"), scenario);
-  if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  if (const YamlValue* limits = map.Find("limits")) LoadCommandLimits(*limits, &channel);
+  if (of_joints) {
+    channel.joints = LoadJointDrive(map, scenario);
+    if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
+  } else {
+    channel.body = FindBody(map.Require("body", "body: predator"), scenario);
+    LoadCommandEffect(map, &channel);
+  }
   switch (type) {
     case ChannelType::kUdpJson:
       channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
@@ -107,7 +123,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
       channel.from = ends->serial.Load(map, true, scenario);
       break;
     case ChannelType::kDds:
-      channel.from = LoadDdsCommandEnd(map, &ends->topics);
+      channel.from = LoadDdsCommandEnd(map, channel, &ends->topics);
       break;
   }
   return channel;

@@ -139,6 +139,10 @@ DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& senso
   to.message = static_cast<dds::SensorMessage>(LoadMessage(
       map.Require("message", "message: nav_msgs/msg/Odometry"), dds::SensorMessageNames()));
   const std::string& name = dds::NameOf(to.message);
+  if (sensor.joints && to.message != dds::SensorMessage::kJointState) {
+    map.Find("message")->Fail("is " + name +
+                              ", but joints are told of by sensor_msgs/msg/JointState; write that");
+  }
   if (sensor.bodies.size() > 1 && to.message != dds::SensorMessage::kJointState) {
     map.Find("bodies")->Fail("names " + std::to_string(sensor.bodies.size()) + " bodies, but " +
                              name + " tells of one; make a channel for each");
@@ -148,9 +152,17 @@ DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& senso
   return to;
 }
 
-DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, DdsTopics* topics) {
+DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& command,
+                                DdsTopics* topics) {
   DdsCommandEnd from;
   from.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
+  if (command.joints.has_value() == (from.message == dds::CommandMessage::kWrench)) {
+    map.Find("message")->Fail(
+        "is " + dds::NameOf(from.message) +
+        (command.joints ? ", but joints are driven by std_msgs/msg/Float64MultiArray or "
+                          "sensor_msgs/msg/JointState; read one of these"
+                        : ", but a body is moved by geometry_msgs/msg/Wrench; read that"));
+  }
   // Best effort matches what every writer offers; on the way to the coordinator nothing is lost.
   from.end.qos.reliability = dds::Reliability::kBestEffort;
   from.end = LoadEnd(map, dds::NameOf(from.message), Side::kReader, from.end, topics);

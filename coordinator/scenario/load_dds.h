@@ -32,7 +32,8 @@ class DdsTopics {
 // `sensor` is what the channel says besides.
 DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& sensor,
                               DdsTopics* topics);
-DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, DdsTopics* topics);
+DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& command,
+                                DdsTopics* topics);
 ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
 
 dds::RosRelease LoadRosRelease(const YamlValue& value);

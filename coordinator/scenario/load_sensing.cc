@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
 
 namespace tcs {
 
@@ -30,15 +31,6 @@ std::array<double, 3> LoadAxes(const YamlValue& value, std::string_view unit) {
   return {number, number, number};
 }
 
-// FNV-1a; the scenario's seed has come in before.
-std::uint64_t SeedOf(std::uint64_t seed, const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325 ^ seed * 0x9e3779b97f4a7c15;
-  for (const char byte : name) {
-    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
-  }
-  return hash;
-}
-
 std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
   const std::array<double, 3> limit = LoadAxes(value, unit);
   if (std::any_of(limit.begin(), limit.end(), [](double axis) { return axis < 0; })) {
@@ -47,7 +39,24 @@ std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
   return limit;
 }
 
+bool LoadIsInBodyFrame(const YamlValue& value) {
+  const std::string axes = value.AsText();
+  if (axes != "world" && axes != "body") {
+    value.Fail("is the unknown '" + axes + "'; " + Suggest(axes, {"world", "body"}, "axes"));
+  }
+  return axes == "body";
+}
+
 }  // namespace
+
+// FNV-1a; the scenario's seed has come in before.
+std::uint64_t SeedOf(std::uint64_t seed, std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325 ^ seed * 0x9e3779b97f4a7c15;
+  for (const char byte : name) {
+    hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+  }
+  return hash;
+}
 
 std::vector<SensorField> LoadSensorFields(const YamlValue& value) {
   const std::vector<std::string> names = FieldNames();
@@ -102,11 +111,16 @@ SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::
   return errors;
 }
 
-void LoadCommandLimits(const YamlValue& value, CommandChannelSpec* command) {
-  const YamlMap map = value.AsMap();
-  map.AllowOnly({"force", "torque"});
-  if (const YamlValue* v = map.Find("force")) command->most_force_n = LoadLimit(*v, " (N)");
-  if (const YamlValue* v = map.Find("torque")) command->most_torque_nm = LoadLimit(*v, " (N*m)");
+void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command) {
+  if (const YamlValue* v = map.Find("latency")) command->latency = v->AsDuration();
+  if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInBodyFrame(*v);
+  if (const YamlValue* v = map.Find("lag")) command->lag = v->AsDuration();
+  const YamlValue* limits = map.Find("limits");
+  if (limits == nullptr) return;
+  const YamlMap most = limits->AsMap();
+  most.AllowOnly({"force", "torque"});
+  if (const YamlValue* v = most.Find("force")) command->most_force_n = LoadLimit(*v, " (N)");
+  if (const YamlValue* v = most.Find("torque")) command->most_torque_nm = LoadLimit(*v, " (N*m)");
 }
 
 }  // namespace tcs

@@ -1,4 +1,4 @@
-// What sensors tell, what is wrong with it, and what commands are held to. Internal to
+// What sensors tell, what is wrong with it, and how commands act. Internal to
 // LoadScenario: mistakes are thrown as ScenarioMistake.
 #pragma once
 
@@ -15,7 +15,7 @@ std::vector<SensorField> LoadSensorFields(const YamlValue& value);
 // `noise`, `bias`, `dropout` and `jitter` of a sensor of that name.
 SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed);
 
-// `limits`.
-void LoadCommandLimits(const YamlValue& value, CommandChannelSpec* command);
+// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts.
+void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command);
 
 }  // namespace tcs

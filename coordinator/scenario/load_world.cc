@@ -1,4 +1,4 @@
-// `dynamics` and `bodies` of a scenario file.
+// `dynamics` and `bodies` of a scenario file; load_models.cc has `models`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/scenario/load_air.h"
+#include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
 #include "simbody_bridge/engines.h"
@@ -102,21 +104,11 @@ std::array<double, 3> LoadInertia(const YamlValue& value) {
   return inertia;
 }
 
-std::array<double, 4> LoadOrientation(const YamlValue& value) {
-  const std::vector<double> q = value.AsNumbers(4, "[0, 0, 0, 1] (x, y, z, w)");
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(std::abs(norm - 1) <= 1e-3)) {
-    value.Fail("is not a unit quaternion [x, y, z, w] (its norm is " + std::to_string(norm) +
-               "); normalise it");
-  }
-  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
-}
-
 BodySpec LoadBody(const YamlMap::Entry& entry) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly(
-      {"mass", "inertia", "position", "orientation", "linear_velocity", "angular_velocity"});
+  map.AllowOnly({"mass", "inertia", "position", "orientation", "linear_velocity",
+                 "angular_velocity", "drag"});
   BodySpec body;
   body.name = entry.key;
   body.mass_kg = map.Require("mass", "mass: 1.0").AsPositiveNumber(" (kilograms)");
@@ -130,20 +122,62 @@ BodySpec LoadBody(const YamlMap::Entry& entry) {
   if (const YamlValue* v = map.Find("angular_velocity")) {
     initial.angular_velocity_radps = v->AsVector3();
   }
+  if (const YamlValue* v = map.Find("drag")) body.drag = LoadDrag(*v);
   return body;
+}
+
+// Lists of bodies that are one island each.
+std::vector<std::vector<int>> LoadTogether(const YamlValue& value, const Scenario& scenario) {
+  std::vector<std::vector<int>> islands;
+  std::vector<int> placed;
+  for (const YamlValue& list : value.AsList("[[predator, prey]]")) {
+    const std::vector<YamlValue> names = list.AsList("[predator, prey]");
+    if (names.size() < 2) list.Fail("names one body, which is by itself already; name two or more");
+    std::vector<int>& island = islands.emplace_back();
+    for (const YamlValue& name : names) {
+      const int body = FindBody(name, scenario);
+      if (std::find(placed.begin(), placed.end(), body) != placed.end()) {
+        name.Fail("names the body '" + name.AsText() +
+                  "' a second time; bodies that all belong together stand in one list");
+      }
+      placed.push_back(body);
+      island.push_back(body);
+    }
+  }
+  return islands;
+}
+
+void LoadBodies(const YamlValue& value, WorldSpec* world) {
+  const YamlMap map = value.AsMap();
+  if (map.entries().empty()) value.Fail("is empty; describe at least one body");
+  for (const YamlMap::Entry& entry : map.entries()) world->bodies.push_back(LoadBody(entry));
 }
 
 }  // namespace
 
-void LoadWorld(const YamlMap& top, Scenario* scenario) {
+std::array<double, 4> LoadOrientation(const YamlValue& value) {
+  const std::vector<double> q = value.AsNumbers(4, "[0, 0, 0, 1] (x, y, z, w)");
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(std::abs(norm - 1) <= 1e-3)) {
+    value.Fail("is not a unit quaternion [x, y, z, w] (its norm is " + std::to_string(norm) +
+               "); normalise it");
+  }
+  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
+}
+
+void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenario) {
   const YamlValue* dynamics = top.Find("dynamics");
   const YamlValue* bodies = top.Find("bodies");
+  const YamlValue* models = top.Find("models");
   if (dynamics == nullptr) {
-    if (bodies != nullptr) bodies->Fail("need physics; add the key dynamics, like dynamics: {}");
+    for (const YamlValue* what : {bodies, models}) {
+      if (what != nullptr) what->Fail("need physics; add the key dynamics, like dynamics: {}");
+    }
     return;
   }
   const YamlMap map = dynamics->AsMap();
-  map.AllowOnly({"engine", "integrator", "accuracy", "step", "gravity", "region"});
+  map.AllowOnly(
+      {"engine", "integrator", "accuracy", "step", "gravity", "region", "wind", "together"});
   WorldSpec world;
   world.integrator = LoadIntegrator(map);
   if (const YamlValue* gravity = map.Find("gravity")) world.gravity_mps2 = gravity->AsVector3();
@@ -152,18 +186,32 @@ void LoadWorld(const YamlMap& top, Scenario* scenario) {
     world.region = LoadRegion(*region);
   }
 
-  if (bodies == nullptr) {
-    dynamics->Fail("has no bodies to move; add the key bodies, or remove dynamics");
+  if (const YamlValue* wind = map.Find("wind")) world.wind = LoadWind(*wind, scenario->seed);
+
+  if (bodies == nullptr && models == nullptr) {
+    dynamics->Fail("has no bodies to move; add the key bodies or models, or remove dynamics");
   }
-  const YamlMap body_map = bodies->AsMap();
-  if (body_map.entries().empty()) bodies->Fail("is empty; describe at least one body");
-  for (const YamlMap::Entry& entry : body_map.entries()) world.bodies.push_back(LoadBody(entry));
+  if (bodies != nullptr) LoadBodies(*bodies, &world);
+  const auto feels_air = [](const BodySpec& body) { return body.drag != DragSpec{}; };
+  if (const YamlValue* wind = map.Find("wind");
+      wind != nullptr && std::none_of(world.bodies.begin(), world.bodies.end(), feels_air)) {
+    scenario->warnings.push_back(
+        wind->place().Prefix() + wind->name() +
+        " moves no body, for none has drag; give one a drag, like drag: {linear: 0.3}");
+  }
   scenario->world = std::move(world);
+  if (models != nullptr) LoadModels(*models, variables, scenario);
+  if (scenario->world->bodies.empty() && scenario->world->models.empty()) {
+    models->Fail("has nothing that moves; give one of them mass, or remove dynamics");
+  }
+  if (const YamlValue* together = map.Find("together")) {
+    scenario->world->together = LoadTogether(*together, *scenario);
+  }
 }
 
 int FindBody(const YamlValue& value, const Scenario& scenario) {
   const std::string name = value.AsText();
-  if (!scenario.world) {
+  if (!scenario.world || scenario.world->bodies.empty()) {
     value.Fail("names the body '" + name + "', but the scenario has none; add dynamics and bodies");
   }
   std::vector<std::string> known;

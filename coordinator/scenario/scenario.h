@@ -19,6 +19,7 @@
 #include "coordinator/dds/ros_names.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs {
 
@@ -163,11 +164,26 @@ struct SensorErrors {
   std::uint64_t seed = 0;    // of this sensor
 };
 
+// Joints of a model that have one coordinate.
+struct JointGroup {
+  std::string model;
+  std::vector<int> joints;         // as Dynamics numbers them
+  std::vector<std::string> names;  // of each
+};
+
+// Joints that a channel drives, and with what.
+struct JointDriveSpec {
+  JointGroup group;
+  JointQuantity quantity = JointQuantity::kEffort;  // what a number without a name is
+  std::vector<JointGains> gains;                    // of each joint
+};
+
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
 // `latency` later.
 struct SensorChannelSpec {
   std::string name;
-  std::vector<int> bodies;  // indices into world.bodies; at least one
+  std::vector<int> bodies;  // indices into world.bodies; at least one, or
+  std::optional<JointGroup> joints;
   VirtualDuration period = VirtualDuration::Milliseconds(10);
   VirtualDuration latency{};
   SensorErrors errors;
@@ -177,17 +193,20 @@ struct SensorChannelSpec {
                                      SensorField::kLinearVelocity, SensorField::kAngularVelocity};
 };
 
-inline constexpr std::array<double, 3> kNoLimit = {std::numeric_limits<double>::infinity(),
-                                                   std::numeric_limits<double>::infinity(),
-                                                   std::numeric_limits<double>::infinity()};
+inline constexpr std::array<double, 3> kNoWrenchLimit = {std::numeric_limits<double>::infinity(),
+                                                         std::numeric_limits<double>::infinity(),
+                                                         std::numeric_limits<double>::infinity()};
 
 // What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
   std::string name;
-  int body = 0;
+  int body = 0;                          // or
+  std::optional<JointDriveSpec> joints;  // which they drive
   VirtualDuration latency{};
   // The most of each component, either way.
-  std::array<double, 3> most_force_n = kNoLimit, most_torque_nm = kNoLimit;
+  std::array<double, 3> most_force_n = kNoWrenchLimit, most_torque_nm = kNoWrenchLimit;
+  bool in_body_frame = false;  // the components are along the body's axes
+  VirtualDuration lag{};       // Wrench's
   CommandEnd from;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coordinator/scenario/scenario.h"
@@ -12,14 +13,20 @@
 
 namespace tcs {
 
-// `dynamics` and `bodies`, into scenario->world.
-void LoadWorld(const YamlMap& top, Scenario* scenario);
+// `dynamics`, `bodies` and `models`, into scenario->world.
+void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenario);
+
+// `models`, into scenario->world, which has its bodies and its engine.
+void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario);
 
 // `robots`. Reads the duration and the world's bodies from `scenario`.
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario);
+
+// Of the scenario's seed, that of the part of this name: each has randomness of its own.
+std::uint64_t SeedOf(std::uint64_t seed, std::string_view name);
 
 // The index of the body that `value` names.
 int FindBody(const YamlValue& value, const Scenario& scenario);

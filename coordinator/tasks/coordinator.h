@@ -34,6 +34,7 @@ struct RunOptions {
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
   bool record = false;           // all DDS topics, into a bag in output_directory
   bool waits_for_cpu = true;     // where other runs have them all
+  int host_cpus = 1;             // at most so many; 0: what there is
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides where allocations are counted
@@ -69,7 +70,9 @@ struct RunReport {
   // to run at once, could run: the largest.
   std::int64_t lateness_ns = 0;
   std::int64_t real_ns = 0;
-  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share
+  std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share,
+  std::int64_t ahead_ns = 0;    // but for what clients have computed on further ones, ahead,
+  std::int64_t awaited_ns = 0;  // and for how long they were waited for
   std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
   std::vector<ClientReport> clients;

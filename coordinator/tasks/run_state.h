@@ -40,7 +40,8 @@ struct RunState {
   std::int64_t end_ns;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
   std::int64_t latest_ns = 0;
-  VirtualDuration most_lead;  // of all programs' clocks
+  VirtualDuration most_lead;           // of all programs' clocks
+  bool had_unmanaged_threads = false;  // some process, at some time
   StopRequest stop;
   std::int64_t grace_began_ns = shm::kNeverNs;
 

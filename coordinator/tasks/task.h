@@ -74,10 +74,14 @@ struct Task : HostThread {
   std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
   int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
   std::int64_t charged_ns = 0;
-  bool is_cut_off = false;      // it has been told that its connection is not there any more
-  UniqueFd cpu_clock_fd;        // where its CPU clock is read, if it is not its process's
-  int yields = 0;               // since it last looked whether unknown children wait for theirs
-  bool spins = false;           // computes without calls where computing takes no time
+  bool is_cut_off = false;  // it has been told that its connection is not there any more
+  UniqueFd cpu_clock_fd;    // where its CPU clock is read, if it is not its process's
+  int yields = 0;           // since it last looked whether unknown children wait for theirs
+  bool owes_ahead = false;  // has computed ahead what it has not paid yet (computing_ahead.h),
+  static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on
+  int ahead_after = kComputes;         // so it is sent to compute ahead once that is so much
+  std::int64_t ahead_from_ns = 0;      // from that charge on
+  bool spins = false;                  // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   bool executes = false;        // another program, perhaps: it has no handlers there
   bool has_signal = false;      // ours, to go to its gate, unless it has handled it by now
@@ -132,6 +136,7 @@ struct Process {
   // As long as its parent may not have been told.
   bool stop_is_news = false, continue_is_news = false;
   std::uint32_t dds_number = 0;  // in dds::Hub; 0: it has not joined
+  bool stays_home = false;       // its threads do not compute ahead (computing_ahead.h)
   bool dds_warned = false;       // a client: of what it, or a descendant, sends
   bool has_erred = false;        // a client: it, or a descendant, was expelled
   Task* deliverer = nullptr;     // its thread that takes what is for it
@@ -167,6 +172,8 @@ struct Robot {
   std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                // by core
   std::vector<Task*> tasks;                     // the living
+  bool keeps_timer_signals =
+      false;  // some of its processes' timers' wait to be sent (TimerSignals)
 };
 
 // What its process's clock shows where the thread is.

@@ -42,7 +42,10 @@ void Waker::Requeue(Task& task, bool goes_first) {
 void Waker::Refresh(Robot& robot) {
   robot.scheduler.Assign(robot.next_launch_ns);
   for (const VirtualCpu* cpu : robot.cpus) {
-    run_.root.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core));
+    const std::int64_t quiet_ns =
+        listeners_.does_nothing_before ? listeners_.does_nothing_before(*cpu) : 0;
+    run_.root.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core),
+                     quiet_ns);
   }
 }
 

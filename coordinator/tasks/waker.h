@@ -29,6 +29,8 @@ class Waker {
     std::function<void(Task&, shm::WakeReason)> ends_in_trapped_call;
     // A deliverer of DDS messages is held up by something else.
     std::function<void(const Process&, Moment)> deliverer_is_held_up;
+    // The virtual CPU does nothing before that time, though it has a turn; may be null.
+    std::function<std::int64_t(const VirtualCpu&)> does_nothing_before;
   };
 
   Waker(RunState& run, Activations& activations) : run_(run), activations_(activations) {}

@@ -62,7 +62,8 @@ std::vector<std::string> SettingsOf(const TrialsPlan& plan, std::size_t group) {
 
 std::vector<std::string> RunArgumentsOf(const TrialsPlan& plan, const Trial& trial) {
   const TrialOptions& options = plan.options;
-  std::vector<std::string> words{"run", plan.scenario, "--seed", std::to_string(trial.seed)};
+  std::vector<std::string> words{
+      "run", plan.scenario, "--seed", std::to_string(trial.seed), "--host-cpus", "1"};
   const auto add = [&words](const std::string& option, const std::string& value) {
     if (!value.empty()) words.insert(words.end(), {option, value});
   };

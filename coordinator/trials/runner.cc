@@ -59,7 +59,7 @@ class Runner {
         duration_ns_(duration_ns),
         options_(options),
         events_(events),
-        cpus_(HostCpus()),
+        cpus_(CpuPlaces()),
         places_(static_cast<std::size_t>(options.at_once), false) {
     progress_.total = static_cast<int>(todo_.size() + earlier.size());
     progress_.done = static_cast<int>(earlier.size());
@@ -95,7 +95,7 @@ class Runner {
   const std::vector<std::int64_t>& duration_ns_;
   const RunnerOptions& options_;
   const RunnerEvents& events_;
-  const std::vector<HostCpu> cpus_;
+  const std::vector<CpuPlace> cpus_;
   std::vector<bool> places_;  // which are taken
   std::list<Running> running_;
   TrialsProgress progress_;

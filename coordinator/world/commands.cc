@@ -15,12 +15,29 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   ++on.taken;
   ++taken_;
   Wrench limited = wrench;
+  limited.in_body_frame = on.spec.in_body_frame;
+  limited.lag = on.spec.lag;
   for (std::size_t i = 0; i < 3; ++i) {
     const double force = on.spec.most_force_n[i], torque = on.spec.most_torque_nm[i];
     limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);
     limited.torque_nm[i] = std::clamp(wrench.torque_nm[i], -torque, torque);
   }
   act_(sent, on.spec.latency, on.spec.body, limited);
+}
+
+void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  for (const JointGoal& goal : goals) {
+    drive_(sent, on.spec.latency, on.spec.joints->group.joints[goal.joint],
+           ToDrive(goal, on.spec.joints->gains[goal.joint]));
+  }
+}
+
+const JointDriveSpec* Commands::JointsOf(std::size_t channel) const {
+  const CommandChannelSpec& spec = channels_[channel].spec;
+  return spec.joints ? &*spec.joints : nullptr;
 }
 
 void Commands::Refuse(std::size_t channel, const std::string& why) {

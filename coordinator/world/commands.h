@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,20 @@ class Commands final : public CommandSink {
   using Act =
       std::function<void(VirtualTime sent, VirtualDuration latency, int body, const Wrench&)>;
 
+  // The same of a joint, as Dynamics numbers them.
+  using Drive =
+      std::function<void(VirtualTime sent, VirtualDuration latency, int joint, const JointDrive&)>;
+
   // `warn` is told of the first thing on each channel that was no command.
-  Commands(std::function<void(const std::string&)> warn, Act act)
-      : warn_(std::move(warn)), act_(std::move(act)) {}
+  Commands(std::function<void(const std::string&)> warn, Act act, Drive drive = {})
+      : warn_(std::move(warn)), act_(std::move(act)), drive_(std::move(drive)) {}
 
   // The scenario's channels; before anything comes in.
   void Open(const std::vector<CommandChannelSpec>& specs);
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
+  void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
+  const JointDriveSpec* JointsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
 
@@ -45,6 +52,7 @@ class Commands final : public CommandSink {
   };
   std::function<void(const std::string&)> warn_;
   Act act_;
+  Drive drive_;
   std::vector<Channel> channels_;  // as in the scenario
   std::int64_t taken_ = 0;
 };

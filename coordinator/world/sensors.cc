@@ -13,6 +13,13 @@ void Sensors::Add(std::vector<Body> bodies, SensorTiming timing, const SensorErr
       {std::move(bodies), timing, &outlet, std::move(noise), std::move(inertial), {}, 0, {}});
 }
 
+void Sensors::AddJoints(const JointGroup& joints, SensorTiming timing, const SensorErrors& errors,
+                        Outlet& outlet) {
+  Add(std::vector<Body>(), timing, errors, outlet);
+  sensors_.back().joints = joints;
+  sensors_.back().joint_states.resize(joints.joints.size());
+}
+
 VirtualTime Sensors::NextStop() const {
   VirtualTime next = VirtualTime::Never();
   for (const Sensor& sensor : sensors_) {
@@ -36,17 +43,22 @@ void Sensors::AddDueBodies(VirtualTime now, std::vector<int>* bodies) const {
   }
 }
 
-bool Sensors::Act(VirtualTime now, const Read& read) {
+bool Sensors::Act(VirtualTime now, const Read& read, const ReadJoints& read_joints) {
   bool went_out = false;
   for (Sensor& sensor : sensors_) {
-    if (sensor.next <= now) went_out |= Sample(sensor, now, read);
+    if (sensor.next <= now) went_out |= Sample(sensor, now, read, read_joints);
     went_out |= sensor.outlet->HandOver(now);
   }
   return went_out;
 }
 
-bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read) {
+bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read,
+                     const ReadJoints& read_joints) {
   Reading reading{now, {}};
+  if (!sensor.joint_states.empty()) read_joints(sensor.joints.joints, sensor.joint_states);
+  for (std::size_t i = 0; i < sensor.joint_states.size(); ++i) {
+    reading.joints.push_back({sensor.joints.names[i], sensor.joint_states[i]});
+  }
   for (std::size_t i = 0; i < sensor.bodies.size(); ++i) {
     const BodyState state = read(sensor.bodies[i].index);
     reading.bodies.push_back({sensor.bodies[i].name, state, sensor.inertial[i].Sample(now, state)});

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,8 @@ class Sensors {
  public:
   // How body `body` of the world is at the instant.
   using Read = std::function<BodyState(int body)>;
+  // How joints of the world are at the instant; as many states as joints.
+  using ReadJoints = std::function<void(std::span<const int> joints, std::span<JointState>)>;
   struct Body {
     int index;         // in the world
     std::string name;  // in readings
@@ -40,6 +43,9 @@ class Sensors {
   // The outlet outlives this.
   void Add(std::vector<Body> bodies, SensorTiming timing, const SensorErrors& errors,
            Outlet& outlet);
+  // One of joints.
+  void AddJoints(const JointGroup& joints, SensorTiming timing, const SensorErrors& errors,
+                 Outlet& outlet);
 
   // When there is something to do next, and when something may reach a program next.
   VirtualTime NextStop() const;
@@ -48,7 +54,7 @@ class Sensors {
   // Appends the bodies that samples are due of. One may be there more than once.
   void AddDueBodies(VirtualTime now, std::vector<int>* bodies) const;
   // Takes the samples that are due, and has arrived what is due. True if something went out.
-  bool Act(VirtualTime now, const Read& read);
+  bool Act(VirtualTime now, const Read& read, const ReadJoints& read_joints = {});
 
   std::int64_t samples() const { return samples_; }
 
@@ -62,8 +68,10 @@ class Sensors {
     VirtualTime next;                      // sample
     std::uint64_t number = 0;              // of it
     VirtualTime last_arrives;
+    JointGroup joints{};
+    std::vector<JointState> joint_states{};  // memory of Sample
   };
-  bool Sample(Sensor& sensor, VirtualTime now, const Read& read);
+  bool Sample(Sensor& sensor, VirtualTime now, const Read& read, const ReadJoints& read_joints);
 
   std::array<double, 3> gravity_mps2_;
   std::vector<Sensor> sensors_;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <deque>
 
+#include "simbody_bridge/loads.h"
 #include "simbody_bridge/ode/ode_library.h"
 #include "simbody_bridge/ode/ode_world.h"
 
@@ -22,11 +23,12 @@ BodyState Normalised(BodyState state) {
   return state;
 }
 
-class OdeEngine : public IslandEngine {
+class OdeEngine : public BodyEngine {
  public:
   OdeEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kOdeStep) {
+                                                              : kOdeStep),
+        loads_(world, islands) {
     for (const std::vector<int>& members : islands) {
       WorldSpec part = world;
       part.bodies.clear();
@@ -73,23 +75,28 @@ class OdeEngine : public IslandEngine {
 
   void Step(const IslandStep& step, double seconds, std::vector<double>* state) {
     bodies_.resize(step.wrenches.size());
+    acting_.resize(step.wrenches.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       bodies_[i] = Read(step.island, static_cast<int>(i), step.from);
+      acting_[i] = loads_.IsConstant(step, i) ? LoadOf(step.wrenches[i])
+                                              : loads_.MeanOver(step, i, seconds, bodies_[i]);
     }
-    islands_[static_cast<std::size_t>(step.island)].Step(seconds, step.wrenches, &bodies_);
+    islands_[static_cast<std::size_t>(step.island)].Step(seconds, acting_, &bodies_);
     ToState(bodies_, state);
   }
 
   const VirtualDuration step_;
+  const Loads loads_;
   std::deque<OdeWorld> islands_;
   std::vector<std::vector<BodyState>> starts_;
   std::vector<BodyState> bodies_;  // memory of Step
+  std::vector<Load> acting_;
 };
 
 }  // namespace
 
-std::unique_ptr<IslandEngine> MakeOdeEngine(const WorldSpec& world,
-                                            const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeOdeEngine(const WorldSpec& world,
+                                          const std::vector<std::vector<int>>& islands) {
   OpenOde();
   return std::make_unique<OdeEngine>(world, islands);
 }

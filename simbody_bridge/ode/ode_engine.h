@@ -13,7 +13,7 @@
 namespace tcs {
 
 // `world` has passed CheckWorld. Throws DynamicsError if libode cannot be used.
-std::unique_ptr<IslandEngine> MakeOdeEngine(const WorldSpec& world,
-                                            const std::vector<std::vector<int>>& islands);
+std::unique_ptr<BodyEngine> MakeOdeEngine(const WorldSpec& world,
+                                          const std::vector<std::vector<int>>& islands);
 
 }  // namespace tcs

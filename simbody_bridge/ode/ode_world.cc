@@ -58,17 +58,17 @@ OdeWorld::OdeWorld(const WorldSpec& world) : spec_(world), world_(dWorldCreate()
 
 // dWorldStep, not dWorldQuickStep: they differ only in how they solve for the forces of joints and
 // contacts, of which there are none, and the former draws no random numbers for it.
-void OdeWorld::Step(double seconds, const std::vector<Wrench>& wrenches,
+void OdeWorld::Step(double seconds, const std::vector<Load>& loads,
                     std::vector<BodyState>* states) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const BodyState& state = (*states)[i];
     Write(bodies_[i], state);
-    std::array<double, 3> force = wrenches[i].force_n;
+    std::array<double, 3> force = loads[i].force_n;
     for (std::size_t axis = 0; axis < 3 && spec_.has_region; ++axis) {
       force[axis] +=
           WallForce(spec_.region, state.position_m[axis], state.linear_velocity_mps[axis]);
     }
-    const auto& torque = wrenches[i].torque_nm;
+    const auto& torque = loads[i].torque_nm;
     dBodySetForce(bodies_[i], force[0], force[1], force[2]);
     dBodySetTorque(bodies_[i], torque[0], torque[1], torque[2]);
   }

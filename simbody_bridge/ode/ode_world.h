@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/load.h"
 
 namespace tcs {
 
@@ -18,9 +19,9 @@ class OdeWorld {
   // `world` has passed CheckWorld, and OpenOde has been called.
   explicit OdeWorld(const WorldSpec& world);
 
-  // `states` and `wrenches` have one element for each body. Orientations are of unit length, and
-  // stay so.
-  void Step(double seconds, const std::vector<Wrench>& wrenches, std::vector<BodyState>* states);
+  // `states` and `loads` have one element for each body. Orientations are of unit length, and stay
+  // so.
+  void Step(double seconds, const std::vector<Load>& loads, std::vector<BodyState>* states);
 
  private:
   struct Destroy {

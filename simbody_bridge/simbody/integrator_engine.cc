@@ -16,10 +16,10 @@ void Copy(const SimTK::Vector& from, std::vector<double>* to) {
   to->assign(from.getContiguousScalarData(), from.getContiguousScalarData() + from.size());
 }
 
-class IntegratorEngine : public IslandEngine {
+class IntegratorEngine : public BodyEngine {
  public:
   IntegratorEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : fixed_step_(world.integrator.fixed_step) {
+      : fixed_step_(world.integrator.fixed_step), loads_(world, islands) {
     for (const std::vector<int>& bodies : islands) AddIsland(world, bodies);
   }
 
@@ -55,6 +55,7 @@ class IntegratorEngine : public IslandEngine {
   void StepOnce(SimTK::Integrator& integrator, double limit_s) const;
 
   const VirtualDuration fixed_step_;
+  const Loads loads_;
   // Islands of equal bodies share a model.
   struct Model {
     Masses masses;
@@ -95,8 +96,11 @@ void IntegratorEngine::SetState(const Island& island, const IslandStep& step,
   state.updTime() = 0;
   std::copy(step.from.begin(), step.from.end(), &state.updY()[0]);
   for (std::size_t i = 0; i < step.wrenches.size(); ++i) {
-    island.model->SetWrench(state, static_cast<int>(i), step.wrenches[i]);
+    const bool is_constant = loads_.IsConstant(step, i);
+    island.model->SetLoad(state, static_cast<int>(i),
+                          is_constant ? LoadOf(step.wrenches[i]) : Load{});
   }
+  island.model->SetStep(loads_, step);
 }
 
 // An integrator remembers which length it tries next, and can be told another one only by setting
@@ -166,8 +170,8 @@ void IntegratorEngine::Within(const IslandStep& step, VirtualDuration after,
 
 }  // namespace
 
-std::unique_ptr<IslandEngine> MakeIntegratorEngine(const WorldSpec& world,
-                                                   const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeIntegratorEngine(const WorldSpec& world,
+                                                 const std::vector<std::vector<int>>& islands) {
   return std::make_unique<IntegratorEngine>(world, islands);
 }
 

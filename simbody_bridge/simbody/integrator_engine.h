@@ -9,7 +9,7 @@
 namespace tcs {
 
 // `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
-std::unique_ptr<IslandEngine> MakeIntegratorEngine(const WorldSpec& world,
-                                                   const std::vector<std::vector<int>>& islands);
+std::unique_ptr<BodyEngine> MakeIntegratorEngine(const WorldSpec& world,
+                                                 const std::vector<std::vector<int>>& islands);
 
 }  // namespace tcs

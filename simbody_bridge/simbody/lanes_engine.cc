@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFirstTryS = 0.01;  // Simbody's own integrators begin so, too
 
-class LanesEngine : public IslandEngine {
+class LanesEngine : public BodyEngine {
  public:
   LanesEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : method_(world.integrator.accuracy), rates_(world, islands) {
@@ -63,8 +63,8 @@ void LanesEngine::AddIsland(const WorldSpec& world, const std::vector<int>& bodi
 
 }  // namespace
 
-std::unique_ptr<IslandEngine> MakeLanesEngine(const WorldSpec& world,
-                                              const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeLanesEngine(const WorldSpec& world,
+                                            const std::vector<std::vector<int>>& islands) {
   return std::make_unique<LanesEngine>(world, islands);
 }
 

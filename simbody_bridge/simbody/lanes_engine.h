@@ -10,7 +10,7 @@
 namespace tcs {
 
 // `world` has passed CheckWorld. Throws what Simbody throws if it refuses it all the same.
-std::unique_ptr<IslandEngine> MakeLanesEngine(const WorldSpec& world,
-                                              const std::vector<std::vector<int>>& islands);
+std::unique_ptr<BodyEngine> MakeLanesEngine(const WorldSpec& world,
+                                            const std::vector<std::vector<int>>& islands);
 
 }  // namespace tcs

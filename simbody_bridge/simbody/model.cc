@@ -22,6 +22,8 @@ SimbodyModel::SimbodyModel(const WorldSpec& world, const std::vector<int>& bodie
   if (world.has_region) {
     SimTK::Force::Custom(forces_, new RegionForce(world.region, bodies_));  // Simbody owns it
   }
+  varying_ = new VaryingForce(bodies_);
+  SimTK::Force::Custom(forces_, varying_);
   blank_state_ = system_.realizeTopology();
   system_.realizeModel(blank_state_);
 }
@@ -43,9 +45,9 @@ void SimbodyModel::SetBody(SimTK::State& state, int body, const BodyState& value
   bodies_[body].setU(state, SimTK::Vec6(w[0], w[1], w[2], v[0], v[1], v[2]));
 }
 
-void SimbodyModel::SetWrench(SimTK::State& state, int body, const Wrench& wrench) const {
-  wrenches_.setOneBodyForce(state, bodies_[body],
-                            SimTK::SpatialVec(ToVec3(wrench.torque_nm), ToVec3(wrench.force_n)));
+void SimbodyModel::SetLoad(SimTK::State& state, int body, const Load& load) const {
+  loads_.setOneBodyForce(state, bodies_[body],
+                         SimTK::SpatialVec(ToVec3(load.torque_nm), ToVec3(load.force_n)));
 }
 
 // The coordinates themselves, not a rotation matrix turned back: the quaternion keeps its sign from

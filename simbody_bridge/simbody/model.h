@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/load.h"
 #include "simbody_bridge/simbody/simbody.h"
+#include "simbody_bridge/simbody/varying_force.h"
 
 namespace tcs {
 
@@ -28,7 +30,10 @@ class SimbodyModel {
   // A state of the system, in which nothing of the bodies is set yet.
   const SimTK::State& blank_state() const { return blank_state_; }
   void SetBody(SimTK::State& state, int body, const BodyState& value) const;
-  void SetWrench(SimTK::State& state, int body, const Wrench& wrench) const;
+  // What pushes the body, beside what varies in the course of a step.
+  void SetLoad(SimTK::State& state, int body, const Load& load) const;
+  // See VaryingForce: for states that are evaluated from now on, whosever they are.
+  void SetStep(const Loads& loads, const IslandStep& step) const { varying_->Set(loads, step); }
 
  private:
   void AddBody(const BodySpec& body);
@@ -36,8 +41,9 @@ class SimbodyModel {
   SimTK::MultibodySystem system_;
   SimTK::SimbodyMatterSubsystem matter_{system_};
   SimTK::GeneralForceSubsystem forces_{system_};
-  SimTK::Force::DiscreteForces wrenches_{forces_, matter_};
+  SimTK::Force::DiscreteForces loads_{forces_, matter_};
   std::vector<SimTK::MobilizedBody::Free> bodies_;
+  VaryingForce* varying_ = nullptr;  // Simbody owns it
   SimTK::State blank_state_;
 };
 

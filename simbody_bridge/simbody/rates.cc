@@ -26,7 +26,7 @@ std::size_t WidthLog2(std::size_t lanes) {
 }  // namespace
 
 SimbodyRates::SimbodyRates(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-    : world_(world), islands_(islands) {
+    : world_(world), loads_(world, islands), islands_(islands) {
   std::map<Masses, std::size_t> known;
   for (const std::vector<int>& bodies : islands) {
     const auto [kind, is_new] = known.try_emplace(MassesOf(world, bodies), kinds_.size());
@@ -49,7 +49,7 @@ std::unique_ptr<SimbodyRates::Row> SimbodyRates::MakeRow(
   }
   row->model = std::make_unique<SimbodyModel>(world_, all);
   row->state = row->model->blank_state();
-  row->wrenches.resize(all.size());
+  row->loads.resize(all.size());
   return row;
 }
 
@@ -62,19 +62,16 @@ SimbodyRates::Row& SimbodyRates::RowOf(Kind& kind, std::size_t width_log2) {
 }
 
 void SimbodyRates::Evaluate(std::span<Lane> lanes) {
-  std::stable_sort(lanes.begin(), lanes.end(), [this](const Lane& a, const Lane& b) {
-    return kind_of_[static_cast<std::size_t>(a.island)] <
-           kind_of_[static_cast<std::size_t>(b.island)];
-  });
+  std::stable_sort(lanes.begin(), lanes.end(),
+                   [this](const Lane& a, const Lane& b) { return KindOf(a) < KindOf(b); });
   if (IsWholeCheaper(lanes)) {
     EvaluateWhole(lanes);
     return;
   }
   while (!lanes.empty()) {
-    const std::size_t kind = kind_of_[static_cast<std::size_t>(lanes.front().island)];
-    const auto other = std::find_if(lanes.begin(), lanes.end(), [&](const Lane& lane) {
-      return kind_of_[static_cast<std::size_t>(lane.island)] != kind;
-    });
+    const std::size_t kind = KindOf(lanes.front());
+    const auto other = std::find_if(lanes.begin(), lanes.end(),
+                                    [&](const Lane& lane) { return KindOf(lane) != kind; });
     const auto count = static_cast<std::size_t>(other - lanes.begin());
     EvaluateKind(kinds_[kind], lanes.first(count));
     lanes = lanes.subspan(count);
@@ -86,17 +83,14 @@ bool SimbodyRates::IsWholeCheaper(std::span<const Lane> lanes) {
   if (whole_ == nullptr) return false;
   std::size_t kinds = 0;
   for (std::size_t i = 0; i < lanes.size(); ++i) {
-    const auto kind_of = [&](std::size_t k) {
-      return kind_of_[static_cast<std::size_t>(lanes[k].island)];
-    };
-    if (i == 0 || kind_of(i) != kind_of(i - 1)) ++kinds;
+    if (i == 0 || KindOf(lanes[i]) != KindOf(lanes[i - 1])) ++kinds;
   }
   return kCostOfRow * kinds + lanes.size() > kCostOfRow + islands_.size();
 }
 
 void SimbodyRates::EvaluateWhole(std::span<const Lane> lanes) {
   slots_.clear();
-  for (const Lane& lane : lanes) slots_.push_back(static_cast<std::size_t>(lane.island));
+  for (const Lane& lane : lanes) slots_.push_back(static_cast<std::size_t>(lane.step->island));
   if (EvaluateRow(*whole_, lanes, slots_)) return;
   for (const Lane& lane : lanes) EvaluateAlone(lane);
 }
@@ -117,10 +111,19 @@ void SimbodyRates::EvaluateKind(Kind& kind, std::span<const Lane> lanes) {
 
 // A state that has gone astray in one lane is no reason to fail the others.
 void SimbodyRates::EvaluateAlone(const Lane& lane) {
-  Kind& kind = kinds_[kind_of_[static_cast<std::size_t>(lane.island)]];
+  Kind& kind = kinds_[KindOf(lane)];
   if (EvaluateRow(RowOf(kind, 0), {&lane, 1}, {0})) return;
-  std::fill_n(lane.rate, kFreeBodyNumbers * lane.wrenches.size(),
+  std::fill_n(lane.rate, kFreeBodyNumbers * lane.step->wrenches.size(),
               std::numeric_limits<double>::quiet_NaN());
+}
+
+Load SimbodyRates::LoadIn(const Lane& lane, std::size_t place) const {
+  const IslandStep& step = *lane.step;
+  if (loads_.IsConstant(step, place)) return LoadOf(step.wrenches[place]);
+  const std::size_t bodies = step.wrenches.size();
+  const BodyState body = ReadBody({lane.state, kFreeBodyNumbers * bodies}, static_cast<int>(bodies),
+                                  static_cast<int>(place));
+  return loads_.At(step, place, lane.after_s, body);
 }
 
 // Idle slots stay as they were. False if Simbody refuses one of the states.
@@ -128,7 +131,7 @@ bool SimbodyRates::EvaluateRow(Row& row, std::span<const Lane> lanes, const Slot
   const auto all_bodies = static_cast<std::size_t>(row.model->body_count());
   const auto for_lanes = [&](const auto& each) {
     for (std::size_t i = 0; i < lanes.size(); ++i) {
-      const std::size_t first = row.first_body[slots[i]], bodies = lanes[i].wrenches.size();
+      const std::size_t first = row.first_body[slots[i]], bodies = lanes[i].step->wrenches.size();
       each(lanes[i], first, bodies, kFreeBodyCoordinates * first,
            kFreeBodyCoordinates * all_bodies + kFreeBodySpeeds * first);
     }
@@ -141,10 +144,11 @@ bool SimbodyRates::EvaluateRow(Row& row, std::span<const Lane> lanes, const Slot
           std::copy_n(lane.state, coordinates, y + q);
           std::copy_n(lane.state + coordinates, kFreeBodySpeeds * bodies, y + u);
           for (std::size_t place = 0; place < bodies; ++place) {
-            Wrench& set = row.wrenches[first + place];
-            if (set == lane.wrenches[place]) continue;
-            set = lane.wrenches[place];
-            row.model->SetWrench(row.state, static_cast<int>(first + place), set);
+            const Load load = LoadIn(lane, place);
+            Load& set = row.loads[first + place];
+            if (set == load) continue;
+            set = load;
+            row.model->SetLoad(row.state, static_cast<int>(first + place), set);
           }
         });
     row.model->system().realize(row.state, SimTK::Stage::Acceleration);
@@ -158,7 +162,7 @@ bool SimbodyRates::EvaluateRow(Row& row, std::span<const Lane> lanes, const Slot
     return true;
   } catch (const std::exception&) {
     row.state = row.model->blank_state();
-    std::fill(row.wrenches.begin(), row.wrenches.end(), Wrench{});
+    std::fill(row.loads.begin(), row.loads.end(), Load{});
     return false;
   }
 }

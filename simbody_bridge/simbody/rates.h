@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/loads.h"
 #include "simbody_bridge/simbody/model.h"
 
 namespace tcs {
@@ -17,12 +18,12 @@ class SimbodyRates {
  public:
   SimbodyRates(const WorldSpec& world, const std::vector<std::vector<int>>& islands);
 
-  // An island to evaluate: its coordinates and speeds, and where their derivatives go, which are
-  // NaN where Simbody cannot tell.
+  // An island to evaluate, `after_s` from the beginning of its step on: its coordinates and speeds
+  // then, and where their derivatives go, which are NaN where Simbody cannot tell.
   struct Lane {
-    int island = 0;
+    const IslandStep* step = nullptr;
+    double after_s = 0;
     const double* state = nullptr;
-    std::span<const Wrench> wrenches;
     double* rate = nullptr;
   };
   // Changes the order of the lanes.
@@ -33,7 +34,7 @@ class SimbodyRates {
   struct Row {
     std::unique_ptr<SimbodyModel> model;
     SimTK::State state;
-    std::vector<Wrench> wrenches;         // in the state, of all bodies
+    std::vector<Load> loads;              // in the state, of all bodies
     std::vector<std::size_t> first_body;  // of each slot
   };
   // Islands of equal bodies: each fits into any slot of their rows.
@@ -50,8 +51,13 @@ class SimbodyRates {
   void EvaluateKind(Kind& kind, std::span<const Lane> lanes);
   bool EvaluateRow(Row& row, std::span<const Lane> lanes, const Slots& slots);
   void EvaluateAlone(const Lane& lane);
+  std::size_t KindOf(const Lane& lane) const {
+    return kind_of_[static_cast<std::size_t>(lane.step->island)];
+  }
+  Load LoadIn(const Lane& lane, std::size_t place) const;
 
   const WorldSpec world_;
+  const Loads loads_;
   const std::vector<std::vector<int>> islands_;
   std::vector<Kind> kinds_;
   std::vector<std::size_t> kind_of_;  // of each island

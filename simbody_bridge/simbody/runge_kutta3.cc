@@ -47,7 +47,7 @@ void RungeKutta3::Take(SimbodyRates& rates, std::span<IslandStep* const> steps) 
   for (IslandStep* step : steps) {
     NormaliseQuaternions(step->to, static_cast<int>(step->wrenches.size()));
     step->to_rate.resize(step->to.size());
-    lanes_.push_back({step->island, step->to.data(), step->wrenches, step->to_rate.data()});
+    lanes_.push_back({step, step->length_s, step->to.data(), step->to_rate.data()});
   }
   rates.Evaluate(lanes_);
 }
@@ -61,7 +61,7 @@ void RungeKutta3::Begin(SimbodyRates& rates, std::span<IslandStep* const> steps)
     const std::size_t size = step.from.size();
     step.to.resize(size);
     step.from_rate.resize(size);
-    lanes_.push_back({step.island, step.from.data(), step.wrenches, step.from_rate.data()});
+    lanes_.push_back({&step, 0, step.from.data(), step.from_rate.data()});
     Attempt& attempt = attempts_[i];
     attempt.step = &step;
     const double limit_s = step.limit.seconds();
@@ -84,7 +84,7 @@ void RungeKutta3::TryOnce(SimbodyRates& rates) {
       attempt.state[k] = step.from[k] + attempt.length_s / 2 * step.from_rate[k];
     }
     lanes_.push_back(
-        {step.island, attempt.state.data(), step.wrenches, attempt.middle_rate.data()});
+        {&step, attempt.length_s / 2, attempt.state.data(), attempt.middle_rate.data()});
   }
   rates.Evaluate(lanes_);
   lanes_.clear();
@@ -95,7 +95,7 @@ void RungeKutta3::TryOnce(SimbodyRates& rates) {
       attempt.state[k] =
           step.from[k] + attempt.length_s * (2 * attempt.middle_rate[k] - step.from_rate[k]);
     }
-    lanes_.push_back({step.island, attempt.state.data(), step.wrenches, attempt.end_rate.data()});
+    lanes_.push_back({&step, attempt.length_s, attempt.state.data(), attempt.end_rate.data()});
   }
   rates.Evaluate(lanes_);
   for (const std::size_t index : open_) {

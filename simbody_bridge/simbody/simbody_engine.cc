@@ -6,8 +6,8 @@
 
 namespace tcs {
 
-std::unique_ptr<IslandEngine> MakeSimbodyEngine(const WorldSpec& world,
-                                                const std::vector<std::vector<int>>& islands) {
+std::unique_ptr<BodyEngine> MakeSimbodyEngine(const WorldSpec& world,
+                                              const std::vector<std::vector<int>>& islands) {
   const IntegratorSpec& integrator = world.integrator;
   const bool has_set_steps = integrator.fixed_step > VirtualDuration{};
   try {

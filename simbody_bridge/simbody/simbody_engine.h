@@ -10,7 +10,7 @@ namespace tcs {
 
 // By the method and the steps that world.integrator names. `world` has passed CheckWorld. Throws
 // DynamicsError if Simbody refuses it all the same.
-std::unique_ptr<IslandEngine> MakeSimbodyEngine(const WorldSpec& world,
-                                                const std::vector<std::vector<int>>& islands);
+std::unique_ptr<BodyEngine> MakeSimbodyEngine(const WorldSpec& world,
+                                              const std::vector<std::vector<int>>& islands);
 
 }  // namespace tcs

@@ -12,12 +12,15 @@ namespace tcs {
 // Simbody's messages run over several lines.
 std::string OnOneLine(std::string text);
 
-// How long a step of these bodies may be at the most for error control to see the walls.
+// How long a step of these bodies may be at the most for error control to see the walls
+// and the gusts.
 VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>& bodies);
 
 // The state of free bodies `after_s` from the beginning of a step that was taken, before its end: a
 // cubic through both ends and their derivatives, of the same order as the methods.
 void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state);
+// The same of any numbers; quaternions among them lose some of their length.
+void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<double>* state);
 
 // What makes two islands the same system.
 using Masses = std::vector<std::pair<double, std::array<double, 3>>>;

@@ -28,7 +28,7 @@ double BareSimbodySeconds(int bodies, int samples) {
     const double at_s = sample * kSamplePeriod.seconds();
     while (integrator->getAdvancedTime() < at_s) integrator->stepTo(at_s, at_s);
     for (int i = 0; i < bodies; ++i) {
-      model.SetWrench(integrator->updAdvancedState(), i, ChangingWrench(sample));
+      model.SetLoad(integrator->updAdvancedState(), i, LoadOf(ChangingWrench(sample)));
     }
     integrator->reinitialize(SimTK::Stage::Dynamics, false);
   }

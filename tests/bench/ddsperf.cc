@@ -5,10 +5,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <exception>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <utility>
@@ -17,6 +13,7 @@
 #include "coordinator/os/own_network.h"
 #include "tests/bench/attempt.h"
 #include "tests/bench/child.h"
+#include "tests/bench/tcsim_run.h"
 
 namespace tcs::bench {
 
@@ -25,7 +22,6 @@ namespace {
 // The first second is for finding each other; ddsperf's pings begin after it.
 constexpr char kDuration[] = "-D2";
 constexpr double kCosted = 100'000;
-// Other runs of tcsim may have the processors, and are waited for.
 constexpr std::chrono::seconds kLongestRun{300};
 constexpr char kLoopbackOnly[] =
     "<CycloneDDS><Domain Id=\"any\"><General><Interfaces>"
@@ -95,34 +91,6 @@ bool Complain(const std::string& error) {
   return false;
 }
 
-// A folder for one run, which goes with it.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "tcs_bench.XXXXXX") {
-    std::string name = path_.string();
-    if (mkdtemp(name.data()) != nullptr) made_ = true;
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    if (made_) std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  bool made() const { return made_; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  bool made_ = false;
-};
-
-std::string ReadAll(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // What the two said and what they took, wherever they ran.
 struct Outcome {
   std::string said;
@@ -157,36 +125,18 @@ std::string ScenarioFor(const Pair& pair, Carrier carrier) {
 }
 
 std::optional<Outcome> RunUnderTcs(const Pair& pair, Carrier carrier) {
-  const Folder folder;
-  const std::string scenario = folder.path() / "scenario.yaml", out = folder.path() / "out";
-  if (!folder.made() || !(std::ofstream(scenario) << ScenarioFor(pair, carrier)).flush()) {
-    Complain("cannot write to " + folder.path().string());
-    return std::nullopt;
-  }
-  const std::string tcsim =
-      std::filesystem::read_symlink("/proc/self/exe").replace_filename("tcsim");
-  const ChildResult run = RunChild({tcsim, "run", scenario, "--out", out}, kLongestRun);
-  if (!run.error.empty()) {
-    Complain(run.error);
-    return std::nullopt;
-  }
-  try {
-    const auto summary = nlohmann::json::parse(ReadAll(out + "/summary.json"));
-    for (const auto& [name, client] : summary.at("clients").items()) {
-      if (client.at("wait_status") != 0) {
-        Complain(fmt::format(
-            "{} ended with status {} (of waitpid) under tcs: {}", name,
-            client.at("wait_status").get<int>(),
-            ReadAll(out + "/pc-" + (name == "pc/first" ? "first" : "second") + ".out.log")));
-        return std::nullopt;
-      }
+  const auto run = TcsimRun::Of("dds", ScenarioFor(pair, carrier));
+  if (!run) return std::nullopt;
+  for (const auto& [name, client] : run->summary().at("clients").items()) {
+    if (client.at("wait_status") != 0) {
+      Complain(fmt::format("{} ended with status {} (of waitpid) under tcs: {}", name,
+                           client.at("wait_status").get<int>(),
+                           run->OutputOf(name == "pc/first" ? "pc-first" : "pc-second")));
+      return std::nullopt;
     }
-    return Outcome{ReadAll(out + (pair.second_tells ? "/pc-second.out.log" : "/pc-first.out.log")),
-                   summary.at("real_ns").get<double>() / 1e9, run.cpu_seconds};
-  } catch (const std::exception& error) {
-    Complain(fmt::format("no summary of the run: {}", error.what()));
-    return std::nullopt;
   }
+  return Outcome{run->OutputOf(pair.second_tells ? "pc-second" : "pc-first"),
+                 run->summary().at("real_ns").get<double>() / 1e9, run->cpu_seconds()};
 }
 
 std::optional<DdsperfNumbers> RunOnce(const DdsperfCase& what, Carrier carrier, bool gently) {

@@ -19,6 +19,7 @@ constexpr char kWork[] = "work";
 constexpr char kPlanning[] = "planning";
 constexpr char kDds[] = "dds";
 constexpr char kPhysics[] = "physics";
+constexpr char kFleet[] = "fleet";
 constexpr int kRounds = 7;
 constexpr int kDdsRounds = 3;  // each of which takes a minute or two
 
@@ -32,13 +33,13 @@ int main(int argc, char** argv) {
   std::optional<int> asked_rounds;
   std::vector<std::string> only;
   bool json = false, quick = false;
-  std::vector<std::string> names{kWork, kPlanning, kDds, kPhysics};
+  std::vector<std::string> names{kWork, kPlanning, kDds, kPhysics, kFleet};
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
 
   CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
-  app.add_option(
-         "--rounds", asked_rounds,
-         fmt::format("whose medians are printed; {} unless told, of dds {}", kRounds, kDdsRounds))
+  app.add_option("--rounds", asked_rounds,
+                 fmt::format("whose medians are printed; {} unless told, of dds and fleet {}",
+                             kRounds, kDdsRounds))
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", only, "these benchmarks alone")->check(CLI::IsMember(names));
   app.add_flag("--json", json, "print one JSON object instead of tables");
@@ -78,6 +79,10 @@ int main(int argc, char** argv) {
     complete = complete && rows.has_value();
   }
   if (Wanted(only, kPhysics)) results.physics = tcs::bench::MeasurePhysics(rounds, quick);
+  if (Wanted(only, kFleet)) {
+    results.fleets = tcs::bench::MeasureFleets(asked_rounds.value_or(kDdsRounds), quick);
+    complete = complete && results.fleets.has_value();
+  }
   fmt::print("{}", json ? ToJson(results) : ToTables(results));
   return complete ? 0 : 1;
 }

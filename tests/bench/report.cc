@@ -113,6 +113,30 @@ std::string PhysicsTable(const PhysicsRows& physics) {
   return text;
 }
 
+std::string FleetTable(const FleetRows& fleets) {
+  static constexpr char kLine[] =
+      "{:>6}{:>6}{:>9}{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
+  std::string text = fmt::format(kLine, "robots", "Hz", "answers", "x real time", "", "goal",
+                                 "real µs", "programs", "world", "coordinating", "dispatches");
+  for (const FleetRow& row : fleets.rows) {
+    const std::string goal = row.fleet.goal > 0 ? fmt::format(">= {:g}", row.fleet.goal) : "";
+    text += fmt::format(kLine, row.fleet.robots, row.fleet.rate_hz,
+                        row.fleet.answers ? "yes" : "no", Brief(row.speed.median),
+                        fmt::format("{}-{}", Brief(row.speed.lowest), Brief(row.speed.highest)),
+                        goal, Brief(row.real_us), Brief(row.programs_us), Brief(row.world_us),
+                        Brief(row.coordinating_us), Brief(row.dispatches));
+  }
+  text += fmt::format(
+      "Robots with a body and a program each, which answers each sample by a command or sleeps, "
+      "for "
+      "{:g}\n"
+      "virtual s on one processor; medians of {} round{}. Microseconds and dispatches for each "
+      "sample; what\n"
+      "is left of the real ones is switching between programs.\n",
+      fleets.virtual_s, fleets.rounds, fleets.rounds == 1 ? "" : "s");
+  return text;
+}
+
 Json ToJson(const Spread& spread) {
   return {{"median", spread.median}, {"lowest", spread.lowest}, {"highest", spread.highest}};
 }
@@ -157,6 +181,7 @@ std::string ToTables(const Results& results) {
   }
   if (results.dds.has_value()) tables.push_back(DdsTable(*results.dds));
   if (results.physics.has_value()) tables.push_back(PhysicsTable(*results.physics));
+  if (results.fleets.has_value()) tables.push_back(FleetTable(*results.fleets));
   return fmt::format("{}", fmt::join(tables, "\n"));
 }
 
@@ -194,6 +219,23 @@ std::string ToJson(const Results& results) {
                             {"same_ratio", ToJson(row.same)},
                             {"checkpoint_us", row.checkpoint_us},
                             {"steps_per_sample", row.steps_per_sample}});
+    }
+  }
+  if (const auto& fleets = results.fleets; fleets.has_value()) {
+    Json& to = json["fleets"];
+    to = {{"rounds", fleets->rounds},
+          {"virtual_seconds", fleets->virtual_s},
+          {"rows", Json::array()}};
+    for (const FleetRow& row : fleets->rows) {
+      to["rows"].push_back({{"robots", row.fleet.robots},
+                            {"rate_hz", row.fleet.rate_hz},
+                            {"answers", row.fleet.answers},
+                            {"times_real_time", ToJson(row.speed)},
+                            {"real_us", row.real_us},
+                            {"programs_us", row.programs_us},
+                            {"world_us", row.world_us},
+                            {"coordinating_us", row.coordinating_us},
+                            {"dispatches", row.dispatches}});
     }
   }
   return json.dump(2) + "\n";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -19,22 +20,30 @@ class DdsChannels::SensorOutlet final : public Outlet {
 
   void Begin() {
     const auto& to = std::get<DdsSensorEnd>(spec_.to);
-    writer_ = transport_.Add(dds::EndpointKind::kWriter, to.end, dds::NameOf(to.message),
-                             spec_.bodies.front());
+    const auto body = spec_.joints ? std::nullopt : std::optional(spec_.bodies.front());
+    writer_ = transport_.Add(dds::EndpointKind::kWriter, to.end, dds::NameOf(to.message), body);
   }
 
   bool Send(const Reading& reading, VirtualTime arrives) override {
-    std::vector<BodyState> states;
-    for (const BodyReading& body : reading.bodies) states.push_back(body.state);
     const std::int64_t stamp_ns = transport_.StampOf(reading.at);
-    const auto cdr = encoder_.Encode(stamp_ns, states, reading.bodies.front().felt);
-    transport_.ends_.Write(writer_, cdr, stamp_ns, arrives.ns());
+    transport_.ends_.Write(writer_, Encoded(reading, stamp_ns), stamp_ns, arrives.ns());
     return true;
   }
   VirtualTime NextDue() const override { return VirtualTime::Never(); }
   bool HandOver(VirtualTime) override { return false; }
 
  private:
+  std::vector<std::byte> Encoded(const Reading& reading, std::int64_t stamp_ns) const {
+    if (spec_.joints) {
+      std::vector<JointState> states;
+      for (const JointReading& joint : reading.joints) states.push_back(joint.state);
+      return dds::EncodeJoints(stamp_ns, spec_.joints->names, states);
+    }
+    std::vector<BodyState> states;
+    for (const BodyReading& body : reading.bodies) states.push_back(body.state);
+    return encoder_.Encode(stamp_ns, states, reading.bodies.front().felt);
+  }
+
   DdsChannels& transport_;
   const SensorChannelSpec& spec_;
   dds::SensorEncoder encoder_;
@@ -81,14 +90,21 @@ class DdsChannels::CommandInlet final : public Inlet {
  private:
   static void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
                      CommandSink& sink) {
-    const auto wrench = dds::DecodeCommand(actuator.end->message, sample.cdr);
-    if (const auto* error = std::get_if<dds::MessageError>(&wrench)) {
-      sink.Refuse(actuator.channel,
-                  fmt::format("a sample on {} {}", actuator.end->end.topic, error->message));
-      return;
+    const auto give = [&](const auto& decoded) {
+      if (const auto* error = std::get_if<dds::MessageError>(&decoded)) {
+        sink.Refuse(actuator.channel,
+                    fmt::format("a sample on {} {}", actuator.end->end.topic, error->message));
+      } else {
+        sink.Take(actuator.channel, VirtualTime::FromNanoseconds(sample.at_ns),
+                  std::get<0>(decoded));
+      }
+    };
+    const dds::CommandMessage message = actuator.end->message;
+    if (const JointDriveSpec* joints = sink.JointsOf(actuator.channel)) {
+      give(dds::DecodeJointCommand(message, joints->group.names, joints->quantity, sample.cdr));
+    } else {
+      give(dds::DecodeCommand(message, sample.cdr));
     }
-    sink.Take(actuator.channel, VirtualTime::FromNanoseconds(sample.at_ns),
-              std::get<Wrench>(wrench));
   }
 
   DdsChannels& transport_;
@@ -134,9 +150,9 @@ void DdsChannels::Begin(VirtualDuration realtime_offset) {
     const CommandChannelSpec& spec = scenario_.commands[i];
     const auto* from = std::get_if<DdsCommandEnd>(&spec.from);
     if (from == nullptr) continue;
-    actuators_.push_back(
-        {i, from,
-         Add(dds::EndpointKind::kReader, from->end, dds::NameOf(from->message), spec.body)});
+    actuators_.push_back({i, from,
+                          Add(dds::EndpointKind::kReader, from->end, dds::NameOf(from->message),
+                              spec.joints ? std::nullopt : std::optional(spec.body))});
   }
   if (scenario_.clock.has_value()) {
     clock_ = Add(dds::EndpointKind::kWriter, scenario_.clock->end, dds::kClockMessageName, {});

@@ -1,7 +1,5 @@
 #include "coordinator/channel/json/json_channel.h"
 
-#include <variant>
-
 #include "coordinator/channel/json/json_codec.h"
 
 namespace tcs {
@@ -17,12 +15,7 @@ bool JsonOutlet::HandOver(VirtualTime now) {
 
 void JsonInlet::Receive(VirtualTime now, CommandSink& sink) {
   while (const auto datagram = receiver_->Receive()) {
-    const auto wrench = DecodeCommand(*datagram);
-    if (const auto* error = std::get_if<DecodeError>(&wrench)) {
-      sink.Refuse(channel_, "the command datagram " + error->message);
-    } else {
-      sink.Take(channel_, now, std::get<Wrench>(wrench));
-    }
+    TakeCommand("the command datagram", *datagram, channel_, now, sink);
   }
 }
 

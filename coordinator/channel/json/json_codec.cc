@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +11,8 @@
 #include <optional>
 #include <span>
 #include <utility>
+
+#include "coordinator/channel/json/plain_command.h"
 
 namespace tcs {
 namespace {
@@ -26,8 +29,28 @@ std::string Quote(const std::string& text) {
       .dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-DecodeError Mistake(const std::string& what) {
-  return DecodeError{what + "; send an object like " + std::string(kExample)};
+DecodeError Mistake(const std::string& what, std::string_view example = kExample) {
+  return DecodeError{what + "; send an object like " + std::string(example)};
+}
+
+// The text as a JSON object; else what is wrong with it.
+std::variant<Json, DecodeError> ParseObject(std::string_view text, std::string_view example) {
+  Json object;
+  try {
+    object = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    return Mistake("is not valid JSON at byte " + std::to_string(error.byte), example);
+  } catch (const Json::out_of_range&) {
+    return Mistake("holds a number too large for a double", example);
+  }
+  if (object.is_object()) return object;
+  return Mistake(std::string("is of the type ") + object.type_name(), example);
+}
+
+std::optional<double> FiniteNumber(const Json& value) {
+  if (!value.is_number()) return std::nullopt;
+  const double number = value.get<double>();
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 // Three finite numbers; none if `value` is anything else.
@@ -35,9 +58,9 @@ std::optional<std::array<double, 3>> Vector3(const Json& value) {
   if (!value.is_array() || value.size() != 3) return std::nullopt;
   std::array<double, 3> vector{};
   for (std::size_t i = 0; i < vector.size(); ++i) {
-    if (!value[i].is_number()) return std::nullopt;
-    vector[i] = value[i].get<double>();
-    if (!std::isfinite(vector[i])) return std::nullopt;
+    const auto number = FiniteNumber(value[i]);
+    if (!number) return std::nullopt;
+    vector[i] = *number;
   }
   return vector;
 }
@@ -90,6 +113,7 @@ void AppendField(const BodyReading& body, SensorField field, std::string& text) 
 
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
 std::string EncodeReading(const Reading& reading, std::span<const SensorField> fields) {
+  if (!reading.joints.empty()) return EncodeJoints(reading);
   // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
   std::string text = R"({"time":)";
   AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
@@ -109,19 +133,29 @@ std::string EncodeReading(const Reading& reading, std::span<const SensorField> f
   return text += "}}";
 }
 
-std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
-  Json command;
-  try {
-    command = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    return Mistake("is not valid JSON at byte " + std::to_string(error.byte));
-  } catch (const Json::out_of_range&) {
-    return Mistake("holds a number too large for a double");
+std::string EncodeJoints(const Reading& reading) {
+  std::string text = R"({"time":)";
+  AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
+  text += R"(,"joints":{)";
+  for (const JointReading& joint : reading.joints) {
+    if (&joint != &reading.joints.front()) text += ',';
+    text += Json(joint.name).dump() + R"(:{"position":)";
+    AppendNumber(joint.state.position, text);
+    text += R"(,"velocity":)";
+    AppendNumber(joint.state.velocity, text);
+    text += R"(,"effort":)";
+    AppendNumber(joint.state.effort, text);
+    text += '}';
   }
-  if (!command.is_object()) return Mistake(std::string("is of the type ") + command.type_name());
+  return text += "}}";
+}
 
+std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
+  if (const std::optional<Wrench> wrench = ReadPlainCommand(text)) return *wrench;
+  const auto parsed = ParseObject(text, kExample);
+  if (const auto* error = std::get_if<DecodeError>(&parsed)) return *error;
   Wrench wrench;
-  for (const auto& [key, value] : command.items()) {
+  for (const auto& [key, value] : std::get<Json>(parsed).items()) {
     const bool is_force = key == "force";
     if (!is_force && key != "torque") {
       return Mistake("has the unknown key " + Quote(key));
@@ -131,6 +165,65 @@ std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text) {
     (is_force ? wrench.force_n : wrench.torque_nm) = *vector;
   }
   return wrench;
+}
+
+namespace {
+
+constexpr std::string_view kJointExample = R"({"elbow": 0.5})";
+
+// What `value` says of a joint; empty if it fits.
+std::string TakeGoal(const Json& value, JointQuantity quantity, JointGoal* goal) {
+  if (const auto number = FiniteNumber(value)) {
+    goal->Of(quantity) = *number;
+    return {};
+  }
+  if (!value.is_object()) return "that is neither a finite number nor an object";
+  for (const auto& [key, part] : value.items()) {
+    const auto known = std::find(kJointQuantities.begin(), kJointQuantities.end(), key);
+    if (known == kJointQuantities.end()) return "with the unknown key " + Quote(key);
+    const auto number = FiniteNumber(part);
+    if (!number) return "whose " + key + " is not a finite number";
+    goal->Of(static_cast<JointQuantity>(known - kJointQuantities.begin())) = *number;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
+    std::string_view text, std::span<const std::string> joints, JointQuantity quantity) {
+  const auto parsed = ParseObject(text, kJointExample);
+  if (const auto* error = std::get_if<DecodeError>(&parsed)) return *error;
+  std::vector<JointGoal> goals;
+  for (const auto& [key, value] : std::get<Json>(parsed).items()) {
+    const auto found = std::find(joints.begin(), joints.end(), key);
+    if (found == joints.end()) {
+      return Mistake("names the joint " + Quote(key) + ", which the channel does not drive",
+                     kJointExample);
+    }
+    JointGoal goal{static_cast<std::size_t>(found - joints.begin())};
+    if (const std::string wrong = TakeGoal(value, quantity, &goal); !wrong.empty()) {
+      return Mistake("has a value of " + Quote(key) + " " + wrong, kJointExample);
+    }
+    goals.push_back(goal);
+  }
+  return goals;
+}
+
+void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
+                 VirtualTime sent, CommandSink& sink) {
+  const auto give = [&](const auto& decoded) {
+    if (const auto* error = std::get_if<DecodeError>(&decoded)) {
+      sink.Refuse(channel, std::string(what) + " " + error->message);
+    } else {
+      sink.Take(channel, sent, std::get<0>(decoded));
+    }
+  };
+  if (const JointDriveSpec* joints = sink.JointsOf(channel)) {
+    give(DecodeJointCommand(text, joints->group.names, joints->quantity));
+  } else {
+    give(DecodeCommand(text));
+  }
 }
 
 }  // namespace tcs

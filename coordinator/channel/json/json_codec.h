@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "coordinator/channel/channel.h"
 #include "coordinator/scenario/scenario.h"
@@ -23,6 +24,10 @@ namespace tcs {
 [[nodiscard]] std::string EncodeReading(const Reading& reading,
                                         std::span<const SensorField> fields);
 
+// What EncodeReading makes of a reading of joints:
+// {"time":1.23,"joints":{"NAME":{"position":q,"velocity":v,"effort":e}}}, in the same way.
+[[nodiscard]] std::string EncodeJoints(const Reading& reading);
+
 struct DecodeError {
   std::string message;  // the rest of a sentence that begins with what was decoded; quotes little
 };
@@ -30,5 +35,14 @@ struct DecodeError {
 // {"force":[x,y,z],"torque":[x,y,z]}; either may be left out and is zero then. The text is
 // whatever somebody sent: anything else, numbers that are not finite included, is an error.
 [[nodiscard]] std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text);
+
+// {"NAME":1.5} or {"NAME":{"position":q,"velocity":v,"effort":e}} for any of `joints`: a number by
+// itself is the joint's `quantity`. The same is an error.
+[[nodiscard]] std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
+    std::string_view text, std::span<const std::string> joints, JointQuantity quantity);
+
+// Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
+void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
+                 VirtualTime sent, CommandSink& sink);
 
 }  // namespace tcs

@@ -146,12 +146,7 @@ class PtyChannels::DeviceInlet final : public Inlet {
   void TakeLine(VirtualTime sent, CommandSink& sink) {
     if (!channel_.has_value()) return;
     if (line_.find_first_not_of(" \t\r") == std::string::npos) return;
-    const auto wrench = DecodeCommand(line_);
-    if (const auto* error = std::get_if<DecodeError>(&wrench)) {
-      sink.Refuse(*channel_, "the command line " + error->message);
-    } else {
-      sink.Take(*channel_, sent, std::get<Wrench>(wrench));
-    }
+    TakeCommand("the command line", line_, *channel_, sent, sink);
   }
 
   void CheckBaud(CommandSink& sink) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -85,6 +87,83 @@ TEST(CommandDatagram, IsAWrench) {
   EXPECT_THAT(wrench.torque_nm, ElementsAre(0, 0, 4));
 }
 
+// Plain commands are read in another way than all others; a blank key makes one of the others of it
+// by an escape, which means the same.
+TEST(CommandDatagram, IsTheSameHoweverItIsWritten) {
+  std::uint64_t bits = 88172645463325252u;
+  const auto draw = [&bits](std::uint64_t below) {
+    bits ^= bits << 13;
+    bits ^= bits >> 7;
+    bits ^= bits << 17;
+    return bits % below;
+  };
+  constexpr std::string_view kPieces[] = {"0",
+                                          "-0",
+                                          "12",
+                                          "-7",
+                                          ".5",
+                                          "1.",
+                                          "01",
+                                          "1.25",
+                                          "-0.0",
+                                          "1e3",
+                                          "2E-3",
+                                          "3e+2",
+                                          "4e",
+                                          "-",
+                                          "nan",
+                                          "+1",
+                                          "1e-400",
+                                          "9007199254740993",
+                                          "18446744073709551617",
+                                          "123456789012345678901234567890",
+                                          "0.1",
+                                          "5e-324"};
+  constexpr std::string_view kBlanks[] = {"", " ", "\t\n", "\r  "};
+  int commands = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::string plain, escaped;
+    const auto add = [&](std::string_view text, std::string_view other) {
+      const std::string_view blank = kBlanks[draw(std::size(kBlanks))];
+      plain.append(blank).append(text);
+      escaped.append(blank).append(other);
+    };
+    add("{", "{");
+    for (std::uint64_t n = 0, count = draw(3); n < count; ++n) {
+      if (n > 0) add(",", ",");
+      const bool is_force = draw(2) == 0;
+      add(is_force ? "\"force\"" : "\"torque\"", is_force ? "\"\\u0066orce\"" : "\"\\u0074orque\"");
+      add(":", ":");
+      for (int axis = 0; axis < 3; ++axis) {
+        add(axis == 0 ? "[" : ",", axis == 0 ? "[" : ",");
+        const std::string_view number = kPieces[draw(std::size(kPieces))];
+        add(number, number);
+      }
+      add("]", "]");
+    }
+    add("}", "}");
+    const auto a = DecodeCommand(plain), b = DecodeCommand(escaped);
+    ASSERT_EQ(a.index(), b.index()) << plain;
+    const auto *x = std::get_if<Wrench>(&a), *y = std::get_if<Wrench>(&b);
+    if (x == nullptr) continue;
+    ++commands;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(x->force_n[axis]),
+                std::bit_cast<std::uint64_t>(y->force_n[axis]))
+          << plain;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(x->torque_nm[axis]),
+                std::bit_cast<std::uint64_t>(y->torque_nm[axis]))
+          << plain;
+    }
+  }
+  EXPECT_GT(commands, 5000);
+}
+
+TEST(SensorDatagram, NamesAreEscapedAsJsonHasIt) {
+  EXPECT_THAT(Encoded(VirtualTime(), {{"a\"b\\c\n", {}}}), HasSubstr(R"({"a\"b\\c\n":{)"));
+  EXPECT_THAT(Encoded(VirtualTime(), {{"größe", {}}}), HasSubstr("{\"größe\":{"));
+}
+
 TEST(CommandDatagram, WhatIsLeftOutIsZero) {
   EXPECT_THAT(Decoded(R"({"torque":[1,2,3]})").force_n, ElementsAre(0, 0, 0));
   EXPECT_THAT(Decoded(R"({"force":[1,2,3]})").torque_nm, ElementsAre(0, 0, 0));
@@ -121,6 +200,48 @@ TEST(CommandDatagram, UnknownKeysAreNamed) {
   EXPECT_THAT(ComplaintAbout(R"({"forse":[1,2,3]})"), HasSubstr("unknown key \"forse\""));
   EXPECT_THAT(ComplaintAbout("{\"a\\nb\u00e9\":1}"), HasSubstr("\"a\\nb\\u00e9\""));
   EXPECT_LT(ComplaintAbout("{\"" + std::string(5000, 'x') + "\":1}").size(), 200u);
+}
+
+TEST(JointDatagram, NamesTimeAndStates) {
+  const Reading reading{VirtualTime::FromNanoseconds(1'230'000'000),
+                        {},
+                        {{"elbow", {0.5, -1, 2}}, {"wrist", {1e-9, 0, 0}}}};
+  EXPECT_EQ(EncodeJoints(reading),
+            R"({"time":1.23,"joints":{"elbow":{"position":0.5,"velocity":-1.0,"effort":2.0},)"
+            R"("wrist":{"position":1e-09,"velocity":0.0,"effort":0.0}}})");
+}
+
+std::variant<std::vector<JointGoal>, DecodeError> DecodedJoints(std::string_view text) {
+  const std::vector<std::string> joints = {"elbow", "wrist"};
+  return DecodeJointCommand(text, joints, JointQuantity::kVelocity);
+}
+
+std::string JointComplaint(std::string_view text) {
+  const auto decoded = DecodedJoints(text);
+  const auto* error = std::get_if<DecodeError>(&decoded);
+  return error == nullptr ? "" : error->message;
+}
+
+TEST(JointCommandDatagram, IsForAnyOfTheJoints) {
+  const JointGoal wrist{.joint = 1, .velocity = 0.5};
+  EXPECT_THAT(std::get<0>(DecodedJoints(R"({"wrist": 0.5})")), ElementsAre(wrist));
+  const JointGoal elbow{.joint = 0, .position = 1, .velocity = 2, .effort = -3};
+  EXPECT_THAT(std::get<0>(DecodedJoints(
+                  R"({"elbow":{"effort":-3,"position":1,"velocity":2},"wrist":0.5})")),
+              ElementsAre(elbow, wrist));
+  EXPECT_TRUE(std::get<0>(DecodedJoints("{}")).empty());
+}
+
+TEST(JointCommandDatagram, ThatIsNoneIsSaid) {
+  EXPECT_THAT(JointComplaint("[1]"), HasSubstr("is of the type array"));
+  EXPECT_THAT(JointComplaint("{"), HasSubstr("is not valid JSON"));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names the joint \"knee\""));
+  EXPECT_THAT(JointComplaint(R"({"elbow":"up"})"), HasSubstr("value of \"elbow\" that is neither"));
+  EXPECT_THAT(JointComplaint(R"({"elbow":{"speed":1}})"), HasSubstr("unknown key \"speed\""));
+  EXPECT_THAT(JointComplaint(R"({"elbow":{"effort":null}})"),
+              HasSubstr("whose effort is not a finite number"));
+  EXPECT_THAT(JointComplaint(R"({"elbow":1e999})"), HasSubstr("too large"));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr(R"(send an object like {"elbow": 0.5})"));
 }
 
 }  // namespace

@@ -86,6 +86,21 @@ TEST_F(Cyclone, WritesTheSameJointState) {
   ExpectTheSameBytes("rt/joint_states", ToJointState(5, bodies, std::vector{Flying(), Flying()}));
 }
 
+TEST_F(Cyclone, WritesTheSameJointStateOfARobot) {
+  const std::vector<std::string> joints = {"elbow", "wrist_1"};
+  ExpectTheSameBytes("rt/joint_states",
+                     ToRobotJointState(5, joints, std::vector<JointState>{{1, 2, 3}, {4, 5, 6}}));
+}
+
+TEST_F(Cyclone, WritesTheSameFloat64MultiArray) {
+  Owned<Float64MultiArrayMessage> array;
+  Resize(&array->layout.dim, 1);
+  SetText(&array->layout.dim._buffer[0].label, "joints");
+  Resize(&array->data, 2);
+  array->data._buffer[1] = -0.5;
+  ExpectTheSameBytes("rt/commands", array);
+}
+
 TEST_F(Cyclone, WritesTheSameTwist) { ExpectTheSameBytes("rt/twist", ToTwist(Flying())); }
 
 TEST_F(Cyclone, WritesTheSameClock) { ExpectTheSameBytes("rt/clock", ToClock(1'234'567'890)); }
@@ -129,6 +144,8 @@ TEST_F(Cyclone, KnowsTheTypesByRosNames) {
   EXPECT_EQ(DescriptorOf<OdometryMessage>().m_typename, DdsType("nav_msgs/msg/Odometry"));
   EXPECT_EQ(DescriptorOf<ImuMessage>().m_typename, DdsType("sensor_msgs/msg/Imu"));
   EXPECT_EQ(DescriptorOf<JointStateMessage>().m_typename, DdsType("sensor_msgs/msg/JointState"));
+  EXPECT_EQ(DescriptorOf<Float64MultiArrayMessage>().m_typename,
+            DdsType("std_msgs/msg/Float64MultiArray"));
   EXPECT_EQ(DescriptorOf<TwistMessage>().m_typename, DdsType("geometry_msgs/msg/Twist"));
   EXPECT_EQ(DescriptorOf<WrenchMessage>().m_typename, DdsType("geometry_msgs/msg/Wrench"));
   EXPECT_EQ(DescriptorOf<ClockMessage>().m_typename, DdsType(kClockMessageName));

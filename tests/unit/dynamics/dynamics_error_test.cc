@@ -90,6 +90,31 @@ TEST_P(DynamicsErrors, NameTheFieldOfTheWorld) {
       "integrator: the fixed step must not be negative, but is -1 ns");
 }
 
+TEST_P(DynamicsErrors, NameWhatIsNoAir) {
+  WorldSpec world = OneBody(GetParam());
+  world.bodies[0].drag.quadratic_ns2pm2 = -1;
+  ExpectRefused(world,
+                "body 'ship': each factor of the drag must be finite and not negative, but one is "
+                "-1");
+  world = OneBody(GetParam());
+  world.wind.mean_mps[0] = kNan;
+  ExpectRefused(world, "wind: its velocity must be finite");
+  world.wind = {.gusts_mps = -1};
+  ExpectRefused(world, "wind: the gusts must be finite and not negative, but are -1 m/s");
+  world.wind = {.gusts_mps = 1, .gust_time = {}};
+  ExpectRefused(world, "wind: the time of the gusts must be more than 0, but is 0 ns");
+}
+
+TEST_P(DynamicsErrors, RefuseALagThatIsNegative) {
+  auto dynamics = MakeDynamics(OneBody(GetParam()));
+  try {
+    dynamics->Apply(0, {.lag = VirtualDuration::Nanoseconds(-1)}, AtMs(1));
+    ADD_FAILURE() << "accepted";
+  } catch (const DynamicsError& e) {
+    EXPECT_STREQ(e.what(), "body 'ship': the lag of a command must not be negative, but is -1 ns");
+  }
+}
+
 TEST_P(DynamicsErrors, RefuseAWrenchThatIsNotFiniteAndGoOn) {
   auto dynamics = MakeDynamics(OneBody(GetParam()));
   try {
@@ -135,15 +160,18 @@ TEST_P(DynamicsErrors, AreThoseOfTheBodyThatIsReadAndCanBeAverted) {
                              .kind = IntegratorKind::kExplicitEuler,
                              .fixed_step = VirtualDuration::Milliseconds(100)});
   world.bodies.push_back(world.bodies[0]);
-  world.bodies[1].initial.linear_velocity_mps = {1e308, 0, 0};
+  // MuJoCo takes no number beyond 1e10.
+  const bool is_mujoco = GetParam().engine == EngineKind::kMujoco;
+  const double force_n = is_mujoco ? 1e10 : 1e308;
+  world.bodies[1].initial.linear_velocity_mps = {is_mujoco ? 1e9 : 1e308, 0, 0};
   auto dynamics = MakeDynamics(world);
-  dynamics->Apply(1, {.force_n = {1e308, 0, 0}, .torque_nm = {}}, AtMs(0));
+  dynamics->Apply(1, {.force_n = {force_n, 0, 0}, .torque_nm = {}}, AtMs(0));
   const std::array both{0, 1};
   std::array<BodyState, 2> states;
   EXPECT_THROW(dynamics->Read(AtMs(5000), both, states), DynamicsError);
   EXPECT_THROW(dynamics->Read(AtMs(5000), both, states), DynamicsError) << "the second time";
   EXPECT_NO_THROW(dynamics->Read(AtMs(5000), {&both[0], 1}, {&states[0], 1}));
-  dynamics->Apply(1, {.force_n = {-1e308, 0, 0}, .torque_nm = {}}, AtMs(0));
+  dynamics->Apply(1, {.force_n = {-force_n, 0, 0}, .torque_nm = {}}, AtMs(0));
   EXPECT_NO_THROW(dynamics->Read(AtMs(1000), both, states));
 }
 

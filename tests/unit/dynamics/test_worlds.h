@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/engines.h"
 
 namespace tcs {
 
@@ -41,6 +42,20 @@ inline WorldSpec BusyWorld(const IntegratorSpec& integrator) {
     body.initial.angular_velocity_radps = {0.1, 6 * side, 0.2};
     world.bodies.push_back(body);
   }
+  return world;
+}
+
+// The same in the air, with gusts.
+inline WorldSpec BusyWorldInTheWind(const IntegratorSpec& integrator) {
+  WorldSpec world = BusyWorld(integrator);
+  world.wind = {.mean_mps = {2, -1, 0},
+                .gusts_mps = 1.5,
+                .gust_time = VirtualDuration::Milliseconds(500),
+                .seed = 4};
+  world.bodies[1].drag = {.linear_nspm = 0.3,
+                          .quadratic_ns2pm2 = 0.1,
+                          .angular_linear_nmsprad = 0.02,
+                          .angular_quadratic_nms2prad2 = 0.01};
   return world;
 }
 
@@ -114,15 +129,22 @@ inline std::string NameOfParam(const testing::TestParamInfo<IntegratorSpec>& inf
 // The engines, each as it is by default.
 class EveryEngine : public testing::TestWithParam<IntegratorSpec> {};
 
-inline std::vector<IntegratorSpec> Engines() { return {IntegratorSpec{}, kOde}; }
+inline std::vector<IntegratorSpec> Engines() {
+  std::vector<IntegratorSpec> engines = {IntegratorSpec{}, kOde};
+#ifdef TCS_HAS_MUJOCO
+  engines.push_back({.engine = EngineKind::kMujoco});
+#endif
+  return engines;
+}
 
 inline std::string NameOfEngine(const testing::TestParamInfo<IntegratorSpec>& info) {
+  if (info.param.engine == EngineKind::kMujoco) return "Mujoco";
   return info.param.engine == EngineKind::kOde ? "Ode" : "Simbody";
 }
 
 // What GoogleTest shows of a parameter, instead of its bytes.
 inline void PrintTo(const IntegratorSpec& spec, std::ostream* out) {
-  *out << (spec.engine == EngineKind::kOde ? "ODE" : "Simbody") << ", "
+  *out << TraitsOf(spec.engine).name << ", "
        << (spec.fixed_step.ns() == 0 ? "steps of its own"
                                      : "steps of " + std::to_string(spec.fixed_step.ns()) + " ns");
 }

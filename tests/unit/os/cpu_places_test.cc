@@ -9,8 +9,8 @@ namespace {
 using ::testing::ElementsAre;
 
 // Four cores of two threads each, numbered as Linux does on most machines.
-const std::vector<HostCpu> kEight{{0, "0,4"}, {1, "1,5"}, {2, "2,6"}, {3, "3,7"},
-                                  {4, "0,4"}, {5, "1,5"}, {6, "2,6"}, {7, "3,7"}};
+const std::vector<CpuPlace> kEight{{0, "0,4"}, {1, "1,5"}, {2, "2,6"}, {3, "3,7"},
+                                   {4, "0,4"}, {5, "1,5"}, {6, "2,6"}, {7, "3,7"}};
 
 std::vector<int> Numbers(const cpu_set_t& set) {
   std::vector<int> numbers;
@@ -21,14 +21,14 @@ std::vector<int> Numbers(const cpu_set_t& set) {
 }
 
 TEST(CpuPlaces, OneCpuIsEnoughForOneRun) {
-  const std::vector<HostCpu> one{{3, "3"}};
+  const std::vector<CpuPlace> one{{3, "3"}};
   EXPECT_EQ(RunsAtOnce(one, true), 1);
   EXPECT_EQ(RunsAtOnce(one, false), 1);
   EXPECT_THAT(Numbers(PlaceOfRun(one, true, 1, 0)), ElementsAre(3));
 }
 
 TEST(CpuPlaces, OneCpuIsLeftForTheRest) {
-  const std::vector<HostCpu> two{{0, "0"}, {1, "1"}};
+  const std::vector<CpuPlace> two{{0, "0"}, {1, "1"}};
   EXPECT_EQ(RunsAtOnce(two, true), 1);
   EXPECT_EQ(RunsAtOnce(kEight, false), 7);
   EXPECT_EQ(Numbers(PlaceOfRun(kEight, false, 7, 6)).size(), 8u) << "a claim leaves out the first";
@@ -41,7 +41,7 @@ TEST(CpuPlaces, RunsThatMeasureHaveCoresOfTheirOwn) {
 }
 
 TEST(CpuPlaces, TwoThreadsOfTheOnlyCoreAreBetterThanNone) {
-  const std::vector<HostCpu> two{{0, "0-1"}, {1, "0-1"}};
+  const std::vector<CpuPlace> two{{0, "0-1"}, {1, "0-1"}};
   EXPECT_EQ(RunsAtOnce(two, true), 1);
   EXPECT_THAT(Numbers(PlaceOfRun(two, true, 1, 0)), ElementsAre(0, 1));
 }
@@ -55,10 +55,17 @@ TEST(CpuPlaces, AsManyRunsAsCpusTakeTheFirstToo) {
   EXPECT_EQ(Numbers(PlaceOfRun(kEight, false, 8, 6)).size(), 8u);
 }
 
+TEST(CpuPlaces, FurtherCpusAreOfOtherCores) {
+  EXPECT_THAT(FurtherCpusOf(kEight, 7, 8), ElementsAre(6, 5, 4));
+  EXPECT_THAT(FurtherCpusOf(kEight, 3, 2), ElementsAre(6, 5));
+  EXPECT_THAT(FurtherCpusOf(kEight, 0, 0), ElementsAre());
+  EXPECT_THAT(FurtherCpusOf({{0, "0-1"}, {1, "0-1"}}, 1, 8), ElementsAre());
+}
+
 TEST(CpuPlaces, ThisMachineHasCpus) {
-  const std::vector<HostCpu> cpus = HostCpus();
+  const std::vector<CpuPlace> cpus = CpuPlaces();
   ASSERT_FALSE(cpus.empty());
-  for (const HostCpu& cpu : cpus) EXPECT_FALSE(cpu.core.empty());
+  for (const CpuPlace& cpu : cpus) EXPECT_FALSE(cpu.core.empty());
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // How far a thread may run because of one other thread of its robot: a table, one case a line.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ostream>
+#include <random>
 
 #include "tests/unit/policy/simulated_robot.h"
 
@@ -111,7 +113,7 @@ TEST(HorizonOf, AReadyEqualEndsTheTurn) {
 TEST(HorizonOf, ItsOwnProcessesTimerIsLookedAtInTime) {
   SimulatedRobot robot;
   robot.AddReady(kRunning);
-  robot.waits[kRunning].next_expiry_ns = kSoon;
+  robot.SetExpiry(kRunning, kSoon);
   EXPECT_EQ(robot.Horizon(), kSoon);
 }
 
@@ -180,6 +182,44 @@ TEST(HorizonOf, AThreadThatEndsWhileItRunsHasNoHorizonButItsLimit) {
   robot.scheduler.Stop(0, kMilli, kMilli);
   robot.scheduler.Assign(kNever);
   EXPECT_EQ(robot.Next(), RobotScheduler::kNobody);
+}
+
+// Whatever the scheduler need not look at of those that wait for long.
+TEST(HorizonOf, AmongManyIsTheLeastOfThoseBesideEachOfThem) {
+  std::mt19937 random(1);
+  const auto any = [&](int below) {
+    return static_cast<int>(random() % static_cast<unsigned>(below));
+  };
+  const auto some_time = [&] { return any(3) == 0 ? kNever : any(3'000) * kMicro; };
+  for (int round = 0; round < 300; ++round) {
+    const RobotScheduler::Outlook outlook{.input_ns = some_time(),
+                                          .outside_input_ns = kNever,
+                                          .output_ns = some_time(),
+                                          .acts_at_once = any(2) == 0};
+    const std::int64_t limit = some_time();
+    SimulatedRobot all;
+    all.AddReady(kRunning);
+    RobotScheduler::Horizon least{.run_ns = limit, .idle_ns = limit};
+    for (int thread = kRunning + 1; thread <= kRunning + 20; ++thread) {
+      const SchedulingParameters parameters = any(3) == 0 ? kFifo50 : SchedulingParameters{};
+      const RobotScheduler::Wait wait{.for_input = any(3) == 0,
+                                      .for_thread = any(3) == 0,
+                                      .until_ns = some_time(),
+                                      .next_expiry_ns = some_time()};
+      SimulatedRobot alone;
+      alone.AddReady(kRunning);
+      for (SimulatedRobot* robot : {&all, &alone}) {
+        robot->Add(thread, parameters);
+        robot->Sleep(thread, wait);
+      }
+      const auto beside = alone.scheduler.HorizonOf(0, kRunning, limit, outlook);
+      least.run_ns = std::min(least.run_ns, beside.run_ns);
+      least.idle_ns = std::min(least.idle_ns, beside.idle_ns);
+    }
+    const auto horizon = all.scheduler.HorizonOf(0, kRunning, limit, outlook);
+    EXPECT_EQ(horizon.run_ns, least.run_ns);
+    EXPECT_EQ(horizon.idle_ns, least.idle_ns);
+  }
 }
 
 TEST(HorizonWhileWorldStands, OnlyThreadsOfTheSameProcessBecomeDue) {

@@ -307,6 +307,62 @@ TEST(RobotScheduler, ThreadNumbersAreUsedAgain) {
   EXPECT_EQ(robot.scheduler.ParametersOf(kThree).policy, SCHED_OTHER);
 }
 
+TEST(RobotScheduler, AsksWhatAThreadWaitsForOnlyWhenThatHasChanged) {
+  SimulatedRobot robot;
+  robot.AddReady(0);
+  for (int thread = 1; thread <= 100; ++thread) {
+    robot.Add(thread);
+    robot.Sleep(thread, {.until_ns = 10 * kMilli});
+  }
+  const int before = robot.asked;
+  robot.Run(100 * kMicro);
+  EXPECT_EQ(robot.Horizon(), 10 * kMilli);
+  EXPECT_LE(robot.asked - before, 2);  // the one that has run, as often as it was enqueued
+}
+
+TEST(RobotScheduler, WhereTheWorldStandsItAsksEachTime) {
+  SimulatedRobot robot(1, false);
+  robot.Add(0);
+  robot.Sleep(0, {.until_ns = 10 * kMilli});
+  robot.waits[0].is_over = true;
+  robot.scheduler.Assign(kNever);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 0);
+}
+
+TEST(RobotScheduler, TheNextActionIsTheFirstEndOfAWaitOrOfATimer) {
+  SimulatedRobot robot;
+  for (const int thread : {0, 1, 2}) robot.Add(thread);
+  robot.Sleep(0, {.until_ns = 5 * kMilli});
+  robot.Sleep(1, {.until_ns = 3 * kMilli});
+  robot.Sleep(2, {.until_ns = 9 * kMilli});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 3 * kMilli);
+  EXPECT_FALSE(robot.scheduler.IsAnythingDue(3 * kMilli - 1));
+  EXPECT_TRUE(robot.scheduler.IsAnythingDue(3 * kMilli));
+  robot.SetExpiry(2, 2 * kMilli);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 2 * kMilli);
+  robot.SetExpiry(2, kNever);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 3 * kMilli);
+  // Later than before: the first is another one's.
+  robot.Sleep(1, {.until_ns = 8 * kMilli});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 5 * kMilli);
+  robot.scheduler.Remove(0);
+  robot.scheduler.Assign(kNever);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), 8 * kMilli);
+  EXPECT_FALSE(robot.scheduler.IsAnythingDue(5 * kMilli));
+  robot.scheduler.Dequeue(0);  // it has ended already
+}
+
+TEST(RobotScheduler, AWaitWhoseDeadlineHasChangedCountsOnceThatIsSaid) {
+  SimulatedRobot robot;
+  robot.Add(0);
+  robot.Sleep(0, {.until_ns = 5 * kMilli});
+  robot.waits[0].until_ns = kMilli;
+  robot.scheduler.WaitChanged(0);
+  EXPECT_TRUE(robot.scheduler.IsAnythingDue(0));  // nobody knows before the next Assign
+  robot.scheduler.Assign(kNever);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0), kMilli);
+}
+
 TEST(RobotSchedulerDeathTest, AThreadThatWasNotAddedIsABug) {
   SimulatedRobot robot;
   EXPECT_DEATH(robot.scheduler.Enqueue(kOne, 0, false), "a bug in tcs");

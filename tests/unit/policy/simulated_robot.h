@@ -19,7 +19,11 @@ class SimulatedRobot {
   using Wait = RobotScheduler::Wait;
 
   explicit SimulatedRobot(std::size_t cores = 1, bool preempts_on_wakeup = true)
-      : scheduler(cores, preempts_on_wakeup, [this](Thread thread) { return waits[thread]; }),
+      : scheduler(cores, preempts_on_wakeup,
+                  [this](Thread thread) {
+                    ++asked;
+                    return waits[thread];
+                  }),
         progress_(cores, 0) {}
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
@@ -49,6 +53,11 @@ class SimulatedRobot {
     scheduler.Enqueue(thread, at_ns, goes_first);
     scheduler.Assign(kNever);
   }
+  void SetExpiry(Thread thread, std::int64_t ns) {
+    waits[thread].next_expiry_ns = ns;
+    scheduler.ExpiryChanged(waits[thread].process);
+    scheduler.Assign(kNever);
+  }
   Thread Next(std::size_t core = 0) const { return scheduler.Next(core).thread; }
   std::int64_t Progress(std::size_t core = 0) const { return progress_[core]; }
   void ComeTo(std::size_t core, std::int64_t ns) {
@@ -73,6 +82,7 @@ class SimulatedRobot {
   }
 
   std::map<Thread, Wait> waits;
+  int asked = 0;  // how often the scheduler has asked what a thread waits for
   RobotScheduler scheduler;
 
  private:

@@ -192,6 +192,34 @@ TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
   EXPECT_EQ(root.ReadSafe(leaf), kNever);
 }
 
+TEST(TemporalConsistency, WhoDoesNothingForAWhileLetsOthersGoFirst) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto ahead = root.AddLeaf(0), other = root.AddLeaf(1);
+  root.Update(ahead, 300, 300, 700);
+  root.Update(other, 500, 500);
+  EXPECT_EQ(root.First(), other);
+  EXPECT_EQ(root.Least(), 500);
+  EXPECT_EQ(root.NextInput(other), 700);
+  EXPECT_EQ(root.ReadSafe(other), 700);
+  root.Update(ahead, 300, 300);
+  EXPECT_EQ(root.First(), ahead) << "something else has come up";
+  EXPECT_EQ(root.NextInput(other), 300);
+}
+
+TEST(TemporalConsistency, NobodyGetsFurtherAwayFromOneThatDoesNothingForAWhile) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto ahead = root.AddLeaf(0), other = root.AddLeaf(1);
+  root.Update(ahead, 300, 300, 700);
+  root.Update(other, 500, 500);
+  EXPECT_EQ(root.Horizon(other), 300 + kDrift);
+  EXPECT_EQ(root.Horizon(ahead), 500 + kDrift) << "not from itself";
+  root.Update(other, 600, 600);
+  EXPECT_EQ(root.drift_ns(), 300);
+  root.Update(ahead, 400, 400, 300);
+  EXPECT_EQ(root.Horizon(other), 400 + kDrift) << "a time that is over is none";
+  EXPECT_EQ(root.First(), ahead);
+}
+
 TEST(TemporalConsistency, NoLeafsProgressGoesBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto leaf = root.AddLeaf(0);

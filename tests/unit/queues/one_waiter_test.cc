@@ -47,6 +47,25 @@ TEST(ShareEvents, WakesOneForEachDescriptor) {
             (std::map<int, int>{{11, kNoThread}, {21, kNoThread}, {12, 11}, {22, 21}}));
 }
 
+// Of a fleet each waits at a socket of its own.
+TEST(ShareEvents, NobodyIsAskedAboutThoseWhoWaitAtDifferentPlaces) {
+  std::vector<EventWaiter> waiters;
+  for (int thread = 0; thread < 500; ++thread) {
+    waiters.push_back(Taking(thread, 1000 - static_cast<std::uint64_t>(thread)));
+    waiters.back().place = static_cast<std::uint64_t>(thread / 2);
+  }
+  int asked = 0;
+  const auto shares = ShareEvents(std::move(waiters), [&asked](int first, int second) {
+    ++asked;
+    return first / 2 == second / 2;
+  });
+  EXPECT_EQ(asked, 250);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    EXPECT_EQ(shares[i].thread, 499 - static_cast<int>(i));
+    EXPECT_EQ(shares[i].passed_over_for, i % 2 == 0 ? kNoThread : shares[i].thread + 1);
+  }
+}
+
 TEST(ShareEvents, ThoseThatAreWokenAreInTheOrderOfWaiting) {
   const auto shares = ShareEvents({Taking(21, 2), Taking(31, 3), Taking(11, 1)}, IsOneEvent);
   ASSERT_EQ(shares.size(), 3u);

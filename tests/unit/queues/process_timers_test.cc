@@ -5,6 +5,7 @@
 #include <sys/time.h>
 
 #include <climits>
+#include <vector>
 
 namespace tcs {
 namespace {
@@ -71,6 +72,26 @@ TEST_F(ProcessTimersTest, WithAnIntervalItRunsOutAgain) {
   EXPECT_EQ(timers_.NextExpiry(), 7 * kMs);
   EXPECT_EQ(CountAt(id, 7 * kMs), 1);
   EXPECT_EQ(timers_.NextExpiry(), 9 * kMs);
+}
+
+TEST_F(ProcessTimersTest, WhoeverKeepsItsNextExpiryIsToldOfEachOtherOne) {
+  std::vector<std::int64_t> told;
+  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry()); });
+  const auto id = Armed(kDescriptor, 5 * kMs, 2 * kMs);
+  const auto later = Armed(kDescriptor, 50 * kMs);
+  timers_.Expire(5 * kMs);
+  timers_.Delete(id);
+  timers_.Set(later, {}, {});
+  EXPECT_EQ(told, (std::vector<std::int64_t>{5 * kMs, 7 * kMs, 50 * kMs, kNeverNs}));
+}
+
+TEST_F(ProcessTimersTest, WhatRestsIsToldOfAsWell) {
+  std::vector<std::int64_t> told;
+  Armed(kDescriptor, 5 * kMs, 1'000);
+  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry()); });
+  timers_.Expire(5 * kMs);
+  timers_.EndRests(6 * kMs);
+  EXPECT_EQ(told, (std::vector<std::int64_t>{kNeverNs, 6 * kMs}));
 }
 
 TEST_F(ProcessTimersTest, ManyIntervalsAreCaughtUpWithAtOnce) {

@@ -150,6 +150,51 @@ TEST_F(LoadTest, TheEngineCanBeOdeWithAStepOfItsOwnOrOfOurs) {
             VirtualDuration::Milliseconds(2));
 }
 
+TEST_F(LoadTest, TheAirIsAsWritten) {
+  const std::string with_drag = WithReplaced(
+      "mass: 2,", "mass: 2, drag: {linear: 0.3, quadratic: 0.1, angular_linear: 0.02},");
+  const auto world_with = [&](std::string_view wind) {
+    return *Load(WithReplaced("gravity: [0, 0, -9.81]", wind, with_drag)).world;
+  };
+  const WorldSpec steady = world_with("wind: [3, 0, -1]");
+  EXPECT_THAT(steady.wind.mean_mps, ElementsAre(3, 0, -1));
+  EXPECT_EQ(steady.wind.gusts_mps, 0);
+  EXPECT_EQ(steady.bodies[0].drag, DragSpec{});
+  EXPECT_EQ(
+      steady.bodies[1].drag,
+      (DragSpec{.linear_nspm = 0.3, .quadratic_ns2pm2 = 0.1, .angular_linear_nmsprad = 0.02}));
+  const WindSpec wind = world_with("wind: {mean: [3, 0, 0], gusts: 1.5, gust_time: 2s}").wind;
+  EXPECT_THAT(wind.mean_mps, ElementsAre(3, 0, 0));
+  EXPECT_EQ(wind.gusts_mps, 1.5);
+  EXPECT_EQ(wind.gust_time, VirtualDuration::Seconds(2));
+  const std::string blowing = WithReplaced("gravity: [0, 0, -9.81]", "wind: {gusts: 1}", with_drag);
+  EXPECT_EQ(Load(blowing).world->wind.seed, Load(blowing).world->wind.seed);
+  EXPECT_NE(Load(blowing).world->wind.seed, Load(blowing, {.seed = 8}).world->wind.seed);
+  EXPECT_TRUE(Load(blowing).warnings.empty());
+  EXPECT_THAT(Load(WithReplaced("gravity: [0, 0, -9.81]", "wind: [1, 0, 0]")).warnings,
+              ElementsAre(folder_.Path("s.yaml") +
+                          ":9: dynamics.wind moves no body, for none has drag; give one a drag, "
+                          "like drag: {linear: 0.3}"));
+}
+
+TEST_F(LoadTest, BodiesThatStandTogetherAreOneIsland) {
+  EXPECT_TRUE(Load(kGoodScenario).world->together.empty());
+  EXPECT_THAT(
+      Load(WithReplaced("gravity: [0, 0, -9.81]", "together: [[prey, predator]]")).world->together,
+      ElementsAre(ElementsAre(1, 0)));
+}
+
+TEST_F(LoadTest, HowCommandsActIsAsWritten) {
+  const CommandChannelSpec plain = Load(kGoodScenario).commands[0];
+  EXPECT_FALSE(plain.in_body_frame);
+  EXPECT_EQ(plain.lag, VirtualDuration{});
+  const CommandChannelSpec motors =
+      Load(WithReplaced("latency: 3ms", "axes: body, lag: 50ms")).commands[0];
+  EXPECT_TRUE(motors.in_body_frame);
+  EXPECT_EQ(motors.lag, Ms(50));
+  EXPECT_FALSE(Load(WithReplaced("latency: 3ms", "axes: world")).commands[0].in_body_frame);
+}
+
 TEST_F(LoadTest, OrientationsAreNormalised) {
   const Scenario scenario =
       Load(WithReplaced("position: [-5, 0, 0]", "orientation: [0, 0, 0.7071, 0.7071]"));

@@ -90,6 +90,16 @@ TEST(ClockPage, TheWayOutOfTheGateIsNeitherTimeNorCharge) {
   EXPECT_EQ(page.host_cpu_origin_ns, 200) << "its CPU clock went on half as fast";
 }
 
+TEST(ClockPage, WhatTheExchangeTookLastIsNeitherTimeNorCharge) {
+  Page page(0);
+  TakeOut(page, ReadClockAt(page, 500), 200, 1'000);
+  EXPECT_EQ(ReadClockAt(page, 500).cpu_ns, 300);
+  EXPECT_EQ(ReadClockAt(page, 800).time_ns, 1'600);
+  EXPECT_EQ(page.host_cpu_origin_ns, 200);
+  TakeOut(page, ReadClockAt(page, 900), 1'001, 1'000);  // somebody else had the processor
+  EXPECT_EQ(ReadClockAt(page, 900).cpu_ns, 700);
+}
+
 TEST(ClockPage, WhatAHandlerDidAtTheGateStays) {
   Page page(0);
   TakeOutGate(page, ReadClockAt(page, 1'001), 1'000);

@@ -58,10 +58,10 @@ TEST(TrialsPlanTest, AValueIsAFolderInsideTheResults) {
 TEST(TrialsPlanTest, ARunIsToldWhatTheTrialsWere) {
   TrialsPlan plan = ThreeTrials();
   plan.options = {"callback", "fixed", "20s", "", {"a=1", "b=2"}};
-  EXPECT_THAT(
-      RunArgumentsOf(plan, TrialsOf(plan)[1]),
-      ElementsAre("run", "/home/me/chase.yaml", "--seed", "2", "--sync", "callback", "--accounting",
-                  "fixed", "--duration", "20s", "--set", "a=1", "--set", "b=2"));
+  EXPECT_THAT(RunArgumentsOf(plan, TrialsOf(plan)[1]),
+              ElementsAre("run", "/home/me/chase.yaml", "--seed", "2", "--host-cpus", "1", "--sync",
+                          "callback", "--accounting", "fixed", "--duration", "20s", "--set", "a=1",
+                          "--set", "b=2"));
 }
 
 TEST(TrialsPlanTest, ARunIsToldItsValue) {

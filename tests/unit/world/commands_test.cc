@@ -15,7 +15,11 @@ class CommandsTest : public testing::Test {
  protected:
   CommandsTest() {
     commands_.Open({{.name = "bow", .body = 3, .latency = VirtualDuration::Milliseconds(2)},
-                    {.name = "stern", .body = 4}});
+                    {.name = "stern",
+                     .body = 4,
+                     .most_force_n = {1, 1, 1},
+                     .in_body_frame = true,
+                     .lag = VirtualDuration::Milliseconds(50)}});
   }
   std::string Complaint(std::size_t channel) {
     return commands_.ComplaintAbout(channel, {.where = "there", .mend = "send some"}, "ship");
@@ -46,9 +50,19 @@ TEST_F(CommandsTest, ActOnTheirChannelsBody) {
   EXPECT_EQ(commands_.taken(), 1);
 }
 
+TEST_F(CommandsTest, ActAsTheirChannelSays) {
+  commands_.Take(0, {}, {.force_n = {1, 2, 3}});
+  commands_.Take(1, {}, {.force_n = {1, -2, 3}, .torque_nm = {7, 0, 0}});
+  EXPECT_EQ(acted_[0].wrench, (Wrench{.force_n = {1, 2, 3}}));
+  EXPECT_EQ(acted_[1].wrench, (Wrench{.force_n = {1, -1, 1},
+                                      .torque_nm = {7, 0, 0},
+                                      .in_body_frame = true,
+                                      .lag = VirtualDuration::Milliseconds(50)}));
+}
+
 TEST_F(CommandsTest, WhatIsNoneIsNamedOnceAndCounted) {
   for (int i = 0; i < 3; ++i) commands_.Refuse(1, "it is no JSON");
-  commands_.Take(1, {}, {});
+  commands_.Take(1, {}, Wrench{});
   EXPECT_THAT(warnings_, ElementsAre("channel stern: it is no JSON"));
   EXPECT_EQ(Complaint(1), "channel stern: 3 of the 4 messages that came in were no commands");
 }
@@ -57,8 +71,37 @@ TEST_F(CommandsTest, ASilentChannelIsNamedAtTheEnd) {
   EXPECT_EQ(Complaint(0),
             "channel bow: nothing came in there, so that no command moved ship; let a client send "
             "some");
-  commands_.Take(0, {}, {});
+  commands_.Take(0, {}, Wrench{});
   EXPECT_EQ(Complaint(0), "");
+}
+
+TEST(JointCommandsTest, DriveTheJointsOfTheirChannelWithItsGains) {
+  struct Driven {
+    VirtualDuration latency;
+    int joint;
+    JointDrive drive;
+  };
+  std::vector<Driven> driven;
+  Commands commands({}, {},
+                    [&](VirtualTime, VirtualDuration latency, int joint, const JointDrive& drive) {
+                      driven.push_back({latency, joint, drive});
+                    });
+  CommandChannelSpec servo{.name = "servo", .latency = VirtualDuration::Milliseconds(2)};
+  servo.joints = JointDriveSpec{
+      {"arm", {8, 5}, {"elbow", "wrist"}}, JointQuantity::kPosition, {{100, 10}, {50, 5}}};
+  commands.Open({servo, {.name = "bow", .body = 3}});
+  ASSERT_NE(commands.JointsOf(0), nullptr);
+  EXPECT_EQ(commands.JointsOf(0)->group.names[1], "wrist");
+  EXPECT_EQ(commands.JointsOf(1), nullptr);
+  const std::vector<JointGoal> goals = {{.joint = 1, .position = 0.5}, {.joint = 0, .effort = 3}};
+  commands.Take(0, {}, goals);
+  ASSERT_EQ(driven.size(), 2u);
+  EXPECT_EQ(driven[0].latency, VirtualDuration::Milliseconds(2));
+  EXPECT_EQ(driven[0].joint, 5);
+  EXPECT_EQ(driven[0].drive, (JointDrive{.stiffness = 50, .position = 0.5, .damping = 5}));
+  EXPECT_EQ(driven[1].joint, 8);
+  EXPECT_EQ(driven[1].drive, (JointDrive{.effort = 3}));
+  EXPECT_EQ(commands.taken(), 1);
 }
 
 }  // namespace

@@ -98,5 +98,21 @@ TEST_F(SensorsTest, OfSeveralTheNextCounts) {
   EXPECT_EQ(sensors_.NextArrival(), Ms(5));
 }
 
+TEST_F(SensorsTest, ReadsAllJointsOfASensorAtOnce) {
+  sensors_.AddJoints({"arm", {7, 3}, {"wrist", "elbow"}}, {MsLong(10), {}}, {}, outlet_);
+  int calls = 0;
+  sensors_.Act(Ms(0), {}, [&](std::span<const int> joints, std::span<JointState> states) {
+    ++calls;
+    for (std::size_t i = 0; i < joints.size(); ++i) states[i].position = joints[i] * 0.5;
+  });
+  EXPECT_EQ(calls, 1);
+  ASSERT_EQ(outlet_.readings.size(), 1u);
+  EXPECT_TRUE(outlet_.readings[0].bodies.empty());
+  ASSERT_EQ(outlet_.readings[0].joints.size(), 2u);
+  EXPECT_EQ(outlet_.readings[0].joints[0].name, "wrist");
+  EXPECT_EQ(outlet_.readings[0].joints[0].state.position, 3.5);
+  EXPECT_EQ(outlet_.readings[0].joints[1].state.position, 1.5);
+}
+
 }  // namespace
 }  // namespace tcs

@@ -1,0 +1,219 @@
+#include "coordinator/core/computing_ahead.h"
+
+#include <immintrin.h>
+#include <x86intrin.h>
+
+#include <algorithm>
+
+#include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/cpu_places.h"
+#include "coordinator/os/guardian.h"
+#include "coordinator/os/host.h"
+#include "coordinator/tasks/cpu_clock.h"
+
+namespace tcs {
+
+namespace {
+
+// What a thread shares in memory with others of its process they see so much too early at most.
+constexpr std::int64_t kMostAheadNs = 1'000'000;
+// The way there and back was worth while for so much, and for so much it was not.
+constexpr std::int64_t kLongNs = 3'000'000, kShortNs = 1'000'000;
+constexpr int kMostComputes = 256;
+// Between two looks, while a thread is waited for, at what the kernel has to say, and at its state.
+constexpr std::int64_t kLookNs = 3'000, kStateLookNs = 200'000;
+
+}  // namespace
+
+std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
+  const bool helps = !run.IsFixed() && !run.IsCallback() && !run.gates_only;
+  const int most = run.options.host_cpus;
+  if (!helps || most == 1) return {};
+  return FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(most) - 1);
+}
+
+void ComputingAhead::Open(int home, const std::vector<int>& further) {
+  for (const int cpu : further) {
+    cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor);
+  }
+  LookForClaims();
+}
+
+void ComputingAhead::LookForClaims() {
+  for (FurtherCpu& cpu : cpus_) cpu.SetClaimed(IsClaimed(cpu.cpu()));
+}
+
+bool ComputingAhead::MaySend(const Task& task) const {
+  if (task.used_up < task.ahead_after || task.slot < 0) return false;
+  if (task.state != TaskState::kReady || task.parked) return false;
+  const Process& process = *task.process;
+  const bool is_ordinary = ParametersOf(task).policy == SCHED_OTHER && process.deadline_ns == 0 &&
+                           !process.robot->is_ideal && !process.timers.HasCpuTimers();
+  const bool is_busy_otherwise =
+      task.is_brief || task.executes || task.spins || task.is_deliverer || task.notified_early ||
+      task.early_trap.has_value() || process.expelled || process.stopped || process.stays_home ||
+      stays_home_ || parts_.run.IsInGrace();
+  return is_ordinary && !is_busy_otherwise;
+}
+
+void ComputingAhead::SendIfItComputes(Task& task) {
+  if (cpus_.empty() || !MaySend(task)) return;
+  const std::uint64_t tsc = __rdtsc();
+  const auto cpu = std::find_if(cpus_.begin(), cpus_.end(),
+                                [tsc](const FurtherCpu& one) { return one.IsFreeAt(tsc); });
+  if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
+  Charge(task, task.metered.ChargeAt(HostClockOf(task)));
+  // To go there and back again takes its time, too.
+  const std::int64_t most_ns = MostAheadNs();
+  if (task.debt_ns > most_ns / 2) return;
+  ClockGrant& grant = task.grant;
+  grant.counts_work |= shm::kIsAhead;
+  SlotOf(task).clock.counts_work = grant.counts_work;
+  parts_.cpu.active().Ended(task);
+  task.ahead_from_ns = task.charged_ns;
+  if (!cpu->Send(task, tsc, task.metered.HostNs(most_ns - task.debt_ns))) return;
+  if (!std::exchange(task.owes_ahead, true)) owing_.push_back(&task);
+}
+
+FurtherCpu& ComputingAhead::CpuOf(const Task& task) {
+  return *std::find_if(cpus_.begin(), cpus_.end(),
+                       [&](const FurtherCpu& cpu) { return cpu.thread() == &task; });
+}
+
+std::int64_t ComputingAhead::MostAheadNs() const {
+  return std::min(kMostAheadNs, parts_.run.scenario.drift_bound.ns());
+}
+
+void ComputingAhead::HasSpoken(Task& task) {
+  if (!task.is_ahead) return;
+  BringHome(task);
+  const std::int64_t computed_ns = task.charged_ns - task.ahead_from_ns;
+  if (computed_ns > kLongNs) task.ahead_after = Task::kComputes;
+  if (computed_ns < kShortNs) task.ahead_after = std::min(2 * task.ahead_after, kMostComputes);
+}
+
+// It stands still, so that its CPU clock is right.
+void ComputingAhead::BringHome(Task& task) {
+  CpuOf(task).BringHome();
+  if (const std::int64_t cpu_ns = HostClockOf(task); cpu_ns >= 0) {
+    Charge(task, task.metered.ChargeAt(cpu_ns));
+  }
+}
+
+std::int64_t ComputingAhead::EndOfDebtNs(const Process& process) const {
+  std::int64_t end_ns = 0;
+  for (const Task* task : owing_) {
+    if (task->process == &process) end_ns = task->cpu->progress_ns + task->debt_ns;
+  }
+  return end_ns;
+}
+
+void ComputingAhead::StayHome(Process* process) {
+  bool& stays = process != nullptr ? process->stays_home : stays_home_;
+  if (std::exchange(stays, true)) return;
+  for (Task* task : owing_) {
+    if (task->is_ahead && (process == nullptr || task->process == process)) BringHome(*task);
+  }
+}
+
+void ComputingAhead::Forget(const Task& task) {
+  if (task.is_ahead) CpuOf(task).BringHome();
+  std::erase(owing_, &task);
+}
+
+// What it is to be charged in all; less than so far where it was taken to have computed more.
+void ComputingAhead::Charge(Task& task, std::int64_t charged_ns) {
+  const std::int64_t ns = charged_ns - task.charged_ns, host_ns = task.metered.HostNs(ns);
+  task.charged_ns += ns;
+  task.debt_ns += ns;
+  parts_.run.report.client_ns += host_ns;
+  parts_.run.report.ahead_ns += host_ns;
+}
+
+void ComputingAhead::ChargeAhead(Task& task) {
+  const std::int64_t host_ns = CpuOf(task).ComputedBy(__rdtsc());
+  Charge(task, task.ahead_from_ns + task.metered.VirtualNs(host_ns));
+}
+
+bool ComputingAhead::IsNextOn(const VirtualCpu& cpu) const {
+  const RobotScheduler::Turn& turn = cpu.robot->scheduler.Next(cpu.core);
+  return turn.thread != RobotScheduler::kNobody && turn.start_ns <= cpu.progress_ns &&
+         parts_.run.table.At(turn.thread).owes_ahead;
+}
+
+std::int64_t ComputingAhead::EndOfDebtNs(const VirtualCpu& cpu) const {
+  if (owing_.empty() || !IsNextOn(cpu)) return 0;
+  const Robot& robot = *cpu.robot;
+  const Task& task = parts_.run.table.At(robot.scheduler.Next(cpu.core).thread);
+  if (task.debt_ns <= 0) return 0;
+  const std::int64_t ahead_ns = std::min(task.debt_ns, parts_.run.scenario.drift_bound.ns());
+  const std::int64_t paid_ns = std::min(robot.next_launch_ns, cpu.progress_ns + ahead_ns);
+  return robot.scheduler.HorizonOf(cpu.core, task.order, paid_ns, {}).run_ns;
+}
+
+void ComputingAhead::Look() {
+  for (Task* task : owing_) {
+    if (!task->is_ahead) continue;
+    ChargeAhead(*task);
+    parts_.waker.Refresh(*task->process->robot);
+  }
+}
+
+bool ComputingAhead::TakeTurn(Task& task, std::int64_t horizon_ns) {
+  if (!task.owes_ahead) return false;
+  if (task.is_ahead) {
+    Await(task, horizon_ns);
+  } else if (task.debt_ns <= 0) {
+    task.owes_ahead = false;
+    std::erase(owing_, &task);
+    return false;
+  }
+  Pay(task, horizon_ns);
+  if (!task.is_ahead) SendIfItComputes(task);
+  return true;
+}
+
+// Until the thread has computed up to the horizon, has said something, or others have something to
+// do.
+void ComputingAhead::Await(Task& task, std::int64_t horizon_ns) {
+  RunState& run = parts_.run;
+  FurtherCpu& cpu = CpuOf(task);
+  run.latest_ns = std::max(task.cpu->progress_ns, run.root.Least());
+  Beat();
+  const std::uint64_t begun_tsc = run.turn.recorded_tsc = __rdtsc();
+  std::uint64_t looks_tsc = begun_tsc + parts_.clock.TicksIn(kStateLookNs);
+  for (;;) {
+    const Reactor::Found found = poll_({run.latest_ns});
+    if (found.stops_running || found.wakes_others || !task.is_ahead) break;
+    ChargeAhead(task);
+    if (task.cpu->progress_ns + task.debt_ns >= horizon_ns) break;
+    const std::uint64_t now_tsc = __rdtsc();
+    const bool looks = now_tsc >= looks_tsc;
+    if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);
+    const bool is_starved = cpu.IsStarvedBy(now_tsc);
+    if (is_starved) cpu.LeaveToOthers(now_tsc);
+    // The kernel may hold it.
+    if (is_starved || cpu.HasLeft() || (looks && ThreadState(task.tid) != 'R')) {
+      BringHome(task);
+      break;
+    }
+    const std::uint64_t until_tsc = now_tsc + parts_.clock.TicksIn(kLookNs);
+    while (__rdtsc() < until_tsc) _mm_pause();
+  }
+  run.report.awaited_ns += parts_.clock.NsAt(__rdtsc()) - parts_.clock.NsAt(begun_tsc);
+}
+
+void ComputingAhead::Pay(Task& task, std::int64_t horizon_ns) {
+  const std::int64_t start = task.cpu->progress_ns;
+  const std::int64_t ns = std::clamp<std::int64_t>(task.debt_ns, 0, horizon_ns - start);
+  if (task.state == TaskState::kDead || ns == 0) return;
+  task.debt_ns -= ns;
+  task.cpu->ComeTo(start + ns);
+  task.reached_ns = parts_.run.latest_ns = start + ns;
+  parts_.records.Ran(task, {start, start + ns}, {start, start + ns}, __rdtsc());
+  if (!task.is_ahead) return;
+  const std::int64_t paid_ns = task.charged_ns - task.ahead_from_ns - task.debt_ns;
+  CpuOf(task).Allow(task.metered.HostNs(paid_ns + MostAheadNs()));
+}
+
+}  // namespace tcs

@@ -1,0 +1,90 @@
+// Threads that compute on further processors of the host, ahead of their turns
+// (host/further_cpu.h).
+//
+// The order of turns stays what it is: one after the other, the least advanced virtual CPU first.
+// But a turn in which a thread would compute what it has computed already is over at once, and
+// where it has not come so far it is waited for. What it has computed ahead is a debt, like what
+// others compute beyond their horizons, and no more than leaves may be apart. Until it is paid the
+// thread does nothing to others: it has computed it without a call. So those may go on until then.
+//
+// Only programs of ordinary priority are sent, under measured accounting, where the world goes on
+// meanwhile: a real-time program may rely on nobody running beside it on its only core. For the
+// coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+#include "coordinator/host/executor.h"
+#include "coordinator/host/further_cpu.h"
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/processes/run_records.h"
+#include "coordinator/tasks/reactor.h"
+#include "coordinator/tasks/run_clock.h"
+#include "coordinator/tasks/run_state.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+class ComputingAhead {
+ public:
+  struct Parts {
+    RunState& run;
+    Waker& waker;
+    HostCpu& cpu;
+    Executor& executor;
+    const RunClock& clock;
+    RunRecords& records;
+  };
+  // `poll` has what has happened by now handled, as something of that moment.
+  ComputingAhead(const Parts& parts, std::function<Reactor::Found(Moment)> poll)
+      : parts_(parts), poll_(std::move(poll)) {}
+
+  // The processors that a run with its turns on `home` may use besides. To be asked before this
+  // process is bound to one.
+  static std::vector<int> CpusBeside(int home, const RunState& run);
+  void Open(int home, const std::vector<int>& further);
+  // Other runs come and go.
+  void LookForClaims();
+
+  // The thread's turn has just ended. If it computes on, it may do so on another processor.
+  void SendIfItComputes(Task& task);
+  // It has made a call, or looked at its clock; nothing happens if it does not compute ahead.
+  void HasSpoken(Task& task);
+  // What becomes of it does so once it has paid: at that time, or now if it owes nothing.
+  std::int64_t EndOfDebtNs(const Process& process) const;
+  // The process's threads take turns only, from now on: what they share is changed here, too. Null:
+  // so do all processes'.
+  void StayHome(Process* process);
+  // It has ended.
+  void Forget(const Task& task);
+
+  // The virtual CPU's next turn is of a thread that has computed ahead, or does so.
+  bool IsNextOn(const VirtualCpu& cpu) const;
+  // So far it does nothing to others: until the thread has paid, or others of its robot act.
+  std::int64_t EndOfDebtNs(const VirtualCpu& cpu) const;
+  // How far they have come, so that others may go on as far.
+  void Look();
+  // The thread's turn, up to that horizon. False if it has paid all, and is to be dispatched.
+  bool TakeTurn(Task& task, std::int64_t horizon_ns);
+
+ private:
+  bool MaySend(const Task& task) const;
+  std::int64_t MostAheadNs() const;
+  void BringHome(Task& task);
+  void Charge(Task& task, std::int64_t charged_ns);
+  void ChargeAhead(Task& task);
+  void Await(Task& task, std::int64_t horizon_ns);
+  void Pay(Task& task, std::int64_t horizon_ns);
+  FurtherCpu& CpuOf(const Task& task);
+
+  const Parts parts_;
+  const std::function<Reactor::Found(Moment)> poll_;
+  std::deque<FurtherCpu> cpus_;
+  bool stays_home_ = false;
+  std::vector<Task*> owing_;  // those that have computed ahead and not paid yet
+};
+
+}  // namespace tcs

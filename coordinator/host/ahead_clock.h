@@ -1,0 +1,50 @@
+// What a thread has computed since it was sent to another processor of the host, where nobody stops
+// it. Its CPU clock is known for some instants; from one to the next the TSC carries on. So what
+// others took of that processor since the last instant counts as computed until the next one.
+//
+// Pure; the host's nanoseconds.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tcs {
+
+class AheadClock {
+ public:
+  // What the kernel takes to wake a processor that sleeps, and to move a thread there: that much
+  // later the thread has begun.
+  static constexpr std::int64_t kWayNs = 100'000;
+  // What others may take before it is worth while to leave the processor to them: so much, and so
+  // much of all that there was.
+  static constexpr std::int64_t kMostTakenNs = 5'000'000;
+  static constexpr std::int64_t kMostTakenOf = 4;
+  // Without a look for so long nothing is known any more.
+  static constexpr std::int64_t kMostUnknownNs = 3'000'000;
+  static constexpr std::int64_t kLostNs = 20'000'000;
+
+  // At `at_ns` it had computed `computed_ns`. Times are from when it was sent.
+  void Know(std::int64_t at_ns, std::int64_t computed_ns) {
+    at_ns_ = at_ns;
+    computed_ns_ = computed_ns;
+  }
+
+  // What it has computed by `now_ns`, as far as it can be told, but not more than `most_ns`.
+  std::int64_t ComputedBy(std::int64_t now_ns, std::int64_t most_ns) const {
+    const std::int64_t since_ns =
+        std::clamp<std::int64_t>(now_ns - std::max(at_ns_, kWayNs), 0, kMostUnknownNs);
+    return std::max(computed_ns_, std::min(computed_ns_ + since_ns, most_ns));
+  }
+
+  // Others had the processor for long, by then, or have it from whoever is to look.
+  bool IsStarvedBy(std::int64_t now_ns) const {
+    const std::int64_t taken_ns = at_ns_ - computed_ns_ - kWayNs;
+    return (taken_ns > kMostTakenNs && taken_ns > at_ns_ / kMostTakenOf) ||
+           now_ns - at_ns_ > kLostNs;
+  }
+
+ private:
+  std::int64_t at_ns_ = 0, computed_ns_ = 0;
+};
+
+}  // namespace tcs

@@ -1,0 +1,137 @@
+#include "coordinator/host/further_cpu.h"
+
+#include <sched.h>
+#include <signal.h>
+#include <x86intrin.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
+constexpr std::int64_t kLeftToOthersNs = 500'000'000;
+constexpr int kMostDoublings = 6;
+
+bool Bind(pid_t tid, int cpu) {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(cpu, &one);
+  return sched_setaffinity(tid, sizeof one, &one) == 0;
+}
+
+}  // namespace
+
+FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor)
+    : cpu_(cpu), home_(home), ticks_per_ns_(ticks_per_ns), executor_(executor) {}
+
+FurtherCpu::~FurtherCpu() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_one();
+  if (warden_.joinable()) warden_.join();
+}
+
+// Signals of the run are for its own thread.
+void FurtherCpu::StartWarden() {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  warden_ = std::thread([this] { Guard(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void FurtherCpu::Guard() {
+  Bind(0, cpu_);
+  std::unique_lock lock(mutex_);
+  while (!ends_) {
+    if (tid_ == 0) {
+      changed_.wait(lock);
+      continue;
+    }
+    Look(__rdtsc());
+    const std::int64_t left_ns = allowed_ns_.load() - Computed();
+    if (left_ns > 0) {
+      changed_.wait_for(
+          lock, std::chrono::nanoseconds(std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs)));
+      continue;
+    }
+    executor_.Hold(tid_);
+    Bind(tid_, home_);
+    tid_ = 0;
+    has_left_.store(true);
+  }
+}
+
+std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
+  return static_cast<std::int64_t>(static_cast<double>(tsc - since_tsc_) / ticks_per_ns_);
+}
+
+std::int64_t FurtherCpu::Computed() const {
+  return std::max<std::int64_t>(0, ReadThreadCpuClock(clock_.get()) - begun_ns_);
+}
+
+// The thread does not run meanwhile, so that its CPU clock is right.
+void FurtherCpu::Look(std::uint64_t tsc) { ahead_.Know(PassedNs(tsc), Computed()); }
+
+bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns) {
+  UniqueFd clock(OpenThreadCpuClock(thread.tid));
+  const std::int64_t begun_ns = clock ? ReadThreadCpuClock(clock.get()) : -1;
+  if (begun_ns < 0) return false;
+  if (!warden_.joinable()) StartWarden();
+  executor_.LetGo(thread.tid);
+  if (!Bind(thread.tid, cpu_)) {
+    executor_.Hold(thread.tid);
+    not_before_tsc_ = UINT64_MAX;
+    return false;
+  }
+  thread_ = &thread;
+  thread.is_ahead = true;
+  thread.may_run = false;
+  allowed_ns_.store(allowed_ns);
+  has_left_.store(false);
+  {
+    const std::lock_guard lock(mutex_);
+    tid_ = thread.tid;
+    since_tsc_ = tsc;
+    clock_ = std::move(clock);
+    begun_ns_ = begun_ns;
+    ahead_ = {};
+  }
+  changed_.notify_one();
+  return true;
+}
+
+std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
+  const std::lock_guard lock(mutex_);
+  return has_left_.load() ? Computed() : ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
+}
+
+bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
+  const std::lock_guard lock(mutex_);
+  return ahead_.IsStarvedBy(PassedNs(tsc));
+}
+
+void FurtherCpu::BringHome() {
+  const std::lock_guard lock(mutex_);
+  if (tid_ != 0) {
+    executor_.Hold(tid_);
+    Bind(tid_, home_);
+  }
+  tid_ = 0;
+  thread_->is_ahead = false;
+  thread_ = nullptr;
+}
+
+void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {
+  const std::int64_t ns = kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings);
+  not_before_tsc_ = tsc + static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
+}
+
+}  // namespace tcs

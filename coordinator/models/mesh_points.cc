@@ -1,0 +1,68 @@
+#include "coordinator/models/mesh_points.h"
+
+#include <assimp/config.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+namespace tcs {
+namespace {
+
+std::string EndOf(const std::string& path) {
+  std::string end = std::filesystem::path(path).extension().string();
+  std::transform(end.begin(), end.end(), end.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return end;
+}
+
+// A mesh may name other files (materials), which could be anything: there are none.
+class NoFiles : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
+}  // namespace
+
+bool IsMeshName(const std::string& path) {
+  const std::string end = EndOf(path);
+  return end == ".stl" || end == ".obj" || end == ".dae";
+}
+
+std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const std::string& text,
+                                                                         const std::string& path) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // it is the importer's then
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene =
+      importer.ReadFileFromMemory(text.data(), text.size(), 0, EndOf(path).c_str() + 1);
+  if (scene == nullptr) return std::string("it cannot be read: ") + importer.GetErrorString();
+  if (scene->mRootNode == nullptr) return "there is nothing in it";
+  std::vector<std::array<double, 3>> points;
+  std::vector<std::pair<const aiNode*, aiMatrix4x4>> to_do = {{scene->mRootNode, aiMatrix4x4()}};
+  while (!to_do.empty()) {
+    const auto [node, above] = to_do.back();
+    to_do.pop_back();
+    const aiMatrix4x4 transform = above * node->mTransformation;
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene->mMeshes[node->mMeshes[i]];
+      for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+        const aiVector3D at = transform * mesh.mVertices[k];
+        points.push_back({at.x, at.y, at.z});
+      }
+    }
+    for (unsigned i = 0; i < node->mNumChildren; ++i) {
+      to_do.emplace_back(node->mChildren[i], transform);
+    }
+  }
+  return points;
+}
+
+}  // namespace tcs

@@ -1,0 +1,38 @@
+// What URDF is made of, as far as tcs understands it: which elements stand in which, with which
+// attributes of which kind.
+#pragma once
+
+#include <vector>
+
+namespace tcs::urdf_rules {
+
+enum class Kind { kName, kFile, kNumber, kPositive, kNotNegative, kThree, kThreePositive };
+
+struct Attribute {
+  const char* name;
+  Kind kind;
+  bool is_needed = true;
+};
+
+inline constexpr int kAnyNumber = 1 << 30;
+
+struct Rule;
+struct Child {
+  const Rule* rule;
+  int least;
+  int most;
+};
+
+struct Rule {
+  const char* name;
+  std::vector<Attribute> attributes;
+  std::vector<Child> children{};
+  bool has_one_child = false;  // exactly one of `children`
+  // Known, and nothing to the physics: looks.
+  std::vector<const char*> left_out_silently{};
+};
+
+// What has a name that people know it by.
+extern const Rule kRobot, kLink, kJoint;
+
+}  // namespace tcs::urdf_rules

@@ -1,0 +1,24 @@
+// A file that should be URDF, as a tree of XML elements that know their lines.
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tcs {
+
+// Its root is <robot>. Throws ModelMistake for anything else: what is no XML, nests too deep,
+// defines entities, is an unexpanded xacro, or another format. Takes time and memory in proportion
+// to the file, which is of 4 MiB at most.
+std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path);
+
+// Throws ModelMistake, "PATH:LINE: SENTENCE".
+[[noreturn]] void FailAt(const std::string& path, int line, std::string_view sentence);
+
+// What a sentence shows of a text that a file holds, in quotes: cut to a length that can be read,
+// without what a terminal would act on.
+std::string Quoted(std::string_view text);
+
+}  // namespace tcs

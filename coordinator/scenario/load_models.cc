@@ -1,0 +1,336 @@
+// `models` of a scenario file: robots from URDF files, and single bodies of one shape.
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "coordinator/models/load_urdf.h"
+#include "coordinator/models/model_mistake.h"
+#include "coordinator/models/uniform_inertial.h"
+#include "coordinator/scenario/load_values.h"
+#include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
+#include "coordinator/scenario/substitute.h"
+#include "simbody_bridge/engines.h"
+#include "simbody_bridge/model/model_check.h"
+
+namespace tcs {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kShapes = {"box", "sphere", "cylinder", "capsule", "plane", "mesh"};
+
+class Models {
+ public:
+  Models(const Variables& variables, Scenario* scenario)
+      : variables_(variables), scenario_(*scenario), world_(*scenario->world) {}
+
+  void Add(const YamlMap::Entry& entry) {
+    CheckName(entry);
+    for (const BodySpec& body : world_.bodies) {
+      if (body.name == entry.key) entry.value.Fail("has the name of a body; rename one of them");
+    }
+    const YamlMap map = entry.value.AsMap();
+    const YamlValue& what = WhatOf(map);
+    if (what.name() == map.place().name() + ".urdf") {
+      AddRobot(entry, map, what);
+    } else {
+      AddBody(entry, map, what);
+    }
+  }
+
+ private:
+  // The one key that says what the model is.
+  static const YamlValue& WhatOf(const YamlMap& map) {
+    const YamlValue* what = nullptr;
+    std::vector<std::string> known = {"urdf"};
+    known.insert(known.end(), kShapes.begin(), kShapes.end());
+    for (const std::string& key : known) {
+      const YamlValue* value = map.Find(key);
+      if (value == nullptr) continue;
+      if (what != nullptr) {
+        value->Fail("cannot be given beside " + what->name() + "; make two models of it");
+      }
+      what = value;
+    }
+    if (what != nullptr) return *what;
+    for (const YamlMap::Entry& entry : map.entries()) {
+      const auto nearest = Nearest(entry.key, known);
+      if (!nearest) continue;
+      entry.value.At(entry.key_place)
+          .FailPlainly("unknown key '" + entry.key + "' in " + map.place().name() +
+                       "; did you mean '" + *nearest + "'?");
+    }
+    map.place().Fail("says not what it is; add one of urdf, " + List(kShapes));
+  }
+
+  static std::string List(const std::vector<std::string>& names) {
+    std::string list = names[0];
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      list += (i + 1 == names.size() ? " and " : ", ") + names[i];
+    }
+    return list;
+  }
+
+  std::string PathOf(const YamlValue& value) const {
+    const std::string written = Substitute(value, variables_);
+    if (written.empty()) value.Fail("is empty; give the path of a file");
+    return (fs::path(variables_.scenario_directory) / written).lexically_normal();
+  }
+
+  static Pose PoseOf(const YamlMap& map) {
+    Pose pose;
+    if (const YamlValue* v = map.Find("position")) pose.position_m = v->AsVector3();
+    if (const YamlValue* v = map.Find("orientation")) pose.orientation_xyzw = LoadOrientation(*v);
+    return pose;
+  }
+
+  static void LoadVelocities(const YamlMap& map, RobotModel* model) {
+    for (const char* key : {"linear_velocity", "angular_velocity"}) {
+      const YamlValue* v = map.Find(key);
+      if (v == nullptr) continue;
+      if (model->has_fixed_base) v->Fail("is of a base that does not move; remove it");
+      (key[0] == 'l' ? model->linear_velocity_mps : model->angular_velocity_radps) = v->AsVector3();
+    }
+  }
+
+  PackagePath PackagesOf(const YamlMap& map) const {
+    std::vector<std::string> folders;
+    if (const YamlValue* packages = map.Find("packages")) {
+      for (const YamlValue& folder : packages->AsList("[../install/share]")) {
+        folders.push_back(PathOf(folder));
+        if (!fs::is_directory(folders.back())) {
+          folder.Fail("is '" + folder.AsText() + "', which is no folder; give one of packages");
+        }
+      }
+    }
+    return PackagePath(std::move(folders));
+  }
+
+  void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
+    map.AllowOnly({"urdf", "at", "fixed_base", "joints", "packages", "friction", "self_collision",
+                   "linear_velocity", "angular_velocity"});
+    UrdfUse use;
+    if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
+    if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
+    RobotModel model = Read(urdf, use, PackagesOf(map));
+    model.name = entry.key;
+    if (const YamlValue* v = map.Find("at")) {
+      const YamlMap at = v->AsMap();
+      at.AllowOnly({"position", "orientation"});
+      model.at = PoseOf(at);
+    }
+    if (const YamlValue* v = map.Find("self_collision")) model.has_self_collision = v->AsBoolean();
+    LoadVelocities(map, &model);
+    LoadStart(map, &model);
+    world_.models.push_back(std::move(model));
+  }
+
+  RobotModel Read(const YamlValue& urdf, const UrdfUse& use, const PackagePath& packages) {
+    const std::string path = PathOf(urdf);
+    auto loaded = LoadUrdf(path, use, packages, &meshes_, &scenario_.warnings);
+    if (const auto* error = std::get_if<LoadError>(&loaded)) {
+      // Of a file as a whole it is the scenario that is to be mended.
+      if (error->message.starts_with(path + ": ")) {
+        urdf.FailPlainly(urdf.name() + ": " + error->message);
+      }
+      throw ScenarioMistake{error->message};
+    }
+    return std::get<RobotModel>(std::move(loaded));
+  }
+
+  // Where the joints are at the start.
+  static void LoadStart(const YamlMap& map, RobotModel* model) {
+    const YamlValue* joints = map.Find("joints");
+    std::vector<std::optional<YamlValue>> places(model->joints.size());
+    if (joints != nullptr) {
+      const YamlMap starts = joints->AsMap();
+      for (const YamlMap::Entry& entry : starts.entries()) {
+        const std::size_t joint = FindJoint(entry, *model);
+        model->joints[joint].initial_position = LoadPosition(entry, model->joints[joint].kind);
+        places[joint] = entry.value;
+      }
+    }
+    const auto fault = CheckModel(*model);
+    if (!fault) return;
+    const auto& place =
+        fault->joint < 0 ? std::nullopt : places[static_cast<std::size_t>(fault->joint)];
+    const YamlValue& where = place ? *place : joints != nullptr ? *joints : map.place();
+    where.FailPlainly(where.name() + ": " + fault->what +
+                      (place || fault->joint < 0 ? "" : "; say in joints where it starts"));
+  }
+
+  static std::size_t FindJoint(const YamlMap::Entry& entry, const RobotModel& model) {
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      const Joint& joint = model.joints[i];
+      if (joint.name == entry.key && joint.kind == JointKind::kFixed) {
+        entry.value.Fail("is of a fixed joint, which has no position; remove it");
+      }
+      if (joint.name == entry.key) return i;
+      if (joint.kind != JointKind::kFixed) known.push_back(joint.name);
+    }
+    if (known.empty()) entry.value.Fail("names a joint, but the robot has none that moves");
+    entry.value.At(entry.key_place)
+        .FailPlainly("unknown joint '" + entry.key + "' of " + model.name + "; " +
+                     Suggest(entry.key, known, "joints"));
+  }
+
+  static std::vector<double> LoadPosition(const YamlMap::Entry& entry, JointKind kind) {
+    const std::size_t count = CoordinatesOf(kind);
+    if (count == 1) return {entry.value.AsNumber()};
+    if (count == 3) return entry.value.AsNumbers(3, "[0, 0, 0] (x, y, angle)");
+    return entry.value.AsNumbers(7, "[0, 0, 0, 0, 0, 0, 1] (x, y, z, and a quaternion x, y, z, w)");
+  }
+
+  void AddBody(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& what) {
+    const std::string kind = what.name().substr(map.place().name().size() + 1);
+    std::vector<std::string> keys = {
+        kind,       "mass",        "static",          "friction",
+        "position", "orientation", "linear_velocity", "angular_velocity"};
+    if (kind == "mesh") keys.push_back("scale");
+    map.AllowOnly(keys);
+    Shape shape;
+    shape.name = entry.key;
+    shape.geometry = LoadGeometry(kind, what, map);
+    if (const YamlValue* v = map.Find("friction")) shape.friction = v->AsNonNegativeNumber("");
+    const Pose pose = kind == "plane" ? PoseOfPlane(what, map) : PoseOf(map);
+    if (IsStatic(kind, map)) {
+      shape.pose = pose;
+      world_.fixtures.push_back(std::move(shape));
+      return;
+    }
+    const double mass_kg = map.Find("mass")->AsPositiveNumber(" (kilograms)");
+    RobotModel model;
+    model.name = entry.key;
+    model.at = pose;
+    LoadVelocities(map, &model);
+    Link link;
+    link.name = entry.key;
+    link.inertial = UniformInertial(shape.geometry, mass_kg);
+    link.shapes.push_back(std::move(shape));
+    model.links.push_back(std::move(link));
+    if (const auto fault = CheckModel(model)) {
+      entry.value.FailPlainly(entry.value.name() + ": " + fault->what);
+    }
+    world_.models.push_back(std::move(model));
+  }
+
+  static bool IsStatic(const std::string& kind, const YamlMap& map) {
+    const YamlValue* is_static = map.Find("static");
+    const YamlValue* mass = map.Find("mass");
+    const bool is_plane = kind == "plane";
+    if (is_static != nullptr && !is_static->AsBoolean() && is_plane) {
+      is_static->Fail("is false, but a plane has no end and cannot move; remove it");
+    }
+    if (is_plane && mass != nullptr) mass->Fail("is of a plane, which cannot move; remove it");
+    const bool stands = is_plane || (is_static != nullptr && is_static->AsBoolean());
+    if (stands && mass != nullptr) {
+      mass->Fail("is of what does not move; remove it, or remove static");
+    }
+    if (!stands && mass == nullptr) {
+      map.place().Fail("has neither mass nor static; add mass: 1.0, or static: true");
+    }
+    for (const char* key : {"linear_velocity", "angular_velocity"}) {
+      const YamlValue* v = map.Find(key);
+      if (stands && v != nullptr) v->Fail("is of what does not move; remove it");
+    }
+    return stands;
+  }
+
+  Geometry LoadGeometry(const std::string& kind, const YamlValue& what, const YamlMap& map) {
+    if (kind == "box") return BoxShape{LoadSize(what)};
+    if (kind == "sphere") return SphereShape{what.AsPositiveNumber(" (its radius in metres)")};
+    if (kind == "cylinder") {
+      const auto [radius_m, length_m] = LoadRound(what);
+      return CylinderShape{radius_m, length_m};
+    }
+    if (kind == "capsule") {
+      const auto [radius_m, length_m] = LoadRound(what);
+      return CapsuleShape{radius_m, length_m};
+    }
+    if (kind == "plane") return PlaneShape{};
+    std::array<double, 3> scale = {1, 1, 1};
+    if (const YamlValue* v = map.Find("scale")) scale = LoadScale(*v);
+    try {
+      return MeshShape{meshes_.Take(PathOf(what), scale)};
+    } catch (const ModelMistake& mistake) {
+      what.FailPlainly(what.name() + ": " + mistake.message);
+    }
+  }
+
+  static std::array<double, 3> LoadSize(const YamlValue& value) {
+    const std::array<double, 3> size_m = value.AsVector3();
+    for (const double edge_m : size_m) {
+      if (!(edge_m > 0)) value.Fail("has an edge that is not positive (metres)");
+    }
+    return size_m;
+  }
+
+  static std::pair<double, double> LoadRound(const YamlValue& value) {
+    const YamlMap map = value.AsMap();
+    map.AllowOnly({"radius", "length"});
+    return {map.Require("radius", "radius: 0.1").AsPositiveNumber(" (metres)"),
+            map.Require("length", "length: 0.2").AsPositiveNumber(" (metres)")};
+  }
+
+  static std::array<double, 3> LoadScale(const YamlValue& value) {
+    std::array<double, 3> scale{};
+    if (value.IsList()) {
+      scale = value.AsVector3();
+    } else {
+      scale.fill(value.AsNumber());
+    }
+    for (const double each : scale) {
+      if (each == 0) value.Fail("is 0 along an axis, which leaves nothing of the mesh");
+    }
+    return scale;
+  }
+
+  // The way up from the plane is its normal; it goes through `position`.
+  static Pose PoseOfPlane(const YamlValue& plane, const YamlMap& map) {
+    if (const YamlValue* v = map.Find("orientation")) {
+      v->Fail("is of a plane, whose normal says it; remove it");
+    }
+    Pose pose = PoseOf(map);
+    const auto [x, y, z] = plane.AsVector3();
+    const double length = std::sqrt(x * x + y * y + z * z);
+    if (!(length > 1e-6) || !std::isfinite(length)) {
+      plane.Fail("has no direction; give the normal, the way up from it, like [0, 0, 1]");
+    }
+    // The shortest turn from z; straight down, about x.
+    const double w = 1 + z / length;
+    pose.orientation_xyzw =
+        w < 1e-12 ? std::array<double, 4>{1, 0, 0, 0} : Normalised({-y / length, x / length, 0, w});
+    return pose;
+  }
+
+  const Variables& variables_;
+  Scenario& scenario_;
+  WorldSpec& world_;
+  MeshLibrary meshes_;
+};
+
+}  // namespace
+
+void LoadModels(const YamlValue& value, const Variables& variables, Scenario* scenario) {
+  const EngineTraits& engine = TraitsOf(scenario->world->integrator.engine);
+  if (!engine.has_models) {
+    std::string others;
+    for (const EngineTraits& other : kEngines) {
+      if (other.has_models) others += (others.empty() ? "" : " or ") + std::string(other.name);
+    }
+    value.Fail("need an engine that knows joints and contact, and dynamics.engine is " +
+               std::string(engine.name) + "; set it to " + others);
+  }
+  const YamlMap map = value.AsMap();
+  if (map.entries().empty()) value.Fail("is empty; describe at least one model");
+  Models models(variables, scenario);
+  for (const YamlMap::Entry& entry : map.entries()) models.Add(entry);
+}
+
+}  // namespace tcs

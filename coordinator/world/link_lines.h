@@ -1,0 +1,26 @@
+// Where the links of models are, as lines of bodies.csv.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simbody_bridge/dynamics.h"
+
+namespace tcs {
+
+class LinkLines {
+ public:
+  LinkLines() = default;
+  // Of all links of the world's models: MODEL/LINK, or MODEL where it has only the one.
+  explicit LinkLines(const WorldSpec& world);
+
+  // A line for each, as they are at dynamics.Now(): the link's frame, in the world.
+  void Append(Dynamics& dynamics, std::string* text);
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<int> links_;
+  std::vector<LinkState> states_;  // memory of Append
+};
+
+}  // namespace tcs

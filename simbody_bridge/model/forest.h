@@ -1,0 +1,43 @@
+// The models of one island as one system: their trees beside each other, all numbered through, and
+// what they may touch. Both engines that have joints build from it. Pure.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/rigid_tree.h"
+
+namespace tcs {
+
+// Points into the models and fixtures that it was made of, which outlive it.
+struct ForestJoint {
+  const Joint* joint = nullptr;
+  int body = kWorldBody;  // that it moves; of a fixed one kWorldBody
+  int leader = -1;        // that it mimics
+};
+
+struct ForestShape {
+  const Shape* shape = nullptr;
+  int body = kWorldBody;
+  Pose pose;       // in the body's frame, or in the world
+  int model = -1;  // -1: a fixture of the world
+};
+
+struct Forest {
+  std::vector<TreeBody> bodies;    // TreeBody::joint counts `joints`
+  std::vector<int> model_of_body;  // counted as ForestShape::model
+  std::vector<TreeLink> links;     // of the first model, then of the second …
+  std::vector<ForestJoint> joints;
+  std::vector<ForestShape> shapes;       // fixtures last
+  std::vector<bool> has_self_collision;  // of each model
+};
+
+// Of the models of these indices, which have passed CheckModel.
+Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indices,
+                  std::span<const Shape> fixtures);
+
+// Whether two shapes can ever be in contact: they are of different bodies, one of which moves, that
+// no joint joins; and if they are of one model, it collides with itself.
+bool MayTouch(const Forest& forest, const ForestShape& a, const ForestShape& b);
+
+}  // namespace tcs

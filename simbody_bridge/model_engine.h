@@ -1,0 +1,55 @@
+// What an engine does for islands of models, beside taking their steps.
+//
+// Links and joints are counted through the models of an island, in the order in which MakeEngine
+// was given them. The places of such an island: for each link a wrench along the world's axes and
+// one along the link's, both at the link's origin; then for each joint its drive.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+constexpr int PlaceOfLink(int link, WrenchFrame frame) {
+  return 2 * link + (frame == WrenchFrame::kLink ? 1 : 0);
+}
+constexpr int PlaceOfJoint(int links, int joint) { return 2 * links + joint; }
+
+// A drive as an island keeps it: there the numbers mean nothing.
+inline Wrench AsNumbers(const JointDrive& drive) {
+  return {.force_n = {drive.effort, drive.stiffness, drive.position},
+          .torque_nm = {drive.damping, drive.velocity, 0}};
+}
+inline JointDrive AsDrive(const Wrench& numbers) {
+  return {.effort = numbers.force_n[0],
+          .stiffness = numbers.force_n[1],
+          .position = numbers.force_n[2],
+          .damping = numbers.torque_nm[0],
+          .velocity = numbers.torque_nm[1]};
+}
+
+// What a drive gives at a position and a velocity, within the joint's limit.
+double EffortOf(const JointDrive& drive, double limit, double position, double velocity);
+
+class ModelEngine : public IslandEngine {
+ public:
+  // How links and joints are in a state of their island, in which `acting` acts. Joints have one
+  // coordinate, or they are fixed.
+  virtual void ReadLinks(int island, std::span<const double> state, std::span<const int> links,
+                         std::span<LinkState> read) = 0;
+  virtual void ReadJoints(int island, std::span<const double> state, std::span<const Wrench> acting,
+                          std::span<const int> joints, std::span<JointState> read) = 0;
+};
+
+// Which models each island has: those that can touch each other, however they move.
+std::vector<std::vector<int>> ModelIslandsOf(const WorldSpec& world);
+
+// The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if
+// the engine has no joints, or refuses the models all the same.
+std::unique_ptr<ModelEngine> MakeModelEngine(const WorldSpec& world,
+                                             const std::vector<std::vector<int>>& islands);
+
+}  // namespace tcs

@@ -1,0 +1,255 @@
+#include "simbody_bridge/mujoco/mjcf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace tcs {
+namespace {
+
+// Joints' stops and mimics are as hard as steps of 1 ms bear: time constants of four of them. With
+// contacts as hard as that a stack of boxes shakes itself down.
+constexpr const char* kHard = "0.004 1";
+constexpr const char* kContact = "0.01 1";
+
+std::string Text(const std::array<double, 3>& v) {
+  return fmt::format("{:.17g} {:.17g} {:.17g}", v[0], v[1], v[2]);
+}
+std::string PlaceText(const Pose& pose) {
+  const auto& [x, y, z, w] = pose.orientation_xyzw;
+  return fmt::format("pos='{}' quat='{:.17g} {:.17g} {:.17g} {:.17g}'", Text(pose.position_m), w, x,
+                     y, z);
+}
+
+class Writer {
+ public:
+  explicit Writer(const Forest& forest) : forest_(forest) {
+    std::set<double, std::greater<>> frictions;
+    for (const ForestShape& shape : forest.shapes) frictions.insert(shape.shape->friction);
+    for (const double friction : frictions) {
+      priority_.emplace(friction, static_cast<int>(priority_.size()));
+    }
+    children_.resize(forest.bodies.size() + 1);
+    for (std::size_t i = 0; i < forest.bodies.size(); ++i) {
+      children_[static_cast<std::size_t>(forest.bodies[i].parent + 1)].push_back(i);
+    }
+  }
+
+  std::string Write(const std::array<double, 3>& gravity_mps2) {
+    text_ = fmt::format(
+        "<mujoco><compiler angle='radian' inertiafromgeom='false' balanceinertia='false'/>"
+        "<option gravity='{}' integrator='RK4' cone='elliptic' impratio='100' tolerance='1e-12'>"
+        "<flag multiccd='enable'/></option>"
+        "<default><geom mass='0' condim='3' solref='{}'/>"
+        "<joint solreflimit='{}' solimplimit='0.99 0.999 0.0001' solreffriction='{}'/></default>",
+        Text(gravity_mps2), kContact, kHard, kHard);
+    WriteMeshes();
+    text_ += "<worldbody>";
+    WriteShapes(kWorldBody, -1);
+    WriteFixedBases();
+    for (const std::size_t body : children_[0]) WriteBody(body);
+    text_ += "</worldbody>";
+    WriteMimics();
+    WriteActuators();
+    WriteExclusions();
+    text_ += "</mujoco>";
+    return std::move(text_);
+  }
+
+ private:
+  void WriteMeshes() {
+    text_ += "<asset>";
+    for (const ForestShape& shape : forest_.shapes) {
+      const auto* mesh = std::get_if<MeshShape>(&shape.shape->geometry);
+      if (mesh == nullptr) continue;
+      const auto [known, is_new] = meshes_.try_emplace(mesh->mesh.get(), meshes_.size());
+      if (!is_new) continue;
+      text_ += fmt::format("<mesh name='m{}' vertex='", known->second);
+      for (const auto& vertex : mesh->mesh->vertices_m) text_ += Text(vertex) + ' ';
+      text_ += "'/>";
+    }
+    text_ += "</asset>";
+  }
+
+  // What of a model is fixed to the world is a body of its own, so that what is joined to it can be
+  // told not to collide with it.
+  void WriteFixedBases() {
+    const int models = static_cast<int>(forest_.has_self_collision.size());
+    for (int model = 0; model < models; ++model) {
+      text_ += fmt::format("<body name='w{}'>", model);
+      WriteShapes(kWorldBody, model);
+      text_ += "</body>";
+    }
+  }
+
+  void WriteBody(std::size_t index) {
+    const TreeBody& body = forest_.bodies[index];
+    const Matrix3& i = body.inertia_kgm2;
+    text_ += fmt::format("<body name='b{}' {}>", index, PlaceText(body.origin));
+    WriteJoints(index, body);
+    text_ += fmt::format(
+        "<inertial pos='{}' mass='{:.17g}' fullinertia='{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
+        "{:.17g}'/>",
+        Text(body.center_m), body.mass_kg, i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]);
+    const int own = static_cast<int>(index);
+    WriteShapes(own, forest_.model_of_body[index]);
+    for (std::size_t link = 0; link < forest_.links.size(); ++link) {
+      if (forest_.links[link].body != own) continue;
+      text_ += fmt::format("<site name='l{}' {}/>", link, PlaceText(forest_.links[link].pose));
+    }
+    for (const std::size_t child : children_[index + 1]) WriteBody(child);
+    text_ += "</body>";
+  }
+
+  void WriteJoints(std::size_t index, const TreeBody& body) {
+    const std::string name = fmt::format("b{}", index);
+    switch (body.kind) {
+      case JointKind::kRevolute:
+      case JointKind::kContinuous:
+        WriteJoint(name, "hinge", body, body.axis);
+        return;
+      case JointKind::kPrismatic:
+        WriteJoint(name, "slide", body, body.axis);
+        return;
+      case JointKind::kPlanar:
+        WriteJoint(name + "x", "slide", body, Rotate(FromZTo(body.axis), {1, 0, 0}));
+        WriteJoint(name + "y", "slide", body, Rotate(FromZTo(body.axis), {0, 1, 0}));
+        WriteJoint(name, "hinge", body, body.axis);
+        return;
+      case JointKind::kFloating:
+      case JointKind::kFixed:  // never: a forest has none
+        if (HasFreeJoint(body)) {
+          text_ += fmt::format("<freejoint name='{}'/>", name);
+          return;
+        }
+        WriteJoint(name + "x", "slide", body, {1, 0, 0});
+        WriteJoint(name + "y", "slide", body, {0, 1, 0});
+        WriteJoint(name + "z", "slide", body, {0, 0, 1});
+        WriteJoint(name, "ball", body, {0, 0, 1});
+        return;
+    }
+  }
+
+  void WriteJoint(const std::string& name, const char* type, const TreeBody& body,
+                  const std::array<double, 3>& axis) {
+    const Joint& joint = *forest_.joints[static_cast<std::size_t>(body.joint)].joint;
+    text_ += fmt::format("<joint name='{}' type='{}' axis='{}' damping='{:.17g}'", name, type,
+                         Text(axis), joint.damping);
+    if (joint.friction > 0) text_ += fmt::format(" frictionloss='{:.17g}'", joint.friction);
+    const JointLimits& limits = joint.limits;
+    if (limits.lower != -kNoLimit || limits.upper != kNoLimit) {
+      // MuJoCo knows ranges only, not one end without the other.
+      constexpr double kFar = 1e9;
+      text_ += fmt::format(" limited='true' range='{:.17g} {:.17g}'", std::max(limits.lower, -kFar),
+                           std::min(limits.upper, kFar));
+    }
+    text_ += "/>";
+  }
+
+  void WriteShapes(int body, int model) {
+    for (const ForestShape& shape : forest_.shapes) {
+      if (shape.body != body || shape.model != model) continue;
+      // Of two geoms that touch the friction of the one with the higher priority acts: the smaller.
+      text_ += fmt::format("<geom {} {} friction='{:.17g} 0.005 0.0001' priority='{}'/>",
+                           TextOf(shape.shape->geometry), PlaceText(shape.pose),
+                           shape.shape->friction, priority_.at(shape.shape->friction));
+    }
+  }
+
+  std::string TextOf(const Geometry& geometry) const {
+    if (const auto* box = std::get_if<BoxShape>(&geometry)) {
+      const auto& [x, y, z] = box->size_m;
+      return fmt::format("type='box' size='{}'", Text({x / 2, y / 2, z / 2}));
+    }
+    if (const auto* sphere = std::get_if<SphereShape>(&geometry)) {
+      return fmt::format("type='sphere' size='{:.17g}'", sphere->radius_m);
+    }
+    if (const auto* cylinder = std::get_if<CylinderShape>(&geometry)) {
+      return fmt::format("type='cylinder' size='{:.17g} {:.17g}'", cylinder->radius_m,
+                         cylinder->length_m / 2);
+    }
+    if (const auto* capsule = std::get_if<CapsuleShape>(&geometry)) {
+      return fmt::format("type='capsule' size='{:.17g} {:.17g}'", capsule->radius_m,
+                         capsule->length_m / 2);
+    }
+    if (const auto* mesh = std::get_if<MeshShape>(&geometry)) {
+      return fmt::format("type='mesh' mesh='m{}'", meshes_.at(mesh->mesh.get()));
+    }
+    return "type='plane' size='0 0 1'";
+  }
+
+  void WriteMimics() {
+    text_ += "<equality>";
+    for (const ForestJoint& joint : forest_.joints) {
+      if (joint.leader < 0) continue;
+      const Mimic& mimic = *joint.joint->mimic;
+      text_ += fmt::format(
+          "<joint joint1='b{}' joint2='b{}' polycoef='{:.17g} {:.17g} 0 0 0' solref='{}' "
+          "solimp='0.99 0.999 0.0001'/>",
+          joint.body, forest_.joints[static_cast<std::size_t>(joint.leader)].body, mimic.offset,
+          mimic.multiplier, kHard);
+    }
+    text_ += "</equality>";
+  }
+
+  void WriteActuators() {
+    text_ += "<actuator>";
+    for (std::size_t i = 0; i < forest_.links.size(); ++i) {
+      if (forest_.links[i].body == kWorldBody) continue;
+      text_ += fmt::format("<general name='l{0}' site='l{0}' gear='0 0 0 0 0 0'/>", i);
+    }
+    for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+      if (!IsDriven(forest_, i)) continue;
+      const double limit = forest_.joints[i].joint->limits.effort;
+      text_ += fmt::format("<general name='j{}' joint='b{}' biastype='affine'", i,
+                           forest_.joints[i].body);
+      if (limit != kNoLimit && limit > 0) {
+        text_ += fmt::format(" forcelimited='true' forcerange='{:.17g} {:.17g}'", -limit, limit);
+      }
+      text_ += "/>";
+    }
+    text_ += "</actuator>";
+  }
+
+  void WriteExclusions() {
+    text_ += "<contact>";
+    const int bodies = static_cast<int>(forest_.bodies.size());
+    for (int a = 0; a < bodies; ++a) {
+      const int model = forest_.model_of_body[static_cast<std::size_t>(a)];
+      if (!MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, kWorldBody, {}, model})) {
+        text_ += fmt::format("<exclude body1='b{}' body2='w{}'/>", a, model);
+      }
+      for (int b = a + 1; b < bodies; ++b) {
+        const int other = forest_.model_of_body[static_cast<std::size_t>(b)];
+        if (MayTouch(forest_, {nullptr, a, {}, model}, {nullptr, b, {}, other})) continue;
+        text_ += fmt::format("<exclude body1='b{}' body2='b{}'/>", a, b);
+      }
+    }
+    text_ += "</contact>";
+  }
+
+  const Forest& forest_;
+  std::map<double, int> priority_;                  // of each friction
+  std::vector<std::vector<std::size_t>> children_;  // of the world, then of each body
+  std::map<const Mesh*, std::size_t> meshes_;
+  std::string text_;
+};
+
+}  // namespace
+
+bool IsDriven(const Forest& forest, std::size_t joint) {
+  const ForestJoint& of = forest.joints[joint];
+  return of.leader < 0 && CoordinatesOf(of.joint->kind) == 1;
+}
+
+bool HasFreeJoint(const TreeBody& body) { return body.parent == kWorldBody && body.joint < 0; }
+
+std::string MjcfOf(const Forest& forest, const std::array<double, 3>& gravity_mps2) {
+  return Writer(forest).Write(gravity_mps2);
+}
+
+}  // namespace tcs

@@ -1,0 +1,241 @@
+#include "simbody_bridge/mujoco/mujoco_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "simbody_bridge/mujoco/mjcf.h"
+
+namespace tcs {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector Cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+std::string OnOneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+// MuJoCo would end the process, and write its warnings into a file beside the scenario. The library
+// is built with unwind tables, and holds no locks.
+[[noreturn]] void ThrowError(const char* message) {
+  throw DynamicsError("MuJoCo: " + OnOneLine(message));
+}
+void IgnoreWarning(const char* /*message*/) {}
+
+mjModel* Compile(const std::string& mjcf) {
+  mju_user_error = &ThrowError;
+  mju_user_warning = &IgnoreWarning;
+  constexpr const char* kName = "tcs.xml";
+  const auto files = std::make_unique<mjVFS>();  // two megabytes
+  mj_defaultVFS(files.get());
+  if (mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(mjcf.size())) != 0) {
+    throw DynamicsError("MuJoCo has no room for the models");
+  }
+  std::memcpy(files->filedata[0], mjcf.data(), mjcf.size());
+  std::array<char, 1000> error{};
+  mjModel* model = mj_loadXML(kName, files.get(), error.data(), static_cast<int>(error.size()));
+  mj_deleteFileVFS(files.get(), kName);
+  if (model == nullptr) {
+    throw DynamicsError("MuJoCo refuses the models: " + OnOneLine(error.data()));
+  }
+  return model;
+}
+
+}  // namespace
+
+MujocoSystem::MujocoSystem(const Forest& forest, const std::array<double, 3>& gravity_mps2)
+    : forest_(forest),
+      model_(Compile(MjcfOf(forest, gravity_mps2))),
+      data_(mj_makeData(model_.get())) {
+  if (data_ == nullptr) throw DynamicsError("MuJoCo makes no data; is there memory left?");
+  FindIds();
+  SetStart();
+}
+
+int MujocoSystem::IdOf(int type, char prefix, std::size_t index) const {
+  return mj_name2id(model_.get(), type, fmt::format("{}{}", prefix, index).c_str());
+}
+
+void MujocoSystem::FindIds() {
+  for (std::size_t i = 0; i < forest_.bodies.size(); ++i) {
+    bodies_.push_back(IdOf(mjOBJ_BODY, 'b', i));
+  }
+  for (std::size_t i = 0; i < forest_.links.size(); ++i) {
+    link_actuators_.push_back(IdOf(mjOBJ_ACTUATOR, 'l', i));
+  }
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    joint_actuators_.push_back(IdOf(mjOBJ_ACTUATOR, 'j', i));
+    const int body = forest_.joints[i].body;
+    const int joint =
+        body == kWorldBody ? -1 : IdOf(mjOBJ_JOINT, 'b', static_cast<std::size_t>(body));
+    positions_.push_back(joint < 0 ? -1 : model_->jnt_qposadr[joint]);
+    speeds_.push_back(joint < 0 ? -1 : model_->jnt_dofadr[joint]);
+  }
+}
+
+void MujocoSystem::SetStart() {
+  mj_resetData(model_.get(), data_.get());
+  for (std::size_t i = 0; i < forest_.bodies.size(); ++i) SetPose(i);
+  mj_forward(model_.get(), data_.get());
+  const int positions = model_->nq, speeds = model_->nv;
+  start_.assign(data_->qpos, data_->qpos + positions);
+  start_.insert(start_.end(), data_->qvel, data_->qvel + speeds);
+  start_.insert(start_.end(), static_cast<std::size_t>(speeds), 0);
+}
+
+// MuJoCo has quaternions w x y z, and the angular velocities of free and ball joints along the
+// child's axes.
+void MujocoSystem::SetPose(std::size_t index) {
+  const TreeBody& body = forest_.bodies[index];
+  const int last = IdOf(mjOBJ_JOINT, 'b', index);
+  const int first = model_->body_jntadr[bodies_[index]];
+  double* q = data_->qpos + model_->jnt_qposadr[first];
+  double* u = data_->qvel + model_->jnt_dofadr[first];
+  const std::vector<double>& at = body.position;
+  const std::vector<double>& speed = body.velocity;
+  std::copy_n(at.begin(), std::min<std::size_t>(3, at.size()), q);
+  std::copy_n(speed.begin(), std::min<std::size_t>(3, speed.size()), u);
+  if (body.kind != JointKind::kFloating) return;
+  if (first != last) {
+    q = data_->qpos + model_->jnt_qposadr[last];
+    u = data_->qvel + model_->jnt_dofadr[last];
+  } else {
+    q += 3;
+    u += 3;
+  }
+  const auto [x, y, z, w] = Normalised({at[3], at[4], at[5], at[6]});
+  std::copy_n(std::array{w, x, y, z}.begin(), 4, q);
+  const Vector turning = Rotate({-x, -y, -z, w}, {speed[3], speed[4], speed[5]});
+  std::copy_n(turning.begin(), 3, u);
+}
+
+void MujocoSystem::Load(std::span<const double> state) {
+  const auto positions = static_cast<std::size_t>(model_->nq);
+  const auto speeds = static_cast<std::size_t>(model_->nv);
+  data_->time = 0;
+  std::copy_n(state.data(), positions, data_->qpos);
+  std::copy_n(state.data() + positions, speeds, data_->qvel);
+  std::copy_n(state.data() + positions + speeds, speeds, data_->qacc_warmstart);
+}
+
+void MujocoSystem::SetActing(std::span<const Wrench> acting) {
+  const int links = static_cast<int>(forest_.links.size());
+  std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
+  mj_kinematics(model_.get(), data_.get());
+  for (int i = 0; i < links; ++i) {
+    ActOnLink(static_cast<std::size_t>(i),
+              acting[static_cast<std::size_t>(PlaceOfLink(i, WrenchFrame::kWorld))],
+              acting[static_cast<std::size_t>(PlaceOfLink(i, WrenchFrame::kLink))]);
+  }
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    const int actuator = joint_actuators_[i];
+    if (actuator < 0) continue;
+    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)));
+    const JointDrive drive = AsDrive(acting[place]);
+    const bool is_free = forest_.joints[i].joint->limits.effort > 0;
+    data_->ctrl[actuator] =
+        is_free ? drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity
+                : 0;
+    model_->actuator_biasprm[mjNBIAS * actuator + 1] = is_free ? -drive.stiffness : 0;
+    model_->actuator_biasprm[mjNBIAS * actuator + 2] = is_free ? -drive.damping : 0;
+  }
+}
+
+// What is along the link's axes is an actuator of its site, which turns with it.
+void MujocoSystem::ActOnLink(std::size_t link, const Wrench& in_world, const Wrench& in_link) {
+  const int actuator = link_actuators_[link];
+  if (actuator < 0) return;
+  double* gear = model_->actuator_gear + 6 * actuator;
+  std::copy_n(in_link.force_n.begin(), 3, gear);
+  std::copy_n(in_link.torque_nm.begin(), 3, gear + 3);
+  data_->ctrl[actuator] = 1;
+  if (in_world == Wrench{}) return;
+  const int body = bodies_[static_cast<std::size_t>(forest_.links[link].body)];
+  const int site = model_->actuator_trnid[2 * actuator];
+  const double* origin = data_->site_xpos + 3 * site;
+  const double* center = data_->xipos + 3 * body;
+  const Vector turn = Cross({origin[0] - center[0], origin[1] - center[1], origin[2] - center[2]},
+                            in_world.force_n);
+  double* applied = data_->xfrc_applied + 6 * body;
+  for (std::size_t i = 0; i < 3; ++i) {
+    applied[i] += in_world.force_n[i];
+    applied[i + 3] += in_world.torque_nm[i] + turn[i];
+  }
+}
+
+// It would begin anew from its own start.
+bool MujocoSystem::HasFailed() const {
+  return data_->warning[mjWARN_BADQPOS].number > 0 || data_->warning[mjWARN_BADQVEL].number > 0 ||
+         data_->warning[mjWARN_BADQACC].number > 0;
+}
+
+void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
+                        double seconds, std::vector<double>* to) {
+  for (mjWarningStat& warning : data_->warning) warning.number = 0;
+  Load(from);
+  SetActing(acting);
+  model_->opt.timestep = seconds;
+  mj_step(model_.get(), data_.get());
+  if (HasFailed()) {
+    to->assign(from.size(), std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  to->assign(data_->qpos, data_->qpos + model_->nq);
+  to->insert(to->end(), data_->qvel, data_->qvel + model_->nv);
+  to->insert(to->end(), data_->qacc_warmstart, data_->qacc_warmstart + model_->nv);
+}
+
+void MujocoSystem::ReadLinks(std::span<const double> state, std::span<const int> links,
+                             std::span<LinkState> read) {
+  Load(state);
+  mj_kinematics(model_.get(), data_.get());
+  mj_comPos(model_.get(), data_.get());
+  mj_comVel(model_.get(), data_.get());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const TreeLink& link = forest_.links[static_cast<std::size_t>(links[i])];
+    LinkState& of_link = read[i];
+    if (link.body == kWorldBody) {
+      of_link = {link.pose, {}, {}};
+      continue;
+    }
+    const int body = bodies_[static_cast<std::size_t>(link.body)];
+    const double* p = data_->xpos + 3 * body;
+    const double* q = data_->xquat + 4 * body;
+    const Pose pose{{p[0], p[1], p[2]}, {q[1], q[2], q[3], q[0]}};
+    of_link.pose = Times(pose, link.pose);
+    std::array<double, 6> speed{};  // turning, then moving, at the body's origin
+    mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, body, speed.data(), 0);
+    const Vector turning = {speed[0], speed[1], speed[2]};
+    const Vector around = Cross(turning, Rotate(pose.orientation_xyzw, link.pose.position_m));
+    of_link.angular_velocity_radps = turning;
+    for (std::size_t k = 0; k < 3; ++k) of_link.linear_velocity_mps[k] = speed[k + 3] + around[k];
+  }
+}
+
+void MujocoSystem::ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
+                              std::span<const int> joints, std::span<JointState> read) const {
+  const int links = static_cast<int>(forest_.links.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(joints[i]);
+    if (positions_[joint] < 0) {
+      read[i] = {};
+      continue;
+    }
+    const double q = state[static_cast<std::size_t>(positions_[joint])];
+    const double u = state[static_cast<std::size_t>(model_->nq + speeds_[joint])];
+    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, joints[i]));
+    const double limit = forest_.joints[joint].joint->limits.effort;
+    read[i] = {q, u, EffortOf(AsDrive(acting[place]), limit, q, u)};
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,59 @@
+// A forest as MuJoCo knows it, as a function: from a state and what acts to the state one step
+// later. What MuJoCo itself remembers from step to step is written into it before each step: the
+// guess that its solver begins with is part of the state.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/model_engine.h"
+
+namespace tcs {
+
+class MujocoSystem {
+ public:
+  // `forest` and what it points into outlive this. Throws DynamicsError if MuJoCo refuses it.
+  MujocoSystem(const Forest& forest, const std::array<double, 3>& gravity_mps2);
+
+  // Positions, speeds, and the solver's guess, at the start.
+  const std::vector<double>& start() const { return start_; }
+
+  // Not finite where MuJoCo cannot go on. `acting` is by place.
+  void Step(std::span<const double> from, std::span<const Wrench> acting, double seconds,
+            std::vector<double>* to);
+
+  void ReadLinks(std::span<const double> state, std::span<const int> links,
+                 std::span<LinkState> read);
+  void ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
+                  std::span<const int> joints, std::span<JointState> read) const;
+
+ private:
+  struct DeleteModel {
+    void operator()(mjModel* model) const { mj_deleteModel(model); }
+  };
+  struct DeleteData {
+    void operator()(mjData* data) const { mj_deleteData(data); }
+  };
+  int IdOf(int type, char prefix, std::size_t index) const;
+  void FindIds();
+  void SetStart();
+  void SetPose(std::size_t body);
+  void Load(std::span<const double> state);
+  void SetActing(std::span<const Wrench> acting);
+  void ActOnLink(std::size_t link, const Wrench& in_world, const Wrench& in_link);
+  bool HasFailed() const;
+
+  const Forest& forest_;
+  std::unique_ptr<mjModel, DeleteModel> model_;
+  std::unique_ptr<mjData, DeleteData> data_;
+  std::vector<int> bodies_;                            // MuJoCo's, of each of the forest's
+  std::vector<int> link_actuators_, joint_actuators_;  // of each link and joint; -1: none
+  std::vector<int> positions_, speeds_;                // where those of each joint are; -1: fixed
+  std::vector<double> start_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,56 @@
+// What touches what among the bodies of an island and the world's fixtures.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/simbody/contact/touch.h"
+#include "simbody_bridge/simbody/simbody.h"
+
+namespace tcs {
+
+// A touch as two bodies feel it: a spring with a damper along the normal, and friction across it.
+struct Contact {
+  int first = kWorldBody, second = kWorldBody;  // bodies of the forest
+  Touch touch;
+  double friction = 0;
+  double stiffness_npm = 0, damping_nspm = 0;
+};
+
+class Contacts {
+ public:
+  // `forest` outlives this; `bodies` are its bodies.
+  Contacts(const Forest& forest, const std::vector<SimTK::MobilizedBody>& bodies);
+
+  bool has_pairs() const { return !pairs_.empty(); }
+
+  // At least so long nothing touches that does not yet, in seconds; 0 where something may. `state`
+  // is realized to Velocity. It trusts that nothing is pushed much harder than its weight.
+  double TimeToTouch(const SimTK::State& state);
+  // `state` is realized to Position.
+  void Find(const SimTK::State& state, std::vector<Contact>* contacts);
+
+ private:
+  struct Part {
+    Solid solid;
+    int body;
+    SimTK::Transform on_body;  // or in the world
+    double friction;
+    double mass_kg;  // of all that hangs together with the body
+  };
+  struct Pair {
+    std::size_t first, second;  // parts
+    double friction, stiffness_npm, damping_nspm;
+  };
+  void Place(const SimTK::State& state);
+  double SpeedBetween(const SimTK::State& state, const Pair& pair) const;
+
+  const std::vector<SimTK::MobilizedBody> bodies_;
+  std::vector<Part> parts_;
+  std::vector<Pair> pairs_;
+  std::vector<SimTK::Transform> poses_;  // of the parts, in the world: memory
+  std::vector<Touch> touches_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,177 @@
+#include "simbody_bridge/simbody/tree/contact_step.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace tcs {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int kRounds = 6;
+// Slower than this a contact sticks: it creeps in proportion to what pushes it.
+constexpr double kStickMps = 1e-4;
+
+Vector3d ToEigen(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+void ContactStep::Reduce(const SimbodyTree& tree) {
+  const SimTK::State& state = tree.evaluated();
+  const Forest& forest = tree.forest();
+  const int all = state.getNU();
+  std::vector<int> leader(static_cast<std::size_t>(all), -1);
+  std::vector<double> multiplier(static_cast<std::size_t>(all), 1);
+  for (const ForestJoint& joint : forest.joints) {
+    if (joint.leader < 0) continue;
+    const int body = forest.joints[static_cast<std::size_t>(joint.leader)].body;
+    const auto own = static_cast<std::size_t>(int{tree.body(joint.body).getFirstUIndex(state)});
+    leader[own] = tree.body(body).getFirstUIndex(state);
+    multiplier[own] = joint.joint->mimic->multiplier;
+  }
+  std::vector<int> column(static_cast<std::size_t>(all), -1);
+  int columns = 0;
+  for (int u = 0; u < all; ++u) {
+    if (leader[static_cast<std::size_t>(u)] < 0) column[static_cast<std::size_t>(u)] = columns++;
+  }
+  reduction_.setZero(all, columns);
+  for (int u = 0; u < all; ++u) {
+    const auto i = static_cast<std::size_t>(u);
+    const int of = leader[i] < 0 ? column[i] : column[static_cast<std::size_t>(leader[i])];
+    reduction_(u, of) = multiplier[i];
+  }
+}
+
+void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact) {
+  const SimTK::State& state = tree.evaluated();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> all =
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, state.getNU());
+  SimTK::RowVector_<SimTK::Vec3> jacobian;
+  for (const auto& [index, sign] : {std::pair{contact.first, 1.0}, {contact.second, -1.0}}) {
+    if (index == kWorldBody) continue;
+    const SimTK::MobilizedBody& body = tree.body(index);
+    const SimTK::Vec3 station = body.findStationAtGroundPoint(state, contact.touch.point);
+    tree.matter().calcStationJacobian(state, body.getMobilizedBodyIndex(), station, jacobian);
+    for (int u = 0; u < state.getNU(); ++u) all.col(u) += sign * ToEigen(jacobian[u]);
+  }
+  const Eigen::Map<const Eigen::VectorXd> speeds(state.getU().getContiguousScalarData(),
+                                                 state.getNU());
+  Row row;
+  row.contact = contact;
+  row.jacobian = all * reduction_;
+  row.before = all * speeds;
+  const Vector3d normal = ToEigen(contact.touch.normal);
+  row.sliding = row.before - normal * normal.dot(row.before);
+  row.normal_n = contact.touch.weight * contact.stiffness_npm * contact.touch.depth;
+  rows_.push_back(std::move(row));
+}
+
+// What does not depend on the contacts: the mass matrix with what joints hold against, and the
+// forces.
+void ContactStep::Assemble(SimbodyTree& tree, double h) {
+  const SimTK::State& state = tree.evaluated();
+  const int all = state.getNU();
+  SimTK::Matrix mass;
+  tree.matter().calcM(state, mass);
+  Eigen::MatrixXd whole(all, all);
+  for (int i = 0; i < all; ++i) {
+    for (int k = 0; k < all; ++k) whole(i, k) = mass(i, k);
+  }
+  const Eigen::Map<const Eigen::VectorXd> speeds(state.getU().getContiguousScalarData(), all);
+  const Eigen::Map<const Eigen::VectorXd> rates(state.getUDot().getContiguousScalarData(), all);
+  Eigen::VectorXd forces = whole * rates;
+  tree.joint_force().Slopes(state, &by_speed_, &by_coordinate_);
+  for (int i = 0; i < all; ++i) {
+    const auto slot = static_cast<std::size_t>(i);
+    forces(i) -= h * by_coordinate_[slot] * speeds(i);
+    whole(i, i) += h * by_speed_[slot] + h * h * by_coordinate_[slot];
+  }
+  mass_ = reduction_.transpose() * whole * reduction_;
+  force_ = reduction_.transpose() * forces;
+}
+
+void ContactStep::Solve(double h) {
+  system_ = mass_;
+  change_ = force_;
+  for (const Row& row : rows_) {
+    if (row.is_open) continue;
+    const Contact& contact = row.contact;
+    const Vector3d normal = ToEigen(contact.touch.normal);
+    const double weight = contact.touch.weight;
+    const double along = weight * (contact.damping_nspm + h * contact.stiffness_npm);
+    const double across = contact.friction * row.normal_n / std::max(kStickMps, row.sliding.norm());
+    const Matrix3d slope =
+        (along - across) * normal * normal.transpose() + across * Matrix3d::Identity();
+    const Vector3d force =
+        weight * contact.stiffness_npm * contact.touch.depth * normal - slope * row.before;
+    system_.noalias() += h * row.jacobian.transpose() * slope * row.jacobian;
+    change_.noalias() += row.jacobian.transpose() * force;
+  }
+  change_ = system_.llt().solve(h * change_);
+}
+
+// What the contacts do at the end of the step; whether that is not yet what was assumed.
+bool ContactStep::Update(double h) {
+  bool has_changed = false;
+  for (Row& row : rows_) {
+    const Contact& contact = row.contact;
+    const Vector3d normal = ToEigen(contact.touch.normal);
+    const Vector3d velocity = row.before + row.jacobian * change_;
+    const double leaving = normal.dot(velocity);
+    const double pushes =
+        contact.touch.weight * (contact.stiffness_npm * (contact.touch.depth - h * leaving) -
+                                contact.damping_nspm * leaving);
+    const bool was_open = row.is_open;
+    row.is_open = pushes <= 0;
+    const double before_n = row.normal_n;
+    row.normal_n = std::max(0.0, pushes);
+    row.sliding = velocity - normal * leaving;
+    has_changed = has_changed || was_open != row.is_open ||
+                  std::abs(row.normal_n - before_n) > 1e-6 * before_n ||
+                  row.sliding.norm() > kStickMps;
+  }
+  return has_changed;
+}
+
+void ContactStep::Take(SimbodyTree& tree, IslandStep& step, double h) {
+  const std::size_t size = step.from.size();
+  step.from_rate.resize(size);
+  tree.Evaluate(step.from, step.wrenches, step.from_rate.data());
+  const SimTK::State& state = tree.evaluated();
+  step.length_s = h;
+  step.next_try_s = step.try_s;
+  step.to = step.from;
+  const bool is_known = std::isfinite(step.from_rate.back());
+  if (is_known) {
+    Reduce(tree);
+    Assemble(tree, h);
+    tree.contacts().Find(state, &contacts_);
+    rows_.clear();
+    for (const Contact& contact : contacts_) AddRow(tree, contact);
+    for (int round = 0; round < kRounds; ++round) {
+      Solve(h);
+      if (!Update(h)) break;
+    }
+    const Eigen::VectorXd change = reduction_ * change_;
+    const int coordinates = state.getNQ();
+    SimTK::Vector speeds = state.getU(), rates;
+    for (int i = 0; i < speeds.size(); ++i) speeds[i] += change(i);
+    tree.matter().multiplyByN(state, false, speeds, rates);
+    for (int i = 0; i < coordinates; ++i) step.to[static_cast<std::size_t>(i)] += h * rates[i];
+    for (int i = 0; i < speeds.size(); ++i) {
+      step.to[static_cast<std::size_t>(coordinates + i)] = speeds[i];
+    }
+    tree.Project(step.to);
+  } else {
+    step.to = step.from_rate;  // not finite: who took the step says so
+  }
+  // In between the motion is uniform.
+  step.to_rate.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    step.from_rate[i] = step.to_rate[i] = (step.to[i] - step.from[i]) / h;
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,48 @@
+// A step in which something touches: of first order, and implicit in what is stiff, so that hard
+// contact, stiction, stops and servos need no short steps.
+//
+// The speeds at its end u' solve M (u' - u) = h f(q + h u', u'), where f is taken as linear around
+// the beginning along contacts' normals, in joints' dampers, stops and drives; contacts that would
+// pull let go, and friction, which has the direction of the sliding at the end, is found by a few
+// rounds. Then q' = q + h N u'.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/simbody/tree/tree.h"
+
+namespace tcs {
+
+class ContactStep {
+ public:
+  // Takes a step as long as `length_s`, within step.limit.
+  void Take(SimbodyTree& tree, IslandStep& step, double length_s);
+
+ private:
+  // A contact's two bodies in one: velocities of the first beside the second at the point.
+  struct Row {
+    Contact contact;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;  // by the reduced speeds, in the world
+    Eigen::Vector3d before;                             // the velocity at the beginning
+    double normal_n = 0;                                // force along the normal
+    Eigen::Vector3d sliding = Eigen::Vector3d::Zero();  // across it, as in the last round
+    bool is_open = false;                               // it would pull
+  };
+  void Reduce(const SimbodyTree& tree);
+  void Assemble(SimbodyTree& tree, double h);
+  void AddRow(const SimbodyTree& tree, const Contact& contact);
+  void Solve(double h);
+  bool Update(double h);
+
+  // The speeds are `reduction_` times those of joints that mimic no other.
+  Eigen::MatrixXd reduction_;
+  Eigen::MatrixXd mass_, system_;
+  Eigen::VectorXd force_, change_;
+  std::vector<Contact> contacts_;
+  std::vector<Row> rows_;
+  std::vector<double> by_speed_, by_coordinate_;
+};
+
+}  // namespace tcs

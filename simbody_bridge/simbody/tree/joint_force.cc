@@ -1,0 +1,121 @@
+#include "simbody_bridge/simbody/tree/joint_force.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "simbody_bridge/simbody/tree/smooth.h"
+
+namespace tcs {
+namespace {
+
+// A stop is a spring that alone would make the joint swing so fast, with critical damping.
+constexpr double kStopRadps = 500;
+// Over this depth its damping sets in.
+constexpr double kStopDepth = 2e-4;
+// Up to this speed friction grows, instead of acting at once.
+constexpr double kFrictionSpeed = 2e-3;
+// What a joint in a stop, or about to be, takes to notice.
+constexpr double kNearStopS = 1e-3;
+
+double StopForce(double depth, double speed_inwards, double inertia) {
+  if (depth <= 0) return 0;
+  const double stiffness = inertia * kStopRadps * kStopRadps;
+  const double damping = 2 * inertia * kStopRadps * SmoothStep(depth / kStopDepth);
+  return std::max(0.0, stiffness * depth + damping * speed_inwards);
+}
+
+}  // namespace
+
+double TimeToStop(const Joint& joint, double position, double velocity) {
+  const JointLimits& limits = joint.limits;
+  if (velocity == 0) return std::numeric_limits<double>::infinity();
+  const double gap = velocity > 0 ? limits.upper - position : position - limits.lower;
+  return std::max(kNearStopS, gap / std::abs(velocity));
+}
+
+JointForce::JointForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
+                       const std::span<const Wrench>& acting)
+    : forest_(forest),
+      bodies_(std::move(bodies)),
+      acting_(acting),
+      inertia_(forest.joints.size(), 1) {}
+
+void JointForce::Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start) {
+  SimTK::State state = start;
+  matter.getSystem().realize(state, SimTK::Stage::Position);
+  SimTK::Vector alone(state.getNU()), moved(state.getNU());
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    const ForestJoint& joint = forest_.joints[i];
+    if (joint.body == kWorldBody) continue;
+    const int u = bodies_[static_cast<std::size_t>(joint.body)].getFirstUIndex(state);
+    alone = 0;
+    alone[u] = 1;
+    matter.multiplyByM(state, alone, moved);
+    inertia_[i] = moved[u];
+  }
+}
+
+void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed,
+                        std::vector<double>* by_coordinate) const {
+  const auto all = static_cast<std::size_t>(state.getNU());
+  by_speed->assign(all, 0);
+  by_coordinate->assign(all, 0);
+  const int links = static_cast<int>(forest_.links.size());
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    if (forest_.joints[i].body == kWorldBody) continue;
+    const Joint& joint = *forest_.joints[i].joint;
+    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(forest_.joints[i].body)];
+    const auto first = static_cast<std::size_t>(body.getFirstUIndex(state));
+    const auto count = static_cast<std::size_t>(body.getNumU(state));
+    for (std::size_t u = first; u < first + count; ++u) {
+      const double speed = state.getU()[static_cast<int>(u)];
+      (*by_speed)[u] = joint.damping +
+                       joint.friction / kFrictionSpeed * SlopeOfSmoothSign(speed / kFrictionSpeed);
+    }
+    if (count != 1) continue;
+    const double q = state.getQ()[body.getFirstQIndex(state)];
+    const double speed = state.getU()[static_cast<int>(first)];
+    const JointLimits& limits = joint.limits;
+    const JointDrive drive =
+        AsDrive(acting_[static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)))]);
+    if (std::abs(EffortOf(drive, kNoLimit, q, speed)) < limits.effort) {
+      (*by_speed)[first] += std::max(0.0, drive.damping);
+      (*by_coordinate)[first] += std::max(0.0, drive.stiffness);
+    }
+    if (q < limits.lower || q > limits.upper) {
+      (*by_speed)[first] += 2 * inertia_[i] * kStopRadps;
+      (*by_coordinate)[first] += inertia_[i] * kStopRadps * kStopRadps;
+    }
+  }
+}
+
+void JointForce::calcForce(const SimTK::State& state,
+                           SimTK::Vector_<SimTK::SpatialVec>& /*body_forces*/,
+                           SimTK::Vector_<SimTK::Vec3>& /*particle_forces*/,
+                           SimTK::Vector& mobility_forces) const {
+  const SimTK::Vector& all_q = state.getQ();
+  const SimTK::Vector& all_u = state.getU();
+  const int links = static_cast<int>(forest_.links.size());
+  for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
+    if (forest_.joints[i].body == kWorldBody) continue;
+    const Joint& joint = *forest_.joints[i].joint;
+    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(forest_.joints[i].body)];
+    const int first = body.getFirstUIndex(state), count = body.getNumU(state);
+    for (int u = first; u < first + count; ++u) {
+      const double speed = all_u[u];
+      mobility_forces[u] -=
+          joint.damping * speed + joint.friction * SmoothSign(speed / kFrictionSpeed);
+    }
+    if (count != 1) continue;
+    const double q = all_q[body.getFirstQIndex(state)], speed = all_u[first];
+    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)));
+    const JointLimits& limits = joint.limits;
+    mobility_forces[first] += EffortOf(AsDrive(acting_[place]), limits.effort, q, speed);
+    mobility_forces[first] += StopForce(limits.lower - q, -speed, inertia_[i]);
+    mobility_forces[first] -= StopForce(q - limits.upper, speed, inertia_[i]);
+  }
+}
+
+}  // namespace tcs

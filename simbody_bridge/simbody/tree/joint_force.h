@@ -1,0 +1,44 @@
+// What acts along the joints, as a Simbody force element: drives, damping, friction, and the stops
+// at the ends of their ranges.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/simbody/simbody.h"
+
+namespace tcs {
+
+class JointForce : public SimTK::Force::Custom::Implementation {
+ public:
+  // `forest` and `acting`, by place, outlive this.
+  JointForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
+             const std::span<const Wrench>& acting);
+
+  // How hard the stops have to be for what hangs on the joints at the start.
+  void Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start);
+
+  // How the forces fall as each speed grows, and as each coordinate that is a joint's only one
+  // does. At least 0.
+  void Slopes(const SimTK::State& state, std::vector<double>* by_speed,
+              std::vector<double>* by_coordinate) const;
+
+  void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
+                 SimTK::Vector_<SimTK::Vec3>& particle_forces,
+                 SimTK::Vector& mobility_forces) const override;
+  SimTK::Real calcPotentialEnergy(const SimTK::State& /*state*/) const override { return 0; }
+
+ private:
+  const Forest& forest_;
+  const std::vector<SimTK::MobilizedBody> bodies_;
+  const std::span<const Wrench>& acting_;
+  std::vector<double> inertia_;  // that each joint moves: kg m^2 or kg
+};
+
+// How long a joint takes to a stop, as fast as it is; less where it would be through it before
+// error control sees it.
+double TimeToStop(const Joint& joint, double position, double velocity);
+
+}  // namespace tcs

@@ -1,0 +1,241 @@
+#include "simbody_bridge/simbody/tree/tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "simbody_bridge/simbody/tree/link_force.h"
+#include "simbody_bridge/simbody/tree/vectors.h"
+
+namespace tcs {
+namespace {
+
+SimTK::MassProperties MassOf(const TreeBody& body) {
+  const Matrix3& i = body.inertia_kgm2;
+  const SimTK::Inertia central(i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]);
+  const SimTK::Vec3 center = ToVec3(body.center_m);
+  return {body.mass_kg, center, central.shiftFromMassCenter(-center, body.mass_kg)};
+}
+
+// The joint's axis is the z of Simbody's frames, or of a slider's the x. A floating joint has none,
+// which turns nothing.
+SimTK::Rotation FrameOf(const TreeBody& body) {
+  const SimTK::Rotation z_on_axis = ToRotation(FromZTo(body.axis));
+  if (body.kind != JointKind::kPrismatic) return z_on_axis;
+  return z_on_axis * SimTK::Rotation(-SimTK::Pi / 2, SimTK::YAxis);  // takes x to z
+}
+
+}  // namespace
+
+SimbodyTree::SimbodyTree(const Forest& forest, const std::array<double, 3>& gravity_mps2)
+    : forest_(forest) {
+  forces_.setNumberOfThreads(1);
+  if (gravity_mps2 != std::array<double, 3>{}) {
+    SimTK::Force::UniformGravity(forces_, matter_, ToVec3(gravity_mps2));
+  }
+  for (const TreeBody& body : forest.bodies) AddBody(body);
+  AddMimics();
+  // Simbody owns the forces.
+  SimTK::Force::Custom(forces_, new LinkForce(forest_, bodies_, acting_));
+  auto* joints = new JointForce(forest_, bodies_, acting_);
+  SimTK::Force::Custom(forces_, joints);
+  state_ = system_.realizeTopology();
+  system_.realizeModel(state_);
+  SetStart();
+  joints->Measure(matter_, state_);
+  joint_force_ = joints;
+  contacts_ = std::make_unique<Contacts>(forest_, bodies_);
+}
+
+void SimbodyTree::AddBody(const TreeBody& body) {
+  SimTK::MobilizedBody parent = matter_.Ground();
+  if (body.parent != kWorldBody) parent = bodies_[static_cast<std::size_t>(body.parent)];
+  const SimTK::Body::Rigid mass(MassOf(body));
+  const SimTK::Transform turned(FrameOf(body));
+  const SimTK::Transform on_parent = ToTransform(body.origin) * turned;
+  switch (body.kind) {
+    case JointKind::kRevolute:
+    case JointKind::kContinuous:
+      bodies_.push_back(SimTK::MobilizedBody::Pin(parent, on_parent, mass, turned));
+      return;
+    case JointKind::kPrismatic:
+      bodies_.push_back(SimTK::MobilizedBody::Slider(parent, on_parent, mass, turned));
+      return;
+    case JointKind::kPlanar:
+      bodies_.push_back(SimTK::MobilizedBody::Planar(parent, on_parent, mass, turned));
+      return;
+    case JointKind::kFloating:
+    case JointKind::kFixed:  // never: a forest has none
+      bodies_.push_back(SimTK::MobilizedBody::Free(parent, on_parent, mass, turned));
+      return;
+  }
+}
+
+// 0 = multiplier * the leader's coordinate - the follower's + offset.
+void SimbodyTree::AddMimics() {
+  for (const ForestJoint& follower : forest_.joints) {
+    if (follower.leader < 0) continue;
+    const Mimic& mimic = *follower.joint->mimic;
+    const ForestJoint& leader = forest_.joints[static_cast<std::size_t>(follower.leader)];
+    const SimTK::Array_<SimTK::MobilizedBodyIndex> bodies = {
+        bodies_[static_cast<std::size_t>(leader.body)].getMobilizedBodyIndex(),
+        bodies_[static_cast<std::size_t>(follower.body)].getMobilizedBodyIndex()};
+    SimTK::Array_<SimTK::MobilizerQIndex> coordinates;
+    coordinates.push_back(SimTK::MobilizerQIndex(0));
+    coordinates.push_back(SimTK::MobilizerQIndex(0));
+    const SimTK::Vector coefficients(SimTK::Vec3(mimic.multiplier, -1, mimic.offset));
+    SimTK::Constraint::CoordinateCoupler(matter_, new SimTK::Function::Linear(coefficients), bodies,
+                                         coordinates);
+    has_mimics_ = true;
+  }
+}
+
+// Of a planar joint Simbody has the angle first; of a floating one the quaternion w x y z before
+// the position, and the angular velocity before the linear one.
+void SimbodyTree::SetStart() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const TreeBody& body = forest_.bodies[i];
+    const SimTK::MobilizedBody& mobile = bodies_[i];
+    SimTK::Vector q = mobile.getQAsVector(state_), u = mobile.getUAsVector(state_);
+    const std::vector<double>& at = body.position;
+    const std::vector<double>& speed = body.velocity;
+    if (body.kind == JointKind::kFloating) {
+      const auto xyzw = Normalised({at[3], at[4], at[5], at[6]});
+      q(0) = xyzw[3];
+      for (int k = 0; k < 3; ++k) {
+        const auto from = static_cast<std::size_t>(k);
+        q(1 + k) = xyzw[from];
+        q(4 + k) = at[from];
+        u(k) = speed[from + 3];
+        u(3 + k) = speed[from];
+      }
+    } else {
+      const int count = q.size();
+      for (int k = 0; k < count; ++k) {
+        const auto to = count == 3 ? (k + 1) % 3 : k;
+        q(to) = at[static_cast<std::size_t>(k)];
+        u(to) = speed[static_cast<std::size_t>(k)];
+      }
+    }
+    mobile.setQFromVector(state_, q);
+    mobile.setUFromVector(state_, u);
+    const auto all = static_cast<std::size_t>(state_.getNQ());
+    slots_.push_back({static_cast<std::size_t>(mobile.getFirstQIndex(state_)),
+                      static_cast<std::size_t>(q.size()),
+                      all + static_cast<std::size_t>(mobile.getFirstUIndex(state_)),
+                      static_cast<std::size_t>(u.size())});
+  }
+  const SimTK::Vector& y = state_.getY();
+  start_.assign(y.getContiguousScalarData(), y.getContiguousScalarData() + y.size());
+}
+
+void SimbodyTree::Load(std::span<const double> state) {
+  state_.updTime() = 0;
+  if (!state.empty()) std::copy(state.begin(), state.end(), &state_.updY()[0]);
+}
+
+void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench> acting,
+                           double* rate) {
+  try {
+    acting_ = acting;
+    Load(state);
+    system_.realize(state_, SimTK::Stage::Acceleration);
+    std::copy_n(state_.getYDot().getContiguousScalarData(), state.size(), rate);
+  } catch (const std::exception&) {
+    std::fill_n(rate, state.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void SimbodyTree::EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
+                                   double* rate) {
+  const bool is_known =
+      recalled_.state.size() == state.size() &&
+      std::memcmp(recalled_.state.data(), state.data(), state.size_bytes()) == 0 &&
+      std::equal(acting.begin(), acting.end(), recalled_.acting.begin(), recalled_.acting.end());
+  if (!is_known) {
+    recalled_.rate.resize(state.size());
+    Evaluate(state, acting, recalled_.rate.data());
+    recalled_.state.assign(state.begin(), state.end());
+    recalled_.acting.assign(acting.begin(), acting.end());
+  }
+  std::copy(recalled_.rate.begin(), recalled_.rate.end(), rate);
+}
+
+void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (forest_.bodies[i].kind != JointKind::kFloating) continue;
+    double* q = &state[slots_[i].q];
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (int k = 0; k < 4; ++k) q[k] /= norm;
+  }
+}
+
+void SimbodyTree::Project(std::span<double> state) {
+  NormaliseQuaternions(state);
+  if (!has_mimics_) return;
+  for (const ForestJoint& follower : forest_.joints) {
+    if (follower.leader < 0) continue;
+    const Mimic& mimic = *follower.joint->mimic;
+    const ForestJoint& leader = forest_.joints[static_cast<std::size_t>(follower.leader)];
+    const Slots& from = slots_[static_cast<std::size_t>(leader.body)];
+    const Slots& to = slots_[static_cast<std::size_t>(follower.body)];
+    state[to.q] = mimic.multiplier * state[from.q] + mimic.offset;
+    state[to.u] = mimic.multiplier * state[from.u];
+  }
+}
+
+double SimbodyTree::LongestStepFrom(std::span<const double> state) const {
+  double longest_s = std::numeric_limits<double>::infinity();
+  for (const ForestJoint& joint : forest_.joints) {
+    if (joint.body == kWorldBody) continue;
+    const Slots& slots = slots_[static_cast<std::size_t>(joint.body)];
+    longest_s = std::min(longest_s, TimeToStop(*joint.joint, state[slots.q], state[slots.u]));
+  }
+  return longest_s;
+}
+
+double SimbodyTree::TimeToTouch(std::span<const double> state) {
+  if (!contacts_->has_pairs()) return std::numeric_limits<double>::infinity();
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  return contacts_->TimeToTouch(state_);
+}
+
+void SimbodyTree::ReadLinks(std::span<const double> state, std::span<const int> links,
+                            std::span<LinkState> read) {
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const TreeLink& link = forest_.links[static_cast<std::size_t>(links[i])];
+    LinkState& of_link = read[i];
+    if (link.body == kWorldBody) {
+      of_link = {link.pose, {}, {}};
+      continue;
+    }
+    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(link.body)];
+    const SimTK::Transform pose = body.getBodyTransform(state_) * ToTransform(link.pose);
+    of_link.pose = {ToArray(pose.p()), ToXyzw(pose.R())};
+    of_link.linear_velocity_mps =
+        ToArray(body.findStationVelocityInGround(state_, ToVec3(link.pose.position_m)));
+    of_link.angular_velocity_radps = ToArray(body.getBodyAngularVelocity(state_));
+  }
+}
+
+void SimbodyTree::ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
+                             std::span<const int> joints, std::span<JointState> read) const {
+  const int links = static_cast<int>(forest_.links.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const ForestJoint& joint = forest_.joints[static_cast<std::size_t>(joints[i])];
+    if (joint.body == kWorldBody) {
+      read[i] = {};
+      continue;
+    }
+    const Slots& slots = slots_[static_cast<std::size_t>(joint.body)];
+    const double q = state[slots.q], u = state[slots.u];
+    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, joints[i]));
+    read[i] = {q, u, EffortOf(AsDrive(acting[place]), joint.joint->limits.effort, q, u)};
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,90 @@
+// An island of models as Simbody knows it: a mobilized body for each body of the forest. What the
+// island does is a function of its coordinates and speeds and of what acts; a SimTK::State is the
+// memory in which that function is evaluated, and nothing is left in it from one evaluation to the
+// next.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/simbody/contact/contacts.h"
+#include "simbody_bridge/simbody/simbody.h"
+#include "simbody_bridge/simbody/tree/joint_force.h"
+
+namespace tcs {
+
+class SimbodyTree {
+ public:
+  // Of a body's coordinates and speeds in a state: where they begin, and how many there are.
+  struct Slots {
+    std::size_t q, q_count, u, u_count;
+  };
+
+  // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses it.
+  SimbodyTree(const Forest& forest, const std::array<double, 3>& gravity_mps2);
+  SimbodyTree(const SimbodyTree&) = delete;
+  SimbodyTree& operator=(const SimbodyTree&) = delete;
+
+  // The coordinates and then the speeds, at the start.
+  const std::vector<double>& start() const { return start_; }
+  std::span<const Slots> slots() const { return slots_; }
+
+  // The derivatives of `state` where `acting` acts; NaN where Simbody cannot tell.
+  void Evaluate(std::span<const double> state, std::span<const Wrench> acting, double* rate);
+  // The same, for free where it is what was asked for the last time: a step mostly begins where the
+  // one before has ended.
+  void EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
+                        double* rate);
+  // Makes quaternions unit length again.
+  void NormaliseQuaternions(std::span<double> state) const;
+  // The same, and takes joints that mimic others to where these are.
+  void Project(std::span<double> state);
+  // No step from `state` on should be longer, so that error control does not miss a joint's stop.
+  double LongestStepFrom(std::span<const double> state) const;
+  // At least so long nothing touches; 0 where something may.
+  double TimeToTouch(std::span<const double> state);
+
+  // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
+  // Acceleration.
+  const Forest& forest() const { return forest_; }
+  const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
+  const SimTK::State& evaluated() const { return state_; }
+  const SimTK::MobilizedBody& body(int index) const {
+    return bodies_[static_cast<std::size_t>(index)];
+  }
+  const JointForce& joint_force() const { return *joint_force_; }
+  Contacts& contacts() { return *contacts_; }
+
+  void ReadLinks(std::span<const double> state, std::span<const int> links,
+                 std::span<LinkState> read);
+  void ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
+                  std::span<const int> joints, std::span<JointState> read) const;
+
+ private:
+  void AddBody(const TreeBody& body);
+  void AddMimics();
+  void SetStart();
+  void Load(std::span<const double> state);
+
+  const Forest& forest_;
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_{system_};
+  SimTK::GeneralForceSubsystem forces_{system_};
+  std::vector<SimTK::MobilizedBody> bodies_;
+  std::vector<Slots> slots_;
+  std::vector<double> start_;
+  bool has_mimics_ = false;
+  const JointForce* joint_force_ = nullptr;  // Simbody owns it
+  std::unique_ptr<Contacts> contacts_;
+  SimTK::State state_;
+  std::span<const Wrench> acting_;  // while a state is evaluated
+  struct {
+    std::vector<double> state, rate;
+    std::vector<Wrench> acting;
+  } recalled_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,32 @@
+// Runge-Kutta 3(2) for one island of models: the method of runge_kutta3.h, where coordinates and
+// speeds belong to joints.
+#pragma once
+
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/simbody/tree/tree.h"
+
+namespace tcs {
+
+class TreeSteps {
+ public:
+  // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds.
+  explicit TreeSteps(double accuracy) : accuracy_(accuracy) {}
+
+  // As long as error control lets it be, and no longer than `limit_s`, which is within the step's.
+  // Throws std::runtime_error where no step is short enough for the accuracy.
+  void TakeControlled(SimbodyTree& tree, IslandStep& step, double limit_s);
+  // As long as its limit.
+  void TakeWhole(SimbodyTree& tree, IslandStep& step);
+
+ private:
+  void Begin(SimbodyTree& tree, IslandStep& step);
+  void Try(SimbodyTree& tree, IslandStep& step, double length_s);
+  double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s) const;
+
+  const double accuracy_;
+  std::vector<double> state_, middle_rate_, end_rate_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,61 @@
+#include "coordinator/host/ahead_clock.h"
+
+#include <gtest/gtest.h>
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kUs = 1'000, kMs = 1'000'000, kAll = 1'000 * kMs;
+
+TEST(AheadClock, NothingIsComputedOnTheWay) {
+  const AheadClock clock;
+  EXPECT_EQ(clock.ComputedBy(0, kAll), 0);
+  EXPECT_EQ(clock.ComputedBy(AheadClock::kWayNs, kAll), 0);
+  EXPECT_EQ(clock.ComputedBy(AheadClock::kWayNs + 7 * kUs, kAll), 7 * kUs);
+}
+
+TEST(AheadClock, FromWhatIsKnownTheTscCarriesOn) {
+  AheadClock clock;
+  clock.Know(1 * kMs, 800 * kUs);
+  EXPECT_EQ(clock.ComputedBy(1 * kMs, kAll), 800 * kUs);
+  EXPECT_EQ(clock.ComputedBy(1 * kMs + 50 * kUs, kAll), 850 * kUs);
+  EXPECT_EQ(clock.ComputedBy(900 * kUs, kAll), 800 * kUs) << "what is known has been computed";
+}
+
+TEST(AheadClock, NobodyComputesMoreThanIsAllowed) {
+  AheadClock clock;
+  clock.Know(1 * kMs, 800 * kUs);
+  EXPECT_EQ(clock.ComputedBy(2 * kMs, 1 * kMs), 1 * kMs);
+  EXPECT_EQ(clock.ComputedBy(2 * kMs, 700 * kUs), 800 * kUs) << "but what is known has been";
+}
+
+TEST(AheadClock, WithoutALookForLongNothingMoreIsComputed) {
+  AheadClock clock;
+  clock.Know(1 * kMs, 800 * kUs);
+  const std::int64_t most = 800 * kUs + AheadClock::kMostUnknownNs;
+  EXPECT_EQ(clock.ComputedBy(1 * kMs + AheadClock::kMostUnknownNs, kAll), most);
+  EXPECT_EQ(clock.ComputedBy(500 * kMs, kAll), most);
+}
+
+TEST(AheadClock, WhoseProcessorOthersHaveForLongIsStarved) {
+  AheadClock clock;
+  EXPECT_FALSE(clock.IsStarvedBy(0));
+  clock.Know(20 * kMs, 20 * kMs - AheadClock::kWayNs - AheadClock::kMostTakenNs);
+  EXPECT_FALSE(clock.IsStarvedBy(20 * kMs)) << "not more than that";
+  clock.Know(20 * kMs, 20 * kMs - AheadClock::kWayNs - AheadClock::kMostTakenNs - 1);
+  EXPECT_TRUE(clock.IsStarvedBy(20 * kMs));
+  clock.Know(80 * kMs, 61 * kMs);
+  EXPECT_FALSE(clock.IsStarvedBy(80 * kMs)) << "less than a part of all";
+  clock.Know(80 * kMs, 59 * kMs);
+  EXPECT_TRUE(clock.IsStarvedBy(80 * kMs));
+}
+
+TEST(AheadClock, SoIsOneThatNobodyLooksAt) {
+  AheadClock clock;
+  clock.Know(10 * kMs, 10 * kMs);
+  EXPECT_FALSE(clock.IsStarvedBy(10 * kMs + AheadClock::kLostNs));
+  EXPECT_TRUE(clock.IsStarvedBy(10 * kMs + AheadClock::kLostNs + 1));
+}
+
+}  // namespace
+}  // namespace tcs

@@ -1,0 +1,106 @@
+// With a thread of this process that computes, and real processors.
+#include "coordinator/host/further_cpu.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
+#include <x86intrin.h>
+
+#include <atomic>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "coordinator/os/cpu_places.h"
+#include "tests/unit/host/noting_executor.h"
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+class FurtherCpuTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::vector<CpuPlace> cpus = CpuPlaces();
+    if (cpus.size() < 2) GTEST_SKIP() << "this machine has one processor";
+    home_ = cpus[0].number;
+    cpu_.emplace(cpus[1].number, home_, 1.0, executor_);
+    computing_ = std::thread([this] {
+      cpu_set_t home;
+      CPU_ZERO(&home);
+      CPU_SET(home_, &home);
+      sched_setaffinity(0, sizeof home, &home);
+      thread_.tid = gettid();
+      begun_ = true;
+      while (!ends_) where_ = sched_getcpu();
+    });
+    while (!begun_) sched_yield();
+  }
+  void TearDown() override {
+    ends_ = true;
+    if (computing_.joinable()) computing_.join();
+  }
+  void AwaitAt(int cpu) {
+    while (where_ != cpu) sched_yield();
+  }
+
+  NotingExecutor executor_;
+  int home_ = -1;
+  std::optional<FurtherCpu> cpu_;
+  HostThread thread_;
+  std::atomic<bool> begun_{false}, ends_{false};
+  std::atomic<int> where_{-1};
+  std::thread computing_;
+};
+
+TEST_F(FurtherCpuTest, AThreadGoesThereAndIsSentHomeAtItsLimit) {
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 3 * kMs));
+  EXPECT_TRUE(thread_.is_ahead);
+  EXPECT_EQ(cpu_->thread(), &thread_);
+  EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc())) << "one at a time";
+  while (!cpu_->HasLeft()) sched_yield();
+  AwaitAt(home_);
+  EXPECT_GE(cpu_->ComputedBy(__rdtsc()), 3 * kMs) << "not before";
+  EXPECT_TRUE(thread_.is_ahead) << "until it is taken back";
+  cpu_->BringHome();
+  EXPECT_FALSE(thread_.is_ahead);
+  EXPECT_TRUE(cpu_->IsFreeAt(__rdtsc()));
+}
+
+TEST_F(FurtherCpuTest, WhoIsAllowedMoreGoesOn) {
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  cpu_->Allow(2'000 * kMs);
+  AwaitAt(cpu_->cpu());
+  EXPECT_FALSE(cpu_->HasLeft());
+  cpu_->BringHome();
+  AwaitAt(home_);
+  EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
+}
+
+TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  ends_ = true;
+  computing_.join();
+  cpu_->BringHome();
+  EXPECT_FALSE(cpu_->Send(thread_, __rdtsc(), kMs)) << "it cannot be sent again";
+}
+
+TEST_F(FurtherCpuTest, AClaimedProcessorIsNotFree) {
+  cpu_->SetClaimed(true);
+  EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc()));
+  cpu_->SetClaimed(false);
+  EXPECT_TRUE(cpu_->IsFreeAt(__rdtsc()));
+}
+
+TEST_F(FurtherCpuTest, OneThatIsLeftToOthersIsFreeLaterTheOftenerTheLater) {
+  cpu_->LeaveToOthers(1'000);
+  EXPECT_FALSE(cpu_->IsFreeAt(1'000 + 499 * kMs));
+  EXPECT_TRUE(cpu_->IsFreeAt(1'000 + 500 * kMs));
+  cpu_->LeaveToOthers(1'000);
+  EXPECT_FALSE(cpu_->IsFreeAt(1'000 + 999 * kMs));
+  EXPECT_TRUE(cpu_->IsFreeAt(1'000 + 1'000 * kMs));
+}
+
+}  // namespace
+}  // namespace tcs

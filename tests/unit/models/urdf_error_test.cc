@@ -1,0 +1,397 @@
+// Every mistake in a robot's description is one sentence that begins with its place.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/unit/models/model_folder.h"
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+constexpr std::string_view kGood = R"(<?xml version="1.0"?>
+<robot name="crane" version="1.0">
+  <material name="red"/>
+  <link name="base">
+    <visual/>
+    <collision><geometry><box size="1 1 0.1"/></geometry></collision>
+  </link>
+  <link name="boom">
+    <inertial>
+      <origin xyz="0 0 0.5" rpy="0 0 0"/>
+      <mass value="2.0"/>
+      <inertia ixx="0.2" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.1"/>
+    </inertial>
+    <collision name="shell">
+      <origin xyz="0 0 0.5"/>
+      <geometry><cylinder radius="0.1" length="1"/></geometry>
+    </collision>
+  </link>
+  <joint name="mast" type="revolute">
+    <origin xyz="0 0 0.1"/>
+    <parent link="base"/>
+    <child link="boom"/>
+    <axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="10" velocity="2"/>
+    <dynamics damping="0.1" friction="0.01"/>
+  </joint>
+  <link name="hook">
+    <inertial><mass value="0.5"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>
+  </link>
+  <joint name="trolley" type="prismatic">
+    <parent link="boom"/>
+    <child link="hook"/>
+    <axis xyz="1 0 0"/>
+    <limit lower="0" upper="1" effort="10" velocity="2"/>
+    <mimic joint="mast" multiplier="0.5" offset="0.1"/>
+  </joint>
+</robot>
+)";
+
+std::string With(std::string_view from, std::string_view to) {
+  std::string text(kGood);
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
+    throw std::logic_error("not once in the robot: " + std::string(from));
+  }
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Urdf, ThatIsSoundIsTakenWithoutAWord) {
+  const ModelFolder folder;
+  const Loaded loaded = LoadText(folder, kGood, {true});
+  EXPECT_EQ(loaded.mistake, "");
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+}
+
+struct Mistake {
+  std::string_view name;
+  std::string_view from;  // in kGood
+  std::string_view to;
+  int line;
+  std::vector<std::string_view> words;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+class UrdfMistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(UrdfMistakeTest, IsOneSentenceWithItsPlace) {
+  const ModelFolder folder;
+  const Mistake& mistake = GetParam();
+  testing::internal::CaptureStderr();
+  const Loaded loaded = LoadText(folder, With(mistake.from, mistake.to), {true});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_THAT(loaded.mistake, StartsWith("robot.urdf:" + std::to_string(mistake.line) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(loaded.mistake, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kFileMistakes[] = {
+    {"NoXml", kGood, "duration: 20s\n", 1, {"not valid XML"}},
+    {"Empty", kGood, "", 1, {"not valid XML", "no element"}},
+    {"OnlyAComment", kGood, "<!-- nothing -->", 1, {"no <robot>"}},
+    {"Unclosed", "</robot>", "", 2, {"not valid XML", "not closed"}},
+    {"CrossedEnds", "<visual/>", "<visual>", 5, {"not valid XML", "another name"}},
+    {"AttributeTwice",
+     "<axis xyz=\"0 0 1\"/>",
+     "<axis xyz=\"0 0 1\" xyz=\"1 0 0\"/>",
+     23,
+     {"twice"}},
+    {"Sdf", kGood, "<sdf version='1.7'><model/></sdf>", 1, {"Gazebo's SDF", "URDF"}},
+    {"Mjcf", kGood, "<mujoco/>", 1, {"MuJoCo's MJCF"}},
+    {"OtherRoot", kGood, "<!-- x -->\n<bot/>", 2, {"'bot'", "<robot>"}},
+    {"SecondRoot", "</robot>\n", "</robot>\n<robot/>", 38, {"second element"}},
+    {"Xacro",
+     "  <material name=\"red\"/>",
+     "  <xacro:include filename=\"x\"/>",
+     3,
+     {"xacro is not expanded", "`xacro robot.urdf > robot.expanded.urdf`"}},
+    {"XacroValue", "value=\"2.0\"", "value=\"${mass}\"", 11, {"xacro is not expanded"}},
+    {"DocumentType",
+     "<?xml version=\"1.0\"?>",
+     "<!DOCTYPE robot [<!ENTITY a \"b\">]>",
+     1,
+     {"document type", "remove it"}},
+    {"NoName", "<robot name=\"crane\"", "<robot", 2, {"this <robot> has no name"}},
+};
+
+const Mistake kLinkMistakes[] = {
+    {"NoLinkName", "<link name=\"hook\">", "<link>", 27, {"this <link> has no name"}},
+    {"EmptyLinkName", "<link name=\"hook\">", "<link name=\"\">", 27, {"must be a name"}},
+    {"LineEndInName", "<link name=\"hook\">", "<link name=\"ho&#10;ok\">", 27, {"'ho\\nok'"}},
+    {"LinkTwice",
+     "<link name=\"hook\">",
+     "<link name=\"boom\">",
+     27,
+     {"second link", "'boom'", "line 8"}},
+    {"NoMass", "      <mass value=\"2.0\"/>\n", "", 9, {"<inertial> in link 'boom' has no <mass>"}},
+    {"MassIsNoNumber", "\"2.0\"", "\"heavy\"", 11, {"value of <mass> in link 'boom' is 'heavy'"}},
+    {"MassIsNan", "\"2.0\"", "\"nan\"", 11, {"'nan'", "finite"}},
+    {"MassIsInfinite", "\"2.0\"", "\"inf\"", 11, {"'inf'", "finite"}},
+    {"MassOverflows", "\"2.0\"", "\"1e999\"", 11, {"'1e999'", "finite"}},
+    {"MassWithUnit", "\"2.0\"", "\"2.0 kg\"", 11, {"'2.0 kg'", "finite number"}},
+    {"NegativeMass", "\"2.0\"", "\"-2\"", 11, {"'-2'", "0 or more"}},
+    {"ZeroMass", "\"2.0\"", "\"0\"", 8, {"link 'boom'", "mass must be positive"}},
+    {"TwoMasses",
+     "<mass value=\"2.0\"/>",
+     "<mass value=\"2\"/><mass value=\"3\"/>",
+     11,
+     {"second <mass>"}},
+    {"MassWithoutValue",
+     "<mass value=\"2.0\"/>",
+     "<mass/>",
+     11,
+     {"<mass> in link 'boom' has no value"}},
+    {"InertiaLacksAnElement", "ixx=\"0.2\" ", "", 12, {"<inertia> in link 'boom' has no ixx"}},
+    {"ImpossibleInertia", "izz=\"0.1\"", "izz=\"0.5\"", 8, {"link 'boom'", "exceeds the sum"}},
+    {"NegativeInertia", "izz=\"0.1\"", "izz=\"-0.1\"", 8, {"link 'boom'", "positive"}},
+    {"IndefiniteInertia", "ixx=\"0.2\" ixy=\"0\"", "ixx=\"0.2\" ixy=\"0.3\"", 8, {"link 'boom'"}},
+    {"NoInertialOfWhatMoves",
+     "<inertial><mass value=\"0.5\"/><inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" "
+     "iyz=\"0\" "
+     "izz=\"0.01\"/></inertial>",
+     "",
+     27,
+     {"link 'hook' moves", "has no mass"}},
+    {"NothingForAnInertialOfWhatMoves",
+     "<mass value=\"0.5\"/><inertia ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" "
+     "izz=\"0.01\"/>",
+     "<mass value=\"0\"/><inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/>",
+     27,
+     {"link 'hook' moves", "has no mass"}},
+    {"TwoNumbersForThree",
+     "xyz=\"0 0 0.5\" rpy",
+     "xyz=\"0 0.5\" rpy",
+     10,
+     {"xyz of <origin>", "three"}},
+    {"WordInThree", "rpy=\"0 0 0\"", "rpy=\"0 0 pi\"", 10, {"'0 0 pi'", "three finite numbers"}},
+    {"NoGeometry",
+     "<geometry><box size=\"1 1 0.1\"/></geometry>",
+     "",
+     6,
+     {"<collision> in link 'base' has no <geometry>"}},
+    {"EmptyGeometry",
+     "<box size=\"1 1 0.1\"/>",
+     "",
+     6,
+     {"<geometry> in link 'base' is empty", "box"}},
+    {"UnknownShape",
+     "<box size=\"1 1 0.1\"/>",
+     "<boxx size=\"1 1 0.1\"/>",
+     6,
+     {"unknown shape 'boxx'", "did you mean 'box'?"}},
+    {"TwoShapes",
+     "<box size=\"1 1 0.1\"/>",
+     "<box size=\"1 1 1\"/><sphere radius=\"1\"/>",
+     6,
+     {"more than one shape"}},
+    {"FlatBox", "\"1 1 0.1\"", "\"1 1 0\"", 6, {"three positive numbers"}},
+    {"NegativeRadius",
+     "radius=\"0.1\"",
+     "radius=\"-0.1\"",
+     16,
+     {"radius of <cylinder>", "positive"}},
+    {"NoSuchMesh",
+     "<box size=\"1 1 0.1\"/>",
+     "<mesh filename=\"none.stl\"/>",
+     6,
+     {"link 'base'", "none.stl: cannot be read: No such file"}},
+    {"NoSuchPackage",
+     "<box size=\"1 1 0.1\"/>",
+     "<mesh filename=\"package://none/a.stl\"/>",
+     6,
+     {"link 'base'", "package 'none'"}},
+    {"MeshOfAnotherKind",
+     "<box size=\"1 1 0.1\"/>",
+     "<mesh filename=\"robot.urdf\"/>",
+     6,
+     {"no mesh that tcs reads", ".stl, .obj or .dae"}},
+    {"MeshIsAFolder",
+     "<box size=\"1 1 0.1\"/>",
+     "<mesh filename=\"/tmp/.stl\"/>",
+     6,
+     {"link 'base'"}},
+    {"FlatScale",
+     "<box size=\"1 1 0.1\"/>",
+     "<mesh filename=\"a.stl\" scale=\"1 0 1\"/>",
+     6,
+     {"scale of a mesh is 0"}},
+};
+
+const Mistake kJointMistakes[] = {
+    {"NoType", " type=\"revolute\"", "", 19, {"this <joint> has no type"}},
+    {"UnknownType",
+     "\"revolute\"",
+     "\"revolut\"",
+     19,
+     {"unknown type 'revolut'", "did you mean 'revolute'?"}},
+    {"BallType", "\"revolute\"", "\"ball\"", 19, {"unknown type 'ball'", "types here are fixed"}},
+    {"JointTwice", "\"trolley\"", "\"mast\"", 30, {"second joint", "'mast'", "line 19"}},
+    {"NoParent", "    <parent link=\"base\"/>\n", "", 19, {"joint 'mast' has no <parent>"}},
+    {"NoChild", "    <child link=\"boom\"/>\n", "", 19, {"joint 'mast' has no <child>"}},
+    {"NoSuchParent",
+     "<parent link=\"base\"/>",
+     "<parent link=\"bas\"/>",
+     21,
+     {"joint 'mast' has the parent 'bas'", "did you mean 'base'?"}},
+    {"NoSuchChild",
+     "<child link=\"boom\"/>",
+     "<child link=\"x\"/>",
+     22,
+     {"child 'x', but there is no such"}},
+    {"NoLimit",
+     "    <limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>\n",
+     "",
+     19,
+     {"joint 'mast' has no <limit>", "continuous"}},
+    {"NoEffort",
+     "lower=\"-1\" upper=\"1\" effort=\"10\"",
+     "lower=\"-1\" upper=\"1\"",
+     24,
+     {"has no effort"}},
+    {"NegativeEffort",
+     "upper=\"1\" effort=\"10\" velocity=\"2\"/>\n    <dyn",
+     "upper=\"1\" effort=\"-10\" velocity=\"2\"/>\n    <dyn",
+     24,
+     {"0 or more"}},
+    {"LimitsTurnedRound", "lower=\"-1\"", "lower=\"2\"", 19, {"joint 'mast'", "not below"}},
+    {"NoDirection", "<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", 19, {"no direction"}},
+    {"NegativeDamping",
+     "damping=\"0.1\"",
+     "damping=\"-0.1\"",
+     25,
+     {"damping of <dynamics>", "0 or more"}},
+    {"MimicsNobody",
+     "mimic joint=\"mast\"",
+     "mimic joint=\"mats\"",
+     35,
+     {"joint 'trolley' follows 'mats'", "did you mean 'mast'?"}},
+    {"MimicsItself", "mimic joint=\"mast\"", "mimic joint=\"trolley\"", 30, {"follows itself"}},
+    {"TwoRoots",
+     "<parent link=\"boom\"/>\n    <child link=\"hook\"/>",
+     "<parent link=\"base\"/>\n    <child link=\"boom\"/>",
+     8,
+     {"child of joint 'mast' and of joint 'trolley'"}},
+    {"LinkThatHangsOnNothing",
+     "  <link name=\"hook\">",
+     "  <link name=\"other\"/>\n  <link name=\"hook\">",
+     27,
+     {"no joint joins link 'other'", "'base' is the root"}},
+    {"JointOnItself", "<parent link=\"boom\"/>", "<parent link=\"hook\"/>", 27, {"loop", "'hook'"}},
+    {"LoopWithoutARoot",
+     "</robot>",
+     "<joint name=\"back\" type=\"fixed\"><parent link=\"hook\"/><child "
+     "link=\"base\"/></joint></robot>",
+     4,
+     {"loop", "joint 'back'"}},
+};
+
+std::string NameOf(const testing::TestParamInfo<Mistake>& info) {
+  return std::string(info.param.name);
+}
+INSTANTIATE_TEST_SUITE_P(File, UrdfMistakeTest, testing::ValuesIn(kFileMistakes), NameOf);
+INSTANTIATE_TEST_SUITE_P(Links, UrdfMistakeTest, testing::ValuesIn(kLinkMistakes), NameOf);
+INSTANTIATE_TEST_SUITE_P(Joints, UrdfMistakeTest, testing::ValuesIn(kJointMistakes), NameOf);
+
+TEST(Urdf, AFreeRootNeedsMassAndAFixedOneDoesNot) {
+  const ModelFolder folder;
+  EXPECT_EQ(LoadText(folder, kGood, {true}).mistake, "");
+  EXPECT_THAT(LoadText(folder, kGood, {false}).mistake,
+              HasSubstr("robot.urdf:4: link 'base' moves (its base is free) but has no mass"));
+}
+
+struct Oddity {
+  std::string_view name;
+  std::string_view from;
+  std::string_view to;
+  std::string_view sentence;
+};
+
+void PrintTo(const Oddity& oddity, std::ostream* out) { *out << oddity.name; }
+
+class UrdfOddityTest : public testing::TestWithParam<Oddity> {};
+
+TEST_P(UrdfOddityTest, IsSaidOnceAndLeftOut) {
+  const ModelFolder folder;
+  const Oddity& oddity = GetParam();
+  const Loaded loaded = LoadText(folder, With(oddity.from, oddity.to), {true});
+  EXPECT_EQ(loaded.mistake, "");
+  EXPECT_THAT(loaded.warnings, ElementsAre(std::string(oddity.sentence)));
+}
+
+std::string Label(const testing::TestParamInfo<Oddity>& info) {
+  return std::string(info.param.name);
+}
+
+const Oddity kOddities[] = {
+    {"Sensor", "<visual/>", "<sensor/>", "robot.urdf:5: <sensor> is not understood and left out"},
+    {"ManyOfAKind", "<material name=\"red\"/>", "<gazebo/>\n<gazebo/><gazebo/>",
+     "robot.urdf:3: <gazebo> is not understood and left out, as are 2 more of its kind"},
+    {"Misspelt", "<dynamics damping=\"0.1\" friction=\"0.01\"/>", "<dynamic damping=\"1\"/>",
+     "robot.urdf:25: <dynamic> is not understood and left out; did you mean 'dynamics'?"},
+    {"MisspeltAttribute", "friction=\"0.01\"", "frictoin=\"0.01\"",
+     "robot.urdf:25: the attribute 'frictoin' of <dynamics> is not understood and left out; did "
+     "you "
+     "mean 'friction'?"},
+    {"AnotherVersion", "crane\" version=\"1.0\"", "crane\" version=\"1.2\"",
+     "robot.urdf:2: the attribute 'version' of <robot> is not understood and left out"},
+    {"ControlCharacters", "<visual/>", "<a\xc2\x9b/>",
+     "robot.urdf:5: <a\\xc2\\x9b> is not understood and left out"},
+    {"NoRange", "lower=\"-1\" upper=\"1\" ", "",
+     "robot.urdf:19: joint 'mast' cannot move: both its limits are 0, as they are where they are "
+     "not "
+     "given"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, UrdfOddityTest, testing::ValuesIn(kOddities), Label);
+
+TEST(Urdf, ALimitOfAJointThatHasNoneIsSaidAndLeftOut) {
+  const ModelFolder folder;
+  std::string text = With("<mimic joint=\"mast\" multiplier=\"0.5\" offset=\"0.1\"/>", "");
+  text.replace(text.find("revolute"), 8, "planar");
+  const Loaded loaded = LoadText(folder, text, {true});
+  EXPECT_EQ(loaded.mistake, "");
+  EXPECT_THAT(
+      loaded.warnings,
+      ElementsAre("robot.urdf:19: joint 'mast' has a <limit>, which means nothing for a joint "
+                  "of its type and is left out"));
+}
+
+TEST(Urdf, NumbersMayStandAsInXml) {
+  const ModelFolder folder;
+  const Loaded loaded =
+      LoadText(folder, With("xyz=\"0 0 0.5\" rpy", "xyz=\"\n 1.\t+2e-1  \r\n-.5 \" rpy"), {true});
+  EXPECT_EQ(loaded.mistake, "");
+  EXPECT_EQ(LinkNamed(loaded.model, "boom").inertial.value().frame.position_m,
+            (std::array<double, 3>{1, 0.2, -0.5}));
+}
+
+TEST(Urdf, AContinuousJointHasNoRangeWhateverItsLimitSays) {
+  const ModelFolder folder;
+  const Loaded loaded = LoadText(folder, With("\"revolute\"", "\"continuous\""), {true});
+  EXPECT_EQ(loaded.mistake, "");
+  const JointLimits& limits = JointNamed(loaded.model, "mast").limits;
+  EXPECT_EQ(limits.lower, -kNoLimit);
+  EXPECT_EQ(limits.effort, 10);
+}
+
+TEST(Urdf, AFileThatIsNotThereIsNamed) {
+  EXPECT_EQ(LoadFile("/none/robot.urdf").mistake,
+            "/none/robot.urdf: cannot be read: No such file or directory; give the path of a URDF "
+            "file");
+  EXPECT_THAT(LoadFile("/tmp").mistake, HasSubstr("/tmp: is no ordinary file"));
+}
+
+}  // namespace
+}  // namespace tcs

@@ -1,0 +1,449 @@
+// `models` of a scenario: robots from files, bodies of one shape, and what is wrong with them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "tests/unit/scenario/scenario_folder.h"
+
+namespace tcs {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::string_view kArm = R"(<robot name="two_joints">
+  <link name="base"/>
+  <link name="upper"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="fore"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="tip"/>
+  <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="fore"/>
+    <limit lower="0.5" upper="2" effort="1" velocity="1"/></joint>
+  <joint name="flange" type="fixed"><parent link="fore"/><child link="tip"/></joint>
+  <gazebo/>
+</robot>
+)";
+
+constexpr std::string_view kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+// Its lines are counted on.
+constexpr std::string_view kGood = R"(duration: 1s
+dynamics: {gravity: [0, 0, -9.81]}
+models:
+  arm:
+    urdf: arm.urdf
+    at: {position: [1, 2, 3], orientation: [0, 0, 1, 0]}
+    fixed_base: true
+    joints: {elbow: 1.5}
+    friction: 0.5
+  floor: {plane: [0, 0, 1], position: [0, 0, -1], friction: 0.9}
+  wall: {box: [1, 2, 3], static: true, orientation: [1, 0, 0, 0]}
+  crate: {box: [1, 2, 3], mass: 12, position: [0, 0, 5], linear_velocity: [1, 0, 0]}
+  ball: {sphere: 0.5, mass: 2, angular_velocity: [0, 0, 9]}
+  can: {cylinder: {radius: 1, length: 2}, mass: 12}
+  pill: {capsule: {radius: 1, length: 2}, mass: 10}
+  rock: {mesh: rock.obj, scale: [1, 2, 3], mass: 6}
+robots:
+  r: {clients: {c: {command: [./controller]}}}
+)";
+
+struct Folder : ScenarioFolder {
+  Folder() {
+    Write("arm.urdf", kArm);
+    Write("rock.obj", kTetrahedron);
+  }
+};
+
+Scenario Loaded(const Folder& folder, std::string_view text = kGood) {
+  return ScenarioOf(LoadScenario(folder.Write("s.yaml", text)));
+}
+
+const RobotModel& Named(const Scenario& scenario, std::string_view name) {
+  for (const RobotModel& model : scenario.world->models) {
+    if (model.name == name) return model;
+  }
+  throw std::logic_error("no model " + std::string(name));
+}
+
+TEST(LoadModels, ARobotStandsWhereTheScenarioSays) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder);
+  const RobotModel& arm = Named(scenario, "arm");
+  EXPECT_TRUE(arm.has_fixed_base);
+  EXPECT_EQ(arm.at, (Pose{{1, 2, 3}, {0, 0, 1, 0}}));
+  EXPECT_THAT(arm.joints.at(1).initial_position, ElementsAre(1.5));
+  EXPECT_TRUE(arm.joints.at(0).initial_position.empty());
+  EXPECT_EQ(arm.links.at(1).shapes.at(0).friction, 0.5);
+  EXPECT_FALSE(arm.has_self_collision);
+  EXPECT_THAT(scenario.warnings, ElementsAre(folder.Path("arm.urdf") +
+                                             ":11: <gazebo> is not understood and left out"));
+}
+
+TEST(LoadModels, WhatStandsIsOfTheWorld) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder);
+  const std::vector<Shape>& fixtures = scenario.world->fixtures;
+  ASSERT_EQ(fixtures.size(), 2u);
+  EXPECT_EQ(fixtures[0].name, "floor");
+  EXPECT_TRUE(std::holds_alternative<PlaneShape>(fixtures[0].geometry));
+  EXPECT_EQ(fixtures[0].pose, (Pose{{0, 0, -1}, {0, 0, 0, 1}}));
+  EXPECT_EQ(fixtures[0].friction, 0.9);
+  EXPECT_EQ(fixtures[1].name, "wall");
+  EXPECT_EQ(std::get<BoxShape>(fixtures[1].geometry).size_m, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(fixtures[1].pose.orientation_xyzw, (std::array<double, 4>{1, 0, 0, 0}));
+}
+
+TEST(LoadModels, ANormalIsTheWayUpFromAPlane) {
+  const Folder folder;
+  struct Case {
+    std::string_view written;
+    std::array<double, 3> normal;
+  };
+  for (const Case& each : {Case{"[2, 0, 0]", {1, 0, 0}}, Case{"[0, -3, 0]", {0, -1, 0}},
+                           Case{"[0, 0, -1]", {0, 0, -1}}, Case{"[3, 0, 4]", {0.6, 0, 0.8}}}) {
+    const Scenario scenario = Loaded(
+        folder, WithReplaced("plane: [0, 0, 1]", "plane: " + std::string(each.written), kGood));
+    const auto up = Rotate(scenario.world->fixtures[0].pose.orientation_xyzw, {0, 0, 1});
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(up[i], each.normal[i], 1e-12) << each.written;
+  }
+}
+
+TEST(LoadModels, ABodyOfOneShapeHasItsMassSpreadEvenly) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder);
+  const auto moments = [&](std::string_view name) {
+    const Inertial& inertial = Named(scenario, name).links.at(0).inertial.value();
+    return std::array<double, 3>{inertial.ixx_kgm2, inertial.iyy_kgm2, inertial.izz_kgm2};
+  };
+  EXPECT_EQ(moments("crate"), (std::array<double, 3>{13, 10, 5}));
+  EXPECT_EQ(moments("ball"), (std::array<double, 3>{0.2, 0.2, 0.2}));
+  EXPECT_EQ(moments("can"), (std::array<double, 3>{7, 7, 6}));
+  // A cylinder of 6 kg and two half balls of 2 kg, each 1.375 m from the middle.
+  const double half_ball = 2 * (2.0 / 5 - 9.0 / 64) + 2 * 1.375 * 1.375;
+  EXPECT_NEAR(moments("pill")[0], 6 * 7 / 12.0 + 2 * half_ball, 1e-12);
+  EXPECT_NEAR(moments("pill")[2], 3 + 1.6, 1e-12);
+  const RobotModel& crate = Named(scenario, "crate");
+  EXPECT_FALSE(crate.has_fixed_base);
+  EXPECT_EQ(crate.at.position_m, (std::array<double, 3>{0, 0, 5}));
+  EXPECT_EQ(crate.linear_velocity_mps, (std::array<double, 3>{1, 0, 0}));
+  EXPECT_EQ(Named(scenario, "ball").angular_velocity_radps, (std::array<double, 3>{0, 0, 9}));
+}
+
+// With legs a, b and c along x, y and z a corner's tetrahedron has its middle a quarter of each
+// away.
+TEST(LoadModels, AMeshHasTheInertiaOfItsVolume) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder);
+  const Inertial& rock = Named(scenario, "rock").links.at(0).inertial.value();
+  EXPECT_NEAR(rock.frame.position_m[0], 0.25, 1e-12);
+  EXPECT_NEAR(rock.frame.position_m[2], 0.75, 1e-12);
+  const double m = 6, a = 1, b = 2, c = 3;
+  EXPECT_NEAR(rock.ixx_kgm2, 3 * m * (b * b + c * c) / 80, 1e-12);
+  EXPECT_NEAR(rock.izz_kgm2, 3 * m * (a * a + b * b) / 80, 1e-12);
+  EXPECT_NEAR(rock.ixy_kgm2, m * a * b / 80, 1e-12);
+  EXPECT_NEAR(rock.iyz_kgm2, m * b * c / 80, 1e-12);
+}
+
+TEST(LoadModels, AJointWithSeveralCoordinatesStartsWithAsMany) {
+  const Folder folder;
+  folder.Write("arm.urdf", WithReplaced("type=\"continuous\"", "type=\"planar\"", kArm));
+  const Scenario scenario =
+      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: 1, shoulder: [1, 2, 3]}", kGood));
+  EXPECT_THAT(Named(scenario, "arm").joints.at(0).initial_position, ElementsAre(1, 2, 3));
+}
+
+TEST(LoadModels, PackagesAreLookedForWhereTheScenarioSays) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.Path("share/rocks"));
+  folder.Write("share/rocks/rock.obj", kTetrahedron);
+  folder.Write("arm.urdf", WithReplaced("<sphere radius=\"0.1\"/>",
+                                        "<mesh filename=\"package://rocks/rock.obj\"/>", kArm));
+  EXPECT_THAT(Complaint(folder, kGood), HasSubstr("is in the package 'rocks'"));
+  const Scenario scenario =
+      Loaded(folder,
+             WithReplaced("    friction: 0.5", "    packages: [\"${scenario_dir}/share\"]", kGood));
+  EXPECT_TRUE(
+      std::holds_alternative<MeshShape>(Named(scenario, "arm").links.at(1).shapes.at(0).geometry));
+}
+
+struct Mistake {
+  std::string_view name;
+  std::string_view from;  // in kGood
+  std::string_view to;
+  std::string_view place;
+  std::vector<std::string_view> words;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
+class ModelMistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(ModelMistakeTest, IsOneSentenceWithItsPlace) {
+  const Folder folder;
+  const Mistake& mistake = GetParam();
+  const std::string path = folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, kGood));
+  const std::string complaint = Complaint(folder, LoadScenario(path));
+  EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(complaint, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kMistakes[] = {
+    {"NoDynamics",
+     "dynamics: {gravity: [0, 0, -9.81]}\n",
+     "",
+     "s.yaml:2",
+     {"models need physics", "dynamics: {}"}},
+    {"EngineWithoutJoints",
+     "{gravity: [0, 0, -9.81]}",
+     "{engine: ode}",
+     "s.yaml:3",
+     {"models need an engine that knows joints", "ode", "simbody"}},
+    {"SaysNotWhatItIs",
+     "sphere: 0.5, ",
+     "",
+     "s.yaml:13",
+     {"models.ball says not what it is", "urdf"}},
+    {"Misspelt", "sphere: 0.5", "spere: 0.5", "s.yaml:13", {"'spere'", "did you mean 'sphere'?"}},
+    {"TwoShapes", "sphere: 0.5,", "sphere: 0.5, box: [1, 1, 1],", "s.yaml:13", {"beside"}},
+    {"UnknownKey", "fixed_base", "fixed_bass", "s.yaml:7", {"'fixed_bass'", "'fixed_base'?"}},
+    {"KeyOfARobotOnABall",
+     "sphere: 0.5,",
+     "sphere: 0.5, fixed_base: true,",
+     "s.yaml:13",
+     {"unknown key"}},
+    {"BadName", "  ball:", "  \"a/b\":", "s.yaml:13", {"'a/b' is not a name"}},
+    {"NameOfABody",
+     "models:",
+     "bodies: {ball: {mass: 1, inertia: [1, 1, 1]}}\nmodels:",
+     "s.yaml:14",
+     {"models.ball has the name of a body"}},
+    {"NoSuchFile",
+     "urdf: arm.urdf",
+     "urdf: leg.urdf",
+     "s.yaml:5",
+     {"models.arm.urdf: ", "leg.urdf: cannot be read: No such file"}},
+    {"NoPath", "urdf: arm.urdf", "urdf: \"\"", "s.yaml:5", {"is empty"}},
+    {"FreeBaseWithoutMass",
+     "fixed_base: true",
+     "fixed_base: false",
+     "arm.urdf:2",
+     {"link 'base' moves"}},
+    {"UnknownJoint",
+     "{elbow: 1.5}",
+     "{elbw: 1.5}",
+     "s.yaml:8",
+     {"joint 'elbw' of arm", "did you mean 'elbow'?"}},
+    {"FixedJoint",
+     "{elbow: 1.5}",
+     "{elbow: 1, flange: 0}",
+     "s.yaml:8",
+     {"joints.flange is of a fixed joint"}},
+    {"StartBeyondLimits",
+     "{elbow: 1.5}",
+     "{elbow: 3}",
+     "s.yaml:8",
+     {"joints.elbow", "beyond its limits"}},
+    {"NoStartWithinLimits",
+     "    joints: {elbow: 1.5}\n",
+     "",
+     "s.yaml:4",
+     {"joint 'elbow'", "say in joints"}},
+    {"StartIsAList", "{elbow: 1.5}", "{elbow: [1]}", "s.yaml:8", {"is a list; give a number"}},
+    {"AtIsAList",
+     "{position: [1, 2, 3], orientation: [0, 0, 1, 0]}",
+     "[1, 2, 3]",
+     "s.yaml:6",
+     {"not a map"}},
+    {"NoUnitQuaternion", "[0, 0, 1, 0]}", "[0, 0, 1, 1]}", "s.yaml:6", {"not a unit quaternion"}},
+    {"VelocityOfAFixedBase",
+     "    friction: 0.5",
+     "    linear_velocity: [1, 0, 0]",
+     "s.yaml:9",
+     {"base that does not move"}},
+    {"NegativeFriction", "friction: 0.5", "friction: -1", "s.yaml:9", {"must not be negative"}},
+    {"PackagesAreNoFolder",
+     "    friction: 0.5",
+     "    packages: [none]",
+     "s.yaml:9",
+     {"'none'", "no folder"}},
+    {"NoMass", "sphere: 0.5, mass: 2", "sphere: 0.5", "s.yaml:13", {"neither mass nor static"}},
+    {"ZeroMass", "sphere: 0.5, mass: 2", "sphere: 0.5, mass: 0", "s.yaml:13", {"must be positive"}},
+    {"MassAndStatic", "sphere: 0.5,", "sphere: 0.5, static: true,", "s.yaml:13", {"does not move"}},
+    {"VelocityOfWhatStands",
+     "static: true",
+     "static: true, angular_velocity: [1, 0, 0]",
+     "s.yaml:11",
+     {"does not move"}},
+    {"MassOfAPlane", "friction: 0.9", "mass: 1", "s.yaml:10", {"a plane, which cannot move"}},
+    {"PlaneThatIsNotStatic", "friction: 0.9", "static: false", "s.yaml:10", {"cannot move"}},
+    {"PlaneWithoutANormal",
+     "[0, 0, 1], position",
+     "[0, 0, 0], position",
+     "s.yaml:10",
+     {"no direction"}},
+    {"OrientationOfAPlane", "friction: 0.9", "orientation: [0, 0, 0, 1]", "s.yaml:10", {"normal"}},
+    {"FlatBox",
+     "box: [1, 2, 3], mass",
+     "box: [1, 2, 0], mass",
+     "s.yaml:12",
+     {"edge that is not positive"}},
+    {"NegativeRadius", "sphere: 0.5", "sphere: -0.5", "s.yaml:13", {"radius in metres"}},
+    {"NoLength",
+     "{radius: 1, length: 2}, mass: 12",
+     "{radius: 1}, mass: 12",
+     "s.yaml:14",
+     {"lacks the key 'length'"}},
+    {"FlatScale", "[1, 2, 3], mass: 6", "[1, 0, 3], mass: 6", "s.yaml:16", {"0 along an axis"}},
+    {"ScaleOfABall", "sphere: 0.5", "sphere: 0.5, scale: 2", "s.yaml:13", {"unknown key 'scale'"}},
+    {"NoSuchMesh", "rock.obj", "rick.obj", "s.yaml:16", {"models.rock.mesh: ", "No such file"}},
+    {"MeshOfAnotherKind", "rock.obj", "arm.urdf", "s.yaml:16", {".stl, .obj or .dae"}},
+};
+
+std::string NameOf(const testing::TestParamInfo<Mistake>& info) {
+  return std::string(info.param.name);
+}
+INSTANTIATE_TEST_SUITE_P(All, ModelMistakeTest, testing::ValuesIn(kMistakes), NameOf);
+
+TEST(LoadModels, SomethingMoves) {
+  const Folder folder;
+  EXPECT_THAT(Complaint(folder,
+                        "duration: 1s\ndynamics: {}\nmodels: {floor: {plane: [0, 0, 1]}}\n"
+                        "robots: {r: {clients: {c: {command: [./controller]}}}}\n"),
+              "s.yaml:3: models has nothing that moves; give one of them mass, or remove dynamics");
+  EXPECT_THAT(Complaint(folder,
+                        "duration: 1s\ndynamics: {}\nmodels: {}\n"
+                        "robots: {r: {clients: {c: {command: [./controller]}}}}\n"),
+              "s.yaml:3: models is empty; describe at least one model");
+}
+
+constexpr std::string_view kChannels = R"(channels:
+  states: {type: udp_json, sensors: {model: arm, rate: 50, to: "127.0.0.1:47010"}}
+  efforts:
+    type: udp_json
+    commands: {model: arm, joints: [elbow, shoulder], listen: "127.0.0.1:47011", latency: 2ms}
+  servos:
+    type: dds
+    commands:
+      model: arm
+      drive: position
+      stiffness: [100, 200]
+      damping: 7
+      message: std_msgs/msg/Float64MultiArray
+      topic: /commands
+  joint_states:
+    type: dds
+    sensors: {model: arm, joints: [elbow], message: sensor_msgs/msg/JointState, topic: /joint_states}
+)";
+
+// A model with two joints comes before the arm.
+std::string WithChannels() {
+  std::string text(kGood);
+  text.insert(text.find("  arm:"),
+              "  other: {urdf: arm.urdf, fixed_base: true, joints: {elbow: 1}}\n");
+  return text + std::string(kChannels);
+}
+
+TEST(LoadJoints, ChannelsAreAboutJointsOfAModel) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder, WithChannels());
+  ASSERT_EQ(scenario.sensors.size(), 2u);
+  const JointGroup& states = scenario.sensors[0].joints.value();
+  EXPECT_EQ(states.model, "arm");
+  EXPECT_THAT(states.names, ElementsAre("shoulder", "elbow"));
+  EXPECT_THAT(states.joints, ElementsAre(3, 4));  // after the three of the other one
+  EXPECT_THAT(scenario.sensors[1].joints.value().joints, ElementsAre(4));
+  ASSERT_EQ(scenario.commands.size(), 2u);
+  const JointDriveSpec& efforts = scenario.commands[0].joints.value();
+  EXPECT_THAT(efforts.group.joints, ElementsAre(4, 3));
+  EXPECT_EQ(efforts.quantity, JointQuantity::kEffort);
+  EXPECT_THAT(efforts.gains, ElementsAre(JointGains{}, JointGains{}));
+  EXPECT_EQ(scenario.commands[0].latency, VirtualDuration::Milliseconds(2));
+  const JointDriveSpec& servos = scenario.commands[1].joints.value();
+  EXPECT_EQ(servos.quantity, JointQuantity::kPosition);
+  EXPECT_THAT(servos.gains, ElementsAre(JointGains{100, 7}, JointGains{200, 7}));
+}
+
+class JointMistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(JointMistakeTest, IsOneSentenceWithItsPlace) {
+  const Folder folder;
+  const Mistake& mistake = GetParam();
+  const std::string path =
+      folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, WithChannels()));
+  const std::string complaint = Complaint(folder, LoadScenario(path));
+  EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(complaint, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kJointMistakes[] = {
+    {"UnknownModel",
+     "{model: arm, rate",
+     "{model: amr, rate",
+     "s.yaml:21",
+     {"model 'amr'", "'arm'?"}},
+    {"ModelWithoutJoints", "{model: arm, rate", "{model: crate, rate", "s.yaml:21", {"no joints"}},
+    {"UnknownJoint",
+     "[elbow, shoulder]",
+     "[elbw, shoulder]",
+     "s.yaml:24",
+     {"joint 'elbw' of arm", "'elbow'?"}},
+    {"FixedJoint",
+     "[elbow, shoulder]",
+     "[flange]",
+     "s.yaml:24",
+     {"'flange', which has 0 coordinates"}},
+    {"JointTwice", "[elbow, shoulder]", "[elbow, elbow]", "s.yaml:24", {"a second time"}},
+    {"ModelAndBodies",
+     "{model: arm, rate: 50",
+     "{model: arm, bodies: [x]",
+     "s.yaml:21",
+     {"beside bodies"}},
+    {"LimitsOfJoints", "latency: 2ms", "limits: {force: 1}", "s.yaml:24", {"unknown key 'limits'"}},
+    {"UnknownDrive",
+     "drive: position",
+     "drive: torque",
+     "s.yaml:29",
+     {"unknown 'torque'", "effort"}},
+    {"PositionWithoutStiffness",
+     "      stiffness: [100, 200]\n",
+     "",
+     "s.yaml:27",
+     {"lacks the key 'stiffness'"}},
+    {"VelocityWithoutDamping",
+     "drive: position\n      stiffness: [100, 200]\n      damping: 7",
+     "drive: velocity",
+     "s.yaml:27",
+     {"lacks the key 'damping'"}},
+    {"TooFewGains", "[100, 200]", "[100]", "s.yaml:30", {"has 1 numbers; write 2"}},
+    {"NegativeGain", "damping: 7", "damping: -7", "s.yaml:31", {"must not be negative"}},
+    {"NegativeGainInAList", "[100, 200]", "[100, -2]", "s.yaml:30", {"below 0"}},
+    {"WrenchOnJoints",
+     "std_msgs/msg/Float64MultiArray",
+     "geometry_msgs/msg/Wrench",
+     "s.yaml:32",
+     {"joints are driven by"}},
+    {"OdometryOfJoints",
+     "sensor_msgs/msg/JointState",
+     "nav_msgs/msg/Odometry",
+     "s.yaml:36",
+     {"JointState"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, JointMistakeTest, testing::ValuesIn(kJointMistakes), NameOf);
+
+}  // namespace
+}  // namespace tcs
