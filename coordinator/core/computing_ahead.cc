@@ -62,7 +62,9 @@ void ComputingAhead::SendIfItComputes(Task& task) {
   const auto cpu = std::find_if(cpus_.begin(), cpus_.end(),
                                 [tsc](const FurtherCpu& one) { return one.IsFreeAt(tsc); });
   if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
-  Charge(task, task.metered.ChargeAt(HostClockOf(task)));
+  const std::int64_t cpu_ns = HostClockOf(task);
+  if (cpu_ns < 0) return;  // it is about to end
+  Charge(task, task.metered.ChargeAt(cpu_ns));
   // To go there and back again takes its time, too.
   const std::int64_t most_ns = MostAheadNs();
   if (task.debt_ns > most_ns / 2) return;
