@@ -151,6 +151,11 @@ struct IntegratorSpec {
   // derivatives.
   VirtualDuration fixed_step{};
   double accuracy = 1e-5;  // relative error of one of Simbody's steps, between 0 and 1
+
+  // For engines that know no other steps than set ones.
+  VirtualDuration StepOr(VirtualDuration otherwise) const {
+    return fixed_step > VirtualDuration{} ? fixed_step : otherwise;
+  }
 };
 
 // Gazebo's, too.

@@ -8,6 +8,7 @@
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 #include "simbody_bridge/region_law.h"
+#include "simbody_bridge/set_steps.h"
 
 namespace tcs {
 namespace {
@@ -27,13 +28,12 @@ RobotModel ModelOf(const BodySpec& body) {
   return model;
 }
 
-class MujocoBodies : public BodyEngine {
+class MujocoBodies : public SetStepEngine<BodyEngine> {
  public:
   MujocoBodies(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : has_region_(world.has_region),
+      : SetStepEngine(world.integrator.StepOr(kMujocoStep)),
+        has_region_(world.has_region),
         region_(world.region),
-        step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kMujocoStep),
         loads_(world, islands) {
     for (const BodySpec& body : world.bodies) models_.push_back(ModelOf(body));
     std::map<std::vector<std::array<double, 4>>, MujocoSystem*> known;
@@ -52,16 +52,6 @@ class MujocoBodies : public BodyEngine {
   }
 
   IslandStart StartOf(int island) override { return {At(island).start, 0}; }
-  VirtualDuration LongestStep(int /*island*/) const override { return step_; }
-  bool has_set_steps() const override { return true; }
-
-  void Take(IslandStep& step) override {
-    step.length_s = step.limit.seconds();
-    Step(step, step.length_s, &step.to);
-  }
-  void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
-    Step(step, after.seconds(), state);
-  }
 
   // A free joint's own numbers: the position and the quaternion w x y z; the velocity, and the
   // angular velocity along the body's axes.
@@ -109,7 +99,7 @@ class MujocoBodies : public BodyEngine {
   }
 
   // Walls push as they do at the beginning of the step; what else acts has its mean over it.
-  void Step(const IslandStep& step, double seconds, std::vector<double>* to) {
+  void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {
     const std::size_t bodies = step.wrenches.size();
     acting_.assign(2 * bodies, Wrench{});
     for (std::size_t i = 0; i < bodies; ++i) {
@@ -131,13 +121,12 @@ class MujocoBodies : public BodyEngine {
 
   const bool has_region_;
   const RegionSpec region_;
-  const VirtualDuration step_;
   const Loads loads_;
   std::vector<RobotModel> models_;  // of all bodies
   std::deque<Forest> forests_;
   std::deque<MujocoSystem> systems_;
   std::vector<Island> islands_;
-  std::vector<Wrench> acting_;  // memory of Step
+  std::vector<Wrench> acting_;  // memory of Advance
 };
 
 }  // namespace

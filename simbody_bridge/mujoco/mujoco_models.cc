@@ -2,17 +2,17 @@
 
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
+#include "simbody_bridge/set_steps.h"
 
 namespace tcs {
 namespace {
 
-class MujocoModels : public ModelEngine {
+class MujocoModels : public SetStepEngine<ModelEngine> {
  public:
   MujocoModels(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : models_(world.models),
-        fixtures_(world.fixtures),
-        step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kMujocoStep) {
+      : SetStepEngine(world.integrator.StepOr(kMujocoStep)),
+        models_(world.models),
+        fixtures_(world.fixtures) {
     for (const std::vector<int>& models : islands) {
       forests_.push_back(MakeForest(models_, models, fixtures_));
       systems_.emplace_back(forests_.back(), world.gravity_mps2);
@@ -20,17 +20,6 @@ class MujocoModels : public ModelEngine {
   }
 
   IslandStart StartOf(int island) override { return {At(island).start(), 0}; }
-  VirtualDuration LongestStep(int /*island*/) const override { return step_; }
-  bool has_set_steps() const override { return true; }
-
-  void Take(IslandStep& step) override {
-    step.length_s = step.limit.seconds();
-    At(step.island).Step(step.from, step.wrenches, step.length_s, &step.to);
-  }
-  // What a step gives that is shortened to end there.
-  void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
-    At(step.island).Step(step.from, step.wrenches, after.seconds(), state);
-  }
 
   void ReadLinks(int island, std::span<const double> state, std::span<const int> links,
                  std::span<LinkState> read) override {
@@ -42,11 +31,13 @@ class MujocoModels : public ModelEngine {
   }
 
  private:
+  void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {
+    At(step.island).Step(step.from, step.wrenches, seconds, to);
+  }
   MujocoSystem& At(int island) { return systems_[static_cast<std::size_t>(island)]; }
 
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
-  const VirtualDuration step_;
   std::deque<Forest> forests_;
   std::deque<MujocoSystem> systems_;
 };

@@ -8,6 +8,7 @@
 #include "simbody_bridge/loads.h"
 #include "simbody_bridge/ode/ode_library.h"
 #include "simbody_bridge/ode/ode_world.h"
+#include "simbody_bridge/set_steps.h"
 
 namespace tcs {
 namespace {
@@ -23,12 +24,10 @@ BodyState Normalised(BodyState state) {
   return state;
 }
 
-class OdeEngine : public BodyEngine {
+class OdeEngine : public SetStepEngine<BodyEngine> {
  public:
   OdeEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kOdeStep),
-        loads_(world, islands) {
+      : SetStepEngine(world.integrator.StepOr(kOdeStep)), loads_(world, islands) {
     for (const std::vector<int>& members : islands) {
       WorldSpec part = world;
       part.bodies.clear();
@@ -46,18 +45,6 @@ class OdeEngine : public BodyEngine {
     ToState(starts_[static_cast<std::size_t>(island)], &start.state);
     return start;
   }
-  VirtualDuration LongestStep(int /*island*/) const override { return step_; }
-  bool has_set_steps() const override { return true; }
-
-  void Take(IslandStep& step) override {
-    step.length_s = step.limit.seconds();
-    Step(step, step.length_s, &step.to);
-  }
-
-  // What a step gives that is shortened to end there.
-  void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
-    Step(step, after.seconds(), state);
-  }
 
   BodyState Read(int /*island*/, int place, std::span<const double> state) const override {
     BodyState body;
@@ -73,7 +60,7 @@ class OdeEngine : public BodyEngine {
       std::memcpy(state->data(), bodies.data(), bodies.size() * sizeof(BodyState));
   }
 
-  void Step(const IslandStep& step, double seconds, std::vector<double>* state) {
+  void Advance(const IslandStep& step, double seconds, std::vector<double>* state) override {
     bodies_.resize(step.wrenches.size());
     acting_.resize(step.wrenches.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -85,11 +72,10 @@ class OdeEngine : public BodyEngine {
     ToState(bodies_, state);
   }
 
-  const VirtualDuration step_;
   const Loads loads_;
   std::deque<OdeWorld> islands_;
   std::vector<std::vector<BodyState>> starts_;
-  std::vector<BodyState> bodies_;  // memory of Step
+  std::vector<BodyState> bodies_;  // memory of Advance
   std::vector<Load> acting_;
 };
 
