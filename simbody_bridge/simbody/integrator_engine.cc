@@ -159,10 +159,7 @@ void IntegratorEngine::StepOnce(SimTK::Integrator& integrator, double limit_s) c
 void IntegratorEngine::Within(const IslandStep& step, VirtualDuration after,
                               std::vector<double>* state) {
   if (has_set_steps()) {
-    shortened_ = step;
-    shortened_.limit = after;
-    Take(shortened_);
-    *state = shortened_.to;
+    TakeShortened(*this, step, after, &shortened_, state);
     return;
   }
   Interpolate(step, after.seconds(), state);

@@ -11,8 +11,6 @@
 namespace tcs {
 namespace {
 
-constexpr VirtualDuration kLongestStep = VirtualDuration::Seconds(1000);
-
 // A body that reaches a wall is in it for half a period of the swing that the wall would make of
 // its motion; less only where something else pushes it back at once, and then the wall has hardly
 // touched it.
@@ -63,6 +61,14 @@ void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<doub
 void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state) {
   InterpolateNumbers(step, after_s, state);
   NormaliseQuaternions(*state, static_cast<int>(step.wrenches.size()));
+}
+
+void TakeShortened(IslandEngine& engine, const IslandStep& step, VirtualDuration after,
+                   IslandStep* memory, std::vector<double>* state) {
+  *memory = step;
+  memory->limit = after;
+  engine.Take(*memory);
+  *state = memory->to;
 }
 
 Masses MassesOf(const WorldSpec& world, const std::vector<int>& bodies) {

@@ -12,6 +12,9 @@ namespace tcs {
 // Simbody's messages run over several lines.
 std::string OnOneLine(std::string text);
 
+// Of a step that nothing limits.
+inline constexpr VirtualDuration kLongestStep = VirtualDuration::Seconds(1000);
+
 // How long a step of these bodies may be at the most for error control to see the walls
 // and the gusts.
 VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>& bodies);
@@ -21,6 +24,11 @@ VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>
 void Interpolate(const IslandStep& step, double after_s, std::vector<double>* state);
 // The same of any numbers; quaternions among them lose some of their length.
 void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<double>* state);
+
+// With set steps, where integrators do not interpolate: what a step gives that is shortened to end
+// `after` its beginning. `memory` is used again.
+void TakeShortened(IslandEngine& engine, const IslandStep& step, VirtualDuration after,
+                   IslandStep* memory, std::vector<double>* state);
 
 // What makes two islands the same system.
 using Masses = std::vector<std::pair<double, std::array<double, 3>>>;
