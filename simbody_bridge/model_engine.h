@@ -31,6 +31,17 @@ inline JointDrive AsDrive(const Wrench& numbers) {
           .velocity = numbers.torque_nm[1]};
 }
 
+// Those among what acts on an island that has so many links.
+inline const Wrench& WrenchOnLink(std::span<const Wrench> acting, std::size_t link,
+                                  WrenchFrame frame) {
+  return acting[static_cast<std::size_t>(PlaceOfLink(static_cast<int>(link), frame))];
+}
+inline JointDrive DriveOfJoint(std::span<const Wrench> acting, std::size_t links,
+                               std::size_t joint) {
+  return AsDrive(acting[static_cast<std::size_t>(
+      PlaceOfJoint(static_cast<int>(links), static_cast<int>(joint)))]);
+}
+
 // What a drive gives at a position and a velocity, within the joint's limit.
 double EffortOf(const JointDrive& drive, double limit, double position, double velocity);
 

@@ -128,19 +128,17 @@ void MujocoSystem::Load(std::span<const double> state) {
 }
 
 void MujocoSystem::SetActing(std::span<const Wrench> acting) {
-  const int links = static_cast<int>(forest_.links.size());
+  const std::size_t links = forest_.links.size();
   std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
   mj_kinematics(model_.get(), data_.get());
-  for (int i = 0; i < links; ++i) {
-    ActOnLink(static_cast<std::size_t>(i),
-              acting[static_cast<std::size_t>(PlaceOfLink(i, WrenchFrame::kWorld))],
-              acting[static_cast<std::size_t>(PlaceOfLink(i, WrenchFrame::kLink))]);
+  for (std::size_t i = 0; i < links; ++i) {
+    ActOnLink(i, WrenchOnLink(acting, i, WrenchFrame::kWorld),
+              WrenchOnLink(acting, i, WrenchFrame::kLink));
   }
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
     const int actuator = joint_actuators_[i];
     if (actuator < 0) continue;
-    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)));
-    const JointDrive drive = AsDrive(acting[place]);
+    const JointDrive drive = DriveOfJoint(acting, links, i);
     const bool is_free = forest_.joints[i].joint->limits.effort > 0;
     data_->ctrl[actuator] =
         is_free ? drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity
@@ -223,7 +221,6 @@ void MujocoSystem::ReadLinks(std::span<const double> state, std::span<const int>
 
 void MujocoSystem::ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
                               std::span<const int> joints, std::span<JointState> read) const {
-  const int links = static_cast<int>(forest_.links.size());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const auto joint = static_cast<std::size_t>(joints[i]);
     if (positions_[joint] < 0) {
@@ -232,9 +229,8 @@ void MujocoSystem::ReadJoints(std::span<const double> state, std::span<const Wre
     }
     const double q = state[static_cast<std::size_t>(positions_[joint])];
     const double u = state[static_cast<std::size_t>(model_->nq + speeds_[joint])];
-    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, joints[i]));
-    const double limit = forest_.joints[joint].joint->limits.effort;
-    read[i] = {q, u, EffortOf(AsDrive(acting[place]), limit, q, u)};
+    const JointDrive drive = DriveOfJoint(acting, forest_.links.size(), joint);
+    read[i] = {q, u, EffortOf(drive, forest_.joints[joint].joint->limits.effort, q, u)};
   }
 }
 

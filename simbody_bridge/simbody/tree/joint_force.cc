@@ -62,7 +62,7 @@ void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed
   const auto all = static_cast<std::size_t>(state.getNU());
   by_speed->assign(all, 0);
   by_coordinate->assign(all, 0);
-  const int links = static_cast<int>(forest_.links.size());
+  const std::size_t links = forest_.links.size();
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     if (forest_.joints[i].body == kWorldBody) continue;
     const Joint& joint = *forest_.joints[i].joint;
@@ -78,8 +78,7 @@ void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed
     const double q = state.getQ()[body.getFirstQIndex(state)];
     const double speed = state.getU()[static_cast<int>(first)];
     const JointLimits& limits = joint.limits;
-    const JointDrive drive =
-        AsDrive(acting_[static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)))]);
+    const JointDrive drive = DriveOfJoint(acting_, links, i);
     if (std::abs(EffortOf(drive, kNoLimit, q, speed)) < limits.effort) {
       (*by_speed)[first] += std::max(0.0, drive.damping);
       (*by_coordinate)[first] += std::max(0.0, drive.stiffness);
@@ -97,7 +96,7 @@ void JointForce::calcForce(const SimTK::State& state,
                            SimTK::Vector& mobility_forces) const {
   const SimTK::Vector& all_q = state.getQ();
   const SimTK::Vector& all_u = state.getU();
-  const int links = static_cast<int>(forest_.links.size());
+  const std::size_t links = forest_.links.size();
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     if (forest_.joints[i].body == kWorldBody) continue;
     const Joint& joint = *forest_.joints[i].joint;
@@ -110,9 +109,8 @@ void JointForce::calcForce(const SimTK::State& state,
     }
     if (count != 1) continue;
     const double q = all_q[body.getFirstQIndex(state)], speed = all_u[first];
-    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, static_cast<int>(i)));
     const JointLimits& limits = joint.limits;
-    mobility_forces[first] += EffortOf(AsDrive(acting_[place]), limits.effort, q, speed);
+    mobility_forces[first] += EffortOf(DriveOfJoint(acting_, links, i), limits.effort, q, speed);
     mobility_forces[first] += StopForce(limits.lower - q, -speed, inertia_[i]);
     mobility_forces[first] -= StopForce(q - limits.upper, speed, inertia_[i]);
   }

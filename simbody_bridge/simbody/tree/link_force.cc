@@ -16,12 +16,8 @@ void LinkForce::calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::Spati
   for (std::size_t i = 0; i < forest_.links.size(); ++i) {
     const TreeLink& link = forest_.links[i];
     if (link.body == kWorldBody) continue;
-    const int index = static_cast<int>(i);
-    const auto at = [&](WrenchFrame frame) -> const Wrench& {
-      return acting_[static_cast<std::size_t>(PlaceOfLink(index, frame))];
-    };
-    const Wrench& in_world = at(WrenchFrame::kWorld);
-    const Wrench& in_link = at(WrenchFrame::kLink);
+    const Wrench& in_world = WrenchOnLink(acting_, i, WrenchFrame::kWorld);
+    const Wrench& in_link = WrenchOnLink(acting_, i, WrenchFrame::kLink);
     if (in_world == Wrench{} && in_link == Wrench{}) continue;
     const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(link.body)];
     const SimTK::Rotation of_body = body.getBodyRotation(state);

@@ -224,17 +224,17 @@ void SimbodyTree::ReadLinks(std::span<const double> state, std::span<const int> 
 
 void SimbodyTree::ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
                              std::span<const int> joints, std::span<JointState> read) const {
-  const int links = static_cast<int>(forest_.links.size());
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const ForestJoint& joint = forest_.joints[static_cast<std::size_t>(joints[i])];
+    const auto index = static_cast<std::size_t>(joints[i]);
+    const ForestJoint& joint = forest_.joints[index];
     if (joint.body == kWorldBody) {
       read[i] = {};
       continue;
     }
     const Slots& slots = slots_[static_cast<std::size_t>(joint.body)];
     const double q = state[slots.q], u = state[slots.u];
-    const auto place = static_cast<std::size_t>(PlaceOfJoint(links, joints[i]));
-    read[i] = {q, u, EffortOf(AsDrive(acting[place]), joint.joint->limits.effort, q, u)};
+    const JointDrive drive = DriveOfJoint(acting, forest_.links.size(), index);
+    read[i] = {q, u, EffortOf(drive, joint.joint->limits.effort, q, u)};
   }
 }
 
