@@ -37,10 +37,7 @@ double TimeToStop(const Joint& joint, double position, double velocity) {
 
 JointForce::JointForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
                        const std::span<const Wrench>& acting)
-    : forest_(forest),
-      bodies_(std::move(bodies)),
-      acting_(acting),
-      inertia_(forest.joints.size(), 1) {}
+    : ForestForce(forest, std::move(bodies), acting), inertia_(forest.joints.size(), 1) {}
 
 void JointForce::Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimTK::State& start) {
   SimTK::State state = start;
@@ -49,7 +46,7 @@ void JointForce::Measure(const SimTK::SimbodyMatterSubsystem& matter, const SimT
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     const ForestJoint& joint = forest_.joints[i];
     if (joint.body == kWorldBody) continue;
-    const int u = bodies_[static_cast<std::size_t>(joint.body)].getFirstUIndex(state);
+    const int u = BodyAt(joint.body).getFirstUIndex(state);
     alone = 0;
     alone[u] = 1;
     matter.multiplyByM(state, alone, moved);
@@ -66,7 +63,7 @@ void JointForce::Slopes(const SimTK::State& state, std::vector<double>* by_speed
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     if (forest_.joints[i].body == kWorldBody) continue;
     const Joint& joint = *forest_.joints[i].joint;
-    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(forest_.joints[i].body)];
+    const SimTK::MobilizedBody& body = BodyAt(forest_.joints[i].body);
     const auto first = static_cast<std::size_t>(body.getFirstUIndex(state));
     const auto count = static_cast<std::size_t>(body.getNumU(state));
     for (std::size_t u = first; u < first + count; ++u) {
@@ -100,7 +97,7 @@ void JointForce::calcForce(const SimTK::State& state,
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     if (forest_.joints[i].body == kWorldBody) continue;
     const Joint& joint = *forest_.joints[i].joint;
-    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(forest_.joints[i].body)];
+    const SimTK::MobilizedBody& body = BodyAt(forest_.joints[i].body);
     const int first = body.getFirstUIndex(state), count = body.getNumU(state);
     for (int u = first; u < first + count; ++u) {
       const double speed = all_u[u];

@@ -5,15 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "simbody_bridge/model/forest.h"
-#include "simbody_bridge/model_engine.h"
-#include "simbody_bridge/simbody/simbody.h"
+#include "simbody_bridge/simbody/tree/forest_force.h"
 
 namespace tcs {
 
-class JointForce : public SimTK::Force::Custom::Implementation {
+class JointForce : public ForestForce {
  public:
-  // `forest` and `acting`, by place, outlive this.
   JointForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
              const std::span<const Wrench>& acting);
 
@@ -28,12 +25,8 @@ class JointForce : public SimTK::Force::Custom::Implementation {
   void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                  SimTK::Vector_<SimTK::Vec3>& particle_forces,
                  SimTK::Vector& mobility_forces) const override;
-  SimTK::Real calcPotentialEnergy(const SimTK::State& /*state*/) const override { return 0; }
 
  private:
-  const Forest& forest_;
-  const std::vector<SimTK::MobilizedBody> bodies_;
-  const std::span<const Wrench>& acting_;
   std::vector<double> inertia_;  // that each joint moves: kg m^2 or kg
 };
 

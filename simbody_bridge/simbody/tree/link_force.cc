@@ -1,14 +1,8 @@
 #include "simbody_bridge/simbody/tree/link_force.h"
 
-#include <utility>
-
 #include "simbody_bridge/simbody/tree/vectors.h"
 
 namespace tcs {
-
-LinkForce::LinkForce(const Forest& forest, std::vector<SimTK::MobilizedBody> bodies,
-                     const std::span<const Wrench>& acting)
-    : forest_(forest), bodies_(std::move(bodies)), acting_(acting) {}
 
 void LinkForce::calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
                           SimTK::Vector_<SimTK::Vec3>& /*particle_forces*/,
@@ -19,7 +13,7 @@ void LinkForce::calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::Spati
     const Wrench& in_world = WrenchOnLink(acting_, i, WrenchFrame::kWorld);
     const Wrench& in_link = WrenchOnLink(acting_, i, WrenchFrame::kLink);
     if (in_world == Wrench{} && in_link == Wrench{}) continue;
-    const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(link.body)];
+    const SimTK::MobilizedBody& body = BodyAt(link.body);
     const SimTK::Rotation of_body = body.getBodyRotation(state);
     const SimTK::Rotation turn = of_body * ToRotation(link.pose.orientation_xyzw);
     const SimTK::Vec3 force = ToVec3(in_world.force_n) + turn * ToVec3(in_link.force_n);
