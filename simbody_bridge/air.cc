@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
@@ -21,8 +23,6 @@ double Draw(std::uint64_t* state) {
   z = (z ^ z >> 27) * 0x94d049bb133111eb;
   return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
 }
-
-double Square(const std::array<double, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
 }  // namespace
 
@@ -55,9 +55,10 @@ Load DragOn(const DragSpec& drag, const BodyState& body, const std::array<double
   std::array<double, 3> through_mps;
   for (std::size_t i = 0; i < 3; ++i) through_mps[i] = body.linear_velocity_mps[i] - wind_mps[i];
   const std::array<double, 3>& spin_radps = body.angular_velocity_radps;
-  const double slows = drag.linear_nspm + drag.quadratic_ns2pm2 * std::sqrt(Square(through_mps));
+  const double slows =
+      drag.linear_nspm + drag.quadratic_ns2pm2 * std::sqrt(Dot(through_mps, through_mps));
   const double brakes = drag.angular_linear_nmsprad +
-                        drag.angular_quadratic_nms2prad2 * std::sqrt(Square(spin_radps));
+                        drag.angular_quadratic_nms2prad2 * std::sqrt(Dot(spin_radps, spin_radps));
   Load load;
   for (std::size_t i = 0; i < 3; ++i) {
     load.force_n[i] = -slows * through_mps[i];

@@ -8,6 +8,7 @@
 #include "simbody_bridge/engines.h"
 #include "simbody_bridge/model/finite.h"
 #include "simbody_bridge/model/model_check.h"
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
@@ -17,10 +18,6 @@ bool SatisfiesTriangleInequality(const std::array<double, 3>& inertia) {
   const double sum = inertia[0] + inertia[1] + inertia[2];
   const double largest = *std::max_element(inertia.begin(), inertia.end());
   return largest <= (sum - largest) + 1e-12 * sum;
-}
-
-double Norm(const std::array<double, 4>& q) {
-  return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
 void CheckBody(const BodySpec& body) {
@@ -44,7 +41,7 @@ void CheckBody(const BodySpec& body) {
   if (!AllFinite(body.initial)) {
     throw DynamicsError(fmt::format("body '{}': the initial state must be finite", body.name));
   }
-  const double norm = Norm(body.initial.orientation_xyzw);
+  const double norm = NormOf(body.initial.orientation_xyzw);
   if (std::abs(norm - 1) > kQuaternionNormTolerance) {
     throw DynamicsError(fmt::format(
         "body '{}': the initial orientation must be a unit quaternion, but its length is {}",

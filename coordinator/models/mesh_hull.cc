@@ -12,19 +12,13 @@ extern "C" {
 #include <numbers>
 #include <set>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
 using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
-
-double Dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Point Minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
-Point Cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }

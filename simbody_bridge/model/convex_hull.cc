@@ -6,18 +6,14 @@
 #include <map>
 #include <utility>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
 
 constexpr double kFlat = 1e-6;  // of the points' extent
-
-Vector Minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double Dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // The hull of the points that have been added so far; each one that is outside replaces the
 // triangles that it sees by a cone over their outline.

@@ -3,32 +3,25 @@
 #include <cmath>
 #include <cstddef>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
 
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Quaternion Conjugate(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
 
 }  // namespace
 
 Quaternion Normalised(const Quaternion& q) {
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  return {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm};
+  Quaternion normalised = q;
+  Normalise(normalised);
+  return normalised;
 }
 
-Vector Rotate(const Quaternion& q, const Vector& v) {
-  const auto [x, y, z, w] = Normalised(q);
-  const Vector axis = {x, y, z}, once = Cross(axis, v), twice = Cross(axis, once);
-  Vector turned;
-  for (std::size_t i = 0; i < 3; ++i) turned[i] = v[i] + 2 * (w * once[i] + twice[i]);
-  return turned;
-}
+Vector Rotate(const Quaternion& q, const Vector& v) { return TurnedBy(Normalised(q), v); }
 
 Quaternion Times(const Quaternion& a, const Quaternion& b) {
   return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
@@ -34,14 +36,12 @@ Matrix3 Turned(const Inertial& inertial, const std::array<double, 4>& q) {
 
 // What a mass at `offset` from the origin adds to an inertia about it.
 void AddPointMass(double mass_kg, const Vector& offset, Matrix3* inertia) {
-  const double square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+  const double square = Dot(offset, offset);
   for (std::size_t i = 0; i < 3; ++i) {
     (*inertia)[i][i] += mass_kg * square;
     for (std::size_t k = 0; k < 3; ++k) (*inertia)[i][k] -= mass_kg * offset[i] * offset[k];
   }
 }
-
-Vector Minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 // Puts `inertial` of a link at `pose` into the body, which keeps its inertia about its center.
 void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
@@ -64,7 +64,7 @@ void AddMass(const Inertial& inertial, const Pose& pose, TreeBody* body) {
 }
 
 Vector Unit(const Vector& v) {
-  const double norm = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  const double norm = std::sqrt(Dot(v, v));
   return {v[0] / norm, v[1] / norm, v[2] / norm};
 }
 

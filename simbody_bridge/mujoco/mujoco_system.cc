@@ -8,21 +8,14 @@
 #include <limits>
 #include <string>
 
+#include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/mujoco/mjcf.h"
+#include "simbody_bridge/one_line.h"
 
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-std::string OnOneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
 
 // MuJoCo would end the process, and write its warnings into a file beside the scenario. The library
 // is built with unwind tables, and holds no locks.

@@ -1,11 +1,11 @@
 #include "simbody_bridge/ode/ode_engine.h"
 
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <deque>
 
 #include "simbody_bridge/loads.h"
+#include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/ode/ode_library.h"
 #include "simbody_bridge/ode/ode_world.h"
 #include "simbody_bridge/set_steps.h"
@@ -16,13 +16,6 @@ namespace {
 // The island's state: its bodies', one after the other.
 constexpr std::size_t kNumbers = sizeof(BodyState) / sizeof(double);
 static_assert(kNumbers == 13, "BodyState has padding or a new member");
-
-BodyState Normalised(BodyState state) {
-  auto& q = state.orientation_xyzw;
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (double& component : q) component /= norm;
-  return state;
-}
 
 class OdeEngine : public SetStepEngine<BodyEngine> {
  public:
@@ -36,7 +29,10 @@ class OdeEngine : public SetStepEngine<BodyEngine> {
       }
       islands_.emplace_back(part);
       starts_.emplace_back();
-      for (const BodySpec& body : part.bodies) starts_.back().push_back(Normalised(body.initial));
+      for (const BodySpec& body : part.bodies) {
+        starts_.back().push_back(body.initial);
+        Normalise(starts_.back().back().orientation_xyzw);
+      }
     }
   }
 

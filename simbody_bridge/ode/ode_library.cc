@@ -3,32 +3,31 @@
 #include <fmt/format.h>
 #include <ode/ode.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <string>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/one_line.h"
 
 namespace tcs {
 namespace {
 
-std::string OneLine(const char* format, va_list arguments) {
+std::string TextOf(const char* format, va_list arguments) {
   std::array<char, 512> text{};
   std::vsnprintf(text.data(), text.size(), format, arguments);
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.data();
+  return OnOneLine(text.data());
 }
 
 // ODE calls these for errors and failed assertions, and would end the process if they returned. An
 // exception may pass through it: it is C++, built with unwind tables, and holds no locks.
 [[noreturn]] void ThrowError(int number, const char* format, va_list arguments) {
-  throw DynamicsError(fmt::format("ODE, error {}: {}", number, OneLine(format, arguments)));
+  throw DynamicsError(fmt::format("ODE, error {}: {}", number, TextOf(format, arguments)));
 }
 
 void SayMessage(int /*number*/, const char* format, va_list arguments) {
-  std::fprintf(stderr, "tcs: ODE: %s\n", OneLine(format, arguments).c_str());
+  std::fprintf(stderr, "tcs: ODE: %s\n", TextOf(format, arguments).c_str());
 }
 
 }  // namespace

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/simbody/region_force.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
-namespace {
-
-SimTK::Vec3 ToVec3(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
-}  // namespace
 
 SimbodyModel::SimbodyModel(const WorldSpec& world, const std::vector<int>& bodies) {
   forces_.setNumberOfThreads(1);
@@ -56,7 +52,7 @@ BodyState ReadBody(std::span<const double> continuous, int body_count, int body)
   const auto bodies = static_cast<std::size_t>(body_count), i = static_cast<std::size_t>(body);
   const double* q = &continuous[kFreeBodyCoordinates * i];
   const double* u = &continuous[kFreeBodyCoordinates * bodies + kFreeBodySpeeds * i];
-  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const double norm = NormOf(std::span<const double, 4>(q, 4));
   BodyState value;
   value.position_m = {q[4], q[5], q[6]};
   value.orientation_xyzw = {q[1] / norm, q[2] / norm, q[3] / norm, q[0] / norm};
@@ -78,9 +74,7 @@ void WriteBody(const BodyState& value, int body_count, int body, std::span<doubl
 
 void NormaliseQuaternions(std::span<double> continuous, int body_count) {
   for (int body = 0; body < body_count; ++body) {
-    double* q = &continuous[kFreeBodyCoordinates * static_cast<std::size_t>(body)];
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int i = 0; i < 4; ++i) q[i] /= norm;
+    Normalise(continuous.subspan(kFreeBodyCoordinates * static_cast<std::size_t>(body)).first<4>());
   }
 }
 

@@ -1,5 +1,6 @@
 #include "simbody_bridge/simbody/simbody_engine.h"
 
+#include "simbody_bridge/one_line.h"
 #include "simbody_bridge/simbody/integrator_engine.h"
 #include "simbody_bridge/simbody/lanes_engine.h"
 #include "simbody_bridge/simbody/steps.h"

@@ -29,11 +29,6 @@ double TimeOfGust(const WorldSpec& world, const BodySpec& body) {
 
 }  // namespace
 
-std::string OnOneLine(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 // Error control sees a wall or a gust only where it evaluates the forces. So no step is longer than
 // a quarter of the time that it takes.
 VirtualDuration LongestStepBeside(const WorldSpec& world, const std::vector<int>& bodies) {

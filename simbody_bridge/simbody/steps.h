@@ -1,16 +1,12 @@
 // What Simbody's steps have in common, whoever takes them.
 #pragma once
 
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
 
 namespace tcs {
-
-// Simbody's messages run over several lines.
-std::string OnOneLine(std::string text);
 
 // Of a step that nothing limits.
 inline constexpr VirtualDuration kLongestStep = VirtualDuration::Seconds(1000);

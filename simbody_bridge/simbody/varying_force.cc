@@ -1,6 +1,7 @@
 #include "simbody_bridge/simbody/varying_force.h"
 
 #include "simbody_bridge/simbody/model.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
 
@@ -15,10 +16,8 @@ void VaryingForce::calcForce(const SimTK::State& state,
     if (loads_->IsConstant(*step_, place)) continue;
     const BodyState body = ReadBody(y, static_cast<int>(bodies_.size()), static_cast<int>(place));
     const Load load = loads_->At(*step_, place, state.getTime(), body);
-    const auto& f = load.force_n;
-    const auto& t = load.torque_nm;
     body_forces[bodies_[place].getMobilizedBodyIndex()] +=
-        SimTK::SpatialVec({t[0], t[1], t[2]}, {f[0], f[1], f[2]});
+        SimTK::SpatialVec(ToVec3(load.torque_nm), ToVec3(load.force_n));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simbody_bridge/simbody/tree/vectors.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "simbody_bridge/model/convex_hull.h"
-#include "simbody_bridge/simbody/tree/vectors.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
 namespace {

@@ -1,6 +1,6 @@
 #include "simbody_bridge/simbody/tree/link_force.h"
 
-#include "simbody_bridge/simbody/tree/vectors.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
 

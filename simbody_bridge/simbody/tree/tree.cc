@@ -1,12 +1,12 @@
 #include "simbody_bridge/simbody/tree/tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/simbody/tree/link_force.h"
-#include "simbody_bridge/simbody/tree/vectors.h"
+#include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
 namespace {
@@ -165,9 +165,7 @@ void SimbodyTree::EvaluateOrRecall(std::span<const double> state, std::span<cons
 void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (forest_.bodies[i].kind != JointKind::kFloating) continue;
-    double* q = &state[slots_[i].q];
-    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int k = 0; k < 4; ++k) q[k] /= norm;
+    Normalise(state.subspan(slots_[i].q).first<4>());
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "simbody_bridge/forest_engine.h"
+#include "simbody_bridge/one_line.h"
 #include "simbody_bridge/simbody/steps.h"
 #include "simbody_bridge/simbody/tree/contact_step.h"
 #include "simbody_bridge/simbody/tree/tree_steps.h"

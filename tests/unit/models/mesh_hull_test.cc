@@ -5,22 +5,18 @@
 #include <cmath>
 #include <random>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
 using Points = std::vector<std::array<double, 3>>;
 
-double Dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 double Volume(const Hull& hull) {
   double volume = 0;
   for (const auto& [a, b, c] : hull.triangles) {
     const auto &p = hull.vertices[a], &q = hull.vertices[b], &r = hull.vertices[c];
-    volume +=
-        Dot(p, {q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2], q[0] * r[1] - q[1] * r[0]}) /
-        6;
+    volume += Dot(p, Cross(q, r)) / 6;
   }
   return volume;
 }

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "simbody_bridge/model/rigid_tree.h"
+#include "simbody_bridge/model/pose.h"
 #include "simbody_bridge/simbody/simbody.h"
 
 namespace tcs {
