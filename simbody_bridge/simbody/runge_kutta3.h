@@ -1,12 +1,11 @@
-// Runge-Kutta 3(2) for many islands at once: Kutta's method of third order with the midpoint rule
-// in it, whose difference says how long the steps may be. It is the method of Simbody's integrator
-// of that name, which knows only one system with one clock.
+// Runge-Kutta 3(2) for many islands of free bodies at once.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/simbody/kutta.h"
 #include "simbody_bridge/simbody/rates.h"
 
 namespace tcs {
@@ -24,8 +23,7 @@ class RungeKutta3 {
  private:
   struct Attempt {
     IslandStep* step;
-    double length_s;
-    bool is_limited;  // shorter than error control has it
+    StepLength length;
     std::vector<double> state, middle_rate, end_rate;
   };
   void Begin(SimbodyRates& rates, std::span<IslandStep* const> steps);

@@ -176,8 +176,8 @@ void SimbodyTree::Project(std::span<double> state) {
     if (follower.leader < 0) continue;
     const Mimic& mimic = *follower.joint->mimic;
     const ForestJoint& leader = forest_.joints[static_cast<std::size_t>(follower.leader)];
-    const Slots& from = slots_[static_cast<std::size_t>(leader.body)];
-    const Slots& to = slots_[static_cast<std::size_t>(follower.body)];
+    const StateSlots& from = slots_[static_cast<std::size_t>(leader.body)];
+    const StateSlots& to = slots_[static_cast<std::size_t>(follower.body)];
     state[to.q] = mimic.multiplier * state[from.q] + mimic.offset;
     state[to.u] = mimic.multiplier * state[from.u];
   }
@@ -187,7 +187,7 @@ double SimbodyTree::LongestStepFrom(std::span<const double> state) const {
   double longest_s = std::numeric_limits<double>::infinity();
   for (const ForestJoint& joint : forest_.joints) {
     if (joint.body == kWorldBody) continue;
-    const Slots& slots = slots_[static_cast<std::size_t>(joint.body)];
+    const StateSlots& slots = slots_[static_cast<std::size_t>(joint.body)];
     longest_s = std::min(longest_s, TimeToStop(*joint.joint, state[slots.q], state[slots.u]));
   }
   return longest_s;
@@ -229,7 +229,7 @@ void SimbodyTree::ReadJoints(std::span<const double> state, std::span<const Wren
       read[i] = {};
       continue;
     }
-    const Slots& slots = slots_[static_cast<std::size_t>(joint.body)];
+    const StateSlots& slots = slots_[static_cast<std::size_t>(joint.body)];
     const double q = state[slots.q], u = state[slots.u];
     const JointDrive drive = DriveOfJoint(acting, forest_.links.size(), index);
     read[i] = {q, u, EffortOf(drive, joint.joint->limits.effort, q, u)};

@@ -11,6 +11,7 @@
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
 #include "simbody_bridge/simbody/contact/contacts.h"
+#include "simbody_bridge/simbody/kutta.h"
 #include "simbody_bridge/simbody/simbody.h"
 #include "simbody_bridge/simbody/tree/joint_force.h"
 
@@ -18,11 +19,6 @@ namespace tcs {
 
 class SimbodyTree {
  public:
-  // Of a body's coordinates and speeds in a state: where they begin, and how many there are.
-  struct Slots {
-    std::size_t q, q_count, u, u_count;
-  };
-
   // `forest` and what it points into outlive this. Throws what Simbody throws if it refuses it.
   SimbodyTree(const Forest& forest, const std::array<double, 3>& gravity_mps2);
   SimbodyTree(const SimbodyTree&) = delete;
@@ -30,7 +26,7 @@ class SimbodyTree {
 
   // The coordinates and then the speeds, at the start.
   const std::vector<double>& start() const { return start_; }
-  std::span<const Slots> slots() const { return slots_; }
+  std::span<const StateSlots> slots() const { return slots_; }
 
   // The derivatives of `state` where `acting` acts; NaN where Simbody cannot tell.
   void Evaluate(std::span<const double> state, std::span<const Wrench> acting, double* rate);
@@ -74,7 +70,7 @@ class SimbodyTree {
   SimTK::SimbodyMatterSubsystem matter_{system_};
   SimTK::GeneralForceSubsystem forces_{system_};
   std::vector<SimTK::MobilizedBody> bodies_;
-  std::vector<Slots> slots_;
+  std::vector<StateSlots> slots_;
   std::vector<double> start_;
   bool has_mimics_ = false;
   const JointForce* joint_force_ = nullptr;  // Simbody owns it

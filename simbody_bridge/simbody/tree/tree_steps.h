@@ -1,5 +1,4 @@
-// Runge-Kutta 3(2) for one island of models: the method of runge_kutta3.h, where coordinates and
-// speeds belong to joints.
+// Runge-Kutta 3(2) for one island of models: coordinates and speeds are those of joints.
 #pragma once
 
 #include <vector>

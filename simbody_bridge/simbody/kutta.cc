@@ -1,0 +1,52 @@
+#include "simbody_bridge/simbody/kutta.h"
+
+#include <stdexcept>
+
+namespace tcs {
+namespace {
+
+constexpr double kSafety = 0.9;  // of the length that the error of the last one promises
+constexpr double kMostGrowth = 5, kMostShrinking = 0.1, kLeastShrinking = 0.5;
+
+}  // namespace
+
+void KuttaMiddle(const IslandStep& step, double h, std::vector<double>* state) {
+  for (std::size_t k = 0; k < step.from.size(); ++k) {
+    (*state)[k] = step.from[k] + h / 2 * step.from_rate[k];
+  }
+}
+
+void KuttaEnd(const IslandStep& step, const std::vector<double>& middle_rate, double h,
+              std::vector<double>* state) {
+  for (std::size_t k = 0; k < step.from.size(); ++k) {
+    (*state)[k] = step.from[k] + h * (2 * middle_rate[k] - step.from_rate[k]);
+  }
+}
+
+void KuttaStep(const std::vector<double>& middle_rate, const std::vector<double>& end_rate,
+               double h, IslandStep* step) {
+  for (std::size_t k = 0; k < step->from.size(); ++k) {
+    step->to[k] = step->from[k] + h / 6 * (step->from_rate[k] + 4 * middle_rate[k] + end_rate[k]);
+  }
+}
+
+bool StepLength::Judge(double error, double accuracy, IslandStep* step) {
+  const double h = seconds_;
+  const double promised_s = kSafety * h * std::cbrt(accuracy / error);  // infinite without error
+  if (error <= accuracy) {
+    step->length_s = h;
+    // What a limit did not let it try it has no reason to give up, nor to hope for more.
+    const double most_s = is_limited_ ? step->try_s : kMostGrowth * h;
+    step->next_try_s = std::clamp(promised_s, h, std::max(h, most_s));
+    return true;
+  }
+  is_limited_ = false;
+  seconds_ = std::isfinite(error) ? std::clamp(promised_s, kMostShrinking * h, kLeastShrinking * h)
+                                  : kMostShrinking * h;
+  if (seconds_ < kShortestStepS) {
+    throw std::runtime_error("no step is short enough for the accuracy");
+  }
+  return false;
+}
+
+}  // namespace tcs

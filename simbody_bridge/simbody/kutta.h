@@ -1,0 +1,80 @@
+// The arithmetic of Runge-Kutta 3(2), whoever evaluates the derivatives: Kutta's method of third
+// order with the midpoint rule in it, whose difference says how long the steps may be. It is the
+// method of Simbody's integrator of that name, which knows only one system with one clock.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+// Of a body's or a joint's coordinates and speeds in a state: where they begin, and how many there
+// are. An error is a root mean square over those of one.
+struct StateSlots {
+  std::size_t q, q_count, u, u_count;
+};
+
+// Where the second derivatives of a step of `h` seconds are taken, from those at its beginning.
+void KuttaMiddle(const IslandStep& step, double h, std::vector<double>* state);
+// Where the third ones are.
+void KuttaEnd(const IslandStep& step, const std::vector<double>& middle_rate, double h,
+              std::vector<double>* state);
+// Where it leads: step.to.
+void KuttaStep(const std::vector<double>& middle_rate, const std::vector<double>& end_rate,
+               double h, IslandStep* step);
+
+// Of a step of `h` seconds that has been tried: the greatest error among `count` bodies or joints,
+// of coordinates or of speeds, relative for speeds above 1. `slots_of` gives the StateSlots of
+// each.
+template <class SlotsOf>
+double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate, double h,
+                  std::size_t count, const SlotsOf& slots_of) {
+  const auto square = [](double x) { return x * x; };
+  const auto error = [&](std::size_t i) {
+    return step.to[i] - (step.from[i] + h * middle_rate[i]);
+  };
+  double greatest = 0, all = 0;
+  for (std::size_t index = 0; index < count; ++index) {
+    const StateSlots slots = slots_of(index);
+    double coordinates = 0, speeds = 0;
+    for (std::size_t i = slots.q; i < slots.q + slots.q_count; ++i) coordinates += square(error(i));
+    for (std::size_t i = slots.u; i < slots.u + slots.u_count; ++i) {
+      speeds += square(error(i) / std::max(1.0, std::abs(step.from[i])));
+    }
+    greatest = std::max({greatest, coordinates / static_cast<double>(slots.q_count),
+                         speeds / static_cast<double>(slots.u_count)});
+    all += coordinates + speeds;
+  }
+  return std::isfinite(all) ? std::sqrt(greatest) : all;
+}
+
+// Shorter steps lead nowhere: islands count whole nanoseconds.
+inline constexpr double kShortestStepS = 1e-9;
+
+// How long a step is that error control lets be as long as it can.
+class StepLength {
+ public:
+  StepLength() = default;
+  // Of a step that is at most so long.
+  StepLength(const IslandStep& step, double most_s)
+      : is_limited_(step.try_s > most_s), seconds_(std::min(step.try_s, most_s)) {}
+
+  // To try.
+  double seconds() const { return seconds_; }
+  void Set(double seconds) { seconds_ = seconds; }
+
+  // Whether a try with this error is good enough: then the step is as long, and knows how long to
+  // try the next one; else another length is to be tried. Throws std::runtime_error where no step
+  // is short enough.
+  bool Judge(double error, double accuracy, IslandStep* step);
+
+ private:
+  bool is_limited_ = false;  // shorter than error control has it
+  double seconds_ = 0;
+};
+
+}  // namespace tcs
