@@ -1,7 +1,5 @@
 #include "coordinator/core/world.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <time.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "coordinator/os/file_errors.h"
 #include "coordinator/os/host.h"
+#include "coordinator/world/csv_row.h"
 #include "shm/layout.h"
 
 namespace tcs {
@@ -90,7 +89,7 @@ std::string World::OpenCsv(const std::string& path) {
   csv_.rdbuf()->pubsetbuf(nullptr, 0);
   csv_.open(path);
   if (!csv_) return CannotBeWritten(path);
-  csv_ << "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
+  csv_ << kBodiesCsvHead;
   FindNextStop();
   return {};
 }
@@ -120,10 +119,9 @@ void World::WriteCsv() {
   next_csv_ns_ += scenario_.csv_period.ns();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BodyState& s = states_[i];
-    csv_text_ += fmt::format(
-        "{:.9f},{},{},{},{},{}\n", static_cast<double>(now) * 1e-9, scenario_.world->bodies[i].name,
-        fmt::join(s.position_m, ","), fmt::join(s.orientation_xyzw, ","),
-        fmt::join(s.linear_velocity_mps, ","), fmt::join(s.angular_velocity_radps, ","));
+    AppendBodiesCsvRow(VirtualTime::FromNanoseconds(now), scenario_.world->bodies[i].name,
+                       s.position_m, s.orientation_xyzw, s.linear_velocity_mps,
+                       s.angular_velocity_radps, &csv_text_);
   }
   link_lines_.Append(*dynamics_, &csv_text_);
   if (csv_text_.size() > kCsvAtOnce) FlushCsv();

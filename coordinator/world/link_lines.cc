@@ -1,9 +1,8 @@
 #include "coordinator/world/link_lines.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <numeric>
+
+#include "coordinator/world/csv_row.h"
 
 namespace tcs {
 
@@ -21,13 +20,10 @@ LinkLines::LinkLines(const WorldSpec& world) {
 void LinkLines::Append(Dynamics& dynamics, std::string* text) {
   if (links_.empty()) return;
   dynamics.ReadLinks(dynamics.Now(), links_, states_);
-  const double time_s = static_cast<double>(dynamics.Now().ns()) * 1e-9;
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const LinkState& s = states_[i];
-    *text +=
-        fmt::format("{:.9f},{},{},{},{},{}\n", time_s, names_[i], fmt::join(s.pose.position_m, ","),
-                    fmt::join(s.pose.orientation_xyzw, ","), fmt::join(s.linear_velocity_mps, ","),
-                    fmt::join(s.angular_velocity_radps, ","));
+    AppendBodiesCsvRow(dynamics.Now(), names_[i], s.pose.position_m, s.pose.orientation_xyzw,
+                       s.linear_velocity_mps, s.angular_velocity_radps, text);
   }
 }
 

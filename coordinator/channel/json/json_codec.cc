@@ -109,14 +109,19 @@ void AppendField(const BodyReading& body, SensorField field, std::string& text) 
   }
 }
 
+std::string BeginAt(VirtualTime at) {
+  std::string text = R"({"time":)";
+  // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
+  AppendNumber(static_cast<double>(at.ns()) / 1e9, text);
+  return text;
+}
+
 }  // namespace
 
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
 std::string EncodeReading(const Reading& reading, std::span<const SensorField> fields) {
   if (!reading.joints.empty()) return EncodeJoints(reading);
-  // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
-  std::string text = R"({"time":)";
-  AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
+  std::string text = BeginAt(reading.at);
   text += R"(,"frame_id":"world","bodies":{)";
   for (const BodyReading& body : reading.bodies) {
     if (&body != &reading.bodies.front()) text += ',';
@@ -134,8 +139,7 @@ std::string EncodeReading(const Reading& reading, std::span<const SensorField> f
 }
 
 std::string EncodeJoints(const Reading& reading) {
-  std::string text = R"({"time":)";
-  AppendNumber(static_cast<double>(reading.at.ns()) / 1e9, text);
+  std::string text = BeginAt(reading.at);
   text += R"(,"joints":{)";
   for (const JointReading& joint : reading.joints) {
     if (&joint != &reading.joints.front()) text += ',';

@@ -1,0 +1,21 @@
+// A line of bodies.csv.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+inline constexpr std::string_view kBodiesCsvHead =
+    "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
+
+void AppendBodiesCsvRow(VirtualTime at, std::string_view name,
+                        const std::array<double, 3>& position_m,
+                        const std::array<double, 4>& orientation_xyzw,
+                        const std::array<double, 3>& linear_velocity_mps,
+                        const std::array<double, 3>& angular_velocity_radps, std::string* text);
+
+}  // namespace tcs
