@@ -22,6 +22,7 @@ Loads::Loads(const WorldSpec& world, const std::vector<std::vector<int>>& island
 
 Load Loads::At(const IslandStep& step, std::size_t place, double after_s,
                const BodyState& body) const {
+  if (IsConstant(step, place)) return LoadOf(step.wrenches[place]);
   if (step.remainders.empty()) return Sum(step, place, 0, body, after_s);
   const Wrench& command = step.wrenches[place];
   const double left = ShareLeft(command, step.remainders[place], step.at);
@@ -30,6 +31,7 @@ Load Loads::At(const IslandStep& step, std::size_t place, double after_s,
 
 Load Loads::MeanOver(const IslandStep& step, std::size_t place, double seconds,
                      const BodyState& body) const {
+  if (IsConstant(step, place)) return LoadOf(step.wrenches[place]);
   if (step.remainders.empty()) return Sum(step, place, 0, body, 0);
   const double left = MeanShareLeft(step.wrenches[place], step.remainders[place], step.at, seconds);
   return Sum(step, place, left, body, 0);

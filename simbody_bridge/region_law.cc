@@ -14,4 +14,10 @@ double WallForce(const RegionSpec& region, double position_m, double velocity_mp
   return -outward * std::max(0.0, push);
 }
 
+void AddWallForce(const RegionSpec& region, const BodyState& body, std::array<double, 3>* force_n) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    (*force_n)[axis] += WallForce(region, body.position_m[axis], body.linear_velocity_mps[axis]);
+  }
+}
+
 }  // namespace tcs

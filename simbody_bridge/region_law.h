@@ -8,5 +8,7 @@ namespace tcs {
 // The wall's force along one axis on a body at `position_m` with `velocity_mps` along that axis, in
 // newtons.
 double WallForce(const RegionSpec& region, double position_m, double velocity_mps);
+// What all walls do to the body.
+void AddWallForce(const RegionSpec& region, const BodyState& body, std::array<double, 3>* force_n);
 
 }  // namespace tcs

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "simbody_bridge/loads.h"
+#include "simbody_bridge/masses.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 #include "simbody_bridge/region_law.h"
@@ -36,15 +37,9 @@ class MujocoBodies : public SetStepEngine<BodyEngine> {
         region_(world.region),
         loads_(world, islands) {
     for (const BodySpec& body : world.bodies) models_.push_back(ModelOf(body));
-    std::map<std::vector<std::array<double, 4>>, MujocoSystem*> known;
+    std::map<Masses, MujocoSystem*> known;
     for (const std::vector<int>& bodies : islands) {
-      std::vector<std::array<double, 4>> masses;
-      for (const int index : bodies) {
-        const BodySpec& body = world.bodies[static_cast<std::size_t>(index)];
-        const auto& [x, y, z] = body.inertia_kgm2;
-        masses.push_back({body.mass_kg, x, y, z});
-      }
-      MujocoSystem*& system = known[masses];
+      MujocoSystem*& system = known[MassesOf(world, bodies)];
       if (system == nullptr) system = &AddSystem(world, bodies);
       // Its start is that of the island that it was made for.
       islands_.push_back({system, StartOf(bodies)});
@@ -106,15 +101,10 @@ class MujocoBodies : public SetStepEngine<BodyEngine> {
       const int place = static_cast<int>(i);
       Wrench& wrench = acting_[static_cast<std::size_t>(PlaceOfLink(place, WrenchFrame::kWorld))];
       const BodyState state = Read(step.island, place, step.from);
-      const Load load = loads_.IsConstant(step, i) ? LoadOf(step.wrenches[i])
-                                                   : loads_.MeanOver(step, i, seconds, state);
+      const Load load = loads_.MeanOver(step, i, seconds, state);
       wrench.force_n = load.force_n;
       wrench.torque_nm = load.torque_nm;
-      if (!has_region_) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        wrench.force_n[axis] +=
-            WallForce(region_, state.position_m[axis], state.linear_velocity_mps[axis]);
-      }
+      if (has_region_) AddWallForce(region_, state, &wrench.force_n);
     }
     At(step.island).system->Step(step.from, acting_, seconds, to);
   }

@@ -61,8 +61,7 @@ class OdeEngine : public SetStepEngine<BodyEngine> {
     acting_.resize(step.wrenches.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       bodies_[i] = Read(step.island, static_cast<int>(i), step.from);
-      acting_[i] = loads_.IsConstant(step, i) ? LoadOf(step.wrenches[i])
-                                              : loads_.MeanOver(step, i, seconds, bodies_[i]);
+      acting_[i] = loads_.MeanOver(step, i, seconds, bodies_[i]);
     }
     islands_[static_cast<std::size_t>(step.island)].Step(seconds, acting_, &bodies_);
     ToState(bodies_, state);

@@ -64,10 +64,7 @@ void OdeWorld::Step(double seconds, const std::vector<Load>& loads,
     const BodyState& state = (*states)[i];
     Write(bodies_[i], state);
     std::array<double, 3> force = loads[i].force_n;
-    for (std::size_t axis = 0; axis < 3 && spec_.has_region; ++axis) {
-      force[axis] +=
-          WallForce(spec_.region, state.position_m[axis], state.linear_velocity_mps[axis]);
-    }
+    if (spec_.has_region) AddWallForce(spec_.region, state, &force);
     const auto& torque = loads[i].torque_nm;
     dBodySetForce(bodies_[i], force[0], force[1], force[2]);
     dBodySetTorque(bodies_[i], torque[0], torque[1], torque[2]);

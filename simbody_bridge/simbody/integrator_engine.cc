@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "simbody_bridge/masses.h"
 #include "simbody_bridge/one_line.h"
 #include "simbody_bridge/simbody/make_integrator.h"
 #include "simbody_bridge/simbody/model.h"

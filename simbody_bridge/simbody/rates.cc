@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "simbody_bridge/simbody/steps.h"
+#include "simbody_bridge/masses.h"
 
 namespace tcs {
 namespace {
@@ -119,7 +119,7 @@ void SimbodyRates::EvaluateAlone(const Lane& lane) {
 
 Load SimbodyRates::LoadIn(const Lane& lane, std::size_t place) const {
   const IslandStep& step = *lane.step;
-  if (loads_.IsConstant(step, place)) return LoadOf(step.wrenches[place]);
+  if (loads_.IsConstant(step, place)) return LoadOf(step.wrenches[place]);  // and not read the body
   const std::size_t bodies = step.wrenches.size();
   const BodyState body = ReadBody({lane.state, kFreeBodyNumbers * bodies}, static_cast<int>(bodies),
                                   static_cast<int>(place));

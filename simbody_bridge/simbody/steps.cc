@@ -66,13 +66,4 @@ void TakeShortened(IslandEngine& engine, const IslandStep& step, VirtualDuration
   *state = memory->to;
 }
 
-Masses MassesOf(const WorldSpec& world, const std::vector<int>& bodies) {
-  Masses masses;
-  for (const int index : bodies) {
-    const BodySpec& body = world.bodies[static_cast<std::size_t>(index)];
-    masses.emplace_back(body.mass_kg, body.inertia_kgm2);
-  }
-  return masses;
-}
-
 }  // namespace tcs

@@ -1,7 +1,6 @@
 // What Simbody's steps have in common, whoever takes them.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
@@ -25,9 +24,5 @@ void InterpolateNumbers(const IslandStep& step, double after_s, std::vector<doub
 // `after` its beginning. `memory` is used again.
 void TakeShortened(IslandEngine& engine, const IslandStep& step, VirtualDuration after,
                    IslandStep* memory, std::vector<double>* state);
-
-// What makes two islands the same system.
-using Masses = std::vector<std::pair<double, std::array<double, 3>>>;
-Masses MassesOf(const WorldSpec& world, const std::vector<int>& bodies);
 
 }  // namespace tcs
