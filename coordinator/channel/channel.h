@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,8 +22,6 @@
 #include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs {
-
-struct JointDriveSpec;
 
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
@@ -67,14 +66,20 @@ class Outlet {
 template <class End>
 using Opened = std::variant<std::unique_ptr<End>, std::string>;
 
+// What the numbers of a command without wrenches are for.
+struct GoalNames {
+  std::span<const std::string> names;               // that JointGoal::joint counts
+  JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
+};
+
 // Who is given what comes in. Channels are numbered as the scenario lists those of commands.
 class CommandSink {
  public:
   // A command that was sent at `sent`.
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
-  // The joints that the channel drives, which goals are for; null: wrenches are for its body.
-  virtual const JointDriveSpec* JointsOf(std::size_t channel) const = 0;
+  // The joints or rotors that the channel drives; none: wrenches are for its body or link.
+  virtual std::optional<GoalNames> GoalsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.
   virtual void Refuse(std::size_t channel, const std::string& why) = 0;
   // Something that the user should know at once: a sentence.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -39,10 +40,17 @@ World::World(std::function<void(const std::string&)> warn)
     : commands_(
           std::move(warn),
           [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
-            Apply(ActsAtNs(sent, latency), body, wrench);
+            dynamics_->Apply(body, wrench, ActsAt(sent, latency));
           },
           [this](VirtualTime sent, VirtualDuration latency, int joint, const JointDrive& drive) {
-            dynamics_->Drive(joint, drive, VirtualTime::FromNanoseconds(ActsAtNs(sent, latency)));
+            dynamics_->Drive(joint, drive, ActsAt(sent, latency));
+          },
+          [this](VirtualTime sent, VirtualDuration latency, int rotor, double speed_radps) {
+            dynamics_->Spin(rotor, speed_radps, ActsAt(sent, latency));
+          },
+          [this](VirtualTime sent, VirtualDuration latency, int link, WrenchFrame frame,
+                 const Wrench& wrench) {
+            dynamics_->ApplyToLink(link, frame, wrench, ActsAt(sent, latency));
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
@@ -174,12 +182,8 @@ void World::Settle(std::int64_t ns) {
   if (ns > settled_ns()) dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(ns));
 }
 
-std::int64_t World::ActsAtNs(VirtualTime sent, VirtualDuration latency) const {
-  return std::max(sent.ns(), settled_ns()) + latency.ns();
-}
-
-void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
-  dynamics_->Apply(body, wrench, VirtualTime::FromNanoseconds(at_ns));
+VirtualTime World::ActsAt(VirtualTime sent, VirtualDuration latency) const {
+  return std::max(sent, dynamics_->Now()) + latency;
 }
 
 std::vector<int> World::command_fds() const {
@@ -193,16 +197,21 @@ void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
   channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
 }
 
+std::string World::WhomMoves(const CommandChannelSpec& spec) const {
+  if (spec.link) return spec.link->name;
+  if (spec.joints) return spec.joints->group.model;
+  if (spec.rotors) return spec.rotors->model;
+  return scenario_.world->bodies[static_cast<std::size_t>(spec.body)].name;
+}
+
 std::vector<std::string> World::CommandComplaints() const {
   std::vector<std::string> complaints;
   for (std::size_t i = 0; i < channels_.inlet_of.size(); ++i) {
-    const CommandChannelSpec& spec = scenario_.commands[i];
-    const auto body = static_cast<std::size_t>(spec.body);
-    complaints.push_back(commands_.ComplaintAbout(
-        i, channels_.inlet_of[i]->PlaceOf(i),
-        spec.joints ? spec.joints->group.model : scenario_.world->bodies[body].name));
+    complaints.push_back(commands_.ComplaintAbout(i, channels_.inlet_of[i]->PlaceOf(i),
+                                                  WhomMoves(scenario_.commands[i])));
   }
   std::erase(complaints, "");
+  std::ranges::move(commands_.ComplaintsAboutActuators(), std::back_inserter(complaints));
   return complaints;
 }
 

@@ -182,12 +182,12 @@ std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const auto found = std::find(joints.begin(), joints.end(), name);
     if (found == joints.end()) {
       constexpr std::size_t kLongestQuote = 40;
-      return MessageError{"names the joint '" + std::string(name.substr(0, kLongestQuote)) +
+      return MessageError{"names '" + std::string(name.substr(0, kLongestQuote)) +
                           "', which the channel does not drive"};
     }
     goals[i].joint = static_cast<std::size_t>(found - joints.begin());
     if (std::exchange(is_named[goals[i].joint], 1) != 0) {
-      return MessageError{"names the joint '" + std::string(name) + "' twice"};
+      return MessageError{"names '" + std::string(name) + "' twice"};
     }
   }
   const std::pair<const dds_sequence_double*, JointQuantity> lists[] = {

@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
 #include "coordinator/scenario/load_joints.h"
+#include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
@@ -57,7 +59,7 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsAboutJoints(map, "bodies");
+  const bool of_joints = IsOfModel(map, "bodies");
   std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
   if (of_joints) {
     keys.insert(keys.begin(), {"model", "joints"});
@@ -95,23 +97,71 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   return channel;
 }
 
+// What a channel of commands is about.
+enum class Commanded { kBody, kLink, kJoints, kRotors };
+
+Commanded CommandedBy(const YamlMap& map) {
+  if (!IsOfModel(map, "body")) return Commanded::kBody;
+  Commanded commanded = Commanded::kJoints;  // all of them, where it does not say which
+  const char* said = nullptr;
+  for (const auto& [key, what] : {std::pair{"link", Commanded::kLink},
+                                  {"rotors", Commanded::kRotors},
+                                  {"joints", Commanded::kJoints}}) {
+    const YamlValue* value = map.Find(key);
+    if (value == nullptr) continue;
+    if (said != nullptr) {
+      value->Fail(std::string("cannot be given beside ") + said + "; make two channels of it");
+    }
+    said = key;
+    commanded = what;
+  }
+  return commanded;
+}
+
+std::vector<std::string> KeysOf(Commanded commanded) {
+  switch (commanded) {
+    case Commanded::kBody:
+      return {"body", "latency", "limits", "axes", "lag"};
+    case Commanded::kLink:
+      return {"model", "link", "latency", "limits", "axes"};
+    case Commanded::kJoints:
+      return {"model", "joints", "drive", "stiffness", "damping", "latency", "lag"};
+    case Commanded::kRotors:
+      break;
+  }
+  return {"model", "rotors", "drive", "latency"};
+}
+
+void LoadTarget(const YamlMap& map, Commanded commanded, Scenario* scenario,
+                CommandChannelSpec* channel) {
+  switch (commanded) {
+    case Commanded::kBody:
+      channel->body = FindBody(map.Require("body", "body: predator"), *scenario);
+      return LoadCommandEffect(map, "body", channel);
+    case Commanded::kLink:
+      channel->link = LoadLinkTarget(map, *scenario);
+      return LoadCommandEffect(map, "link", channel);
+    case Commanded::kJoints:
+      channel->joints = LoadJointDrive(map, *scenario);
+      SetDriveLag(map, *channel->joints, scenario);
+      break;
+    case Commanded::kRotors:
+      channel->rotors = LoadRotorDrive(map, *scenario);
+      break;
+  }
+  if (const YamlValue* latency = map.Find("latency")) channel->latency = latency->AsDuration();
+}
+
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
-                                ChannelType type, const Scenario& scenario, Ends* ends) {
+                                ChannelType type, Scenario* scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsAboutJoints(map, "body");
-  std::vector<std::string> keys = {"body", "latency", "limits", "axes", "lag"};
-  if (of_joints) keys = {"model", "joints", "drive", "stiffness", "damping", "latency"};
+  const Commanded commanded = CommandedBy(map);
+  std::vector<std::string> keys = KeysOf(commanded);
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
-  if (of_joints) {
-    channel.joints = LoadJointDrive(map, scenario);
-    if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  } else {
-    channel.body = FindBody(map.Require("body", "body: predator"), scenario);
-    LoadCommandEffect(map, &channel);
-  }
+  LoadTarget(map, commanded, scenario, &channel);
   switch (type) {
     case ChannelType::kUdpJson:
       channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
@@ -120,7 +170,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
       channel.from = ends->unix_names.Load(map.Require("listen", "listen: hands.sock"));
       break;
     case ChannelType::kPty:
-      channel.from = ends->serial.Load(map, true, scenario);
+      channel.from = ends->serial.Load(map, true, *scenario);
       break;
     case ChannelType::kDds:
       channel.from = LoadDdsCommandEnd(map, channel, &ends->topics);
@@ -176,7 +226,7 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
     if (sensors != nullptr) {
       scenario->sensors.push_back(LoadSensors(entry, *sensors, type, *scenario, &ends));
     } else {
-      scenario->commands.push_back(LoadCommands(entry, *commands, type, *scenario, &ends));
+      scenario->commands.push_back(LoadCommands(entry, *commands, type, scenario, &ends));
     }
   }
 }

@@ -156,12 +156,15 @@ DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& co
                                 DdsTopics* topics) {
   DdsCommandEnd from;
   from.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
-  if (command.joints.has_value() == (from.message == dds::CommandMessage::kWrench)) {
+  const bool has_goals = command.joints || command.rotors;
+  if (has_goals == (from.message == dds::CommandMessage::kWrench)) {
+    const std::string what = command.joints ? "joints" : "rotors";
     map.Find("message")->Fail(
         "is " + dds::NameOf(from.message) +
-        (command.joints ? ", but joints are driven by std_msgs/msg/Float64MultiArray or "
-                          "sensor_msgs/msg/JointState; read one of these"
-                        : ", but a body is moved by geometry_msgs/msg/Wrench; read that"));
+        (has_goals ? ", but " + what +
+                         " are driven by std_msgs/msg/Float64MultiArray or "
+                         "sensor_msgs/msg/JointState; read one of these"
+                   : ", but a body is moved by geometry_msgs/msg/Wrench; read that"));
   }
   // Best effort matches what every writer offers; on the way to the coordinator nothing is lost.
   from.end.qos.reliability = dds::Reliability::kBestEffort;

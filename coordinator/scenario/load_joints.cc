@@ -6,7 +6,6 @@
 #include "coordinator/scenario/nearest.h"
 
 namespace tcs {
-namespace {
 
 std::size_t FindModel(const YamlValue& value, const Scenario& scenario) {
   const std::string name = value.AsText();
@@ -22,11 +21,22 @@ std::size_t FindModel(const YamlValue& value, const Scenario& scenario) {
   value.Fail("names the unknown model '" + name + "'; " + Suggest(name, known, "models"));
 }
 
+namespace {
+
 // Joints are numbered through the world: those of the first model first.
 int FirstJointOf(std::size_t model, const Scenario& scenario) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < model; ++i) first += scenario.world->models[i].joints.size();
   return static_cast<int>(first);
+}
+
+// The other way round.
+template <class Models>
+auto& JointOf(int index, Models& models) {
+  auto joint = static_cast<std::size_t>(index);
+  std::size_t model = 0;
+  while (joint >= models[model].joints.size()) joint -= models[model++].joints.size();
+  return models[model].joints[joint];
 }
 
 enum class Use { kRead, kDrive };
@@ -106,7 +116,7 @@ JointQuantity LoadQuantity(const YamlValue& value) {
 
 }  // namespace
 
-bool IsAboutJoints(const YamlMap& map, const char* body_key) {
+bool IsOfModel(const YamlMap& map, const char* body_key) {
   const YamlValue* model = map.Find("model");
   if (model != nullptr && map.Find(body_key) != nullptr) {
     model->Fail(std::string("cannot be given beside ") + body_key + "; make two channels of it");
@@ -134,7 +144,29 @@ JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario) {
     const std::vector<double> gains = LoadGains(*v, count);
     for (std::size_t i = 0; i < count; ++i) spec.gains[i].damping = gains[i];
   }
+  if (const YamlValue* v = map.Find("lag")) spec.lag = v->AsDuration();
+  for (const int joint : spec.group.joints) {
+    spec.limits.push_back(JointOf(joint, scenario.world->models).limits);
+  }
   return spec;
+}
+
+void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario) {
+  const YamlValue* lag = map.Find("lag");
+  const YamlValue& place = lag != nullptr ? *lag : map.place();
+  for (std::size_t i = 0; i < spec.group.joints.size(); ++i) {
+    const int joint = spec.group.joints[i];
+    for (const CommandChannelSpec& other : scenario->commands) {
+      if (!other.joints || other.joints->lag == spec.lag) continue;
+      if (std::ranges::find(other.joints->group.joints, joint) ==
+          other.joints->group.joints.end()) {
+        continue;
+      }
+      place.Fail("drives the joint '" + spec.group.names[i] + "' with another lag than channel " +
+                 other.name + " does; a joint has one");
+    }
+    JointOf(joint, scenario->world->models).drive_lag = spec.lag;
+  }
 }
 
 }  // namespace tcs

@@ -7,14 +7,19 @@
 
 namespace tcs {
 
-// Whether the channel with the keys of `map` is about joints: it names a model, and no body by
+// Whether the channel with the keys of `map` is about a model: it names one, and no body by
 // `body_key`.
-bool IsAboutJoints(const YamlMap& map, const char* body_key);
+bool IsOfModel(const YamlMap& map, const char* body_key);
 
 // `model` and `joints`: all that have one coordinate, where none are named.
 JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario);
 
-// The same of joints that can be driven; `drive`, `stiffness` and `damping`.
+// The same of joints that can be driven; `drive`, `stiffness`, `damping` and `lag`.
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario);
+// Gives the joints the lag of the channel that drives them. All channels of a joint have one.
+void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario);
+
+// The index of the model that `value` names.
+std::size_t FindModel(const YamlValue& value, const Scenario& scenario);
 
 }  // namespace tcs

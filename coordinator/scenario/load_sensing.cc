@@ -39,12 +39,12 @@ std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
   return limit;
 }
 
-bool LoadIsInBodyFrame(const YamlValue& value) {
+bool LoadIsInOwnFrame(const YamlValue& value, const std::string& own) {
   const std::string axes = value.AsText();
-  if (axes != "world" && axes != "body") {
-    value.Fail("is the unknown '" + axes + "'; " + Suggest(axes, {"world", "body"}, "axes"));
+  if (axes != "world" && axes != own) {
+    value.Fail("is the unknown '" + axes + "'; " + Suggest(axes, {"world", own}, "axes"));
   }
-  return axes == "body";
+  return axes == own;
 }
 
 }  // namespace
@@ -111,9 +111,9 @@ SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::
   return errors;
 }
 
-void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command) {
+void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command) {
   if (const YamlValue* v = map.Find("latency")) command->latency = v->AsDuration();
-  if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInBodyFrame(*v);
+  if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInOwnFrame(*v, own);
   if (const YamlValue* v = map.Find("lag")) command->lag = v->AsDuration();
   const YamlValue* limits = map.Find("limits");
   if (limits == nullptr) return;

@@ -15,7 +15,8 @@ std::vector<SensorField> LoadSensorFields(const YamlValue& value);
 // `noise`, `bias`, `dropout` and `jitter` of a sensor of that name.
 SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed);
 
-// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts.
-void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command);
+// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts. Axes are the
+// world's or those of `own`, a "body" or a "link".
+void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command);
 
 }  // namespace tcs

@@ -176,6 +176,23 @@ struct JointDriveSpec {
   JointGroup group;
   JointQuantity quantity = JointQuantity::kEffort;  // what a number without a name is
   std::vector<JointGains> gains;                    // of each joint
+  std::vector<JointLimits> limits{};                // likewise: what is wanted is kept within them
+  VirtualDuration lag{};                            // Joint::drive_lag of all of them
+};
+
+// Rotors of a model that a channel drives.
+struct RotorDriveSpec {
+  std::string model;
+  std::vector<int> rotors;         // as Dynamics numbers them
+  std::vector<std::string> names;  // of each
+  std::vector<double> most_radps;  // likewise
+  bool is_normalised = false;      // a command is a share of the most that the rotor can do
+};
+
+// A link of a model that a channel pushes.
+struct LinkTarget {
+  std::string name;  // "drone/base_link"
+  int link = 0;      // as Dynamics numbers it
 };
 
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
@@ -200,14 +217,18 @@ inline constexpr std::array<double, 3> kNoWrenchLimit = {std::numeric_limits<dou
 // What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
   std::string name;
-  int body = 0;                          // or
+  int body = 0;                          // or one of these, of a model:
+  std::optional<LinkTarget> link;        // which they push
   std::optional<JointDriveSpec> joints;  // which they drive
+  std::optional<RotorDriveSpec> rotors;
   VirtualDuration latency{};
   // The most of each component, either way.
   std::array<double, 3> most_force_n = kNoWrenchLimit, most_torque_nm = kNoWrenchLimit;
-  bool in_body_frame = false;  // the components are along the body's axes
+  bool in_body_frame = false;  // the components are along the axes of the body, or of the link
   VirtualDuration lag{};       // Wrench's
   CommandEnd from;
+
+  bool IsOfModel() const { return link || joints || rotors; }
 };
 
 // The virtual time as a topic, every `period` from time 0 on.

@@ -1,5 +1,6 @@
 #include <deque>
 
+#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 
@@ -12,7 +13,8 @@ class MujocoModels : public ModelEngine {
       : models_(world.models),
         fixtures_(world.fixtures),
         step_(world.integrator.fixed_step > VirtualDuration{} ? world.integrator.fixed_step
-                                                              : kMujocoStep) {
+                                                              : kMujocoStep),
+        loads_(models_, islands) {
     for (const std::vector<int>& models : islands) {
       forests_.push_back(MakeForest(models_, models, fixtures_));
       systems_.emplace_back(forests_.back(), world.gravity_mps2);
@@ -25,11 +27,12 @@ class MujocoModels : public ModelEngine {
 
   void Take(IslandStep& step) override {
     step.length_s = step.limit.seconds();
-    At(step.island).Step(step.from, step.wrenches, step.length_s, &step.to);
+    At(step.island).Step(step.from, loads_.MeanOver(step, step.length_s), step.length_s, &step.to);
   }
   // What a step gives that is shortened to end there.
   void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
-    At(step.island).Step(step.from, step.wrenches, after.seconds(), state);
+    const double after_s = after.seconds();
+    At(step.island).Step(step.from, loads_.MeanOver(step, after_s), after_s, state);
   }
 
   void ReadLinks(int island, std::span<const double> state, std::span<const int> links,
@@ -47,6 +50,7 @@ class MujocoModels : public ModelEngine {
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
   const VirtualDuration step_;
+  ModelLoads loads_;
   std::deque<Forest> forests_;
   std::deque<MujocoSystem> systems_;
 };

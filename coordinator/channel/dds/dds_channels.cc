@@ -100,8 +100,8 @@ class DdsChannels::CommandInlet final : public Inlet {
       }
     };
     const dds::CommandMessage message = actuator.end->message;
-    if (const JointDriveSpec* joints = sink.JointsOf(actuator.channel)) {
-      give(dds::DecodeJointCommand(message, joints->group.names, joints->quantity, sample.cdr));
+    if (const std::optional<GoalNames> goals = sink.GoalsOf(actuator.channel)) {
+      give(dds::DecodeJointCommand(message, goals->names, goals->quantity, sample.cdr));
     } else {
       give(dds::DecodeCommand(message, sample.cdr));
     }
@@ -152,7 +152,7 @@ void DdsChannels::Begin(VirtualDuration realtime_offset) {
     if (from == nullptr) continue;
     actuators_.push_back({i, from,
                           Add(dds::EndpointKind::kReader, from->end, dds::NameOf(from->message),
-                              spec.joints ? std::nullopt : std::optional(spec.body))});
+                              spec.IsOfModel() ? std::nullopt : std::optional(spec.body))});
   }
   if (scenario_.clock.has_value()) {
     clock_ = Add(dds::EndpointKind::kWriter, scenario_.clock->end, dds::kClockMessageName, {});

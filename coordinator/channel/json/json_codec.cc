@@ -198,8 +198,7 @@ std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
   for (const auto& [key, value] : std::get<Json>(parsed).items()) {
     const auto found = std::find(joints.begin(), joints.end(), key);
     if (found == joints.end()) {
-      return Mistake("names the joint " + Quote(key) + ", which the channel does not drive",
-                     kJointExample);
+      return Mistake("names " + Quote(key) + ", which the channel does not drive", kJointExample);
     }
     JointGoal goal{static_cast<std::size_t>(found - joints.begin())};
     if (const std::string wrong = TakeGoal(value, quantity, &goal); !wrong.empty()) {
@@ -219,8 +218,8 @@ void TakeCommand(std::string_view what, std::string_view text, std::size_t chann
       sink.Take(channel, sent, std::get<0>(decoded));
     }
   };
-  if (const JointDriveSpec* joints = sink.JointsOf(channel)) {
-    give(DecodeJointCommand(text, joints->group.names, joints->quantity));
+  if (const std::optional<GoalNames> goals = sink.GoalsOf(channel)) {
+    give(DecodeJointCommand(text, goals->names, goals->quantity));
   } else {
     give(DecodeCommand(text));
   }

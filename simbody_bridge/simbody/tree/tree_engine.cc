@@ -21,7 +21,9 @@ class TreeEngine : public ModelEngine {
       : models_(world.models),
         fixtures_(world.fixtures),
         fixed_step_(world.integrator.fixed_step),
-        steps_(world.integrator.accuracy) {
+        loads_(models_, islands),
+        steps_(world.integrator.accuracy, loads_),
+        contact_step_(loads_) {
     for (const std::vector<int>& models : islands) {
       forests_.push_back(MakeForest(models_, models, fixtures_));
       trees_.emplace_back(forests_.back(), world.gravity_mps2);
@@ -78,6 +80,7 @@ class TreeEngine : public ModelEngine {
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
   const VirtualDuration fixed_step_;
+  ModelLoads loads_;
   TreeSteps steps_;
   ContactStep contact_step_;
   std::deque<Forest> forests_;

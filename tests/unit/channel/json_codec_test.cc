@@ -235,7 +235,7 @@ TEST(JointCommandDatagram, IsForAnyOfTheJoints) {
 TEST(JointCommandDatagram, ThatIsNoneIsSaid) {
   EXPECT_THAT(JointComplaint("[1]"), HasSubstr("is of the type array"));
   EXPECT_THAT(JointComplaint("{"), HasSubstr("is not valid JSON"));
-  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names the joint \"knee\""));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names \"knee\""));
   EXPECT_THAT(JointComplaint(R"({"elbow":"up"})"), HasSubstr("value of \"elbow\" that is neither"));
   EXPECT_THAT(JointComplaint(R"({"elbow":{"speed":1}})"), HasSubstr("unknown key \"speed\""));
   EXPECT_THAT(JointComplaint(R"({"elbow":{"effort":null}})"),
