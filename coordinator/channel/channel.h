@@ -18,7 +18,9 @@
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/measurements.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
 
@@ -35,11 +37,12 @@ struct JointReading {
   JointState state;       // finite
 };
 
-// What a sensor reads at an instant: bodies, or the joints of a robot.
+// What a sensor reads at an instant: bodies, or the joints of a robot, or what it measures itself.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
   std::vector<JointReading> joints{};
+  Measurement measured{};
 };
 
 // Where the readings of one sensor go out.
@@ -73,7 +76,9 @@ class CommandSink {
   // A command that was sent at `sent`.
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
-  // The joints that the channel drives, which goals are for; null: wrenches are for its body.
+  virtual void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) = 0;
+  // The joints that the channel drives, which goals are for, or speeds where they are wheels; null:
+  // wrenches are for its body.
   virtual const JointDriveSpec* JointsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.
   virtual void Refuse(std::size_t channel, const std::string& why) = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
@@ -57,9 +58,13 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsAboutJoints(map, "bodies");
+  const bool of_instrument = IsAboutInstrument(map);
+  const bool of_joints = !of_instrument && IsAboutJoints(map, "bodies");
   std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
-  if (of_joints) {
+  if (of_instrument) {
+    const std::vector<std::string> own = InstrumentKeys(map);
+    keys.insert(keys.begin(), own.begin(), own.end());
+  } else if (of_joints) {
     keys.insert(keys.begin(), {"model", "joints"});
   } else {
     keys.insert(keys.begin(), {"bodies", "noise", "bias"});
@@ -69,14 +74,17 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
-  if (of_joints) {
-    channel.joints = LoadJointGroup(map, scenario);
-  } else {
-    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
-  }
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
+  if (of_instrument) {
+    LoadInstrument(map, scenario, &channel);
+  } else if (of_joints) {
+    channel.joints = LoadJointGroup(map, scenario);
+  } else {
+    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
+    LoadBodyErrors(map, &channel.errors);
+  }
   if (const YamlValue* fields = map.Find("fields")) channel.fields = LoadSensorFields(*fields);
   switch (type) {
     case ChannelType::kUdpJson:
@@ -100,7 +108,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
   const YamlMap map = value.AsMap();
   const bool of_joints = IsAboutJoints(map, "body");
   std::vector<std::string> keys = {"body", "latency", "limits", "axes", "lag"};
-  if (of_joints) keys = {"model", "joints", "drive", "stiffness", "damping", "latency"};
+  if (of_joints) keys = JointDriveKeys(map);
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;

@@ -33,9 +33,16 @@ class Commands final : public CommandSink {
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
+  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override;
   const JointDriveSpec* JointsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
+
+  // When firmware does something by itself next.
+  VirtualTime NextStop() const;
+  // It does what is due by `until`, at its own times. No command for an earlier time comes any
+  // more.
+  void ActUntil(VirtualTime until);
 
   // Of all channels, what acted.
   std::int64_t taken() const { return taken_; }
@@ -49,7 +56,10 @@ class Commands final : public CommandSink {
   struct Channel {
     CommandChannelSpec spec;
     std::int64_t taken = 0, refused = 0;
+    VirtualTime halts = VirtualTime::Never();  // unless a command comes before
   };
+  void Halt(Channel* channel);
+  void Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed);
   std::function<void(const std::string&)> warn_;
   Act act_;
   Drive drive_;
