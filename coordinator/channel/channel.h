@@ -19,7 +19,9 @@
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/measurements.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
 
@@ -34,11 +36,12 @@ struct JointReading {
   JointState state;       // finite
 };
 
-// What a sensor reads at an instant: bodies, or the joints of a robot.
+// What a sensor reads at an instant: bodies, or the joints of a robot, or what it measures itself.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
   std::vector<JointReading> joints{};
+  Measurement measured{};
 };
 
 // Where the readings of one sensor go out.
@@ -70,6 +73,7 @@ using Opened = std::variant<std::unique_ptr<End>, std::string>;
 struct GoalNames {
   std::span<const std::string> names;               // that JointGoal::joint counts
   JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
+  bool are_wheels = false;                          // a command says how fast the robot is to go
 };
 
 // Who is given what comes in. Channels are numbered as the scenario lists those of commands.
@@ -78,6 +82,7 @@ class CommandSink {
   // A command that was sent at `sent`.
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
+  virtual void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) = 0;
   // The joints or rotors that the channel drives; none: wrenches are for its body or link.
   virtual std::optional<GoalNames> GoalsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.

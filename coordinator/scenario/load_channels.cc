@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_sensing.h"
@@ -59,9 +60,13 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsOfModel(map, "bodies");
+  const bool of_instrument = IsAboutInstrument(map);
+  const bool of_joints = !of_instrument && IsOfModel(map, "bodies");
   std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
-  if (of_joints) {
+  if (of_instrument) {
+    const std::vector<std::string> own = InstrumentKeys(map);
+    keys.insert(keys.begin(), own.begin(), own.end());
+  } else if (of_joints) {
     keys.insert(keys.begin(), {"model", "joints"});
   } else {
     keys.insert(keys.begin(), {"bodies", "noise", "bias"});
@@ -71,14 +76,17 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
-  if (of_joints) {
-    channel.joints = LoadJointGroup(map, scenario);
-  } else {
-    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
-  }
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
+  if (of_instrument) {
+    LoadInstrument(map, scenario, &channel);
+  } else if (of_joints) {
+    channel.joints = LoadJointGroup(map, scenario);
+  } else {
+    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
+    LoadBodyErrors(map, &channel.errors);
+  }
   if (const YamlValue* fields = map.Find("fields")) channel.fields = LoadSensorFields(*fields);
   switch (type) {
     case ChannelType::kUdpJson:
@@ -101,35 +109,39 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
 enum class Commanded { kBody, kLink, kJoints, kRotors };
 
 Commanded CommandedBy(const YamlMap& map) {
-  if (!IsOfModel(map, "body")) return Commanded::kBody;
-  Commanded commanded = Commanded::kJoints;  // all of them, where it does not say which
-  const char* said = nullptr;
-  for (const auto& [key, what] : {std::pair{"link", Commanded::kLink},
-                                  {"rotors", Commanded::kRotors},
-                                  {"joints", Commanded::kJoints}}) {
-    const YamlValue* value = map.Find(key);
-    if (value == nullptr) continue;
-    if (said != nullptr) {
-      value->Fail(std::string("cannot be given beside ") + said + "; make two channels of it");
-    }
-    said = key;
-    commanded = what;
+  const YamlValue* on = map.Find("on");
+  const YamlValue* model = map.Find("model");
+  const YamlValue* rotors = map.Find("rotors");
+  if (on != nullptr) {
+    if (model != nullptr) model->Fail("cannot be given beside on; make two channels of it");
+    return Commanded::kLink;
   }
-  return commanded;
+  if (!IsOfModel(map, "body")) return Commanded::kBody;
+  const YamlValue* joints = map.Find("joints");
+  if (rotors != nullptr && joints != nullptr) {
+    joints->Fail("cannot be given beside rotors; make two channels of it");
+  }
+  return rotors != nullptr ? Commanded::kRotors : Commanded::kJoints;
 }
 
-std::vector<std::string> KeysOf(Commanded commanded) {
+std::vector<std::string> KeysOf(Commanded commanded, const YamlMap& map) {
   switch (commanded) {
     case Commanded::kBody:
       return {"body", "latency", "limits", "axes", "lag"};
     case Commanded::kLink:
-      return {"model", "link", "latency", "limits", "axes"};
+      return {"on", "latency", "limits", "axes"};
     case Commanded::kJoints:
-      return {"model", "joints", "drive", "stiffness", "damping", "latency", "lag"};
+      return JointDriveKeys(map);
     case Commanded::kRotors:
       break;
   }
   return {"model", "rotors", "drive", "latency"};
+}
+
+LinkTarget LoadPushedLink(const YamlValue& value, const Scenario& scenario) {
+  std::string name;
+  const int link = LoadLink(value, scenario, &name);
+  return {value.AsText(), link};
 }
 
 void LoadTarget(const YamlMap& map, Commanded commanded, Scenario* scenario,
@@ -139,7 +151,7 @@ void LoadTarget(const YamlMap& map, Commanded commanded, Scenario* scenario,
       channel->body = FindBody(map.Require("body", "body: predator"), *scenario);
       return LoadCommandEffect(map, "body", channel);
     case Commanded::kLink:
-      channel->link = LoadLinkTarget(map, *scenario);
+      channel->link = LoadPushedLink(*map.Find("on"), *scenario);
       return LoadCommandEffect(map, "link", channel);
     case Commanded::kJoints:
       channel->joints = LoadJointDrive(map, *scenario);
@@ -156,7 +168,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
                                 ChannelType type, Scenario* scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
   const Commanded commanded = CommandedBy(map);
-  std::vector<std::string> keys = KeysOf(commanded);
+  std::vector<std::string> keys = KeysOf(commanded, map);
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;

@@ -145,12 +145,4 @@ RotorDriveSpec LoadRotorDrive(const YamlMap& map, const Scenario& scenario) {
   return spec;
 }
 
-LinkTarget LoadLinkTarget(const YamlMap& map, const Scenario& scenario) {
-  const std::size_t index = FindModel(*map.Find("model"), scenario);
-  const RobotModel& model = scenario.world->models[index];
-  const YamlValue& value = *map.Find("link");
-  const int link = Find(value, model.links, "link", model.name);
-  return {model.name + "/" + value.AsText(), FirstOf(index, scenario, &RobotModel::links) + link};
-}
-
 }  // namespace tcs

@@ -1,4 +1,4 @@
-// Rotors and links of models: what they are, and the channels that command them. Internal to
+// Rotors of models: what they are, and the channels that command them. Internal to
 // LoadScenario: mistakes are thrown as ScenarioMistake.
 #pragma once
 
@@ -12,8 +12,5 @@ void LoadRotors(const YamlValue& value, RobotModel* model);
 
 // `model`, `rotors` and `drive` of a channel of commands.
 RotorDriveSpec LoadRotorDrive(const YamlMap& map, const Scenario& scenario);
-
-// `model` and `link` of one.
-LinkTarget LoadLinkTarget(const YamlMap& map, const Scenario& scenario);
 
 }  // namespace tcs

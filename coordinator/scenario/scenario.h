@@ -17,9 +17,11 @@
 
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/scenario/instruments.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
 
@@ -164,11 +166,21 @@ struct SensorErrors {
   std::uint64_t seed = 0;    // of this sensor
 };
 
+using MeasurementErrors = std::array<FieldError, kMeasuredFields>;
+
 // Joints of a model that have one coordinate.
 struct JointGroup {
   std::string model;
   std::vector<int> joints;         // as Dynamics numbers them
   std::vector<std::string> names;  // of each
+};
+
+// The firmware of a robot with driven wheels: what comes in is how fast it is to go.
+struct WheelDriveSpec {
+  WheelBase base;
+  std::size_t left = 1;       // of the joints, so many are wheels on the left; they come first
+  double most_radps = 0;      // of any wheel
+  VirtualDuration timeout{};  // after which without a command it stops; 0: never
 };
 
 // Joints that a channel drives, and with what.
@@ -178,6 +190,7 @@ struct JointDriveSpec {
   std::vector<JointGains> gains;                    // of each joint
   std::vector<JointLimits> limits{};                // likewise: what is wanted is kept within them
   VirtualDuration lag{};                            // Joint::drive_lag of all of them
+  std::optional<WheelDriveSpec> wheels;             // which they are
 };
 
 // Rotors of a model that a channel drives.
@@ -199,8 +212,10 @@ struct LinkTarget {
 // `latency` later.
 struct SensorChannelSpec {
   std::string name;
-  std::vector<int> bodies;  // indices into world.bodies; at least one, or
-  std::optional<JointGroup> joints;
+  std::vector<int> bodies;           // indices into world.bodies; at least one, or
+  std::optional<JointGroup> joints;  // or
+  std::optional<InstrumentSpec> instrument;
+  MeasurementErrors measurement_errors{};  // of that; seed, losses and lateness are in `errors`
   VirtualDuration period = VirtualDuration::Milliseconds(10);
   VirtualDuration latency{};
   SensorErrors errors;

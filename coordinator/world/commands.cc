@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tcs {
 namespace {
@@ -110,9 +111,50 @@ void Commands::SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& g
         rotors.is_normalised ? given * most_radps : given);
 }
 
+void Commands::Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  if (on.halts < sent) Halt(&on);
+  Turn(on, sent, speed);
+  const VirtualDuration timeout = on.spec.joints->wheels->timeout;
+  if (timeout > VirtualDuration{}) on.halts = sent + timeout;
+}
+
+// Makes all wheels turn as the robot is to go.
+void Commands::Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed) {
+  const JointDriveSpec& joints = *channel.spec.joints;
+  const WheelDriveSpec& wheels = *joints.wheels;
+  const WheelSpeeds speeds = Limited(WheelSpeedsOf(wheels.base, speed), wheels.most_radps);
+  for (std::size_t i = 0; i < joints.group.joints.size(); ++i) {
+    JointGoal goal{i};
+    goal.velocity = i < wheels.left ? speeds.left_radps : speeds.right_radps;
+    drive_(sent, channel.spec.latency, joints.group.joints[i], ToDrive(goal, joints.gains[i]));
+  }
+}
+
+void Commands::Halt(Channel* channel) {
+  Turn(*channel, std::exchange(channel->halts, VirtualTime::Never()), {});
+}
+
+VirtualTime Commands::NextStop() const {
+  VirtualTime next = VirtualTime::Never();
+  for (const Channel& channel : channels_) next = std::min(next, channel.halts);
+  return next;
+}
+
+void Commands::ActUntil(VirtualTime until) {
+  for (Channel& channel : channels_) {
+    if (channel.halts <= until && !channel.halts.IsNever()) Halt(&channel);
+  }
+}
+
 std::optional<GoalNames> Commands::GoalsOf(std::size_t channel) const {
   const CommandChannelSpec& spec = channels_[channel].spec;
-  if (spec.joints) return GoalNames{spec.joints->group.names, spec.joints->quantity};
+  if (spec.joints) {
+    return GoalNames{spec.joints->group.names, spec.joints->quantity,
+                     spec.joints->wheels.has_value()};
+  }
   if (spec.rotors) return GoalNames{spec.rotors->names, JointQuantity::kVelocity};
   return {};
 }

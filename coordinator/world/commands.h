@@ -44,9 +44,16 @@ class Commands final : public CommandSink {
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
+  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override;
   std::optional<GoalNames> GoalsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
+
+  // When firmware does something by itself next.
+  VirtualTime NextStop() const;
+  // It does what is due by `until`, at its own times. No command for an earlier time comes any
+  // more.
+  void ActUntil(VirtualTime until);
 
   // Of all channels, what acted.
   std::int64_t taken() const { return taken_; }
@@ -63,9 +70,12 @@ class Commands final : public CommandSink {
     CommandChannelSpec spec;
     std::vector<std::size_t> accounts{};  // of each joint or rotor
     std::int64_t taken = 0, refused = 0;
+    VirtualTime halts = VirtualTime::Never();  // unless a command comes before
   };
   void DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal);
   void SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal);
+  void Halt(Channel* channel);
+  void Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed);
   std::function<void(const std::string&)> warn_;
   Act act_;
   Drive drive_;

@@ -31,7 +31,7 @@ models:
 robots: {r: {cpu: ideal, clients: {c: {command: [python3, client.py]}}}}
 channels:
   motors: {type: udp_json, commands: {model: craft, rotors: [left, right, idle], drive: normalised, listen: "127.0.0.1:27421"}}
-  push: {type: udp_json, commands: {model: craft, link: base, axes: world, limits: {force: 4}, listen: "127.0.0.1:27422"}}
+  push: {type: udp_json, commands: {on: craft/base, axes: world, limits: {force: 4}, listen: "127.0.0.1:27422"}}
 YAML
 engines=(simbody)
 "$tcsim" run "$out/s.yaml" --check --set dynamics.accuracy=null --set dynamics.engine=mujoco >/dev/null 2>&1 && engines+=(mujoco)

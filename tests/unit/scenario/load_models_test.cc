@@ -345,7 +345,7 @@ robots:
 channels:
   motors: {type: udp_json, commands: {model: arm, rotors: [shoulder, left], listen: "127.0.0.1:47011", latency: 2ms}}
   shares: {type: dds, commands: {model: arm, rotors: [left], drive: normalised, message: std_msgs/msg/Float64MultiArray, topic: /m}}
-  push: {type: udp_json, commands: {model: arm, link: fore, axes: link, limits: {force: 5}, listen: "127.0.0.1:47012"}}
+  push: {type: udp_json, commands: {on: arm/fore, axes: link, limits: {force: 5}, listen: "127.0.0.1:47012"}}
   servo: {type: udp_json, commands: {model: arm, joints: [elbow], lag: 30ms, listen: "127.0.0.1:47013"}}
   other: {type: udp_json, commands: {model: arm, joints: [shoulder], listen: "127.0.0.1:47014"}}
 )";
@@ -449,7 +449,11 @@ const Mistake kRotorMistakes[] = {
      "s.yaml:16",
      {"rotors are driven by"}},
     {"AxesOfABody", "axes: link", "axes: body", "s.yaml:17", {"unknown 'body'", "link"}},
-    {"UnknownPushedLink", "link: fore", "link: four", "s.yaml:17", {"link 'four' of arm"}},
+    {"UnknownPushedLink",
+     "on: arm/fore",
+     "on: arm/four",
+     "s.yaml:17",
+     {"unknown link 'four' of arm"}},
     {"LagOfALink", "axes: link", "lag: 1ms", "s.yaml:17", {"unknown key 'lag'"}},
     {"TwoLags",
      "joints: [shoulder], listen",

@@ -213,5 +213,76 @@ TEST_F(ActuatorsTest, WhatIsNeverCommandedIsSaid) {
                           "motors and again were"));
 }
 
+// Two wheels of 0.1 m on each side of a robot that is 0.5 m wide.
+class WheelCommandsTest : public testing::Test {
+ protected:
+  WheelCommandsTest() {
+    JointDriveSpec joints;
+    joints.group = {"rover", {4, 5, 6}, {"left", "right", "rear right"}};
+    joints.gains = {{0, 2}, {0, 2}, {0, 3}};
+    joints.wheels = {.base = {.separation_m = 0.5, .radius_m = 0.1},
+                     .left = 1,
+                     .most_radps = 20,
+                     .timeout = VirtualDuration::Milliseconds(500)};
+    commands_.Open({{.name = "drive", .joints = joints}});
+  }
+
+  struct Driven {
+    std::int64_t sent_ms;
+    int joint;
+    JointDrive drive;
+  };
+  static constexpr VirtualTime Ms(std::int64_t ms) {
+    return VirtualTime::FromNanoseconds(ms * 1'000'000);
+  }
+  std::vector<Driven> driven_;
+  Commands commands_{[](const std::string&) {},
+                     {},
+                     [this](VirtualTime sent, VirtualDuration, int joint, const JointDrive& drive) {
+                       driven_.push_back({sent.ns() / 1'000'000, joint, drive});
+                     }};
+};
+
+TEST_F(WheelCommandsTest, EachWheelTurnsAsTheRobotIsToGo) {
+  commands_.Take(0, Ms(7), PlanarSpeed{.forward_mps = 1, .turn_radps = 2});
+  ASSERT_EQ(driven_.size(), 3u);
+  EXPECT_EQ(driven_[0].joint, 4);
+  EXPECT_EQ(driven_[0].drive, (JointDrive{.damping = 2, .velocity = 5}));
+  EXPECT_EQ(driven_[1].drive, (JointDrive{.damping = 2, .velocity = 15}));
+  EXPECT_EQ(driven_[2].drive, (JointDrive{.damping = 3, .velocity = 15}));
+}
+
+TEST_F(WheelCommandsTest, NoWheelIsToTurnFasterThanItCanAndTheArcStays) {
+  commands_.Take(0, Ms(7), PlanarSpeed{.forward_mps = 2, .turn_radps = 8});
+  EXPECT_EQ(driven_[0].drive.velocity, 0);
+  EXPECT_EQ(driven_[1].drive.velocity, 20);
+}
+
+TEST_F(WheelCommandsTest, WithoutACommandTheRobotStops) {
+  EXPECT_EQ(commands_.NextStop(), VirtualTime::Never());
+  commands_.Take(0, Ms(100), PlanarSpeed{.forward_mps = 1});
+  commands_.Take(0, Ms(300), PlanarSpeed{.forward_mps = 1});
+  EXPECT_EQ(commands_.NextStop(), Ms(800));
+  commands_.ActUntil(Ms(799));
+  EXPECT_EQ(driven_.size(), 6u);
+  commands_.ActUntil(Ms(900));
+  ASSERT_EQ(driven_.size(), 9u);
+  EXPECT_EQ(driven_[6].sent_ms, 800);
+  EXPECT_EQ(driven_[6].drive.velocity, 0);
+  EXPECT_EQ(commands_.NextStop(), VirtualTime::Never());
+  commands_.ActUntil(Ms(2000));
+  EXPECT_EQ(driven_.size(), 9u);
+}
+
+// The dynamics may learn of a command only when its time to stop has passed as well.
+TEST_F(WheelCommandsTest, TheRobotHasStoppedInTimeWhoeverSendsAfterwards) {
+  commands_.Take(0, Ms(100), PlanarSpeed{.forward_mps = 1});
+  commands_.Take(0, Ms(700), PlanarSpeed{.forward_mps = 1});
+  ASSERT_EQ(driven_.size(), 9u);
+  EXPECT_EQ(driven_[3].sent_ms, 600);
+  EXPECT_EQ(driven_[3].drive.velocity, 0);
+  EXPECT_EQ(driven_[6].sent_ms, 700);
+}
+
 }  // namespace
 }  // namespace tcs
