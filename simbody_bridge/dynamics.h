@@ -226,16 +226,18 @@ class Dynamics {
     return state;
   }
 
-  // The models' links and joints by index: those of the first model in its own order, then those of
-  // the next. Names are resolved once; none: there is no such one.
+  // The models' links, joints and rotors by index: those of the first model in its own order, then
+  // those of the next. Names are resolved once; none: there is no such one.
   virtual std::optional<int> FindLink(std::string_view model, std::string_view link) const = 0;
   virtual std::optional<int> FindJoint(std::string_view model, std::string_view joint) const = 0;
+  virtual std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const = 0;
 
-  // As Apply, for links and joints. A wrench on a link acts at the origin of its frame; those along
-  // the world's axes and along the link's act beside each other. A joint that is driven has one
-  // coordinate and mimics none.
+  // As Apply, for links, joints and rotors. A wrench on a link acts at the origin of its frame;
+  // those along the world's axes and along the link's act beside each other. A joint that is driven
+  // has one coordinate and mimics none. A rotor's speed is within what the rotor can do.
   virtual void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) = 0;
   virtual void Drive(int joint, const JointDrive& drive, VirtualTime t) = 0;
+  virtual void Spin(int rotor, double speed_radps, VirtualTime t) = 0;
 
   // As Read, for links and for joints, which have one coordinate or are fixed.
   virtual void ReadLinks(VirtualTime t, std::span<const int> links,

@@ -210,11 +210,13 @@ void Island::StateAt(VirtualTime t, std::vector<double>* state) {
   StateOf(legs_[leg], t, state);
 }
 
-const std::vector<Wrench>& Island::ActingUntil(VirtualTime t) const {
-  if (t >= frontier_.at) return frontier_.wrenches;
+Island::Acting Island::ActingUntil(VirtualTime t) const {
+  if (t >= frontier_.at) return {frontier_.wrenches, frontier_.remainders};
   std::size_t leg = used_ - 1;
   while (leg > 0 && legs_[leg].start.at >= t) --leg;
-  return legs_[leg].start.at < t ? legs_[leg].step.wrenches : legs_[leg].start.wrenches;
+  const Node& start = legs_[leg].start;
+  if (start.at >= t) return {start.wrenches, start.remainders};
+  return {legs_[leg].step.wrenches, legs_[leg].step.remainders};
 }
 
 void Island::Save(Saved* saved) const {

@@ -36,8 +36,12 @@ class Island {
 
   // Of a time since the one settled last, up to which no step is left to take.
   void StateAt(VirtualTime t, std::vector<double>* state);
-  // What acted until that time.
-  const std::vector<Wrench>& ActingUntil(VirtualTime t) const;
+  // What acted until that time: commands, and what is left of those before.
+  struct Acting {
+    const std::vector<Wrench>& wrenches;
+    const std::vector<Remainder>& remainders;
+  };
+  Acting ActingUntil(VirtualTime t) const;
 
   // How many commands have taken effect by `t` and not been worked off.
   std::size_t CommandsUntil(VirtualTime t) const;

@@ -10,6 +10,7 @@
 #include "simbody_bridge/island.h"
 #include "simbody_bridge/model/finite.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/require.h"
 #include "simbody_bridge/world_check.h"
 
@@ -25,7 +26,7 @@ struct IslandsCheckpoint : Dynamics::Checkpoint {
   std::vector<Island::Saved> islands;
 };
 
-// Links and joints are counted through all models.
+// Links, joints and rotors are counted through all models.
 template <class Part>
 const Part& PartAt(const std::vector<RobotModel>& models, std::vector<Part> RobotModel::*parts,
                    std::size_t index) {
@@ -38,6 +39,9 @@ const Link& LinkAt(const std::vector<RobotModel>& models, std::size_t index) {
 }
 const Joint& JointAt(const std::vector<RobotModel>& models, std::size_t index) {
   return PartAt(models, &RobotModel::joints, index);
+}
+const Rotor& RotorAt(const std::vector<RobotModel>& models, std::size_t index) {
+  return PartAt(models, &RobotModel::rotors, index);
 }
 
 template <class Part>
@@ -66,8 +70,10 @@ class Islands : public Dynamics {
   void Read(VirtualTime t, std::span<const int> bodies, std::span<BodyState> states) override;
   std::optional<int> FindLink(std::string_view model, std::string_view link) const override;
   std::optional<int> FindJoint(std::string_view model, std::string_view joint) const override;
+  std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const override;
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) override;
   void Drive(int joint, const JointDrive& drive, VirtualTime t) override;
+  void Spin(int rotor, double speed_radps, VirtualTime t) override;
   void ReadLinks(VirtualTime t, std::span<const int> links, std::span<LinkState> states) override;
   void ReadJoints(VirtualTime t, std::span<const int> joints,
                   std::span<JointState> states) override;
@@ -76,7 +82,8 @@ class Islands : public Dynamics {
   const Work& work() const override { return work_; }
 
  private:
-  // Of a body among its island's bodies, of a link among its links, of a joint among its joints.
+  // Of a body among its island's bodies, of a link among its links, of a joint among its joints, of
+  // a rotor among all.
   struct Place {
     std::size_t island;
     int place;
@@ -104,10 +111,11 @@ class Islands : public Dynamics {
   std::unique_ptr<BodyEngine> body_engine_;            // none where there is no body
   std::unique_ptr<ModelEngine> model_engine_;          // none where there is no model
   std::vector<std::string> names_;
-  std::vector<Place> bodies_, links_, joints_;
-  std::vector<std::size_t> first_link_, first_joint_;  // of each model
-  std::vector<int> links_in_;                          // of each island
+  std::vector<Place> bodies_, links_, joints_, rotors_;
+  std::vector<std::size_t> first_link_, first_joint_, first_rotor_;  // of each model
+  std::vector<int> links_in_, joints_in_;                            // of each island
   std::vector<Island> islands_;
+  ModelLoads model_loads_;
   Work work_;
   VirtualTime now_;
   // Memory of Reach and the reads.
@@ -121,7 +129,8 @@ Islands::Islands(const WorldSpec& world)
     : models_(world.models),
       members_(IslandsOf(world)),
       model_members_(ModelIslandsOf(world)),
-      bodies_(world.bodies.size()) {
+      bodies_(world.bodies.size()),
+      model_loads_(models_, model_members_) {
   if (!members_.empty()) body_engine_ = MakeEngine(world, members_);
   if (!model_members_.empty()) model_engine_ = MakeModelEngine(world, model_members_);
   for (const BodySpec& body : world.bodies) names_.push_back(body.name);
@@ -134,6 +143,7 @@ void Islands::PlaceBodies() {
     const int bodies = static_cast<int>(members_[i].size());
     islands_.emplace_back(static_cast<int>(i), bodies, *body_engine_, work_);
     links_in_.push_back(0);
+    joints_in_.push_back(0);
     for (int place = 0; place < bodies; ++place) {
       bodies_[static_cast<std::size_t>(members_[i][static_cast<std::size_t>(place)])] = {i, place};
     }
@@ -144,11 +154,13 @@ void Islands::PlaceModels() {
   for (const RobotModel& model : models_) {
     first_link_.push_back(links_.size());
     first_joint_.push_back(joints_.size());
+    first_rotor_.push_back(rotors_.size());
     links_.resize(links_.size() + model.links.size());
     joints_.resize(joints_.size() + model.joints.size());
+    rotors_.resize(rotors_.size() + model.rotors.size());
   }
   for (std::size_t i = 0; i < model_members_.size(); ++i) {
-    int links = 0, joints = 0;
+    int links = 0, joints = 0, rotors = 0;
     for (const int index : model_members_[i]) {
       const auto model = static_cast<std::size_t>(index);
       for (std::size_t k = 0; k < models_[model].links.size(); ++k) {
@@ -157,15 +169,20 @@ void Islands::PlaceModels() {
       for (std::size_t k = 0; k < models_[model].joints.size(); ++k) {
         joints_[first_joint_[model] + k] = {islands_.size(), joints++};
       }
+      for (std::size_t k = 0; k < models_[model].rotors.size(); ++k) {
+        rotors_[first_rotor_[model] + k] = {islands_.size(), rotors++};
+      }
     }
     links_in_.push_back(links);
-    islands_.emplace_back(static_cast<int>(i), PlaceOfJoint(links, joints), *model_engine_, work_);
+    joints_in_.push_back(joints);
+    islands_.emplace_back(static_cast<int>(i), PlaceOfRotor(links, joints, rotors), *model_engine_,
+                          work_);
   }
 }
 
 const Islands::Place& Islands::PlaceOf(const std::vector<Place>& places, int index) const {
   Require(index >= 0 && index < static_cast<int>(places.size()),
-          "no such body, link or joint in the dynamics");
+          "no such body, link, joint or rotor in the dynamics");
   return places[static_cast<std::size_t>(index)];
 }
 
@@ -197,11 +214,24 @@ void Islands::Drive(int joint, const JointDrive& drive, VirtualTime t) {
   const Joint& driven = JointAt(models_, static_cast<std::size_t>(joint));
   Require(CoordinatesOf(driven.kind) == 1 && !driven.mimic.has_value(),
           "a joint that is driven has one coordinate of its own");
-  const Wrench numbers = AsNumbers(drive);
+  const bool lags = driven.drive_lag > VirtualDuration{};
+  const Wrench numbers = lags ? AsNumbers(drive, driven.drive_lag) : AsNumbers(drive);
   if (!AllFinite(numbers.force_n) || !AllFinite(numbers.torque_nm)) {
     throw DynamicsError(fmt::format("joint '{}': what drives it must be finite", driven.name));
   }
   Command(place.island, PlaceOfJoint(links_in_[place.island], place.place), numbers, t);
+}
+
+void Islands::Spin(int rotor, double speed_radps, VirtualTime t) {
+  const Place place = PlaceOf(rotors_, rotor);
+  const Rotor& spun = RotorAt(models_, static_cast<std::size_t>(rotor));
+  if (!(speed_radps >= 0 && speed_radps <= spun.most_radps) || !std::isfinite(speed_radps)) {
+    throw DynamicsError(fmt::format("rotor '{}': its speed must be between 0 and {} rad/s",
+                                    spun.name, spun.most_radps));
+  }
+  Command(place.island,
+          PlaceOfRotor(links_in_[place.island], joints_in_[place.island], place.place),
+          AsNumbers(speed_radps, spun.time_constant), t);
 }
 
 void Islands::Command(std::size_t index, int place, const Wrench& wrench, VirtualTime t) {
@@ -221,6 +251,10 @@ std::optional<int> Islands::FindLink(std::string_view model, std::string_view li
 
 std::optional<int> Islands::FindJoint(std::string_view model, std::string_view joint) const {
   return Find(models_, first_joint_, &RobotModel::joints, model, joint);
+}
+
+std::optional<int> Islands::FindRotor(std::string_view model, std::string_view rotor) const {
+  return Find(models_, first_rotor_, &RobotModel::rotors, model, rotor);
 }
 
 void Islands::ReachAll(VirtualTime t, const std::vector<Place>& places,
@@ -271,8 +305,10 @@ void Islands::ReadJoints(VirtualTime t, std::span<const int> joints, std::span<J
   ReachAll(t, joints_, joints);
   ForEachIsland(joints_, joints, [&](std::size_t island, std::size_t first, std::size_t count) {
     islands_[island].StateAt(t, &state_);
-    model_engine_->ReadJoints(static_cast<int>(island - members_.size()), state_,
-                              islands_[island].ActingUntil(t), local_,
+    const int index = static_cast<int>(island - members_.size());
+    const Island::Acting acting = islands_[island].ActingUntil(t);
+    model_engine_->ReadJoints(index, state_,
+                              model_loads_.At(index, acting.wrenches, acting.remainders, t), local_,
                               states.subspan(first, count));
   });
 }

@@ -2,7 +2,8 @@
 //
 // Links and joints are counted through the models of an island, in the order in which MakeEngine
 // was given them. The places of such an island: for each link a wrench along the world's axes and
-// one along the link's, both at the link's origin; then for each joint its drive.
+// one along the link's, both at the link's origin; then for each joint its drive; then for each
+// rotor its speed. What of them lags, and what rotors do to their links, is in model_loads.h.
 #pragma once
 
 #include <memory>
@@ -17,6 +18,7 @@ constexpr int PlaceOfLink(int link, WrenchFrame frame) {
   return 2 * link + (frame == WrenchFrame::kLink ? 1 : 0);
 }
 constexpr int PlaceOfJoint(int links, int joint) { return 2 * links + joint; }
+constexpr int PlaceOfRotor(int links, int joints, int rotor) { return 2 * links + joints + rotor; }
 
 // A drive as an island keeps it: there the numbers mean nothing.
 inline Wrench AsNumbers(const JointDrive& drive) {
@@ -40,6 +42,21 @@ inline JointDrive DriveOfJoint(std::span<const Wrench> acting, std::size_t links
                                std::size_t joint) {
   return AsDrive(acting[static_cast<std::size_t>(
       PlaceOfJoint(static_cast<int>(links), static_cast<int>(joint)))]);
+}
+
+// One that lags. Its effort is linear in these numbers, so that it fades as they do.
+inline Wrench AsNumbers(const JointDrive& drive, VirtualDuration lag) {
+  Wrench numbers = AsNumbers(
+      {.effort = drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity,
+       .stiffness = drive.stiffness,
+       .damping = drive.damping});
+  numbers.lag = lag;
+  return numbers;
+}
+
+// A rotor's speed as an island keeps it.
+inline Wrench AsNumbers(double speed_radps, VirtualDuration lag) {
+  return {.force_n = {speed_radps, 0, 0}, .lag = lag};
 }
 
 // What a drive gives at a position and a velocity, within the joint's limit.

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,11 +19,11 @@
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
+#include "simbody_bridge/measurements.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
-
-struct JointDriveSpec;
 
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
@@ -35,11 +36,12 @@ struct JointReading {
   JointState state;       // finite
 };
 
-// What a sensor reads at an instant: bodies, or the joints of a robot.
+// What a sensor reads at an instant: bodies, or the joints of a robot, or what it measures itself.
 struct Reading {
   VirtualTime at;
   std::vector<BodyReading> bodies;  // as the channel lists them
   std::vector<JointReading> joints{};
+  Measurement measured{};
 };
 
 // Where the readings of one sensor go out.
@@ -67,14 +69,22 @@ class Outlet {
 template <class End>
 using Opened = std::variant<std::unique_ptr<End>, std::string>;
 
+// What the numbers of a command without wrenches are for.
+struct GoalNames {
+  std::span<const std::string> names;               // that JointGoal::joint counts
+  JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
+  bool are_wheels = false;                          // a command says how fast the robot is to go
+};
+
 // Who is given what comes in. Channels are numbered as the scenario lists those of commands.
 class CommandSink {
  public:
   // A command that was sent at `sent`.
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
-  // The joints that the channel drives, which goals are for; null: wrenches are for its body.
-  virtual const JointDriveSpec* JointsOf(std::size_t channel) const = 0;
+  virtual void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) = 0;
+  // The joints or rotors that the channel drives; none: wrenches are for its body or link.
+  virtual std::optional<GoalNames> GoalsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.
   virtual void Refuse(std::size_t channel, const std::string& why) = 0;
   // Something that the user should know at once: a sentence.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -38,10 +39,17 @@ World::World(std::function<void(const std::string&)> warn)
     : commands_(
           std::move(warn),
           [this](VirtualTime sent, VirtualDuration latency, int body, const Wrench& wrench) {
-            Apply(ActsAtNs(sent, latency), body, wrench);
+            dynamics_->Apply(body, wrench, ActsAt(sent, latency));
           },
           [this](VirtualTime sent, VirtualDuration latency, int joint, const JointDrive& drive) {
-            dynamics_->Drive(joint, drive, VirtualTime::FromNanoseconds(ActsAtNs(sent, latency)));
+            dynamics_->Drive(joint, drive, ActsAt(sent, latency));
+          },
+          [this](VirtualTime sent, VirtualDuration latency, int rotor, double speed_radps) {
+            dynamics_->Spin(rotor, speed_radps, ActsAt(sent, latency));
+          },
+          [this](VirtualTime sent, VirtualDuration latency, int link, WrenchFrame frame,
+                 const Wrench& wrench) {
+            dynamics_->ApplyToLink(link, frame, wrench, ActsAt(sent, latency));
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
@@ -61,6 +69,11 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
     const SensorChannelSpec& spec = scenario_.sensors[i];
     const SensorTiming timing{.period = spec.period, .latency = spec.latency};
+    if (spec.instrument) {
+      sensors_.AddInstrument(MakeInstrument(*spec.instrument, spec.period, *scenario_.world),
+                             timing, spec.errors, spec.measurement_errors, *channels_.outlets[i]);
+      continue;
+    }
     if (spec.joints) {
       sensors_.AddJoints(*spec.joints, timing, spec.errors, *channels_.outlets[i]);
       continue;
@@ -110,7 +123,8 @@ std::string World::CloseCsv() {
 
 void World::FindNextStop() {
   next_output_ns_ = sensors_.NextArrival().ns();
-  next_stop_ns_ = std::min(csv_.is_open() ? next_csv_ns_ : shm::kNeverNs, sensors_.NextStop().ns());
+  next_stop_ns_ = std::min({csv_.is_open() ? next_csv_ns_ : shm::kNeverNs, sensors_.NextStop().ns(),
+                            commands_.NextStop().ns()});
 }
 
 void World::WriteCsv() {
@@ -147,15 +161,26 @@ void World::ReadDue() {
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
   progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
+  commands_.ActUntil(VirtualTime::FromNanoseconds(std::min(progress_ns_, limit_ns)));
+  // A command that came while the dynamics led may have made firmware act before their progress.
+  if (limit_ns < progress_ns_) {
+    FindNextStop();
+    return false;
+  }
   Settle(progress_ns_);
   ReadDue();
   WriteCsv();
-  const bool sent = sensors_.Act(
-      VirtualTime::FromNanoseconds(progress_ns_),
-      [this](int body) { return states_[static_cast<std::size_t>(body)]; },
-      [this](std::span<const int> joints, std::span<JointState> states) {
-        dynamics_->ReadJoints(dynamics_->Now(), joints, states);
-      });
+  const bool sent =
+      sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
+                   [this](int body) { return states_[static_cast<std::size_t>(body)]; },
+                   {.links =
+                        [this](std::span<const int> links, std::span<LinkState> states) {
+                          dynamics_->ReadLinks(dynamics_->Now(), links, states);
+                        },
+                    .joints =
+                        [this](std::span<const int> joints, std::span<JointState> states) {
+                          dynamics_->ReadJoints(dynamics_->Now(), joints, states);
+                        }});
   if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
   FindNextStop();
   return sent;
@@ -164,20 +189,16 @@ bool World::Advance(std::int64_t limit_ns) {
 // The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
 // still be woken earlier than `now_ns`, but no further back than the drift bound.
 void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
-  Settle(now_ns - scenario_.drift_bound.ns());
-  progress_ns_ = to_ns;
+  Settle(std::min(now_ns - scenario_.drift_bound.ns(), commands_.NextStop().ns()));
+  progress_ns_ = std::max(progress_ns_, to_ns);
 }
 
 void World::Settle(std::int64_t ns) {
   if (ns > settled_ns()) dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(ns));
 }
 
-std::int64_t World::ActsAtNs(VirtualTime sent, VirtualDuration latency) const {
-  return std::max(sent.ns(), settled_ns()) + latency.ns();
-}
-
-void World::Apply(std::int64_t at_ns, int body, const Wrench& wrench) {
-  dynamics_->Apply(body, wrench, VirtualTime::FromNanoseconds(at_ns));
+VirtualTime World::ActsAt(VirtualTime sent, VirtualDuration latency) const {
+  return std::max(sent, dynamics_->Now()) + latency;
 }
 
 std::vector<int> World::command_fds() const {
@@ -189,18 +210,24 @@ std::vector<int> World::command_fds() const {
 void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
   const Spent spent(&host_ns_);
   channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
+  FindNextStop();
+}
+
+std::string World::WhomMoves(const CommandChannelSpec& spec) const {
+  if (spec.link) return spec.link->name;
+  if (spec.joints) return spec.joints->group.model;
+  if (spec.rotors) return spec.rotors->model;
+  return scenario_.world->bodies[static_cast<std::size_t>(spec.body)].name;
 }
 
 std::vector<std::string> World::CommandComplaints() const {
   std::vector<std::string> complaints;
   for (std::size_t i = 0; i < channels_.inlet_of.size(); ++i) {
-    const CommandChannelSpec& spec = scenario_.commands[i];
-    const auto body = static_cast<std::size_t>(spec.body);
-    complaints.push_back(commands_.ComplaintAbout(
-        i, channels_.inlet_of[i]->PlaceOf(i),
-        spec.joints ? spec.joints->group.model : scenario_.world->bodies[body].name));
+    complaints.push_back(commands_.ComplaintAbout(i, channels_.inlet_of[i]->PlaceOf(i),
+                                                  WhomMoves(scenario_.commands[i])));
   }
   std::erase(complaints, "");
+  std::ranges::move(commands_.ComplaintsAboutActuators(), std::back_inserter(complaints));
   return complaints;
 }
 
@@ -236,6 +263,7 @@ void World::ReceiveFromTerminals(std::int64_t now_ns) {
   for (Inlet* terminal : terminals_) {
     terminal->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
   }
+  FindNextStop();
 }
 
 void World::ReceiveUntold(std::int64_t now_ns) {
@@ -243,6 +271,7 @@ void World::ReceiveUntold(std::int64_t now_ns) {
   for (const auto& inlet : channels_.inlets) {
     if (inlet->fd() < 0) inlet->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
   }
+  FindNextStop();
 }
 
 }  // namespace tcs

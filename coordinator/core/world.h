@@ -77,9 +77,9 @@ class World {
   void Settle(std::int64_t ns);
   std::int64_t settled_ns() const { return dynamics_->Now().ns(); }
   void ReadDue();
-  void Apply(std::int64_t at_ns, int body, const Wrench& wrench);
   // When a command acts that was sent at that time: not before what is settled.
-  std::int64_t ActsAtNs(VirtualTime sent, VirtualDuration latency) const;
+  VirtualTime ActsAt(VirtualTime sent, VirtualDuration latency) const;
+  std::string WhomMoves(const CommandChannelSpec& spec) const;
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;

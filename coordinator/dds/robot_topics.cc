@@ -22,6 +22,8 @@ std::vector<std::byte> SensorEncoder::Encode(std::int64_t stamp_ns,
       return ToCdr(ToJointState(stamp_ns, bodies_, states));
     case SensorMessage::kTwist:
       return ToCdr(ToTwist(states[0]));
+    default:  // of robots' own sensors
+      break;
   }
   TCS_CHECK(false);
   return {};
@@ -55,6 +57,12 @@ std::variant<std::vector<JointGoal>, MessageError> DecodeJointCommand(
   const auto states = FromCdr<JointStateMessage>(cdr);
   if (const auto* error = std::get_if<CdrError>(&states)) return MessageError{error->message};
   return ToJointGoals(*std::get<Owned<JointStateMessage>>(states), joints);
+}
+
+std::variant<PlanarSpeed, MessageError> DecodeSpeed(std::span<const std::byte> cdr) {
+  const auto twist = FromCdr<TwistMessage>(cdr);
+  if (const auto* error = std::get_if<CdrError>(&twist)) return MessageError{error->message};
+  return ToPlanarSpeed(*std::get<Owned<TwistMessage>>(twist));
 }
 
 }  // namespace tcs::dds

@@ -40,12 +40,15 @@ class SensorEncoder {
 [[nodiscard]] std::vector<std::byte> EncodeClock(std::int64_t stamp_ns);
 
 // `cdr` is whatever a client wrote. The error is the rest of a sentence about the sample.
-// kWrench is for bodies, all others are for joints: numbers without names are the `quantity` of
-// each of `joints`, in their order.
+// kWrench is for bodies, the two after it are for joints: numbers without names are the `quantity`
+// of each of `joints`, in their order.
 [[nodiscard]] std::variant<Wrench, MessageError> DecodeCommand(CommandMessage message,
                                                                std::span<const std::byte> cdr);
 [[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> DecodeJointCommand(
     CommandMessage message, std::span<const std::string> joints, JointQuantity quantity,
     std::span<const std::byte> cdr);
+
+// kTwist is for robots on wheels.
+[[nodiscard]] std::variant<PlanarSpeed, MessageError> DecodeSpeed(std::span<const std::byte> cdr);
 
 }  // namespace tcs::dds

@@ -4,26 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "coordinator/dds/ros_fields.h"
+
 namespace tcs::dds {
 namespace {
 
-using Vector3 = std::array<double, 3>;
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::string_view kWorldFrame = "world";
 constexpr std::array kJoints = {"/x", "/y", "/z", "/yaw", "/pitch", "/roll"};
 // Below this cosine of the pitch (the nose within some 0.06 mrad of straight up), roll and yaw
 // cannot be told apart in doubles.
 constexpr double kUpright = 6e-5;
-
-Vector3Message ToVector3(const Vector3& v) { return {v[0], v[1], v[2]}; }
-
-QuaternionMessage ToQuaternion(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
-
-void SetHeader(HeaderMessage* header, std::int64_t stamp_ns, std::string_view frame) {
-  header->stamp = ToTime(stamp_ns);
-  SetText(&header->frame_id, frame);
-}
 
 TwistMessage TwistInBody(const BodyState& state) {
   return {ToVector3(InBody(state.orientation_xyzw, state.linear_velocity_mps)),
@@ -57,11 +47,6 @@ Angles ToAngles(const BodyState& state) {
 }
 
 }  // namespace
-
-TimeMessage ToTime(std::int64_t stamp_ns) {
-  return {static_cast<std::int32_t>(stamp_ns / kSecond_ns),
-          static_cast<std::uint32_t>(stamp_ns % kSecond_ns)};
-}
 
 Owned<OdometryMessage> ToOdometry(std::int64_t stamp_ns, std::string_view body,
                                   const BodyState& state) {
@@ -156,6 +141,14 @@ std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message) {
   return wrench;
 }
 
+std::variant<PlanarSpeed, MessageError> ToPlanarSpeed(const TwistMessage& message) {
+  const PlanarSpeed speed{message.linear.x, message.angular.z};
+  if (!std::isfinite(speed.forward_mps) || !std::isfinite(speed.turn_radps)) {
+    return MessageError{"has a velocity that is not finite"};
+  }
+  return speed;
+}
+
 std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const Float64MultiArrayMessage& message, std::size_t joints, JointQuantity quantity) {
   if (message.data._length != joints) {
@@ -182,12 +175,12 @@ std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const auto found = std::find(joints.begin(), joints.end(), name);
     if (found == joints.end()) {
       constexpr std::size_t kLongestQuote = 40;
-      return MessageError{"names the joint '" + std::string(name.substr(0, kLongestQuote)) +
+      return MessageError{"names '" + std::string(name.substr(0, kLongestQuote)) +
                           "', which the channel does not drive"};
     }
     goals[i].joint = static_cast<std::size_t>(found - joints.begin());
     if (std::exchange(is_named[goals[i].joint], 1) != 0) {
-      return MessageError{"names the joint '" + std::string(name) + "' twice"};
+      return MessageError{"names '" + std::string(name) + "' twice"};
     }
   }
   const std::pair<const dds_sequence_double*, JointQuantity> lists[] = {

@@ -18,14 +18,13 @@
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs::dds {
 
 struct MessageError {
   std::string message;  // what is wrong with a sample, as the rest of a sentence about it
 };
-
-[[nodiscard]] TimeMessage ToTime(std::int64_t stamp_ns);
 
 // The pose in the world's frame, the twist in the body's, as Odometry has it. What the simulation
 // says is exact: the covariances are zero.
@@ -59,6 +58,10 @@ struct MessageError {
 // Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
 // where they are not finite.
 [[nodiscard]] std::variant<Wrench, MessageError> ToWrench(const WrenchMessage& message);
+
+// How fast a robot is to go that drives on wheels: along x and about z; it can do nothing else, so
+// the other components mean nothing.
+[[nodiscard]] std::variant<PlanarSpeed, MessageError> ToPlanarSpeed(const TwistMessage& message);
 
 // A number for each of `joints` joints, in their order, as the forward controllers of ros2_control
 // have it: what of the joint is wanted says `quantity`.

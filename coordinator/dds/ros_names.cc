@@ -20,15 +20,16 @@ bool IsWordCharacter(char c) { return IsDigit(c) || c == '_' || IsLetter(c); }
 }  // namespace
 
 const std::vector<std::string>& SensorMessageNames() {
-  static const std::vector<std::string> names = {"nav_msgs/msg/Odometry", "sensor_msgs/msg/Imu",
-                                                 "sensor_msgs/msg/JointState",
-                                                 "geometry_msgs/msg/Twist"};
+  static const std::vector<std::string> names = {
+      "nav_msgs/msg/Odometry", "sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState",
+      "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"};
   return names;
 }
 
 const std::vector<std::string>& CommandMessageNames() {
   static const std::vector<std::string> names = {
-      "geometry_msgs/msg/Wrench", "std_msgs/msg/Float64MultiArray", "sensor_msgs/msg/JointState"};
+      "geometry_msgs/msg/Wrench", "std_msgs/msg/Float64MultiArray", "sensor_msgs/msg/JointState",
+      "geometry_msgs/msg/Twist"};
   return names;
 }
 

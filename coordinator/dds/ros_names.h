@@ -4,6 +4,7 @@
 //   nav_msgs/msg/Odometry  nav_msgs::msg::dds_::Odometry_    its type
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,10 +12,12 @@
 
 namespace tcs::dds {
 
-// Messages that tell the state of bodies.
-enum class SensorMessage { kOdometry, kImu, kJointState, kTwist };
+// Messages that tell the state of bodies; the first kBodyMessages those of
+// free bodies, all others those of robots' own sensors.
+enum class SensorMessage { kOdometry, kImu, kJointState, kTwist, kLaserScan };
+inline constexpr std::size_t kBodyMessages = 4;
 // Messages that move them; those after the first move joints.
-enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState };
+enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState, kTwist };
 
 // In the order of the enumerators.
 [[nodiscard]] const std::vector<std::string>& SensorMessageNames();

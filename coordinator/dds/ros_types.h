@@ -19,6 +19,8 @@
 #include "sensor_msgs.h"
 #include "shm/check.h"
 #include "std_msgs.h"
+#include "tf2_msgs.h"
+#include "trajectory_msgs.h"
 
 namespace tcs::dds {
 
@@ -32,6 +34,7 @@ using OdometryMessage = nav_msgs_msg_dds__Odometry_;
 using ImuMessage = sensor_msgs_msg_dds__Imu_;
 using JointStateMessage = sensor_msgs_msg_dds__JointState_;
 using Float64MultiArrayMessage = std_msgs_msg_dds__Float64MultiArray_;
+using LaserScanMessage = sensor_msgs_msg_dds__LaserScan_;
 using ClockMessage = rosgraph_msgs_msg_dds__Clock_;
 using HumbleParticipantMessage = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
 using IronParticipantMessage = rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_;
@@ -49,6 +52,7 @@ TCS_DESCRIBED_BY(OdometryMessage, nav_msgs_msg_dds__Odometry_)
 TCS_DESCRIBED_BY(ImuMessage, sensor_msgs_msg_dds__Imu_)
 TCS_DESCRIBED_BY(JointStateMessage, sensor_msgs_msg_dds__JointState_)
 TCS_DESCRIBED_BY(Float64MultiArrayMessage, std_msgs_msg_dds__Float64MultiArray_)
+TCS_DESCRIBED_BY(LaserScanMessage, sensor_msgs_msg_dds__LaserScan_)
 TCS_DESCRIBED_BY(ClockMessage, rosgraph_msgs_msg_dds__Clock_)
 TCS_DESCRIBED_BY(HumbleParticipantMessage, rmw_dds_common_msg_dds__ParticipantEntitiesInfo_)
 TCS_DESCRIBED_BY(IronParticipantMessage, rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_)

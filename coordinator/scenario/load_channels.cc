@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/scenario/load_dds.h"
+#include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/load_joints.h"
+#include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_sensing.h"
 #include "coordinator/scenario/load_serial.h"
 #include "coordinator/scenario/load_sockets.h"
@@ -57,9 +60,13 @@ void AddKeys(ChannelType type, const char* socket, std::vector<std::string>* key
 SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& value, ChannelType type,
                               const Scenario& scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsAboutJoints(map, "bodies");
+  const bool of_instrument = IsAboutInstrument(map);
+  const bool of_joints = !of_instrument && IsOfModel(map, "bodies");
   std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
-  if (of_joints) {
+  if (of_instrument) {
+    const std::vector<std::string> own = InstrumentKeys(map);
+    keys.insert(keys.begin(), own.begin(), own.end());
+  } else if (of_joints) {
     keys.insert(keys.begin(), {"model", "joints"});
   } else {
     keys.insert(keys.begin(), {"bodies", "noise", "bias"});
@@ -69,14 +76,17 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   map.AllowOnly(keys);
   SensorChannelSpec channel;
   channel.name = entry.key;
-  if (of_joints) {
-    channel.joints = LoadJointGroup(map, scenario);
-  } else {
-    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
-  }
   if (const YamlValue* rate = map.Find("rate")) channel.period = LoadPeriod(*rate);
   if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
   channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
+  if (of_instrument) {
+    LoadInstrument(map, scenario, &channel);
+  } else if (of_joints) {
+    channel.joints = LoadJointGroup(map, scenario);
+  } else {
+    channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
+    LoadBodyErrors(map, &channel.errors);
+  }
   if (const YamlValue* fields = map.Find("fields")) channel.fields = LoadSensorFields(*fields);
   switch (type) {
     case ChannelType::kUdpJson:
@@ -95,23 +105,75 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   return channel;
 }
 
+// What a channel of commands is about.
+enum class Commanded { kBody, kLink, kJoints, kRotors };
+
+Commanded CommandedBy(const YamlMap& map) {
+  const YamlValue* on = map.Find("on");
+  const YamlValue* model = map.Find("model");
+  const YamlValue* rotors = map.Find("rotors");
+  if (on != nullptr) {
+    if (model != nullptr) model->Fail("cannot be given beside on; make two channels of it");
+    return Commanded::kLink;
+  }
+  if (!IsOfModel(map, "body")) return Commanded::kBody;
+  const YamlValue* joints = map.Find("joints");
+  if (rotors != nullptr && joints != nullptr) {
+    joints->Fail("cannot be given beside rotors; make two channels of it");
+  }
+  return rotors != nullptr ? Commanded::kRotors : Commanded::kJoints;
+}
+
+std::vector<std::string> KeysOf(Commanded commanded, const YamlMap& map) {
+  switch (commanded) {
+    case Commanded::kBody:
+      return {"body", "latency", "limits", "axes", "lag"};
+    case Commanded::kLink:
+      return {"on", "latency", "limits", "axes"};
+    case Commanded::kJoints:
+      return JointDriveKeys(map);
+    case Commanded::kRotors:
+      break;
+  }
+  return {"model", "rotors", "drive", "latency"};
+}
+
+LinkTarget LoadPushedLink(const YamlValue& value, const Scenario& scenario) {
+  std::string name;
+  const int link = LoadLink(value, scenario, &name);
+  return {value.AsText(), link};
+}
+
+void LoadTarget(const YamlMap& map, Commanded commanded, Scenario* scenario,
+                CommandChannelSpec* channel) {
+  switch (commanded) {
+    case Commanded::kBody:
+      channel->body = FindBody(map.Require("body", "body: predator"), *scenario);
+      return LoadCommandEffect(map, "body", channel);
+    case Commanded::kLink:
+      channel->link = LoadPushedLink(*map.Find("on"), *scenario);
+      return LoadCommandEffect(map, "link", channel);
+    case Commanded::kJoints:
+      channel->joints = LoadJointDrive(map, *scenario);
+      SetDriveLag(map, *channel->joints, scenario);
+      break;
+    case Commanded::kRotors:
+      channel->rotors = LoadRotorDrive(map, *scenario);
+      break;
+  }
+  if (const YamlValue* latency = map.Find("latency")) channel->latency = latency->AsDuration();
+}
+
 CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& value,
-                                ChannelType type, const Scenario& scenario, Ends* ends) {
+                                ChannelType type, Scenario* scenario, Ends* ends) {
   const YamlMap map = value.AsMap();
-  const bool of_joints = IsAboutJoints(map, "body");
-  std::vector<std::string> keys = {"body", "latency", "limits", "axes", "lag"};
-  if (of_joints) keys = {"model", "joints", "drive", "stiffness", "damping", "latency"};
+  const Commanded commanded = CommandedBy(map);
+  std::vector<std::string> keys = KeysOf(commanded, map);
   AddKeys(type, "listen", &keys);
   map.AllowOnly(keys);
   CommandChannelSpec channel;
   channel.name = entry.key;
-  if (of_joints) {
-    channel.joints = LoadJointDrive(map, scenario);
-    if (const YamlValue* latency = map.Find("latency")) channel.latency = latency->AsDuration();
-  } else {
-    channel.body = FindBody(map.Require("body", "body: predator"), scenario);
-    LoadCommandEffect(map, &channel);
-  }
+  LoadTarget(map, commanded, scenario, &channel);
   switch (type) {
     case ChannelType::kUdpJson:
       channel.from = ends->udp.Load(map.Require("listen", "listen: \"127.0.0.1:47011\""));
@@ -120,7 +182,7 @@ CommandChannelSpec LoadCommands(const YamlMap::Entry& entry, const YamlValue& va
       channel.from = ends->unix_names.Load(map.Require("listen", "listen: hands.sock"));
       break;
     case ChannelType::kPty:
-      channel.from = ends->serial.Load(map, true, scenario);
+      channel.from = ends->serial.Load(map, true, *scenario);
       break;
     case ChannelType::kDds:
       channel.from = LoadDdsCommandEnd(map, channel, &ends->topics);
@@ -176,7 +238,7 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
     if (sensors != nullptr) {
       scenario->sensors.push_back(LoadSensors(entry, *sensors, type, *scenario, &ends));
     } else {
-      scenario->commands.push_back(LoadCommands(entry, *commands, type, *scenario, &ends));
+      scenario->commands.push_back(LoadCommands(entry, *commands, type, scenario, &ends));
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "coordinator/scenario/load_instruments.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/own_topics.h"
 #include "coordinator/scenario/sections.h"
@@ -102,13 +103,53 @@ std::size_t LoadMessage(const YamlValue& value, const std::vector<std::string>& 
   return static_cast<std::size_t>(found - names.begin());
 }
 
-dds::CommandMessage LoadCommandMessage(const YamlValue& value) {
-  if (dds::FullMessageName(value.AsText()) == dds::NameOf(dds::SensorMessage::kTwist)) {
+// Of bodies and of joints.
+dds::SensorMessage LoadSensorMessage(const YamlValue& value) {
+  const std::vector<std::string>& all = dds::SensorMessageNames();
+  const std::string name = dds::FullMessageName(value.AsText());
+  if (std::find(all.begin() + dds::kBodyMessages, all.end(), name) != all.end()) {
+    value.Fail("is " + name + ", which a robot's own sensors write; say which, like kind: lidar");
+  }
+  return static_cast<dds::SensorMessage>(
+      LoadMessage(value, {all.begin(), all.begin() + dds::kBodyMessages}));
+}
+
+// What the sensor writes goes without saying.
+DdsSensorEnd LoadInstrumentEnd(const YamlMap& map, const SensorChannelSpec& sensor,
+                               DdsTopics* topics) {
+  DdsSensorEnd to;
+  to.message = MessageOf(*sensor.instrument);
+  const std::string& name = dds::NameOf(to.message);
+  if (const YamlValue* v = map.Find("message")) {
+    if (dds::FullMessageName(v->AsText()) != name) {
+      v->Fail("is " + v->AsText() + ", but this kind of sensor writes " + name + "; remove it");
+    }
+  }
+  to.end = LoadEnd(map, name, Side::kWriter, {}, topics);
+  CheckDeadline(map, to.end, sensor.period);
+  return to;
+}
+
+dds::CommandMessage LoadCommandMessage(const YamlValue& value, const CommandChannelSpec& command) {
+  const std::string name = dds::FullMessageName(value.AsText());
+  const std::string& twist = dds::NameOf(dds::CommandMessage::kTwist);
+  if (!command.joints && name == twist) {
     value.Fail(
         "is a velocity, but bodies are moved by forces; read geometry_msgs/msg/Wrench here, and "
         "let a client turn velocities into forces");
   }
-  return static_cast<dds::CommandMessage>(LoadMessage(value, dds::CommandMessageNames()));
+  const auto message =
+      static_cast<dds::CommandMessage>(LoadMessage(value, dds::CommandMessageNames()));
+  if (!command.joints) return message;
+  const bool has_wheels = command.joints->wheels.has_value();
+  if (has_wheels && name != twist) {
+    value.Fail("is " + name + ", but a robot on wheels is told its velocity by " + twist +
+               "; read that");
+  }
+  if (!has_wheels && name == twist) {
+    value.Fail("is the velocity of a robot on wheels; add drive: differential");
+  }
+  return message;
 }
 
 }  // namespace
@@ -136,8 +177,9 @@ void DdsTopics::Add(const YamlValue& value, const std::string& topic, int domain
 DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& sensor,
                               DdsTopics* topics) {
   DdsSensorEnd to;
-  to.message = static_cast<dds::SensorMessage>(LoadMessage(
-      map.Require("message", "message: nav_msgs/msg/Odometry"), dds::SensorMessageNames()));
+  if (sensor.instrument) return LoadInstrumentEnd(map, sensor, topics);
+  const YamlValue& message = map.Require("message", "message: nav_msgs/msg/Odometry");
+  to.message = LoadSensorMessage(message);
   const std::string& name = dds::NameOf(to.message);
   if (sensor.joints && to.message != dds::SensorMessage::kJointState) {
     map.Find("message")->Fail("is " + name +
@@ -155,13 +197,20 @@ DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& senso
 DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& command,
                                 DdsTopics* topics) {
   DdsCommandEnd from;
-  from.message = LoadCommandMessage(map.Require("message", "message: geometry_msgs/msg/Wrench"));
-  if (command.joints.has_value() == (from.message == dds::CommandMessage::kWrench)) {
+  from.message =
+      LoadCommandMessage(map.Require("message", command.joints && command.joints->wheels
+                                                    ? "message: geometry_msgs/msg/Twist"
+                                                    : "message: geometry_msgs/msg/Wrench"),
+                         command);
+  const bool has_goals = command.joints || command.rotors;
+  if (has_goals == (from.message == dds::CommandMessage::kWrench)) {
+    const std::string what = command.joints ? "joints" : "rotors";
     map.Find("message")->Fail(
         "is " + dds::NameOf(from.message) +
-        (command.joints ? ", but joints are driven by std_msgs/msg/Float64MultiArray or "
-                          "sensor_msgs/msg/JointState; read one of these"
-                        : ", but a body is moved by geometry_msgs/msg/Wrench; read that"));
+        (has_goals ? ", but " + what +
+                         " are driven by std_msgs/msg/Float64MultiArray or "
+                         "sensor_msgs/msg/JointState; read one of these"
+                   : ", but a body is moved by geometry_msgs/msg/Wrench; read that"));
   }
   // Best effort matches what every writer offers; on the way to the coordinator nothing is lost.
   from.end.qos.reliability = dds::Reliability::kBestEffort;

@@ -6,7 +6,6 @@
 #include "coordinator/scenario/nearest.h"
 
 namespace tcs {
-namespace {
 
 std::size_t FindModel(const YamlValue& value, const Scenario& scenario) {
   const std::string name = value.AsText();
@@ -22,12 +21,25 @@ std::size_t FindModel(const YamlValue& value, const Scenario& scenario) {
   value.Fail("names the unknown model '" + name + "'; " + Suggest(name, known, "models"));
 }
 
+namespace {
+
 // Joints are numbered through the world: those of the first model first.
 int FirstJointOf(std::size_t model, const Scenario& scenario) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < model; ++i) first += scenario.world->models[i].joints.size();
   return static_cast<int>(first);
 }
+
+// The other way round.
+template <class Models>
+auto& JointOf(int index, Models& models) {
+  auto joint = static_cast<std::size_t>(index);
+  std::size_t model = 0;
+  while (joint >= models[model].joints.size()) joint -= models[model++].joints.size();
+  return models[model].joints[joint];
+}
+
+constexpr const char* kDifferential = "differential";
 
 enum class Use { kRead, kDrive };
 
@@ -55,28 +67,39 @@ std::size_t FindJoint(const YamlValue& value, const RobotModel& model, Use use) 
              Suggest(name, known, "joints"));
 }
 
+// Appends the joint that `value` names, or those of the list that it is.
+void AddNamed(const YamlValue& value, const RobotModel& model, int first, Use use,
+              JointGroup* group) {
+  if (value.IsList()) {
+    for (const YamlValue& each : value.AsList("[shoulder, elbow]")) {
+      AddNamed(each, model, first, use, group);
+    }
+    return;
+  }
+  const std::size_t joint = FindJoint(value, model, use);
+  if (std::ranges::find(group->names, model.joints[joint].name) != group->names.end()) {
+    value.Fail("names the joint '" + value.AsText() + "' a second time; remove it");
+  }
+  group->joints.push_back(first + static_cast<int>(joint));
+  group->names.push_back(model.joints[joint].name);
+}
+
 JointGroup LoadGroup(const YamlMap& map, const Scenario& scenario, Use use) {
   const YamlValue& model_value = map.Require("model", "model: arm");
   const std::size_t index = FindModel(model_value, scenario);
   const RobotModel& model = scenario.world->models[index];
   const int first = FirstJointOf(index, scenario);
   JointGroup group{model.name, {}, {}};
-  const auto add = [&](std::size_t joint) {
-    group.joints.push_back(first + static_cast<int>(joint));
-    group.names.push_back(model.joints[joint].name);
-  };
   if (const YamlValue* joints = map.Find("joints")) {
     for (const YamlValue& value : joints->AsList("[shoulder, elbow]")) {
-      const std::size_t joint = FindJoint(value, model, use);
-      if (std::ranges::find(group.names, model.joints[joint].name) != group.names.end()) {
-        value.Fail("names the joint '" + value.AsText() + "' a second time; remove it");
-      }
-      add(joint);
+      AddNamed(value, model, first, use, &group);
     }
     return group;
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    if (Suits(model.joints[i], use)) add(i);
+    if (!Suits(model.joints[i], use)) continue;
+    group.joints.push_back(first + static_cast<int>(i));
+    group.names.push_back(model.joints[i].name);
   }
   if (group.joints.empty()) {
     model_value.Fail("is " + model.name + ", which has no joints with one coordinate");
@@ -98,15 +121,16 @@ JointQuantity LoadQuantity(const YamlValue& value) {
   const std::string text = value.AsText();
   const auto found = std::ranges::find(kJointQuantities, text);
   if (found == kJointQuantities.end()) {
-    value.Fail("is the unknown '" + text + "'; " +
-               Suggest(text, {kJointQuantities.begin(), kJointQuantities.end()}, "quantities"));
+    std::vector<std::string> known(kJointQuantities.begin(), kJointQuantities.end());
+    known.push_back(kDifferential);
+    value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "drives"));
   }
   return static_cast<JointQuantity>(found - kJointQuantities.begin());
 }
 
 }  // namespace
 
-bool IsAboutJoints(const YamlMap& map, const char* body_key) {
+bool IsOfModel(const YamlMap& map, const char* body_key) {
   const YamlValue* model = map.Find("model");
   if (model != nullptr && map.Find(body_key) != nullptr) {
     model->Fail(std::string("cannot be given beside ") + body_key + "; make two channels of it");
@@ -118,7 +142,62 @@ JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario) {
   return LoadGroup(map, scenario, Use::kRead);
 }
 
+namespace {
+
+bool IsDifferential(const YamlMap& map) {
+  const YamlValue* drive = map.Find("drive");
+  return drive != nullptr && drive->AsText() == kDifferential;
+}
+
+// Wheels that nobody limits turn as fast as their servos make them.
+double LimitOf(const JointGroup& wheels, const RobotModel& model, int first) {
+  double most_radps = kNoLimit;
+  for (const int joint : wheels.joints) {
+    most_radps =
+        std::min(most_radps, model.joints[static_cast<std::size_t>(joint - first)].limits.velocity);
+  }
+  return most_radps;
+}
+
+JointDriveSpec LoadWheelDrive(const YamlMap& map, const Scenario& scenario) {
+  const std::size_t index = FindModel(map.Require("model", "model: rover"), scenario);
+  const RobotModel& model = scenario.world->models[index];
+  const int first = FirstJointOf(index, scenario);
+  JointDriveSpec spec;
+  spec.quantity = JointQuantity::kVelocity;
+  spec.group.model = model.name;
+  spec.wheels.emplace();
+  AddNamed(map.Require("left", "left: left_wheel_joint"), model, first, Use::kDrive, &spec.group);
+  spec.wheels->left = spec.group.joints.size();
+  AddNamed(map.Require("right", "right: right_wheel_joint"), model, first, Use::kDrive,
+           &spec.group);
+  spec.wheels->base = LoadWheelBase(map);
+  spec.wheels->most_radps = LimitOf(spec.group, model, first);
+  spec.wheels->timeout = VirtualDuration::Milliseconds(500);
+  if (const YamlValue* v = map.Find("timeout")) spec.wheels->timeout = v->AsDuration();
+  const std::vector<double> damping =
+      LoadGains(map.Require("damping", "damping: 2"), spec.group.joints.size());
+  for (const double gain : damping) spec.gains.push_back({.stiffness = 0, .damping = gain});
+  return spec;
+}
+
+}  // namespace
+
+std::vector<std::string> JointDriveKeys(const YamlMap& map) {
+  if (IsDifferential(map)) {
+    return {"model",  "drive",   "left",    "right",  "separation",
+            "radius", "damping", "timeout", "latency"};
+  }
+  return {"model", "joints", "drive", "stiffness", "damping", "latency", "lag"};
+}
+
+WheelBase LoadWheelBase(const YamlMap& map) {
+  return {map.Require("separation", "separation: 0.35").AsPositiveNumber(" (metres)"),
+          map.Require("radius", "radius: 0.08").AsPositiveNumber(" (metres)")};
+}
+
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario) {
+  if (IsDifferential(map)) return LoadWheelDrive(map, scenario);
   JointDriveSpec spec;
   spec.group = LoadGroup(map, scenario, Use::kDrive);
   const std::size_t count = spec.group.joints.size();
@@ -134,7 +213,29 @@ JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario) {
     const std::vector<double> gains = LoadGains(*v, count);
     for (std::size_t i = 0; i < count; ++i) spec.gains[i].damping = gains[i];
   }
+  if (const YamlValue* v = map.Find("lag")) spec.lag = v->AsDuration();
+  for (const int joint : spec.group.joints) {
+    spec.limits.push_back(JointOf(joint, scenario.world->models).limits);
+  }
   return spec;
+}
+
+void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario) {
+  const YamlValue* lag = map.Find("lag");
+  const YamlValue& place = lag != nullptr ? *lag : map.place();
+  for (std::size_t i = 0; i < spec.group.joints.size(); ++i) {
+    const int joint = spec.group.joints[i];
+    for (const CommandChannelSpec& other : scenario->commands) {
+      if (!other.joints || other.joints->lag == spec.lag) continue;
+      if (std::ranges::find(other.joints->group.joints, joint) ==
+          other.joints->group.joints.end()) {
+        continue;
+      }
+      place.Fail("drives the joint '" + spec.group.names[i] + "' with another lag than channel " +
+                 other.name + " does; a joint has one");
+    }
+    JointOf(joint, scenario->world->models).drive_lag = spec.lag;
+  }
 }
 
 }  // namespace tcs

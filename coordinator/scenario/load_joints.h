@@ -2,19 +2,35 @@
 // ScenarioMistake.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/scenario/yaml_reader.h"
 
 namespace tcs {
 
-// Whether the channel with the keys of `map` is about joints: it names a model, and no body by
+// Whether the channel with the keys of `map` is about a model: it names one, and no body by
 // `body_key`.
-bool IsAboutJoints(const YamlMap& map, const char* body_key);
+bool IsOfModel(const YamlMap& map, const char* body_key);
 
 // `model` and `joints`: all that have one coordinate, where none are named.
 JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario);
 
-// The same of joints that can be driven; `drive`, `stiffness` and `damping`.
+// Of a channel that drives joints: the keys that it can have, which are others where they are
+// wheels.
+std::vector<std::string> JointDriveKeys(const YamlMap& map);
+
+// The same of joints that can be driven; `drive`, `stiffness`, `damping` and `lag`. With
+// `drive: differential` the joints are wheels, and the keys say of which robot.
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario);
+// Gives the joints the lag of the channel that drives them. All channels of a joint have one.
+void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario);
+
+// The index of the model that `value` names.
+std::size_t FindModel(const YamlValue& value, const Scenario& scenario);
+
+// `separation` and `radius`.
+WheelBase LoadWheelBase(const YamlMap& map);
 
 }  // namespace tcs

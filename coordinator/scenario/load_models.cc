@@ -10,6 +10,7 @@
 #include "coordinator/models/load_urdf.h"
 #include "coordinator/models/model_mistake.h"
 #include "coordinator/models/uniform_inertial.h"
+#include "coordinator/scenario/load_rotors.h"
 #include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
@@ -113,7 +114,7 @@ class Models {
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
     map.AllowOnly({"urdf", "at", "fixed_base", "joints", "packages", "friction", "self_collision",
-                   "linear_velocity", "angular_velocity"});
+                   "linear_velocity", "angular_velocity", "touches", "rotors"});
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
@@ -125,8 +126,10 @@ class Models {
       model.at = PoseOf(at);
     }
     if (const YamlValue* v = map.Find("self_collision")) model.has_self_collision = v->AsBoolean();
+    if (const YamlValue* v = map.Find("touches")) model.touches_models = LoadTouchesModels(*v);
     LoadVelocities(map, &model);
     LoadStart(map, &model);
+    if (const YamlValue* v = map.Find("rotors")) LoadRotors(*v, &model);
     world_.models.push_back(std::move(model));
   }
 
@@ -141,6 +144,15 @@ class Models {
       throw ScenarioMistake{error->message};
     }
     return std::get<RobotModel>(std::move(loaded));
+  }
+
+  static bool LoadTouchesModels(const YamlValue& value) {
+    const std::string text = value.AsText();
+    if (text != "everything" && text != "static") {
+      value.Fail("is the unknown '" + text + "'; " +
+                 Suggest(text, {"everything", "static"}, "values"));
+    }
+    return text == "everything";
   }
 
   // Where the joints are at the start.

@@ -39,12 +39,12 @@ std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
   return limit;
 }
 
-bool LoadIsInBodyFrame(const YamlValue& value) {
+bool LoadIsInOwnFrame(const YamlValue& value, const std::string& own) {
   const std::string axes = value.AsText();
-  if (axes != "world" && axes != "body") {
-    value.Fail("is the unknown '" + axes + "'; " + Suggest(axes, {"world", "body"}, "axes"));
+  if (axes != "world" && axes != own) {
+    value.Fail("is the unknown '" + axes + "'; " + Suggest(axes, {"world", own}, "axes"));
   }
-  return axes == "body";
+  return axes == own;
 }
 
 }  // namespace
@@ -76,33 +76,39 @@ std::vector<SensorField> LoadSensorFields(const YamlValue& value) {
   return fields;
 }
 
-SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed) {
-  SensorErrors errors;
-  errors.seed = SeedOf(seed, name);
-  const auto field_of = [&errors](const YamlMap::Entry& entry) -> FieldError& {
-    const std::vector<std::string> names = FieldNames();
-    const auto index = std::find(names.begin(), names.end(), entry.key) - names.begin();
-    return errors.fields[static_cast<std::size_t>(index)];
+void LoadFieldErrors(const YamlMap& map, std::span<const NamedError> fields) {
+  std::vector<std::string> names;
+  for (const NamedError& field : fields) names.push_back(field.name);
+  const auto of = [&](const YamlMap::Entry& entry) -> const NamedError& {
+    return fields[static_cast<std::size_t>(std::find(names.begin(), names.end(), entry.key) -
+                                           names.begin())];
   };
   if (const YamlValue* value = map.Find("noise")) {
     const YamlMap noise = value->AsMap();
-    noise.AllowOnly(FieldNames());
+    noise.AllowOnly(names);
     for (const YamlMap::Entry& entry : noise.entries()) {
-      field_of(entry).noise = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+      of(entry).error->noise = entry.value.AsNonNegativeNumber(" (a standard deviation)");
     }
   }
   if (const YamlValue* value = map.Find("bias")) {
     const YamlMap bias = value->AsMap();
-    bias.AllowOnly(FieldNames());
+    bias.AllowOnly(names);
     for (const YamlMap::Entry& entry : bias.entries()) {
-      FieldError& field = field_of(entry);
-      if (entry.value.IsList()) {
-        field.bias = entry.value.AsVector3();
+      const NamedError& field = of(entry);
+      if (entry.value.IsList() && field.is_number) {
+        field.error->bias[0] = entry.value.AsNumbers(1, "[0.02]")[0];
+      } else if (entry.value.IsList()) {
+        field.error->bias = entry.value.AsVector3();
       } else {
-        field.bias_deviation = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+        field.error->bias_deviation = entry.value.AsNonNegativeNumber(" (a standard deviation)");
       }
     }
   }
+}
+
+SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed) {
+  SensorErrors errors;
+  errors.seed = SeedOf(seed, name);
   if (const YamlValue* value = map.Find("dropout")) {
     errors.dropout = value->AsNonNegativeNumber(" (the share of samples that are lost)");
     if (errors.dropout > 1) value->Fail("is above 1, at which all samples are lost");
@@ -111,9 +117,17 @@ SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::
   return errors;
 }
 
-void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command) {
+void LoadBodyErrors(const YamlMap& map, SensorErrors* errors) {
+  std::vector<NamedError> fields;
+  for (std::size_t i = 0; i < kSensorFields; ++i) {
+    fields.push_back({NameOf(static_cast<SensorField>(i)), &errors->fields[i], false});
+  }
+  LoadFieldErrors(map, fields);
+}
+
+void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command) {
   if (const YamlValue* v = map.Find("latency")) command->latency = v->AsDuration();
-  if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInBodyFrame(*v);
+  if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInOwnFrame(*v, own);
   if (const YamlValue* v = map.Find("lag")) command->lag = v->AsDuration();
   const YamlValue* limits = map.Find("limits");
   if (limits == nullptr) return;

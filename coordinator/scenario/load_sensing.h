@@ -2,6 +2,7 @@
 // LoadScenario: mistakes are thrown as ScenarioMistake.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,20 @@ namespace tcs {
 
 std::vector<SensorField> LoadSensorFields(const YamlValue& value);
 
-// `noise`, `bias`, `dropout` and `jitter` of a sensor of that name.
+// The seed of the sensor of that name, `dropout` and `jitter`.
 SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed);
 
-// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts.
-void LoadCommandEffect(const YamlMap& map, CommandChannelSpec* command);
+// `noise` and `bias`, of bodies and of anything else that has named fields.
+void LoadBodyErrors(const YamlMap& map, SensorErrors* errors);
+struct NamedError {
+  std::string name;
+  FieldError* error;
+  bool is_number;  // not a vector
+};
+void LoadFieldErrors(const YamlMap& map, std::span<const NamedError> fields);
+
+// `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts. Axes are the
+// world's or those of `own`, a "body" or a "link".
+void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command);
 
 }  // namespace tcs

@@ -17,9 +17,11 @@
 
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/scenario/instruments.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
 
@@ -164,6 +166,8 @@ struct SensorErrors {
   std::uint64_t seed = 0;    // of this sensor
 };
 
+using MeasurementErrors = std::array<FieldError, kMeasuredFields>;
+
 // Joints of a model that have one coordinate.
 struct JointGroup {
   std::string model;
@@ -171,19 +175,47 @@ struct JointGroup {
   std::vector<std::string> names;  // of each
 };
 
+// The firmware of a robot with driven wheels: what comes in is how fast it is to go.
+struct WheelDriveSpec {
+  WheelBase base;
+  std::size_t left = 1;       // of the joints, so many are wheels on the left; they come first
+  double most_radps = 0;      // of any wheel
+  VirtualDuration timeout{};  // after which without a command it stops; 0: never
+};
+
 // Joints that a channel drives, and with what.
 struct JointDriveSpec {
   JointGroup group;
   JointQuantity quantity = JointQuantity::kEffort;  // what a number without a name is
   std::vector<JointGains> gains;                    // of each joint
+  std::vector<JointLimits> limits{};                // likewise: what is wanted is kept within them
+  VirtualDuration lag{};                            // Joint::drive_lag of all of them
+  std::optional<WheelDriveSpec> wheels;             // which they are
+};
+
+// Rotors of a model that a channel drives.
+struct RotorDriveSpec {
+  std::string model;
+  std::vector<int> rotors;         // as Dynamics numbers them
+  std::vector<std::string> names;  // of each
+  std::vector<double> most_radps;  // likewise
+  bool is_normalised = false;      // a command is a share of the most that the rotor can do
+};
+
+// A link of a model that a channel pushes.
+struct LinkTarget {
+  std::string name;  // "drone/base_link"
+  int link = 0;      // as Dynamics numbers it
 };
 
 // The state of `bodies`, sampled every `period` from time 0 on and sent so that it arrives
 // `latency` later.
 struct SensorChannelSpec {
   std::string name;
-  std::vector<int> bodies;  // indices into world.bodies; at least one, or
-  std::optional<JointGroup> joints;
+  std::vector<int> bodies;           // indices into world.bodies; at least one, or
+  std::optional<JointGroup> joints;  // or
+  std::optional<InstrumentSpec> instrument;
+  MeasurementErrors measurement_errors{};  // of that; seed, losses and lateness are in `errors`
   VirtualDuration period = VirtualDuration::Milliseconds(10);
   VirtualDuration latency{};
   SensorErrors errors;
@@ -200,14 +232,18 @@ inline constexpr std::array<double, 3> kNoWrenchLimit = {std::numeric_limits<dou
 // What comes in are wrenches for `body`, applied at the virtual time of the send plus `latency`.
 struct CommandChannelSpec {
   std::string name;
-  int body = 0;                          // or
+  int body = 0;                          // or one of these, of a model:
+  std::optional<LinkTarget> link;        // which they push
   std::optional<JointDriveSpec> joints;  // which they drive
+  std::optional<RotorDriveSpec> rotors;
   VirtualDuration latency{};
   // The most of each component, either way.
   std::array<double, 3> most_force_n = kNoWrenchLimit, most_torque_nm = kNoWrenchLimit;
-  bool in_body_frame = false;  // the components are along the body's axes
+  bool in_body_frame = false;  // the components are along the axes of the body, or of the link
   VirtualDuration lag{};       // Wrench's
   CommandEnd from;
+
+  bool IsOfModel() const { return link || joints || rotors; }
 };
 
 // The virtual time as a topic, every `period` from time 0 on.

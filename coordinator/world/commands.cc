@@ -3,11 +3,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tcs {
+namespace {
+
+// The first thing of a joint's goal that the joint cannot do.
+struct Beyond {
+  std::string asked, given;
+};
+
+// Cuts the goal to what the joint can do.
+std::optional<Beyond> Cut(const JointLimits& limits, JointGoal* goal) {
+  std::optional<Beyond> beyond;
+  const auto cut = [&](std::optional<double>* value, double least, double most, const char* what) {
+    if (!value->has_value()) return;
+    const double given = std::clamp(**value, least, most);
+    if (given == **value) return;
+    if (!beyond) beyond = {fmt::format("{} {:.6g}", what, **value), fmt::format("{:.6g}", given)};
+    *value = given;
+  };
+  cut(&goal->position, limits.lower, limits.upper, "the position");
+  cut(&goal->velocity, -limits.velocity, limits.velocity, "the velocity");
+  cut(&goal->effort, -limits.effort, limits.effort, "the effort");
+  return beyond;
+}
+
+}  // namespace
 
 void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
-  for (const CommandChannelSpec& spec : specs) channels_.push_back({spec});
+  for (const CommandChannelSpec& spec : specs) {
+    Channel& channel = channels_.emplace_back(Channel{.spec = spec});
+    const auto add = [&](const std::string& kind, const std::vector<std::string>& names,
+                         const std::string& model) {
+      for (const std::string& name : names) {
+        channel.accounts.push_back(
+            account_.Add(fmt::format("{} '{}' of {}", kind, name, model), spec.name));
+      }
+    };
+    if (spec.joints) add("joint", spec.joints->group.names, spec.joints->group.model);
+    if (spec.rotors) add("rotor", spec.rotors->names, spec.rotors->model);
+  }
 }
 
 void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) {
@@ -15,29 +51,112 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   ++on.taken;
   ++taken_;
   Wrench limited = wrench;
-  limited.in_body_frame = on.spec.in_body_frame;
-  limited.lag = on.spec.lag;
   for (std::size_t i = 0; i < 3; ++i) {
     const double force = on.spec.most_force_n[i], torque = on.spec.most_torque_nm[i];
     limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);
     limited.torque_nm[i] = std::clamp(wrench.torque_nm[i], -torque, torque);
   }
+  if (on.spec.link) {
+    const auto frame = on.spec.in_body_frame ? WrenchFrame::kLink : WrenchFrame::kWorld;
+    push_(sent, on.spec.latency, on.spec.link->link, frame, limited);
+    return;
+  }
+  limited.in_body_frame = on.spec.in_body_frame;
+  limited.lag = on.spec.lag;
   act_(sent, on.spec.latency, on.spec.body, limited);
 }
 
 void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) {
   Channel& on = channels_[channel];
+  if (on.spec.rotors) {
+    for (const JointGoal& goal : goals) {
+      if (goal.velocity && !goal.position && !goal.effort) continue;
+      Refuse(channel, "a command wants something else of rotor '" +
+                          on.spec.rotors->names[goal.joint] + "' than a speed");
+      return;
+    }
+  }
   ++on.taken;
   ++taken_;
   for (const JointGoal& goal : goals) {
-    drive_(sent, on.spec.latency, on.spec.joints->group.joints[goal.joint],
-           ToDrive(goal, on.spec.joints->gains[goal.joint]));
+    account_.Take(on.accounts[goal.joint], sent + on.spec.latency);
+    if (on.spec.rotors) {
+      SpinRotor(on, sent, goal);
+    } else {
+      DriveJoint(on, sent, goal);
+    }
   }
 }
 
-const JointDriveSpec* Commands::JointsOf(std::size_t channel) const {
+void Commands::DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal) {
+  const JointDriveSpec& joints = *on.spec.joints;
+  if (const auto beyond = Cut(joints.limits[goal.joint], &goal)) {
+    account_.TakeBeyond(on.accounts[goal.joint], sent + on.spec.latency, beyond->asked,
+                        beyond->given);
+  }
+  drive_(sent, on.spec.latency, joints.group.joints[goal.joint],
+         ToDrive(goal, joints.gains[goal.joint]));
+}
+
+void Commands::SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal) {
+  const RotorDriveSpec& rotors = *on.spec.rotors;
+  const double most_radps = rotors.most_radps[goal.joint];
+  const double asked = *goal.velocity, most = rotors.is_normalised ? 1 : most_radps;
+  const double given = std::clamp(asked, 0.0, most);
+  if (given != asked) {
+    account_.TakeBeyond(on.accounts[goal.joint], sent + on.spec.latency,
+                        fmt::format("the speed {:.6g}", asked), fmt::format("{:.6g}", given));
+  }
+  spin_(sent, on.spec.latency, rotors.rotors[goal.joint],
+        rotors.is_normalised ? given * most_radps : given);
+}
+
+void Commands::Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  if (on.halts < sent) Halt(&on);
+  Turn(on, sent, speed);
+  const VirtualDuration timeout = on.spec.joints->wheels->timeout;
+  if (timeout > VirtualDuration{}) on.halts = sent + timeout;
+}
+
+// Makes all wheels turn as the robot is to go.
+void Commands::Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed) {
+  const JointDriveSpec& joints = *channel.spec.joints;
+  const WheelDriveSpec& wheels = *joints.wheels;
+  const WheelSpeeds speeds = Limited(WheelSpeedsOf(wheels.base, speed), wheels.most_radps);
+  for (std::size_t i = 0; i < joints.group.joints.size(); ++i) {
+    JointGoal goal{i};
+    goal.velocity = i < wheels.left ? speeds.left_radps : speeds.right_radps;
+    drive_(sent, channel.spec.latency, joints.group.joints[i], ToDrive(goal, joints.gains[i]));
+  }
+}
+
+void Commands::Halt(Channel* channel) {
+  Turn(*channel, std::exchange(channel->halts, VirtualTime::Never()), {});
+}
+
+VirtualTime Commands::NextStop() const {
+  VirtualTime next = VirtualTime::Never();
+  for (const Channel& channel : channels_) next = std::min(next, channel.halts);
+  return next;
+}
+
+void Commands::ActUntil(VirtualTime until) {
+  for (Channel& channel : channels_) {
+    if (channel.halts <= until && !channel.halts.IsNever()) Halt(&channel);
+  }
+}
+
+std::optional<GoalNames> Commands::GoalsOf(std::size_t channel) const {
   const CommandChannelSpec& spec = channels_[channel].spec;
-  return spec.joints ? &*spec.joints : nullptr;
+  if (spec.joints) {
+    return GoalNames{spec.joints->group.names, spec.joints->quantity,
+                     spec.joints->wheels.has_value()};
+  }
+  if (spec.rotors) return GoalNames{spec.rotors->names, JointQuantity::kVelocity};
+  return {};
 }
 
 void Commands::Refuse(std::size_t channel, const std::string& why) {

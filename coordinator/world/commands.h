@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "coordinator/channel/channel.h"
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/world/actuator_account.h"
 
 namespace tcs {
 
@@ -20,22 +22,38 @@ class Commands final : public CommandSink {
   using Act =
       std::function<void(VirtualTime sent, VirtualDuration latency, int body, const Wrench&)>;
 
-  // The same of a joint, as Dynamics numbers them.
+  // The same of a joint, a rotor or a link, as Dynamics numbers them.
   using Drive =
       std::function<void(VirtualTime sent, VirtualDuration latency, int joint, const JointDrive&)>;
+  using Spin =
+      std::function<void(VirtualTime sent, VirtualDuration latency, int rotor, double speed_radps)>;
+  using Push = std::function<void(VirtualTime sent, VirtualDuration latency, int link, WrenchFrame,
+                                  const Wrench&)>;
 
   // `warn` is told of the first thing on each channel that was no command.
-  Commands(std::function<void(const std::string&)> warn, Act act, Drive drive = {})
-      : warn_(std::move(warn)), act_(std::move(act)), drive_(std::move(drive)) {}
+  Commands(std::function<void(const std::string&)> warn, Act act, Drive drive = {}, Spin spin = {},
+           Push push = {})
+      : warn_(std::move(warn)),
+        act_(std::move(act)),
+        drive_(std::move(drive)),
+        spin_(std::move(spin)),
+        push_(std::move(push)) {}
 
   // The scenario's channels; before anything comes in.
   void Open(const std::vector<CommandChannelSpec>& specs);
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
-  const JointDriveSpec* JointsOf(std::size_t channel) const override;
+  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override;
+  std::optional<GoalNames> GoalsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
+
+  // When firmware does something by itself next.
+  VirtualTime NextStop() const;
+  // It does what is due by `until`, at its own times. No command for an earlier time comes any
+  // more.
+  void ActUntil(VirtualTime until);
 
   // Of all channels, what acted.
   std::int64_t taken() const { return taken_; }
@@ -44,15 +62,26 @@ class Commands final : public CommandSink {
   // no more was none than what was said at once.
   std::string ComplaintAbout(std::size_t channel, const Inlet::Place& place,
                              const std::string& body) const;
+  // The same about the joints and rotors of all channels.
+  std::vector<std::string> ComplaintsAboutActuators() const { return account_.Complaints(); }
 
  private:
   struct Channel {
     CommandChannelSpec spec;
+    std::vector<std::size_t> accounts{};  // of each joint or rotor
     std::int64_t taken = 0, refused = 0;
+    VirtualTime halts = VirtualTime::Never();  // unless a command comes before
   };
+  void DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal);
+  void SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal);
+  void Halt(Channel* channel);
+  void Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed);
   std::function<void(const std::string&)> warn_;
   Act act_;
   Drive drive_;
+  Spin spin_;
+  Push push_;
+  ActuatorAccount account_;
   std::vector<Channel> channels_;  // as in the scenario
   std::int64_t taken_ = 0;
 };

@@ -1,41 +1,11 @@
 #include "coordinator/world/sensor_noise.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "coordinator/world/random_stream.h"
 
 namespace tcs {
 namespace {
-
-// What of a sensor's randomness is for what: streams that know nothing of each other.
-enum class Purpose : std::uint64_t { kFate = 1, kNoise, kBias };
-
-// Steele, Lea and Flood's SplitMix64: any seed gives a stream of its own.
-class Stream {
- public:
-  Stream(std::uint64_t seed, Purpose purpose, std::uint64_t number) : state_(seed) {
-    state_ = Next() ^ static_cast<std::uint64_t>(purpose);
-    state_ = Next() ^ number;
-    state_ = Next();
-  }
-
-  // From 0 to below 1.
-  double Uniform() { return static_cast<double>(Next() >> 11) * 0x1p-53; }
-  // Box and Muller's.
-  double Normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
-    return radius * std::cos(2 * std::numbers::pi * Uniform());
-  }
-
- private:
-  std::uint64_t Next() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return z ^ z >> 31;
-  }
-
-  std::uint64_t state_;
-};
 
 // The orientation turned by `turn`, a rotation about the body's axes.
 std::array<double, 4> Turned(const std::array<double, 4>& q, const std::array<double, 3>& turn) {
@@ -75,7 +45,7 @@ SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies)
     is_exact_ &= field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
   }
   for (std::size_t body = 0; body < bodies; ++body) {
-    Stream random(errors_.seed, Purpose::kBias, body);
+    RandomStream random(errors_.seed, RandomPurpose::kBias, body);
     Biases& biases = biases_.emplace_back();
     for (std::size_t i = 0; i < kSensorFields; ++i) {
       const FieldError& field = errors_.fields[i];
@@ -88,7 +58,7 @@ SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies)
 
 SensorNoise::Fate SensorNoise::FateOf(std::uint64_t sample) const {
   if (errors_.dropout == 0 && errors_.jitter == VirtualDuration{}) return {};
-  Stream random(errors_.seed, Purpose::kFate, sample);
+  RandomStream random(errors_.seed, RandomPurpose::kFate, sample);
   const bool is_lost = random.Uniform() < errors_.dropout;
   const double late_ns = random.Uniform() * static_cast<double>(errors_.jitter.ns());
   return {is_lost, VirtualDuration::Nanoseconds(static_cast<std::int64_t>(late_ns))};
@@ -98,7 +68,7 @@ SensorNoise::Fate SensorNoise::FateOf(std::uint64_t sample) const {
 // one field leaves the others as they were.
 void SensorNoise::Disturb(std::uint64_t sample, Reading* reading) const {
   if (is_exact_) return;
-  Stream random(errors_.seed, Purpose::kNoise, sample);
+  RandomStream random(errors_.seed, RandomPurpose::kNoise, sample);
   for (std::size_t body = 0; body < reading->bodies.size(); ++body) {
     BodyReading& of = reading->bodies[body];
     for (std::size_t i = 0; i < kSensorFields; ++i) {

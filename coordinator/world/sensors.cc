@@ -20,6 +20,21 @@ void Sensors::AddJoints(const JointGroup& joints, SensorTiming timing, const Sen
   sensors_.back().joint_states.resize(joints.joints.size());
 }
 
+void Sensors::AddInstrument(std::unique_ptr<Instrument> instrument, SensorTiming timing,
+                            const SensorErrors& errors, const MeasurementErrors& measurement_errors,
+                            Outlet& outlet) {
+  Add(std::vector<Body>(), timing, errors, outlet);
+  sensors_.back().instrument = std::move(instrument);
+  sensors_.back().measurement_noise = MeasurementNoise(measurement_errors, errors.seed);
+}
+
+// When the sample is whole that is being taken, or is taken next.
+VirtualTime Sensors::NextSample(const Sensor& sensor) {
+  if (sensor.instrument == nullptr) return sensor.next;
+  const Instrument::Looks looks = sensor.instrument->looks();
+  return sensor.next + looks.apart * (looks.count - 1 - sensor.look);
+}
+
 VirtualTime Sensors::NextStop() const {
   VirtualTime next = VirtualTime::Never();
   for (const Sensor& sensor : sensors_) {
@@ -31,7 +46,7 @@ VirtualTime Sensors::NextStop() const {
 VirtualTime Sensors::NextArrival() const {
   VirtualTime next = VirtualTime::Never();
   for (const Sensor& sensor : sensors_) {
-    next = std::min({next, sensor.next + sensor.timing.latency, sensor.outlet->NextDue()});
+    next = std::min({next, NextSample(sensor) + sensor.timing.latency, sensor.outlet->NextDue()});
   }
   return next;
 }
@@ -43,19 +58,23 @@ void Sensors::AddDueBodies(VirtualTime now, std::vector<int>* bodies) const {
   }
 }
 
-bool Sensors::Act(VirtualTime now, const Read& read, const ReadJoints& read_joints) {
+bool Sensors::Act(VirtualTime now, const Read& read, const Eyes& eyes) {
   bool went_out = false;
   for (Sensor& sensor : sensors_) {
-    if (sensor.next <= now) went_out |= Sample(sensor, now, read, read_joints);
+    if (sensor.instrument != nullptr) {
+      // Where a sample ends the next one may begin.
+      while (sensor.next <= now) went_out |= Look(sensor, now, eyes);
+    } else if (sensor.next <= now) {
+      went_out |= Sample(sensor, now, read, eyes);
+    }
     went_out |= sensor.outlet->HandOver(now);
   }
   return went_out;
 }
 
-bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read,
-                     const ReadJoints& read_joints) {
+bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read, const Eyes& eyes) {
   Reading reading{now, {}};
-  if (!sensor.joint_states.empty()) read_joints(sensor.joints.joints, sensor.joint_states);
+  if (!sensor.joint_states.empty()) eyes.joints(sensor.joints.joints, sensor.joint_states);
   for (std::size_t i = 0; i < sensor.joint_states.size(); ++i) {
     reading.joints.push_back({sensor.joints.names[i], sensor.joint_states[i]});
   }
@@ -64,10 +83,31 @@ bool Sensors::Sample(Sensor& sensor, VirtualTime now, const Read& read,
     reading.bodies.push_back({sensor.bodies[i].name, state, sensor.inertial[i].Sample(now, state)});
   }
   sensor.next += sensor.timing.period;
+  return SendOff(sensor, now, std::move(reading));
+}
+
+bool Sensors::Look(Sensor& sensor, VirtualTime now, const Eyes& eyes) {
+  const Instrument::Looks looks = sensor.instrument->looks();
+  if (sensor.look == 0) sensor.began = now;
+  sensor.instrument->Look(sensor.look, now, eyes);
+  if (++sensor.look < looks.count) {
+    sensor.next += looks.apart;
+    return false;
+  }
+  sensor.look = 0;
+  sensor.next = sensor.began + sensor.timing.period;
+  Reading reading{sensor.began, {}};
+  reading.measured = sensor.instrument->Finish();
+  return SendOff(sensor, now, std::move(reading));
+}
+
+// What was read whole `now`.
+bool Sensors::SendOff(Sensor& sensor, VirtualTime now, Reading reading) {
   const std::uint64_t number = sensor.number++;
   const SensorNoise::Fate fate = sensor.noise.FateOf(number);
   if (fate.is_lost) return false;
   sensor.noise.Disturb(number, &reading);
+  sensor.measurement_noise.Disturb(number, &reading.measured);
   ++samples_;
   // None overtakes another.
   sensor.last_arrives = std::max(sensor.last_arrives, now + sensor.timing.latency + fate.late);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@
 
 #include "coordinator/channel/channel.h"
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/world/instruments/instrument.h"
+#include "coordinator/world/measurement_noise.h"
 #include "coordinator/world/sensor_noise.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
@@ -30,8 +33,6 @@ class Sensors {
  public:
   // How body `body` of the world is at the instant.
   using Read = std::function<BodyState(int body)>;
-  // How joints of the world are at the instant; as many states as joints.
-  using ReadJoints = std::function<void(std::span<const int> joints, std::span<JointState>)>;
   struct Body {
     int index;         // in the world
     std::string name;  // in readings
@@ -46,6 +47,10 @@ class Sensors {
   // One of joints.
   void AddJoints(const JointGroup& joints, SensorTiming timing, const SensorErrors& errors,
                  Outlet& outlet);
+  // One of a robot that looks by itself.
+  void AddInstrument(std::unique_ptr<Instrument> instrument, SensorTiming timing,
+                     const SensorErrors& errors, const MeasurementErrors& measurement_errors,
+                     Outlet& outlet);
 
   // When there is something to do next, and when something may reach a program next.
   VirtualTime NextStop() const;
@@ -54,7 +59,7 @@ class Sensors {
   // Appends the bodies that samples are due of. One may be there more than once.
   void AddDueBodies(VirtualTime now, std::vector<int>* bodies) const;
   // Takes the samples that are due, and has arrived what is due. True if something went out.
-  bool Act(VirtualTime now, const Read& read, const ReadJoints& read_joints = {});
+  bool Act(VirtualTime now, const Read& read, const Eyes& eyes = {});
 
   std::int64_t samples() const { return samples_; }
 
@@ -65,13 +70,20 @@ class Sensors {
     Outlet* outlet;
     SensorNoise noise;
     std::vector<InertialSensor> inertial;  // of each body
-    VirtualTime next;                      // sample
-    std::uint64_t number = 0;              // of it
+    VirtualTime next;                      // look
+    std::uint64_t number = 0;              // of the sample
     VirtualTime last_arrives;
     JointGroup joints{};
     std::vector<JointState> joint_states{};  // memory of Sample
+    std::unique_ptr<Instrument> instrument{};
+    MeasurementNoise measurement_noise{};
+    VirtualTime began{};  // the sample
+    int look = 0;         // of it, which comes next
   };
-  bool Sample(Sensor& sensor, VirtualTime now, const Read& read, const ReadJoints& read_joints);
+  static VirtualTime NextSample(const Sensor& sensor);
+  bool Sample(Sensor& sensor, VirtualTime now, const Read& read, const Eyes& eyes);
+  bool Look(Sensor& sensor, VirtualTime now, const Eyes& eyes);
+  bool SendOff(Sensor& sensor, VirtualTime now, Reading reading);
 
   std::array<double, 3> gravity_mps2_;
   std::vector<Sensor> sensors_;

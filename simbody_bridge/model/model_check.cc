@@ -320,6 +320,32 @@ Fault CheckMasses(const RobotModel& model, const std::vector<int>& joint_above) 
   return {};
 }
 
+std::optional<std::string> CheckRotorAlone(const RobotModel& model, const Rotor& rotor) {
+  if (rotor.link < 0 || rotor.link >= static_cast<int>(model.links.size())) {
+    return "its link is no link of the model";
+  }
+  if (!IsPose(rotor.frame)) return "its frame is no pose";
+  if (!IsNonNegative(rotor.thrust_ns2) || !IsNonNegative(rotor.drag_nms2)) {
+    return "its thrust and its drag must be finite and not negative";
+  }
+  if (rotor.time_constant < VirtualDuration{}) return "its time constant is negative";
+  if (!(rotor.most_radps > 0)) return "the most of its speed must be positive";
+  return {};
+}
+
+Fault CheckRotors(const RobotModel& model) {
+  std::unordered_set<std::string_view> names;
+  for (const Rotor& rotor : model.rotors) {
+    if (!names.insert(rotor.name).second) {
+      return ModelFault{fmt::format("two rotors are named '{}'", rotor.name)};
+    }
+    if (const auto fault = CheckRotorAlone(model, rotor)) {
+      return ModelFault{fmt::format("rotor '{}': {}", rotor.name, *fault)};
+    }
+  }
+  return {};
+}
+
 Fault CheckRoot(const RobotModel& model) {
   if (model.links.empty()) return ModelFault{"the model has no link"};
   if (model.root < 0 || static_cast<std::size_t>(model.root) >= model.links.size()) {
@@ -377,6 +403,7 @@ std::optional<ModelFault> CheckModel(const RobotModel& model) {
   if (auto fault = CheckRoot(model)) return fault;
   if (auto fault = CheckLinks(model)) return fault;
   if (auto fault = CheckJoints(model)) return fault;
+  if (auto fault = CheckRotors(model)) return fault;
   std::vector<int> joint_above(model.links.size(), -1);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "shm/virtual_time.h"
 #include "simbody_bridge/model/pose.h"
 #include "simbody_bridge/model/shape.h"
 
@@ -85,10 +86,25 @@ struct Joint {
   double damping = 0;
   double friction = 0;
   std::optional<Mimic> mimic;
+  // With this time constant what drives the joint goes over from a command to the next.
+  VirtualDuration drive_lag{};
   // At the start; empty: all 0, and no rotation. A start beyond the limits is an error. A joint
   // that mimics has neither: it starts where its mimic says.
   std::vector<double> initial_position;
   std::vector<double> initial_velocity;
+};
+
+// A propeller on a link, which is not a body of its own: at the speed w it pushes with thrust w^2
+// along the z of its frame, and turns its link with drag w^2 about that, against its own way round.
+struct Rotor {
+  std::string name;
+  int link = -1;  // index into RobotModel::links
+  Pose frame;     // in the link's
+  double thrust_ns2 = 0;
+  double drag_nms2 = 0;
+  bool is_clockwise = false;        // seen from where the thrust points to
+  VirtualDuration time_constant{};  // of its speed, which follows what is commanded
+  double most_radps = kNoLimit;     // it turns no faster, nor backwards
 };
 
 struct RobotModel {
@@ -96,6 +112,7 @@ struct RobotModel {
   std::vector<Link> links;
   // Each link but the root is the child of exactly one.
   std::vector<Joint> joints;
+  std::vector<Rotor> rotors;
   // The root: fixed to the world, or free to move in it.
   int root = 0;
   bool has_fixed_base = false;

@@ -1,4 +1,5 @@
 #include "simbody_bridge/forest_engine.h"
+#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 #include "simbody_bridge/set_steps.h"
@@ -9,14 +10,17 @@ namespace {
 class MujocoModels : public SetStepEngine<ForestEngine<MujocoSystem>> {
  public:
   MujocoModels(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands) {}
+      : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands),
+        loads_(world.models, islands) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), 0}; }
 
  private:
   void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {
-    At(step.island).Step(step.from, step.wrenches, seconds, to);
+    At(step.island).Step(step.from, loads_.MeanOver(step, seconds), seconds, to);
   }
+
+  ModelLoads loads_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "coordinator/dds/measurement_messages.h"
 #include "coordinator/dds/robot_topics.h"
 
 namespace tcs {
@@ -15,12 +16,14 @@ namespace tcs {
 // Nothing stays here: the hub has it.
 class DdsChannels::SensorOutlet final : public Outlet {
  public:
-  SensorOutlet(DdsChannels& transport, const SensorChannelSpec& spec, dds::SensorEncoder encoder)
+  // The encoder is of a sensor of bodies.
+  SensorOutlet(DdsChannels& transport, const SensorChannelSpec& spec,
+               std::optional<dds::SensorEncoder> encoder)
       : transport_(transport), spec_(spec), encoder_(std::move(encoder)) {}
 
   void Begin() {
     const auto& to = std::get<DdsSensorEnd>(spec_.to);
-    const auto body = spec_.joints ? std::nullopt : std::optional(spec_.bodies.front());
+    const auto body = spec_.bodies.empty() ? std::nullopt : std::optional(spec_.bodies.front());
     writer_ = transport_.Add(dds::EndpointKind::kWriter, to.end, dds::NameOf(to.message), body);
   }
 
@@ -34,6 +37,7 @@ class DdsChannels::SensorOutlet final : public Outlet {
 
  private:
   std::vector<std::byte> Encoded(const Reading& reading, std::int64_t stamp_ns) const {
+    if (spec_.instrument) return dds::EncodeMeasurement(stamp_ns, reading.measured);
     if (spec_.joints) {
       std::vector<JointState> states;
       for (const JointReading& joint : reading.joints) states.push_back(joint.state);
@@ -41,12 +45,12 @@ class DdsChannels::SensorOutlet final : public Outlet {
     }
     std::vector<BodyState> states;
     for (const BodyReading& body : reading.bodies) states.push_back(body.state);
-    return encoder_.Encode(stamp_ns, states, reading.bodies.front().felt);
+    return encoder_->Encode(stamp_ns, states, reading.bodies.front().felt);
   }
 
   DdsChannels& transport_;
   const SensorChannelSpec& spec_;
-  dds::SensorEncoder encoder_;
+  std::optional<dds::SensorEncoder> encoder_;
   dds::OwnEndpoints::Index writer_ = 0;
 };
 
@@ -100,8 +104,11 @@ class DdsChannels::CommandInlet final : public Inlet {
       }
     };
     const dds::CommandMessage message = actuator.end->message;
-    if (const JointDriveSpec* joints = sink.JointsOf(actuator.channel)) {
-      give(dds::DecodeJointCommand(message, joints->group.names, joints->quantity, sample.cdr));
+    const std::optional<GoalNames> goals = sink.GoalsOf(actuator.channel);
+    if (goals && goals->are_wheels) {
+      give(dds::DecodeSpeed(sample.cdr));
+    } else if (goals) {
+      give(dds::DecodeJointCommand(message, goals->names, goals->quantity, sample.cdr));
     } else {
       give(dds::DecodeCommand(message, sample.cdr));
     }
@@ -130,8 +137,11 @@ std::unique_ptr<Outlet> DdsChannels::OutletOf(const SensorChannelSpec& spec) {
   for (const int body : spec.bodies) {
     bodies.push_back(scenario_.world->bodies[static_cast<std::size_t>(body)].name);
   }
-  auto outlet = std::make_unique<SensorOutlet>(
-      *this, spec, dds::SensorEncoder(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies)));
+  std::optional<dds::SensorEncoder> encoder;
+  if (!bodies.empty()) {
+    encoder.emplace(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies));
+  }
+  auto outlet = std::make_unique<SensorOutlet>(*this, spec, std::move(encoder));
   sensors_.push_back(outlet.get());
   return outlet;
 }
@@ -152,7 +162,7 @@ void DdsChannels::Begin(VirtualDuration realtime_offset) {
     if (from == nullptr) continue;
     actuators_.push_back({i, from,
                           Add(dds::EndpointKind::kReader, from->end, dds::NameOf(from->message),
-                              spec.joints ? std::nullopt : std::optional(spec.body))});
+                              spec.IsOfModel() ? std::nullopt : std::optional(spec.body))});
   }
   if (scenario_.clock.has_value()) {
     clock_ = Add(dds::EndpointKind::kWriter, scenario_.clock->end, dds::kClockMessageName, {});

@@ -1,17 +1,16 @@
 #include "coordinator/channel/json/json_codec.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "coordinator/channel/json/json_measurement.h"
+#include "coordinator/channel/json/json_text.h"
 #include "coordinator/channel/json/plain_command.h"
 
 namespace tcs {
@@ -65,27 +64,6 @@ std::optional<std::array<double, 3>> Vector3(const Json& value) {
   return vector;
 }
 
-// In as few digits as read back as the same double, and with a point or an exponent: JSON readers
-// of some languages make an integer of what has neither.
-void AppendNumber(double value, std::string& text) {
-  if (!std::isfinite(value)) {
-    text += "null";
-    return;
-  }
-  const std::size_t begin = text.size();
-  fmt::format_to(std::back_inserter(text), "{}", value);
-  if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
-}
-
-void AppendList(std::span<const double> values, std::string& text) {
-  char before = '[';
-  for (const double value : values) {
-    text += std::exchange(before, ',');
-    AppendNumber(value, text);
-  }
-  text += ']';
-}
-
 void AppendField(const BodyReading& body, SensorField field, std::string& text) {
   switch (field) {
     case SensorField::kPosition:
@@ -121,6 +99,7 @@ std::string BeginAt(VirtualTime at) {
 // Written out rather than built as a tree first: a fleet sends thousands of these a second.
 std::string EncodeReading(const Reading& reading, std::span<const SensorField> fields) {
   if (!reading.joints.empty()) return EncodeJoints(reading);
+  if (reading.measured.index() != 0) return EncodeMeasurement(reading);
   std::string text = BeginAt(reading.at);
   text += R"(,"frame_id":"world","bodies":{)";
   for (const BodyReading& body : reading.bodies) {
@@ -202,8 +181,7 @@ std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
   for (const auto& [key, value] : std::get<Json>(parsed).items()) {
     const auto found = std::find(joints.begin(), joints.end(), key);
     if (found == joints.end()) {
-      return Mistake("names the joint " + Quote(key) + ", which the channel does not drive",
-                     kJointExample);
+      return Mistake("names " + Quote(key) + ", which the channel does not drive", kJointExample);
     }
     JointGoal goal{static_cast<std::size_t>(found - joints.begin())};
     if (const std::string wrong = TakeGoal(value, quantity, &goal); !wrong.empty()) {
@@ -212,6 +190,25 @@ std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
     goals.push_back(goal);
   }
   return goals;
+}
+
+std::variant<PlanarSpeed, DecodeError> DecodeSpeed(std::string_view text) {
+  constexpr std::string_view kSpeedExample = R"({"linear": [0.5, 0, 0], "angular": [0, 0, 0.1]})";
+  const auto parsed = ParseObject(text, kSpeedExample);
+  if (const auto* error = std::get_if<DecodeError>(&parsed)) return *error;
+  PlanarSpeed speed;
+  for (const auto& [key, value] : std::get<Json>(parsed).items()) {
+    const bool is_linear = key == "linear";
+    if (!is_linear && key != "angular") {
+      return Mistake("has the unknown key " + Quote(key), kSpeedExample);
+    }
+    const auto vector = Vector3(value);
+    if (!vector) {
+      return Mistake("has a " + key + " that is not a list of three finite numbers", kSpeedExample);
+    }
+    (is_linear ? speed.forward_mps : speed.turn_radps) = is_linear ? (*vector)[0] : (*vector)[2];
+  }
+  return speed;
 }
 
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
@@ -223,8 +220,11 @@ void TakeCommand(std::string_view what, std::string_view text, std::size_t chann
       sink.Take(channel, sent, std::get<0>(decoded));
     }
   };
-  if (const JointDriveSpec* joints = sink.JointsOf(channel)) {
-    give(DecodeJointCommand(text, joints->group.names, joints->quantity));
+  const std::optional<GoalNames> goals = sink.GoalsOf(channel);
+  if (goals && goals->are_wheels) {
+    give(DecodeSpeed(text));
+  } else if (goals) {
+    give(DecodeJointCommand(text, goals->names, goals->quantity));
   } else {
     give(DecodeCommand(text));
   }

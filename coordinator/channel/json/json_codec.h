@@ -41,6 +41,10 @@ struct DecodeError {
 [[nodiscard]] std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
     std::string_view text, std::span<const std::string> joints, JointQuantity quantity);
 
+// {"linear":[x,y,z],"angular":[x,y,z]}, of which x and z are taken; either may be left out and is
+// zero then. The same is an error.
+[[nodiscard]] std::variant<PlanarSpeed, DecodeError> DecodeSpeed(std::string_view text);
+
 // Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
                  VirtualTime sent, CommandSink& sink);

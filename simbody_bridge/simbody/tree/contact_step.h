@@ -11,12 +11,16 @@
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/simbody/tree/tree.h"
 
 namespace tcs {
 
 class ContactStep {
  public:
+  // `loads` outlive this.
+  explicit ContactStep(ModelLoads& loads) : loads_(loads) {}
+
   // Takes a step as long as `length_s`, within step.limit.
   void Take(SimbodyTree& tree, IslandStep& step, double length_s);
 
@@ -36,6 +40,7 @@ class ContactStep {
   void Solve(double h);
   bool Update(double h);
 
+  ModelLoads& loads_;
   // The speeds are `reduction_` times those of joints that mimic no other.
   Eigen::MatrixXd reduction_;
   Eigen::MatrixXd mass_, system_;

@@ -21,7 +21,9 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
       : ForestEngine(world, islands),
         has_set_steps_(world.integrator.fixed_step > VirtualDuration{}),
         longest_step_(world.integrator.StepOr(kLongestStep)),
-        steps_(world.integrator.accuracy) {}
+        loads_(world.models, islands),
+        steps_(world.integrator.accuracy, loads_),
+        contact_step_(loads_) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), kFirstTryS}; }
   VirtualDuration LongestStep(int /*island*/) const override { return longest_step_; }
@@ -56,6 +58,7 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
  private:
   const bool has_set_steps_;
   const VirtualDuration longest_step_;
+  ModelLoads loads_;
   TreeSteps steps_;
   ContactStep contact_step_;
   IslandStep shortened_;  // memory of Within

@@ -23,14 +23,14 @@ void TreeSteps::Begin(SimbodyTree& tree, IslandStep& step) {
   state_.resize(size);
   middle_rate_.resize(size);
   end_rate_.resize(size);
-  tree.EvaluateOrRecall(step.from, step.wrenches, step.from_rate.data());
+  tree.EvaluateOrRecall(step.from, loads_.At(step, 0), step.from_rate.data());
 }
 
 void TreeSteps::Try(SimbodyTree& tree, IslandStep& step, double h) {
   KuttaMiddle(step, h, &state_);
-  tree.Evaluate(state_, step.wrenches, middle_rate_.data());
+  tree.Evaluate(state_, loads_.At(step, h / 2), middle_rate_.data());
   KuttaEnd(step, middle_rate_, h, &state_);
-  tree.Evaluate(state_, step.wrenches, end_rate_.data());
+  tree.Evaluate(state_, loads_.At(step, h), end_rate_.data());
   KuttaStep(middle_rate_, end_rate_, h, &step);
 }
 
@@ -52,7 +52,7 @@ void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit
   }
   tree.Project(step.to);
   step.to_rate.resize(step.to.size());
-  tree.EvaluateOrRecall(step.to, step.wrenches, step.to_rate.data());
+  tree.EvaluateOrRecall(step.to, loads_.At(step, step.length_s), step.to_rate.data());
 }
 
 void TreeSteps::TakeWhole(SimbodyTree& tree, IslandStep& step) {

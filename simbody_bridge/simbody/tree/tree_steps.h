@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/simbody/tree/tree.h"
 
 namespace tcs {
 
 class TreeSteps {
  public:
-  // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds.
-  explicit TreeSteps(double accuracy) : accuracy_(accuracy) {}
+  // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds. `loads` outlive this.
+  TreeSteps(double accuracy, ModelLoads& loads) : accuracy_(accuracy), loads_(loads) {}
 
   // As long as error control lets it be, and no longer than `limit_s`, which is within the step's.
   // Throws std::runtime_error where no step is short enough for the accuracy.
@@ -25,6 +26,7 @@ class TreeSteps {
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s) const;
 
   const double accuracy_;
+  ModelLoads& loads_;
   std::vector<double> state_, middle_rate_, end_rate_;
 };
 

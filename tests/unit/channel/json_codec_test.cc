@@ -235,13 +235,62 @@ TEST(JointCommandDatagram, IsForAnyOfTheJoints) {
 TEST(JointCommandDatagram, ThatIsNoneIsSaid) {
   EXPECT_THAT(JointComplaint("[1]"), HasSubstr("is of the type array"));
   EXPECT_THAT(JointComplaint("{"), HasSubstr("is not valid JSON"));
-  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names the joint \"knee\""));
+  EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr("names \"knee\""));
   EXPECT_THAT(JointComplaint(R"({"elbow":"up"})"), HasSubstr("value of \"elbow\" that is neither"));
   EXPECT_THAT(JointComplaint(R"({"elbow":{"speed":1}})"), HasSubstr("unknown key \"speed\""));
   EXPECT_THAT(JointComplaint(R"({"elbow":{"effort":null}})"),
               HasSubstr("whose effort is not a finite number"));
   EXPECT_THAT(JointComplaint(R"({"elbow":1e999})"), HasSubstr("too large"));
   EXPECT_THAT(JointComplaint(R"({"knee":1})"), HasSubstr(R"(send an object like {"elbow": 0.5})"));
+}
+
+Reading Measured(const Measurement& measured) {
+  return {VirtualTime::FromNanoseconds(1'230'000'000), {}, {}, measured};
+}
+
+TEST(JsonCodec, WhatAnImuFeels) {
+  ImuMeasurement imu{.frame = "imu", .felt = {{0.5, 0, 0}, {}}};
+  EXPECT_EQ(EncodeReading(Measured(imu), {}),
+            R"({"time":1.23,"frame_id":"imu","orientation":[0.0,0.0,0.0,1.0],)"
+            R"("angular_rate":[0.5,0.0,0.0],"proper_acceleration":null})");
+  imu.felt.proper_acceleration_mps2 = {0, 0, 9.81};
+  EXPECT_THAT(EncodeReading(Measured(imu), {}),
+              HasSubstr(R"("proper_acceleration":[0.0,0.0,9.81]})"));
+}
+
+TEST(JsonCodec, WhereARobotIs) {
+  const OdometryMeasurement odometry{
+      .frame = "world", .child_frame = "base", .pose = {{1, 2, 3}, {0, 0, 0, 1}}};
+  EXPECT_EQ(EncodeReading(Measured(odometry), {}),
+            R"({"time":1.23,"frame_id":"world","child_frame_id":"base","position":[1.0,2.0,3.0],)"
+            R"("orientation":[0.0,0.0,0.0,1.0],"linear_velocity":[0.0,0.0,0.0],)"
+            R"("angular_velocity":[0.0,0.0,0.0]})");
+}
+
+// JSON has no infinity.
+TEST(JsonCodec, WhatALidarSees) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const ScanMeasurement scan{.frame = "laser",
+                             .first_rad = -1,
+                             .step_rad = 0.5,
+                             .ray_s = 0.01,
+                             .scan_s = 0.1,
+                             .least_m = 0.2,
+                             .most_m = 8,
+                             .ranges_m = {1.5, kInfinity, -kInfinity}};
+  EXPECT_EQ(EncodeReading(Measured(scan), {}),
+            R"({"time":1.23,"frame_id":"laser","angle_min":-1.0,"angle_increment":0.5,)"
+            R"("time_increment":0.01,"scan_time":0.1,"range_min":0.2,"range_max":8.0,)"
+            R"("ranges":[1.5,null,0.0]})");
+}
+
+TEST(JsonCodec, TheVelocityOfARobotOnWheels) {
+  const auto decoded = DecodeSpeed(R"({"linear": [0.5, 0, 0], "angular": [0, 0, -0.25]})");
+  EXPECT_EQ(std::get<PlanarSpeed>(decoded), (PlanarSpeed{0.5, -0.25}));
+  EXPECT_EQ(std::get<PlanarSpeed>(DecodeSpeed("{}")), PlanarSpeed{});
+  const auto wrong = DecodeSpeed(R"({"linear": 0.5})");
+  EXPECT_THAT(std::get<DecodeError>(wrong).message, HasSubstr("not a list of three"));
+  EXPECT_THAT(std::get<DecodeError>(DecodeSpeed(R"({"x": 1})")).message, HasSubstr("unknown key"));
 }
 
 }  // namespace

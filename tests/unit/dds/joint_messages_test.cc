@@ -104,9 +104,8 @@ TEST(JointCommands, OfStatesAreByName) {
 
 TEST(JointCommands, ThatAreNoneAreSaid) {
   EXPECT_EQ(Complaint(FromStates({{"elbow", "knee"}, {1, 2}, {}, {}})),
-            "names the joint 'knee', which the channel does not drive");
-  EXPECT_EQ(Complaint(FromStates({{"elbow", "elbow"}, {1, 2}, {}, {}})),
-            "names the joint 'elbow' twice");
+            "names 'knee', which the channel does not drive");
+  EXPECT_EQ(Complaint(FromStates({{"elbow", "elbow"}, {1, 2}, {}, {}})), "names 'elbow' twice");
   EXPECT_EQ(Complaint(FromStates({{"elbow"}, {1, 2}, {}, {}})),
             "has 1 names, but a list of 2 numbers");
   EXPECT_EQ(Complaint(FromStates({{"elbow"}, {}, {}, {std::nan("")}})),

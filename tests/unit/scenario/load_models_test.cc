@@ -328,6 +328,142 @@ TEST(LoadModels, SomethingMoves) {
               "s.yaml:3: models is empty; describe at least one model");
 }
 
+// Its lines are counted on.
+constexpr std::string_view kFlying = R"(duration: 1s
+dynamics: {}
+models:
+  other: {urdf: arm.urdf, fixed_base: true, joints: {elbow: 1}, rotors: {shoulder: {thrust: 1}}}
+  arm:
+    urdf: arm.urdf
+    joints: {elbow: 1}
+    fixed_base: true
+    rotors:
+      left: {link: base, at: {position: [0, 1, 0], orientation: [1, 0, 0, 0]}, thrust: 2e-5, drag: 3e-7, direction: cw, time_constant: 20ms, limit: 900}
+      shoulder: {thrust: 1e-5}
+robots:
+  r: {clients: {c: {command: [./controller]}}}
+channels:
+  motors: {type: udp_json, commands: {model: arm, rotors: [shoulder, left], listen: "127.0.0.1:47011", latency: 2ms}}
+  shares: {type: dds, commands: {model: arm, rotors: [left], drive: normalised, message: std_msgs/msg/Float64MultiArray, topic: /m}}
+  push: {type: udp_json, commands: {on: arm/fore, axes: link, limits: {force: 5}, listen: "127.0.0.1:47012"}}
+  servo: {type: udp_json, commands: {model: arm, joints: [elbow], lag: 30ms, listen: "127.0.0.1:47013"}}
+  other: {type: udp_json, commands: {model: arm, joints: [shoulder], listen: "127.0.0.1:47014"}}
+)";
+
+TEST(LoadRotors, AreOnLinksAndChannelsSpinThem) {
+  const Folder folder;
+  const Scenario scenario = Loaded(folder, kFlying);
+  const RobotModel& arm = Named(scenario, "arm");
+  ASSERT_EQ(arm.rotors.size(), 2u);
+  const Rotor& left = arm.rotors[0];
+  EXPECT_EQ(left.link, 0);
+  EXPECT_EQ(left.frame, (Pose{{0, 1, 0}, {1, 0, 0, 0}}));
+  EXPECT_EQ(left.thrust_ns2, 2e-5);
+  EXPECT_EQ(left.drag_nms2, 3e-7);
+  EXPECT_TRUE(left.is_clockwise);
+  EXPECT_EQ(left.time_constant, VirtualDuration::Milliseconds(20));
+  EXPECT_EQ(left.most_radps, 900);
+  // Called as a joint it is on its parent, along its axis, which is x.
+  const Rotor& shoulder = arm.rotors[1];
+  EXPECT_EQ(shoulder.link, 0);
+  const auto along = Rotate(shoulder.frame.orientation_xyzw, {0, 0, 1});
+  EXPECT_NEAR(along[0], 1, 1e-12);
+  const RotorDriveSpec& motors = scenario.commands[0].rotors.value();
+  EXPECT_EQ(motors.model, "arm");
+  EXPECT_THAT(motors.rotors, ElementsAre(2, 1));  // after the one of the other model
+  EXPECT_THAT(motors.names, ElementsAre("shoulder", "left"));
+  EXPECT_THAT(motors.most_radps, ElementsAre(kNoLimit, 900));
+  EXPECT_FALSE(motors.is_normalised);
+  EXPECT_EQ(scenario.commands[0].latency, VirtualDuration::Milliseconds(2));
+  EXPECT_TRUE(scenario.commands[1].rotors.value().is_normalised);
+  const CommandChannelSpec& push = scenario.commands[2];
+  EXPECT_EQ(push.link.value().name, "arm/fore");
+  EXPECT_EQ(push.link.value().link, 4 + 2);
+  EXPECT_TRUE(push.in_body_frame);
+  EXPECT_THAT(push.most_force_n, ElementsAre(5, 5, 5));
+  EXPECT_EQ(arm.joints[1].drive_lag, VirtualDuration::Milliseconds(30));
+  EXPECT_EQ(arm.joints[0].drive_lag, VirtualDuration{});
+  EXPECT_EQ(scenario.commands[3].joints.value().limits[0].upper, 2);
+}
+
+class RotorMistakeTest : public testing::TestWithParam<Mistake> {};
+
+TEST_P(RotorMistakeTest, IsOneSentenceWithItsPlace) {
+  const Folder folder;
+  const Mistake& mistake = GetParam();
+  const std::string path =
+      folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, std::string(kFlying)));
+  const std::string complaint = Complaint(folder, LoadScenario(path));
+  EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(complaint, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kRotorMistakes[] = {
+    {"UnknownKey", "thrust: 2e-5", "trust: 2e-5", "s.yaml:10", {"'trust'", "'thrust'?"}},
+    {"NoThrust",
+     "      shoulder: {thrust: 1e-5}",
+     "      shoulder: {}",
+     "s.yaml:11",
+     {"lacks the key 'thrust'"}},
+    {"UnknownLink",
+     "{link: base,",
+     "{link: bass,",
+     "s.yaml:10",
+     {"unknown link 'bass' of arm", "'base'?"}},
+    {"Nowhere",
+     "      shoulder: {thrust: 1e-5}",
+     "      tail: {thrust: 1e-5}",
+     "s.yaml:11",
+     {"says not where it is; add link: base"}},
+    {"AtOfNoLink", "{link: base, at", "{at", "s.yaml:10", {"add link"}},
+    {"DragWithoutDirection", " direction: cw,", "", "s.yaml:10", {"lacks the key 'direction'"}},
+    {"UnknownDirection", "direction: cw", "direction: wc", "s.yaml:10", {"unknown 'wc'", "cw"}},
+    {"NegativeThrust", "thrust: 2e-5", "thrust: -2e-5", "s.yaml:10", {"must not be negative"}},
+    {"NoLimit", "limit: 900", "limit: 0", "s.yaml:10", {"must be positive"}},
+    {"UnknownRotor",
+     "[shoulder, left]",
+     "[shoulder, lefd]",
+     "s.yaml:15",
+     {"unknown rotor 'lefd' of arm", "'left'?"}},
+    {"RotorTwice", "[shoulder, left]", "[left, left]", "s.yaml:15", {"a second time"}},
+    {"ShareOfNothing",
+     "rotors: [left], drive",
+     "rotors: [shoulder], drive",
+     "s.yaml:16",
+     {"'shoulder' has no limit"}},
+    {"UnknownQuantity",
+     "drive: normalised",
+     "drive: normal",
+     "s.yaml:16",
+     {"speed and normalised"}},
+    {"RotorsAndJoints",
+     "rotors: [left], drive",
+     "rotors: [left], joints: [elbow], drive",
+     "s.yaml:16",
+     {"beside rotors"}},
+    {"WrenchOnRotors",
+     "std_msgs/msg/Float64MultiArray",
+     "geometry_msgs/msg/Wrench",
+     "s.yaml:16",
+     {"rotors are driven by"}},
+    {"AxesOfABody", "axes: link", "axes: body", "s.yaml:17", {"unknown 'body'", "link"}},
+    {"UnknownPushedLink",
+     "on: arm/fore",
+     "on: arm/four",
+     "s.yaml:17",
+     {"unknown link 'four' of arm"}},
+    {"LagOfALink", "axes: link", "lag: 1ms", "s.yaml:17", {"unknown key 'lag'"}},
+    {"TwoLags",
+     "joints: [shoulder], listen",
+     "joints: [elbow], listen",
+     "s.yaml:19",
+     {"'elbow' with another lag than channel servo"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, RotorMistakeTest, testing::ValuesIn(kRotorMistakes), NameOf);
+
 constexpr std::string_view kChannels = R"(channels:
   states: {type: udp_json, sensors: {model: arm, rate: 50, to: "127.0.0.1:47010"}}
   efforts:

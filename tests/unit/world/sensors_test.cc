@@ -101,10 +101,11 @@ TEST_F(SensorsTest, OfSeveralTheNextCounts) {
 TEST_F(SensorsTest, ReadsAllJointsOfASensorAtOnce) {
   sensors_.AddJoints({"arm", {7, 3}, {"wrist", "elbow"}}, {MsLong(10), {}}, {}, outlet_);
   int calls = 0;
-  sensors_.Act(Ms(0), {}, [&](std::span<const int> joints, std::span<JointState> states) {
+  const auto read_joints = [&](std::span<const int> joints, std::span<JointState> states) {
     ++calls;
     for (std::size_t i = 0; i < joints.size(); ++i) states[i].position = joints[i] * 0.5;
-  });
+  };
+  sensors_.Act(Ms(0), {}, {.links = {}, .joints = read_joints});
   EXPECT_EQ(calls, 1);
   ASSERT_EQ(outlet_.readings.size(), 1u);
   EXPECT_TRUE(outlet_.readings[0].bodies.empty());

@@ -1,0 +1,63 @@
+#include "coordinator/channel/json/json_measurement.h"
+
+#include <cmath>
+
+#include "coordinator/channel/json/json_text.h"
+#include "shm/check.h"
+
+namespace tcs {
+namespace {
+
+struct Encode {
+  JsonObject& json;
+
+  void operator()(const std::monostate&) const { TCS_CHECK(false); }
+
+  void operator()(const ImuMeasurement& imu) const {
+    json.Add("frame_id", imu.frame);
+    json.Add("orientation", imu.orientation_xyzw);
+    json.Add("angular_rate", imu.felt.angular_rate_radps);
+    if (imu.felt.proper_acceleration_mps2.has_value()) {
+      json.Add("proper_acceleration", *imu.felt.proper_acceleration_mps2);
+    } else {
+      json.AddRaw("proper_acceleration", "null");
+    }
+  }
+
+  void operator()(const OdometryMeasurement& odometry) const {
+    json.Add("frame_id", odometry.frame);
+    json.Add("child_frame_id", odometry.child_frame);
+    json.Add("position", odometry.pose.position_m);
+    json.Add("orientation", odometry.pose.orientation_xyzw);
+    json.Add("linear_velocity", odometry.linear_mps);
+    json.Add("angular_velocity", odometry.angular_radps);
+  }
+
+  void operator()(const ScanMeasurement& scan) const {
+    json.Add("frame_id", scan.frame);
+    json.Add("angle_min", scan.first_rad);
+    json.Add("angle_increment", scan.step_rad);
+    json.Add("time_increment", scan.ray_s);
+    json.Add("scan_time", scan.scan_s);
+    json.Add("range_min", scan.least_m);
+    json.Add("range_max", scan.most_m);
+    json.Add("ranges", InJson(scan.ranges_m));
+  }
+
+  // JSON has no infinity: what is too far is null, and what is too near is 0.
+  static double InJson(double range_m) { return range_m < 0 && std::isinf(range_m) ? 0 : range_m; }
+  static std::vector<double> InJson(std::vector<double> ranges_m) {
+    for (double& range_m : ranges_m) range_m = InJson(range_m);
+    return ranges_m;
+  }
+};
+
+}  // namespace
+
+std::string EncodeMeasurement(const Reading& reading) {
+  JsonObject json(reading.at);
+  std::visit(Encode{json}, reading.measured);
+  return json.Take();
+}
+
+}  // namespace tcs

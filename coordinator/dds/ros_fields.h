@@ -1,0 +1,29 @@
+// What most messages have in them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "coordinator/dds/ros_types.h"
+
+namespace tcs::dds {
+
+[[nodiscard]] inline TimeMessage ToTime(std::int64_t stamp_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  return {static_cast<std::int32_t>(stamp_ns / kSecond_ns),
+          static_cast<std::uint32_t>(stamp_ns % kSecond_ns)};
+}
+
+inline Vector3Message ToVector3(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+inline QuaternionMessage ToQuaternion(const std::array<double, 4>& q) {
+  return {q[0], q[1], q[2], q[3]};
+}
+
+inline void SetHeader(HeaderMessage* header, std::int64_t stamp_ns, std::string_view frame) {
+  header->stamp = ToTime(stamp_ns);
+  SetText(&header->frame_id, frame);
+}
+
+}  // namespace tcs::dds

@@ -1,0 +1,28 @@
+// Sensors of robots that are models: channels whose `sensors` have a `kind`. Internal to
+// LoadScenario: mistakes are thrown as ScenarioMistake.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/scenario/yaml_reader.h"
+
+namespace tcs {
+
+// The link that `value` names, MODEL/LINK, or MODEL, which is its root; its own name in `name`.
+int LoadLink(const YamlValue& value, const Scenario& scenario, std::string* name);
+
+// Whether the channel with the keys of `map` is about such a sensor.
+bool IsAboutInstrument(const YamlMap& map);
+
+// The keys that the kind in `map` has beside those of all sensors.
+std::vector<std::string> InstrumentKeys(const YamlMap& map);
+
+// The sensor, and what is wrong with what it measures, into `channel`, whose period is known.
+void LoadInstrument(const YamlMap& map, const Scenario& scenario, SensorChannelSpec* channel);
+
+// The message that tells of it on DDS.
+dds::SensorMessage MessageOf(const InstrumentSpec& spec);
+
+}  // namespace tcs

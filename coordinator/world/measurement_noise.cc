@@ -1,0 +1,87 @@
+#include "coordinator/world/measurement_noise.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include "coordinator/world/random_stream.h"
+#include "simbody_bridge/link_motion.h"
+
+namespace tcs {
+namespace {
+
+// Each field has a stream of its own: a noise that is added to one leaves the others as they were.
+RandomStream StreamOf(std::uint64_t seed, RandomPurpose purpose, std::size_t field,
+                      std::uint64_t sample) {
+  return {seed ^ 0xd1342543de82ef95 * (field + 1), purpose, sample};
+}
+
+}  // namespace
+
+// Of one sample.
+class MeasurementNoise::Draws {
+ public:
+  Draws(const MeasurementNoise& noise, std::uint64_t sample) : noise_(noise), sample_(sample) {}
+
+  void operator()(std::monostate&) const {}
+  void operator()(ImuMeasurement& imu) const {
+    Turn(MeasuredField::kOrientation, &imu.orientation_xyzw);
+    Add(MeasuredField::kAngularRate, &imu.felt.angular_rate_radps);
+    if (imu.felt.proper_acceleration_mps2.has_value()) {
+      Add(MeasuredField::kProperAcceleration, &*imu.felt.proper_acceleration_mps2);
+    }
+  }
+  void operator()(OdometryMeasurement& odometry) const {
+    Add(MeasuredField::kPosition, &odometry.pose.position_m);
+    Turn(MeasuredField::kOrientation, &odometry.pose.orientation_xyzw);
+    Add(MeasuredField::kLinearVelocity, &odometry.linear_mps);
+    Add(MeasuredField::kAngularVelocity, &odometry.angular_radps);
+  }
+  void operator()(ScanMeasurement& scan) const { Add(MeasuredField::kRange, scan.ranges_m); }
+
+ private:
+  std::array<double, 3> ErrorOf(MeasuredField field) const {
+    const auto index = static_cast<std::size_t>(field);
+    RandomStream random = StreamOf(noise_.seed_, RandomPurpose::kNoise, index, sample_);
+    std::array<double, 3> error = noise_.biases_[index];
+    for (double& axis : error) axis += noise_.errors_[index].noise * random.Normal();
+    return error;
+  }
+  void Add(MeasuredField field, std::array<double, 3>* vector) const {
+    const std::array<double, 3> error = ErrorOf(field);
+    for (std::size_t i = 0; i < 3; ++i) (*vector)[i] += error[i];
+  }
+  void Turn(MeasuredField field, std::array<double, 4>* orientation) const {
+    *orientation = Turned(*orientation, ErrorOf(field));
+  }
+  // To each number that is one; all have a place in the stream.
+  template <class Numbers>
+  void Add(MeasuredField field, Numbers& numbers) const {
+    const auto index = static_cast<std::size_t>(field);
+    RandomStream random = StreamOf(noise_.seed_, RandomPurpose::kNoise, index, sample_);
+    for (auto& number : numbers) {
+      const double error = noise_.biases_[index][0] + noise_.errors_[index].noise * random.Normal();
+      if (std::isfinite(number)) number += error;
+    }
+  }
+
+  const MeasurementNoise& noise_;
+  std::uint64_t sample_;
+};
+
+MeasurementNoise::MeasurementNoise(const MeasurementErrors& errors, std::uint64_t seed)
+    : errors_(errors), seed_(seed) {
+  for (std::size_t i = 0; i < kMeasuredFields; ++i) {
+    const FieldError& field = errors_[i];
+    is_exact_ &= field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
+    RandomStream random = StreamOf(seed, RandomPurpose::kBias, i, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      biases_[i][axis] = field.bias[axis] + field.bias_deviation * random.Normal();
+    }
+  }
+}
+
+void MeasurementNoise::Disturb(std::uint64_t sample, Measurement* measurement) const {
+  if (!is_exact_) std::visit(Draws(*this, sample), *measurement);
+}
+
+}  // namespace tcs

@@ -1,0 +1,44 @@
+// What acts on the links and joints of models, whichever engine moves them: the commands as they
+// act by now, of which some lag, and the rotors, each of which is a load on its link.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/island_engine.h"
+
+namespace tcs {
+
+class ModelLoads {
+ public:
+  ModelLoads(const std::vector<RobotModel>& models, const std::vector<std::vector<int>>& islands);
+
+  // By place (model_engine.h), as if nothing lagged and what rotors do were commanded to their
+  // links. Valid until the next call.
+  //
+  // `after_s` from the step's beginning on.
+  std::span<const Wrench> At(const IslandStep& step, double after_s);
+  // The mean over that time from its beginning on, which is exact: for steps with one force.
+  std::span<const Wrench> MeanOver(const IslandStep& step, double seconds);
+  // At `t`, of what was commanded and what is left of the commands before.
+  std::span<const Wrench> At(int island, const std::vector<Wrench>& commanded,
+                             const std::vector<Remainder>& remainders, VirtualTime t);
+
+ private:
+  struct SpinningRotor {
+    std::size_t place, place_of_link;
+    Load of_square;  // along the link's axes, at its origin, for each (rad/s)^2
+  };
+  // What is left of a command's remainder, at an instant or as a mean.
+  struct Left {
+    double share, square_of_share;
+  };
+  template <class LeftOf>
+  std::span<const Wrench> Sum(int island, const std::vector<Wrench>& commanded,
+                              const std::vector<Remainder>& remainders, const LeftOf& left_of);
+
+  std::vector<std::vector<SpinningRotor>> rotors_;  // of each island
+  std::vector<Wrench> acting_;
+};
+
+}  // namespace tcs
