@@ -64,16 +64,17 @@ void ComputingAhead::SendIfItComputes(Task& task) {
   if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
   const std::int64_t cpu_ns = HostClockOf(task);
   if (cpu_ns < 0) return;  // it is about to end
-  Charge(task, task.metered.ChargeAt(cpu_ns));
+  // It computed that here.
+  parts_.run.ChargeAsDebt(task, task.metered.ChargeAt(cpu_ns) - task.charged_ns);
   // To go there and back again takes its time, too.
   const std::int64_t most_ns = MostAheadNs();
   if (task.debt_ns > most_ns / 2) return;
   ClockGrant& grant = task.grant;
   grant.counts_work |= shm::kIsAhead;
   SlotOf(task).clock.counts_work = grant.counts_work;
-  parts_.cpu.active().Ended(task);
   task.ahead_from_ns = task.charged_ns;
   if (!cpu->Send(task, tsc, task.metered.HostNs(most_ns - task.debt_ns))) return;
+  parts_.cpu.active().Ended(task);
   if (!std::exchange(task.owes_ahead, true)) owing_.push_back(&task);
 }
 
@@ -125,11 +126,7 @@ void ComputingAhead::Forget(const Task& task) {
 
 // What it is to be charged in all; less than so far where it was taken to have computed more.
 void ComputingAhead::Charge(Task& task, std::int64_t charged_ns) {
-  const std::int64_t ns = charged_ns - task.charged_ns, host_ns = task.metered.HostNs(ns);
-  task.charged_ns += ns;
-  task.debt_ns += ns;
-  parts_.run.report.client_ns += host_ns;
-  parts_.run.report.ahead_ns += host_ns;
+  parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged_ns - task.charged_ns);
 }
 
 void ComputingAhead::ChargeAhead(Task& task) {

@@ -1,6 +1,5 @@
 #include "coordinator/host/further_cpu.h"
 
-#include <sched.h>
 #include <signal.h>
 #include <x86intrin.h>
 
@@ -16,13 +15,6 @@ namespace {
 constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
-
-bool Bind(pid_t tid, int cpu) {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(cpu, &one);
-  return sched_setaffinity(tid, sizeof one, &one) == 0;
-}
 
 }  // namespace
 
@@ -48,7 +40,7 @@ void FurtherCpu::StartWarden() {
 }
 
 void FurtherCpu::Guard() {
-  Bind(0, cpu_);
+  BindTo(0, cpu_);
   std::unique_lock lock(mutex_);
   while (!ends_) {
     if (tid_ == 0) {
@@ -63,7 +55,7 @@ void FurtherCpu::Guard() {
       continue;
     }
     executor_.Hold(tid_);
-    Bind(tid_, home_);
+    BindTo(tid_, home_);
     tid_ = 0;
     has_left_.store(true);
   }
@@ -86,7 +78,7 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   if (begun_ns < 0) return false;
   if (!warden_.joinable()) StartWarden();
   executor_.LetGo(thread.tid);
-  if (!Bind(thread.tid, cpu_)) {
+  if (!BindTo(thread.tid, cpu_)) {
     executor_.Hold(thread.tid);
     not_before_tsc_ = UINT64_MAX;
     return false;
@@ -122,7 +114,7 @@ void FurtherCpu::BringHome() {
   const std::lock_guard lock(mutex_);
   if (tid_ != 0) {
     executor_.Hold(tid_);
-    Bind(tid_, home_);
+    BindTo(tid_, home_);
   }
   tid_ = 0;
   thread_->is_ahead = false;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -36,10 +37,23 @@ std::vector<int> AllowedCpus() {
   return cpus;
 }
 
+std::string FolderOf(int cpu) { return "/sys/devices/system/cpu/cpu" + std::to_string(cpu); }
+
+UniqueFd OpenFolderOf(int cpu) {
+  return UniqueFd(open(FolderOf(cpu).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+}
+
+// A lock belongs to all who have inherited the descriptor on which it was taken. One for each CPU,
+// for the processes that this one forks; in those, until they have claimed one.
+std::map<int, UniqueFd> g_shared_folders;
+constexpr std::size_t kMostShared = 256;
+
 // None: another process holds the claim. Without a descriptor: it cannot be made.
 std::optional<UniqueFd> TryToClaim(int cpu) {
-  const std::string folder = "/sys/devices/system/cpu/cpu" + std::to_string(cpu);
-  UniqueFd fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const auto shared = g_shared_folders.find(cpu);
+  UniqueFd fd = shared == g_shared_folders.end()
+                    ? OpenFolderOf(cpu)
+                    : UniqueFd(fcntl(shared->second.get(), F_DUPFD_CLOEXEC, 0));
   if (!fd || flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
   if (errno == EWOULDBLOCK) return std::nullopt;
   return UniqueFd();
@@ -49,9 +63,7 @@ std::optional<UniqueFd> TryToClaim(int cpu) {
 // nobody holds it.
 std::optional<pid_t> HolderOf(int cpu) {
   struct stat folder;
-  if (stat(("/sys/devices/system/cpu/cpu" + std::to_string(cpu)).c_str(), &folder) != 0) {
-    return std::nullopt;
-  }
+  if (stat(FolderOf(cpu).c_str(), &folder) != 0) return std::nullopt;
   std::ifstream locks("/proc/locks");
   const std::string inode = ":" + std::to_string(folder.st_ino);
   // 1: FLOCK  ADVISORY  WRITE 1234 00:16:5678 0 EOF
@@ -112,6 +124,17 @@ std::string WhoHas(const std::vector<int>& cpus) {
 
 }  // namespace
 
+CpuClaim::~CpuClaim() {
+  if (fd) flock(fd.get(), LOCK_UN);
+}
+
+void ShareClaimsOfChildren() {
+  for (const int cpu : AllowedCpus()) {
+    if (g_shared_folders.size() == kMostShared) return;
+    if (UniqueFd fd = OpenFolderOf(cpu)) g_shared_folders.emplace(cpu, std::move(fd));
+  }
+}
+
 bool IsClaimed(int cpu) { return HolderOf(cpu).has_value(); }
 
 int LastAllowedCpu() {
@@ -124,7 +147,10 @@ CpuClaim ClaimCpu(bool waits, std::string* taken) {
   if (cpus.size() > 1) cpus.pop_back();
   for (bool said = false;; usleep(kRetryUs)) {
     for (const int cpu : cpus) {
-      if (std::optional<UniqueFd> fd = TryToClaim(cpu)) return {cpu, std::move(*fd)};
+      std::optional<UniqueFd> fd = TryToClaim(cpu);
+      if (!fd) continue;
+      g_shared_folders.clear();
+      return {cpu, std::move(*fd)};
     }
     if (!said) {
       const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);
