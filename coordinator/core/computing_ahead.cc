@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
@@ -36,11 +35,6 @@ void ComputingAhead::Open(int home, const std::vector<int>& further) {
   for (const int cpu : further) {
     cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor);
   }
-  LookForClaims();
-}
-
-void ComputingAhead::LookForClaims() {
-  for (FurtherCpu& cpu : cpus_) cpu.SetClaimed(IsClaimed(cpu.cpu()));
 }
 
 bool ComputingAhead::MaySend(const Task& task) const {

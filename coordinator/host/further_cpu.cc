@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -15,6 +16,7 @@ namespace {
 constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
+constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 
 }  // namespace
 
@@ -48,8 +50,9 @@ void FurtherCpu::Guard() {
       continue;
     }
     Look(__rdtsc());
+    LookForClaims(__rdtsc());
     const std::int64_t left_ns = allowed_ns_.load() - Computed();
-    if (left_ns > 0) {
+    if (left_ns > 0 && !is_claimed_.load()) {
       changed_.wait_for(
           lock, std::chrono::nanoseconds(std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs)));
       continue;
@@ -59,6 +62,10 @@ void FurtherCpu::Guard() {
     tid_ = 0;
     has_left_.store(true);
   }
+}
+
+std::uint64_t FurtherCpu::TicksIn(std::int64_t ns) const {
+  return static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
 }
 
 std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
@@ -71,6 +78,13 @@ std::int64_t FurtherCpu::Computed() const {
 
 // The thread does not run meanwhile, so that its CPU clock is right.
 void FurtherCpu::Look(std::uint64_t tsc) { ahead_.Know(PassedNs(tsc), Computed()); }
+
+// Other runs come and go.
+void FurtherCpu::LookForClaims(std::uint64_t tsc) {
+  if (tsc < looks_for_claims_tsc_) return;
+  looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
+  is_claimed_.store(IsClaimed(cpu_));
+}
 
 bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns) {
   UniqueFd clock(OpenThreadCpuClock(thread.tid));
@@ -107,7 +121,7 @@ std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
   const std::lock_guard lock(mutex_);
-  return ahead_.IsStarvedBy(PassedNs(tsc));
+  return is_claimed_.load() || ahead_.IsStarvedBy(PassedNs(tsc));
 }
 
 void FurtherCpu::BringHome() {
@@ -119,11 +133,12 @@ void FurtherCpu::BringHome() {
   tid_ = 0;
   thread_->is_ahead = false;
   thread_ = nullptr;
+  if (is_claimed_.exchange(false)) LeaveToOthers(__rdtsc());
 }
 
 void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {
   const std::int64_t ns = kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings);
-  not_before_tsc_ = tsc + static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
+  not_before_tsc_ = tsc + TicksIn(ns);
 }
 
 }  // namespace tcs

@@ -24,6 +24,9 @@ namespace tcs {
 namespace {
 
 constexpr useconds_t kRetryUs = 20'000;
+// Somebody who only looks (IsClaimed) has it for an instant.
+constexpr int kLookers = 3;
+constexpr useconds_t kLookUs = 200;
 
 // Highest first.
 std::vector<int> AllowedCpus() {
@@ -54,16 +57,18 @@ std::optional<UniqueFd> TryToClaim(int cpu) {
   UniqueFd fd = shared == g_shared_folders.end()
                     ? OpenFolderOf(cpu)
                     : UniqueFd(fcntl(shared->second.get(), F_DUPFD_CLOEXEC, 0));
-  if (!fd || flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
-  if (errno == EWOULDBLOCK) return std::nullopt;
-  return UniqueFd();
+  for (int looker = 0; fd; ++looker, usleep(kLookUs)) {
+    if (flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
+    if (errno != EWOULDBLOCK) return UniqueFd();
+    if (looker == kLookers) return std::nullopt;
+  }
+  return fd;
 }
 
-// Who holds the lock on the CPU's folder, 0 if it is nobody whom this process can see; none if
-// nobody holds it.
-std::optional<pid_t> HolderOf(int cpu) {
+// Who holds the lock on the CPU's folder; 0 if it is nobody, or nobody whom this process can see.
+pid_t HolderOf(int cpu) {
   struct stat folder;
-  if (stat(FolderOf(cpu).c_str(), &folder) != 0) return std::nullopt;
+  if (stat(FolderOf(cpu).c_str(), &folder) != 0) return 0;
   std::ifstream locks("/proc/locks");
   const std::string inode = ":" + std::to_string(folder.st_ino);
   // 1: FLOCK  ADVISORY  WRITE 1234 00:16:5678 0 EOF
@@ -77,7 +82,7 @@ std::optional<pid_t> HolderOf(int cpu) {
       return std::max(pid, 0);
     }
   }
-  return std::nullopt;
+  return 0;
 }
 
 // As it was typed; shortened.
@@ -112,7 +117,7 @@ std::int64_t AgeOf(pid_t pid) {
 std::string WhoHas(const std::vector<int>& cpus) {
   std::string who;
   for (const int cpu : cpus) {
-    const pid_t pid = HolderOf(cpu).value_or(0);
+    const pid_t pid = HolderOf(cpu);
     if (pid == 0) continue;
     who +=
         (who.empty() ? " (CPU " : "; CPU ") + std::to_string(cpu) + ": pid " + std::to_string(pid);
@@ -135,7 +140,10 @@ void ShareClaimsOfChildren() {
   }
 }
 
-bool IsClaimed(int cpu) { return HolderOf(cpu).has_value(); }
+bool IsClaimed(int cpu) {
+  const UniqueFd fd = OpenFolderOf(cpu);
+  return fd && flock(fd.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
 
 int LastAllowedCpu() {
   const std::vector<int> cpus = AllowedCpus();

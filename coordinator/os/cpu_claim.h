@@ -33,7 +33,8 @@ void ShareClaimsOfChildren();
 // Where that cannot be opened, the CPU is taken unclaimed.
 CpuClaim ClaimCpu(bool waits, std::string* taken);
 
-// Whether a tcsim has claimed it, also this one. False where that cannot be seen.
+// Whether a tcsim has claimed it, also this one. False where that cannot be seen. Cheap, and does
+// not sleep: /proc/locks, which says more, is read by stopping everybody's locks.
 bool IsClaimed(int cpu);
 
 // The CPU that ClaimCpu tries first.

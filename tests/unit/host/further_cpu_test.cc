@@ -1,17 +1,21 @@
 // With a thread of this process that computes, and real processors.
 #include "coordinator/host/further_cpu.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/file.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
 #include <atomic>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "coordinator/os/cpu_places.h"
+#include "coordinator/os/unique_fd.h"
 #include "tests/unit/host/noting_executor.h"
 
 namespace tcs {
@@ -86,11 +90,17 @@ TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
   EXPECT_FALSE(cpu_->Send(thread_, __rdtsc(), kMs)) << "it cannot be sent again";
 }
 
-TEST_F(FurtherCpuTest, AClaimedProcessorIsNotFree) {
-  cpu_->SetClaimed(true);
+// Another descriptor's lock is another run's claim.
+TEST_F(FurtherCpuTest, AProcessorThatAnotherRunHasClaimedIsLeftToIt) {
+  const std::string folder = "/sys/devices/system/cpu/cpu" + std::to_string(cpu_->cpu());
+  const UniqueFd claim(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  ASSERT_EQ(flock(claim.get(), LOCK_EX), 0);
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  while (!cpu_->HasLeft()) sched_yield();
+  EXPECT_TRUE(cpu_->IsStarvedBy(__rdtsc()));
+  cpu_->BringHome();
+  EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
   EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc()));
-  cpu_->SetClaimed(false);
-  EXPECT_TRUE(cpu_->IsFreeAt(__rdtsc()));
 }
 
 TEST_F(FurtherCpuTest, OneThatIsLeftToOthersIsFreeLaterTheOftenerTheLater) {
