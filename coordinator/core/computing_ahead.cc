@@ -47,7 +47,9 @@ bool ComputingAhead::MaySend(const Task& task) const {
       task.is_brief || task.executes || task.spins || task.is_deliverer || task.notified_early ||
       task.early_trap.has_value() || process.expelled || process.stopped || process.stays_home ||
       stays_home_ || parts_.run.IsInGrace();
-  return is_ordinary && !is_busy_otherwise;
+  // Stopped in the midst of a call, it would do what it is about to do to others in no turn.
+  const bool is_in_call = SlotOf(task).open_calls.load() != 0;
+  return is_ordinary && !is_busy_otherwise && !is_in_call;
 }
 
 void ComputingAhead::SendIfItComputes(Task& task) {

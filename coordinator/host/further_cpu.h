@@ -38,9 +38,7 @@ class FurtherCpu {
   // The thread that is here, or has been sent home since and is still said to be here; or null.
   HostThread* thread() const { return thread_; }
   // Others need the processor: nobody is to be sent here before `tsc`.
-  bool IsFreeAt(std::uint64_t tsc) const {
-    return thread_ == nullptr && tsc >= not_before_tsc_;
-  }
+  bool IsFreeAt(std::uint64_t tsc) const { return thread_ == nullptr && tsc >= not_before_tsc_; }
 
   // The thread, which has stopped, computes on here, for as long as its CPU clock counts
   // `allowed_ns` from now on. False if the kernel does not let it.
