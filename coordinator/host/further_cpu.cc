@@ -1,5 +1,6 @@
 #include "coordinator/host/further_cpu.h"
 
+#include <immintrin.h>
 #include <signal.h>
 #include <x86intrin.h>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
+constexpr std::int64_t kWayToSleepNs = 20'000, kMostWayHomeNs = 2'000'000;
 constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 
 }  // namespace
@@ -103,7 +105,7 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   allowed_ns_.store(allowed_ns);
   has_left_.store(false);
   {
-    const std::lock_guard lock(mutex_);
+    const auto lock = Lock();
     tid_ = thread.tid;
     since_tsc_ = tsc;
     clock_ = std::move(clock);
@@ -115,17 +117,41 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
 }
 
 std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = Lock();
   return has_left_.load() ? Computed() : ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = Lock();
   return is_claimed_.load() || ahead_.IsStarvedBy(PassedNs(tsc));
 }
 
+// If this process slept meanwhile, threads would run whose turn it is not.
+std::unique_lock<std::mutex> FurtherCpu::Lock() {
+  std::unique_lock lock(mutex_, std::defer_lock);
+  while (!lock.try_lock()) _mm_pause();
+  return lock;
+}
+
+// One that has spoken is on its way to sleep. One that computes on is sent home by the warden: the
+// kernel would have this process sleep until a thread that runs elsewhere has stopped.
+void FurtherCpu::AwaitStandstill() const {
+  const pid_t tid = thread_->tid;
+  const std::uint64_t sleeps_by_tsc = __rdtsc() + TicksIn(kWayToSleepNs);
+  while (ThreadState(tid) == 'R' && __rdtsc() < sleeps_by_tsc) _mm_pause();
+}
+
+void FurtherCpu::HaveSentHome() {
+  allowed_ns_.store(0);
+  changed_.notify_one();
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
+  while (!has_left_.load() && __rdtsc() < until_tsc) _mm_pause();
+}
+
 void FurtherCpu::BringHome() {
-  const std::lock_guard lock(mutex_);
+  if (!has_left_.load()) AwaitStandstill();
+  if (!has_left_.load() && ThreadState(thread_->tid) == 'R') HaveSentHome();
+  const auto lock = Lock();
   if (tid_ != 0) {
     executor_.Hold(tid_);
     BindTo(tid_, home_);

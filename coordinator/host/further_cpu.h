@@ -53,12 +53,15 @@ class FurtherCpu {
   bool HasLeft() const { return has_left_.load(); }
 
   // It stands still at home, if it lives, and is not said to be here any more. Where it computed,
-  // this process sleeps until it has stopped.
+  // this process looks on until it has stopped, and does not sleep.
   void BringHome();
   // Others had the processor for long: nobody comes here for some time, the longer the more often.
   void LeaveToOthers(std::uint64_t tsc);
 
  private:
+  std::unique_lock<std::mutex> Lock();
+  void AwaitStandstill() const;
+  void HaveSentHome();
   void StartWarden();
   void Guard();
   std::uint64_t TicksIn(std::int64_t ns) const;
