@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
@@ -33,7 +34,7 @@ std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
 
 void ComputingAhead::Open(int home, const std::vector<int>& further) {
   for (const int cpu : further) {
-    cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor);
+    cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor, IsClaimed);
   }
 }
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
-#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -22,8 +22,13 @@ constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 
 }  // namespace
 
-FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor)
-    : cpu_(cpu), home_(home), ticks_per_ns_(ticks_per_ns), executor_(executor) {}
+FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+                       std::function<bool(int)> is_claimed)
+    : cpu_(cpu),
+      home_(home),
+      ticks_per_ns_(ticks_per_ns),
+      executor_(executor),
+      asks_whether_claimed_(std::move(is_claimed)) {}
 
 FurtherCpu::~FurtherCpu() {
   {
@@ -85,7 +90,7 @@ void FurtherCpu::Look(std::uint64_t tsc) { ahead_.Know(PassedNs(tsc), Computed()
 void FurtherCpu::LookForClaims(std::uint64_t tsc) {
   if (tsc < looks_for_claims_tsc_) return;
   looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
-  is_claimed_.store(IsClaimed(cpu_));
+  is_claimed_.store(asks_whether_claimed_(cpu_));
 }
 
 bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns) {

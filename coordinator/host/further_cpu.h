@@ -16,6 +16,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -28,8 +29,10 @@ namespace tcs {
 
 class FurtherCpu {
  public:
-  // Threads come from and go back to the processor `home`.
-  FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor);
+  // Threads come from and go back to the processor `home`. `is_claimed`: whether another run has
+  // claimed the processor of that number; any thread may ask.
+  FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+             std::function<bool(int)> is_claimed);
   ~FurtherCpu();
   FurtherCpu(const FurtherCpu&) = delete;
   FurtherCpu& operator=(const FurtherCpu&) = delete;
@@ -73,6 +76,7 @@ class FurtherCpu {
   const int cpu_, home_;
   const double ticks_per_ns_;
   Executor& executor_;
+  const std::function<bool(int)> asks_whether_claimed_;
   HostThread* thread_ = nullptr;
   int left_to_others_ = 0;  // in a row
   std::uint64_t not_before_tsc_ = 0;

@@ -1,21 +1,17 @@
 // With a thread of this process that computes, and real processors.
 #include "coordinator/host/further_cpu.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <sys/file.h>
 #include <unistd.h>
 #include <x86intrin.h>
 
 #include <atomic>
 #include <optional>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "coordinator/os/cpu_places.h"
-#include "coordinator/os/unique_fd.h"
 #include "tests/unit/host/noting_executor.h"
 
 namespace tcs {
@@ -29,7 +25,7 @@ class FurtherCpuTest : public testing::Test {
     const std::vector<CpuPlace> cpus = CpuPlaces();
     if (cpus.size() < 2) GTEST_SKIP() << "this machine has one processor";
     home_ = cpus[0].number;
-    cpu_.emplace(cpus[1].number, home_, 1.0, executor_);
+    cpu_.emplace(cpus[1].number, home_, 1.0, executor_, [this](int) { return is_claimed_.load(); });
     computing_ = std::thread([this] {
       cpu_set_t home;
       CPU_ZERO(&home);
@@ -53,7 +49,7 @@ class FurtherCpuTest : public testing::Test {
   int home_ = -1;
   std::optional<FurtherCpu> cpu_;
   HostThread thread_;
-  std::atomic<bool> begun_{false}, ends_{false};
+  std::atomic<bool> begun_{false}, ends_{false}, is_claimed_{false};
   std::atomic<int> where_{-1};
   std::thread computing_;
 };
@@ -90,11 +86,8 @@ TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
   EXPECT_FALSE(cpu_->Send(thread_, __rdtsc(), kMs)) << "it cannot be sent again";
 }
 
-// Another descriptor's lock is another run's claim.
 TEST_F(FurtherCpuTest, AProcessorThatAnotherRunHasClaimedIsLeftToIt) {
-  const std::string folder = "/sys/devices/system/cpu/cpu" + std::to_string(cpu_->cpu());
-  const UniqueFd claim(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  ASSERT_EQ(flock(claim.get(), LOCK_EX), 0);
+  is_claimed_ = true;
   ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
   while (!cpu_->HasLeft()) sched_yield();
   EXPECT_TRUE(cpu_->IsStarvedBy(__rdtsc()));
