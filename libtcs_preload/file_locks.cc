@@ -51,7 +51,7 @@ long LockRecord(GuestThread& t, int fd, int command, long lock) {
 
 long Control(int fd, int command, long argument) {
   if (IsLock(command)) {
-    GuestThread* t = Enter();
+    const Entered t;
     if (t != nullptr && !IsShutDown()) return LockRecord(*t, fd, command, argument);
   }
   const long result = RawSyscall(SYS_fcntl, fd, command, argument);
@@ -80,7 +80,7 @@ int LockSection(int fd, int command, off_t length) {
 }  // namespace
 
 TCS_EXPORT int flock(int fd, int operation) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   auto call = [&](int with) { return RawSyscall(SYS_flock, fd, with); };
   if (t == nullptr || IsShutDown()) return static_cast<int>(ToErrno(call(operation)));
   const bool waits = (operation & (LOCK_NB | LOCK_UN)) == 0;

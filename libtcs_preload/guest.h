@@ -81,6 +81,37 @@ inline GuestThread* Enter() {
   return t;
 }
 
+// An interposed call, from here to the end of the scope: the same as a pointer to the thread, null
+// where the call is to be let through. Meanwhile the coordinator sees that the thread may be about
+// to look at what others do, or to do something to them.
+class Entered {
+ public:
+  // `is_sound`: false for a call that the kernel will refuse, which is let through.
+  explicit Entered(bool is_sound = true) : thread_(is_sound ? Enter() : nullptr) {
+    if (thread_ != nullptr) Count(1);
+  }
+  // A child by fork has a slot that knows nothing of its parent's calls.
+  ~Entered() {
+    const bool counts = thread_ != nullptr && thread_->slot != nullptr;
+    if (counts && thread_->slot->open_calls.load(std::memory_order_relaxed) != 0) Count(-1u);
+  }
+  Entered(const Entered&) = delete;
+  Entered& operator=(const Entered&) = delete;
+
+  GuestThread* thread() const { return thread_; }
+  operator GuestThread*() const { return thread_; }
+  GuestThread* operator->() const { return thread_; }
+
+ private:
+  // No other thread writes it.
+  void Count(std::uint32_t more) const {
+    std::atomic<std::uint32_t>& calls = thread_->slot->open_calls;
+    calls.store(calls.load(std::memory_order_relaxed) + more, std::memory_order_relaxed);
+  }
+
+  GuestThread* const thread_;
+};
+
 // True once the run is over: waits are no longer the coordinator's.
 inline bool IsShutDown() { return g_header->shutdown.load(std::memory_order_relaxed) != 0; }
 

@@ -72,7 +72,7 @@ ssize_t ReadTerminal(GuestThread& t, int fd, std::int64_t deadline, Take take) {
 // `at_once` returns what the kernel answers without waiting, or -EAGAIN.
 template <class AtOnce, class Call>
 ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
-  GuestThread* t = Enter();
+  const Entered t;
   pthread_testcancel();
   bool any_socket = false;
   if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
@@ -137,7 +137,7 @@ bool AreSound(const iovec* buffers, std::size_t count) {
 
 template <class Whole>
 ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
-  GuestThread* t = Enter();
+  const Entered t;
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
@@ -189,7 +189,7 @@ bool WaitsForAll(int fd, int flags) {
 
 template <class Whole>
 ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return ToErrno(whole());
   msghdr message{};
   if (!CopyIn(&message, given)) return ToErrno(whole());
@@ -291,7 +291,7 @@ TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
 
 // One message is waited for; those that are there with it come along. A timeout is a virtual one.
 TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, timespec* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_recvmmsg, fd, Arg(messages), count, flags, Arg(timeout))));
@@ -359,7 +359,7 @@ TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flag
   message.msg_namelen = to_size;
   message.msg_iov = &iov;
   message.msg_iovlen = 1;
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) flags = WithoutMore(fd, flags);
   return SendAll(t, fd, message, flags, [&] {
     return RawSocketCall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
@@ -372,7 +372,7 @@ TCS_EXPORT ssize_t send(int fd, const void* buffer, std::size_t size, int flags)
 
 TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
   msghdr copy{};
-  GuestThread* t = CopyIn(&copy, message) ? Enter() : nullptr;
+  const Entered t(CopyIn(&copy, message));
   if (t != nullptr) flags = WithoutMore(fd, flags);
   return SendAll(t, fd, copy, flags,
                  [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
@@ -380,14 +380,14 @@ TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
 
 // What the socket has no room for is waited for, until all have been sent.
 TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) flags = WithoutMore(fd, flags);
   if (count == 0) return static_cast<int>(ToErrno(RawSyscall(SYS_sendmmsg, fd, 0, 0, flags)));
   if (count > kMostBuffers) count = kMostBuffers;
   for (unsigned sent = 0; sent < count; ++sent) {
     msghdr* message = &messages[sent].msg_hdr;
     msghdr copy{};
-    const ssize_t n = SendAll(CopyIn(&copy, message) ? t : nullptr, fd, copy, flags,
+    const ssize_t n = SendAll(CopyIn(&copy, message) ? t.thread() : nullptr, fd, copy, flags,
                               [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
     const bool done = n >= 0 && CopyOut(&messages[sent].msg_len, static_cast<unsigned>(n));
     if (n >= 0 && !done) errno = EFAULT;
@@ -425,7 +425,7 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
 
 // Connecting is a write: it makes the listener's descriptor readable.
 TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) HoldForWrite(*t);
   sa_family_t family = AF_UNSPEC;
   if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {

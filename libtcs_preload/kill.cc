@@ -22,7 +22,7 @@ namespace {
 // there may be one: before it has seen to the receiver nobody else may run.
 template <class Call>
 auto SendSignal(pid_t receiver, int signal, Call call) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || signal == 0) return call();
   HoldForWrite(*t);
   std::atomic<std::uint32_t>& signals = t->slot->signals;

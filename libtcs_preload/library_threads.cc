@@ -11,7 +11,7 @@ namespace {
 using Untyped = long(long, long, long, long, long, long);
 
 void TellOfThreads() {
-  if (GuestThread* t = Enter(); t != nullptr) {
+  if (const Entered t; t != nullptr) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kStrangers});
   }
 }

@@ -92,7 +92,7 @@ long Send(GuestThread& t, mqd_t queue, const char* text, std::size_t size, unsig
 
 ssize_t TimedReceive(mqd_t queue, char* text, std::size_t size, unsigned* priority,
                      const timespec* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return ToErrno(RawSyscall(SYS_mq_timedreceive, queue, Arg(text), static_cast<long>(size),
                               Arg(priority), Arg(timeout)));
@@ -104,7 +104,7 @@ ssize_t TimedReceive(mqd_t queue, char* text, std::size_t size, unsigned* priori
 
 int TimedSend(mqd_t queue, const char* text, std::size_t size, unsigned priority,
               const timespec* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_mq_timedsend, queue, Arg(text), static_cast<long>(size),
@@ -135,7 +135,7 @@ TCS_EXPORT int mq_send(mqd_t queue, const char* text, std::size_t size, unsigned
 }
 
 TCS_EXPORT int mq_notify(mqd_t queue, const sigevent* notification) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   // From now on senders tell the coordinator when they have sent something.
   if (t != nullptr && notification != nullptr) {
     Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kQueueNotifies});

@@ -58,7 +58,7 @@ auto Opening(int folder, const char* path, int flags, bool cancellable, Call cal
 
 // A device of the robot's. What has come while nobody had it open is not there, as at a real port.
 int OpenDevice(int folder, const char* file, int flags, mode_t mode) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) HoldForRead(*t);
   const long fd = RawSyscall(SYS_openat, folder, Arg(file), flags, static_cast<long>(mode));
   if (fd >= 0 && t != nullptr) RawSyscall(SYS_ioctl, fd, TCFLSH, TCIFLUSH);
@@ -66,7 +66,7 @@ int OpenDevice(int folder, const char* file, int flags, mode_t mode) {
 }
 
 FILE* OfDevice(FILE* stream) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (stream == nullptr || t == nullptr) return stream;
   HoldForRead(*t);
   RawSyscall(SYS_ioctl, fileno(stream), TCFLSH, TCIFLUSH);

@@ -39,7 +39,7 @@ int SuspendWith(GuestThread& t, const unsigned long* mask) {
 }  // namespace
 
 TCS_EXPORT int pause(void) {
-  GuestThread* t = Enter();
+  const Entered t;
   unsigned long mask = 0;
   RawSyscall(SYS_rt_sigprocmask, SIG_BLOCK, 0, Arg(&mask), kSetSize);
   if (t == nullptr)
@@ -48,7 +48,7 @@ TCS_EXPORT int pause(void) {
 }
 
 TCS_EXPORT int sigsuspend(const sigset_t* mask) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_rt_sigsuspend, Arg(mask), kSetSize)));
   unsigned long wanted;

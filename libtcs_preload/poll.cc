@@ -131,7 +131,7 @@ bool TimeoutToNs(const timespec* timeout, std::int64_t* ns) {
 }  // namespace
 
 TCS_EXPORT int poll(pollfd* fds, nfds_t count, int timeout_ms) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_poll, Arg(fds), count, timeout_ms)));
   return PollNs(*t, fds, count, MillisecondsToNs(timeout_ms), nullptr);
@@ -143,7 +143,7 @@ TCS_EXPORT int __poll_chk(pollfd* fds, nfds_t count, int timeout_ms, std::size_t
 }
 
 TCS_EXPORT int ppoll(pollfd* fds, nfds_t count, const timespec* timeout, const sigset_t* mask) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     timespec left = timeout != nullptr ? *timeout : timespec{};
     return static_cast<int>(ToErrno(
@@ -162,7 +162,7 @@ TCS_EXPORT int __ppoll_chk(pollfd* fds, nfds_t count, const timespec* timeout, c
 }
 
 TCS_EXPORT int select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_select, n, Arg(r), Arg(w), Arg(e), Arg(timeout))));
@@ -184,7 +184,7 @@ TCS_EXPORT int __select(int n, fd_set* r, fd_set* w, fd_set* e, timeval* timeout
 
 TCS_EXPORT int pselect(int n, fd_set* r, fd_set* w, fd_set* e, const timespec* timeout,
                        const sigset_t* mask) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     timespec left = timeout != nullptr ? *timeout : timespec{};
     const struct {
@@ -203,7 +203,7 @@ TCS_EXPORT int pselect(int n, fd_set* r, fd_set* w, fd_set* e, const timespec* t
 
 TCS_EXPORT int epoll_pwait(int epfd, epoll_event* events, int max, int timeout_ms,
                            const sigset_t* mask) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_epoll_pwait, epfd, Arg(events), max, timeout_ms, Arg(mask), 8)));
@@ -217,7 +217,7 @@ TCS_EXPORT int epoll_wait(int epfd, epoll_event* events, int max, int timeout_ms
 
 TCS_EXPORT int epoll_pwait2(int epfd, epoll_event* events, int max, const timespec* timeout,
                             const sigset_t* mask) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(
         ToErrno(RawSyscall(SYS_epoll_pwait2, epfd, Arg(events), max, Arg(timeout), Arg(mask), 8)));

@@ -129,7 +129,7 @@ itimerspec ToSpec(const Reply& reply, std::int64_t now) {
 
 TCS_EXPORT int timer_create(clockid_t clock, sigevent* __restrict given,
                             timer_t* __restrict name) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || IsShutDown()) return TCS_REAL(timer_create)(clock, given, name);
   TimerKind kind;
   kind.is_posix = 1;
@@ -151,7 +151,7 @@ TCS_EXPORT int timer_create(clockid_t clock, sigevent* __restrict given,
 }
 
 TCS_EXPORT int timer_delete(timer_t name) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(timer_delete)(name);
   PosixTimer* timer = FindPosixTimer(name);
   if (timer == nullptr) return Fail(EINVAL);
@@ -172,7 +172,7 @@ TCS_EXPORT int timer_delete(timer_t name) noexcept {
 
 TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restrict given,
                              itimerspec* __restrict old) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(timer_settime)(name, flags, given, old);
   const PosixTimer* timer = FindPosixTimer(name);
   if (given == nullptr) return Fail(EINVAL);
@@ -189,7 +189,7 @@ TCS_EXPORT int timer_settime(timer_t name, int flags, const itimerspec* __restri
 }
 
 TCS_EXPORT int timer_gettime(timer_t name, itimerspec* value) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(timer_gettime)(name, value);
   const PosixTimer* timer = FindPosixTimer(name);
   if (timer == nullptr) return Fail(EINVAL);
@@ -199,7 +199,7 @@ TCS_EXPORT int timer_gettime(timer_t name, itimerspec* value) noexcept {
 }
 
 TCS_EXPORT int timer_getoverrun(timer_t name) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(timer_getoverrun)(name);
   const PosixTimer* timer = FindPosixTimer(name);
   if (timer == nullptr) return Fail(EINVAL);

@@ -69,7 +69,7 @@ int OpenPidfd(pid_t child, int* pidfd) {
 }  // namespace
 
 TCS_EXPORT pid_t fork(void) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   const pid_t pid = TCS_REAL(fork)();
   if (pid == 0) {
     Current();  // the child comes to its own slot, and stops until it is dispatched
@@ -83,7 +83,7 @@ TCS_EXPORT pid_t fork(void) noexcept {
 TCS_EXPORT pid_t vfork(void) noexcept { return fork(); }
 
 TCS_EXPORT pid_t wait4(pid_t pid, int* status, int options, rusage* usage) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || (options & WNOHANG) != 0) {
     if (t != nullptr) HoldForRead(*t);
     return static_cast<pid_t>(
@@ -105,7 +105,7 @@ TCS_EXPORT pid_t waitpid(pid_t pid, int* status, int options) {
 TCS_EXPORT pid_t wait(int* status) { return wait4(-1, status, 0, nullptr); }
 
 TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || (options & WNOHANG) != 0) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_waitid, type, id, Arg(info), options, 0)));
   }
@@ -147,7 +147,7 @@ TCS_EXPORT int fexecve(int fd, char* const argv[], char* const envp[]) noexcept 
 TCS_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
                            const posix_spawnattr_t* attributes, char* const argv[],
                            char* const envp[]) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   EnvironmentCopy storage;
   pid_t child = 0;
   const int error =
@@ -160,7 +160,7 @@ TCS_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_
 TCS_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
                             const posix_spawnattr_t* attributes, char* const argv[],
                             char* const envp[]) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   EnvironmentCopy storage;
   pid_t child = 0;
   const int error =

@@ -93,7 +93,7 @@ int AsErrno(int error) { return error == 0 ? 0 : Fail(error); }
 }  // namespace
 
 TCS_EXPORT int sched_setscheduler(pid_t pid, int policy, const sched_param* param) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setscheduler, pid, policy, Arg(param))));
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
@@ -104,7 +104,7 @@ TCS_EXPORT int sched_setscheduler(pid_t pid, int policy, const sched_param* para
 }
 
 TCS_EXPORT int sched_getscheduler(pid_t pid) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getscheduler, pid)));
   if (pid < 0) return Fail(EINVAL);
   Scheduling found{};
@@ -113,7 +113,7 @@ TCS_EXPORT int sched_getscheduler(pid_t pid) noexcept {
 }
 
 TCS_EXPORT int sched_setparam(pid_t pid, const sched_param* param) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setparam, pid, Arg(param))));
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
@@ -123,7 +123,7 @@ TCS_EXPORT int sched_setparam(pid_t pid, const sched_param* param) noexcept {
 }
 
 TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_getparam, pid, Arg(param))));
   if (pid < 0 || param == nullptr) return Fail(EINVAL);
@@ -134,7 +134,7 @@ TCS_EXPORT int sched_getparam(pid_t pid, sched_param* param) noexcept {
 }
 
 TCS_EXPORT int sched_rr_get_interval(pid_t pid, timespec* interval) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_rr_get_interval, pid, Arg(interval))));
   if (pid < 0) return Fail(EINVAL);
@@ -146,7 +146,7 @@ TCS_EXPORT int sched_rr_get_interval(pid_t pid, timespec* interval) noexcept {
 
 TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
                                      const sched_param* param) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_setschedparam)(thread, policy, param);
   const pid_t tid = TidOf(thread);
   if (tid < 0) return ESRCH;
@@ -154,7 +154,7 @@ TCS_EXPORT int pthread_setschedparam(pthread_t thread, int policy,
 }
 
 TCS_EXPORT int pthread_getschedparam(pthread_t thread, int* policy, sched_param* param) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_getschedparam)(thread, policy, param);
   Scheduling found{};
   const pid_t tid = TidOf(thread);
@@ -166,21 +166,21 @@ TCS_EXPORT int pthread_getschedparam(pthread_t thread, int* policy, sched_param*
 }
 
 TCS_EXPORT int pthread_setschedprio(pthread_t thread, int priority) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_setschedprio)(thread, priority);
   const pid_t tid = TidOf(thread);
   return tid < 0 ? ESRCH : Set(*t, tid, kKeepPolicy, priority);
 }
 
 TCS_EXPORT int sched_setaffinity(pid_t pid, std::size_t size, const cpu_set_t* set) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_sched_setaffinity, pid, size, Arg(set))));
   return AsErrno(SetAffinity(*t, pid, size, set));
 }
 
 TCS_EXPORT int sched_getaffinity(pid_t pid, std::size_t size, cpu_set_t* set) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     const long n = ToErrno(RawSyscall(SYS_sched_getaffinity, pid, size, Arg(set)));
     if (n > 0) memset(reinterpret_cast<char*>(set) + n, 0, size - static_cast<std::size_t>(n));
@@ -191,14 +191,14 @@ TCS_EXPORT int sched_getaffinity(pid_t pid, std::size_t size, cpu_set_t* set) no
 
 TCS_EXPORT int pthread_setaffinity_np(pthread_t thread, std::size_t size,
                                       const cpu_set_t* set) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_setaffinity_np)(thread, size, set);
   const pid_t tid = TidOf(thread);
   return tid < 0 ? ESRCH : SetAffinity(*t, tid, size, set);
 }
 
 TCS_EXPORT int pthread_getaffinity_np(pthread_t thread, std::size_t size, cpu_set_t* set) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_getaffinity_np)(thread, size, set);
   const pid_t tid = TidOf(thread);
   return tid < 0 ? ESRCH : GetAffinity(*t, tid, size, set);
@@ -220,7 +220,7 @@ TCS_EXPORT int nice(int increment) noexcept {
 }
 
 TCS_EXPORT int sched_yield(void) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return static_cast<int>(RawSyscall(SYS_sched_yield));
   Exchange(*t, Request{.kind = NotificationKind::kYield});
   return 0;

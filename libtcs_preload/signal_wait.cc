@@ -65,7 +65,7 @@ long Accept(GuestThread& t, unsigned long set, siginfo_t* info, std::int64_t tim
 }
 
 int TimedWait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   siginfo_t found{};
   long signal;
   if (t == nullptr) {

@@ -40,7 +40,7 @@ int ErrorOfClock(const GuestThread& t, clockid_t id) {
 
 // As POSIX has it: returns the error number.
 int ClockNanosleep(clockid_t id, int flags, const timespec* given, timespec* remain) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(-RawSyscall(SYS_clock_nanosleep, id, flags, Arg(given), Arg(remain)));
   }

@@ -96,7 +96,7 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count, cons
 }
 
 int SemaphoreOperation(int id, sembuf* operations, std::size_t count, const timespec* timeout) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) {
     return static_cast<int>(ToErrno(
         RawSyscall(SYS_semtimedop, id, Arg(operations), static_cast<long>(count), Arg(timeout))));
@@ -120,7 +120,7 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
   va_start(arguments, command);
   const long argument = va_arg(arguments, long);  // a union of an int and pointers
   va_end(arguments);
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) HoldForRead(*t);
   const long result = RawSyscall(SYS_semctl, id, number, command, argument);
   if (t == nullptr || result < 0) return static_cast<int>(ToErrno(result));
@@ -152,7 +152,7 @@ TCS_EXPORT int semctl(int id, int number, int command, ...) noexcept {
 }
 
 TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) {
-  GuestThread* t = Enter();
+  const Entered t;
   auto call = [&](int with) {
     return RawSyscall(SYS_msgsnd, id, Arg(message), static_cast<long>(size), with);
   };
@@ -168,7 +168,7 @@ TCS_EXPORT int msgsnd(int id, const void* message, std::size_t size, int flags) 
 }
 
 TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, int flags) {
-  GuestThread* t = Enter();
+  const Entered t;
   auto call = [&](int with) {
     return RawSyscall(SYS_msgrcv, id, Arg(message), static_cast<long>(size), type, with);
   };
@@ -186,7 +186,7 @@ TCS_EXPORT ssize_t msgrcv(int id, void* message, std::size_t size, long type, in
 }
 
 TCS_EXPORT int msgctl(int id, int command, msqid_ds* buffer) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) HoldForRead(*t);
   const long result = RawSyscall(SYS_msgctl, id, command, Arg(buffer));
   if (t == nullptr || result < 0) return static_cast<int>(ToErrno(result));

@@ -86,7 +86,7 @@ class SchedulingAsked {
 
 TCS_EXPORT int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
                               void* (*routine)(void*), void* argument) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return TCS_REAL(pthread_create)(thread, attributes, routine, argument);
   // The one allocation of the shim: pthread_create itself allocates, so this place may.
   auto* start = static_cast<Start*>(malloc(sizeof(Start)));

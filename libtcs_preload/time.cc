@@ -56,7 +56,7 @@ int SetClockRefused(GuestThread* t) { return t == nullptr ? 0 : Fail(EPERM); }
 namespace tcs::preload {
 
 long ClockGettime(clockid_t id, timespec* ts) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr) {
     const ClockOfId clock = tcs::shm::ClockOf(id);
     const std::int64_t ns = ReadClock(*t, clock);
@@ -71,7 +71,7 @@ long ClockGettime(clockid_t id, timespec* ts) {
 }
 
 long Gettimeofday(timeval* tv, void* zone) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return RawSyscall(SYS_gettimeofday, Arg(tv), Arg(zone));
   if (zone != nullptr) RawSyscall(SYS_gettimeofday, 0, Arg(zone));
   if (tv != nullptr) *tv = ToTimeval(NowNs(*t) + OffsetNs(Clock::kRealtime));
@@ -138,7 +138,7 @@ TCS_EXPORT clock_t clock(void) {
 }
 
 TCS_EXPORT clock_t times(tms* out) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return ToErrno(RawSyscall(SYS_times, Arg(out)));
   const std::int64_t tick = kNsPerSecond / sysconf(_SC_CLK_TCK);
   if (out != nullptr) {
@@ -149,7 +149,7 @@ TCS_EXPORT clock_t times(tms* out) {
 
 TCS_EXPORT int getrusage(__rusage_who_t who, rusage* usage) noexcept {
   const long result = RawSyscall(SYS_getrusage, who, Arg(usage));
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || result != 0) return static_cast<int>(ToErrno(result));
   const std::int64_t charged = who == RUSAGE_SELF       ? ProcessCpuNs(*t)
                                : who == RUSAGE_CHILDREN ? ChildrenCpuNs(*t)
@@ -167,14 +167,14 @@ TCS_EXPORT int __clock_getres(clockid_t id, timespec* resolution) {
 }
 
 TCS_EXPORT int clock_settime(clockid_t id, const timespec* ts) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr && (id != CLOCK_REALTIME || !IsValid(*ts))) return Fail(EINVAL);
   if (SetClockRefused(t) != 0) return -1;
   return static_cast<int>(ToErrno(RawSyscall(SYS_clock_settime, id, Arg(ts))));
 }
 
 TCS_EXPORT int settimeofday(const timeval* tv, const struct timezone* zone) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr && tv != nullptr && (zone != nullptr || !IsValid(*tv))) {
     return Fail(EINVAL);
   }
@@ -191,7 +191,7 @@ TCS_EXPORT int SetTime(const time_t* seconds) {
 
 // Reading the adjustment is allowed, with the virtual time in it; changing it is not.
 TCS_EXPORT int adjtimex(timex* tx) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (!CanRead(tx, sizeof *tx)) return Fail(EFAULT);
   if (t != nullptr && tx->modes != 0) return Fail(EPERM);
   const long state = RawSyscall(SYS_adjtimex, Arg(tx));

@@ -65,14 +65,14 @@ int SetItimer(GuestThread& t, int which, const itimerval* value, itimerval* old)
 
 TCS_EXPORT int setitimer(__itimer_which_t which, const itimerval* __restrict value,
                          itimerval* __restrict old) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr)
     return static_cast<int>(ToErrno(RawSyscall(SYS_setitimer, which, Arg(value), Arg(old))));
   return SetItimer(*t, which, value, old);
 }
 
 TCS_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return static_cast<int>(ToErrno(RawSyscall(SYS_getitimer, which, Arg(value))));
   if (which < ITIMER_REAL || which > ITIMER_PROF) return Fail(EINVAL);
   const TimerValue now_set = Ask(*t, NotificationKind::kTimerGet, which, 0, 0);
@@ -95,7 +95,7 @@ TCS_EXPORT useconds_t ualarm(useconds_t first, useconds_t interval) {
 }
 
 TCS_EXPORT int timerfd_create(int clock, int flags) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || IsShutDown()) {
     return static_cast<int>(ToErrno(RawSyscall(SYS_timerfd_create, clock, flags)));
   }
@@ -120,7 +120,7 @@ TCS_EXPORT int timerfd_create(int clock, int flags) {
 }
 
 TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itimerspec* old) {
-  GuestThread* t = Enter();
+  const Entered t;
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr) {
     return static_cast<int>(
@@ -141,7 +141,7 @@ TCS_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* given, itime
 }
 
 TCS_EXPORT int timerfd_gettime(int fd, itimerspec* value) {
-  GuestThread* t = Enter();
+  const Entered t;
   const TimerFd* timer = t == nullptr ? nullptr : FindTimerFd(fd);
   if (timer == nullptr)
     return static_cast<int>(

@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 14;
+inline constexpr std::uint32_t kVersion = 15;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -273,7 +273,10 @@ struct alignas(64) ThreadSlot {
   // Written by the thread before it notifies, where only gates keep threads apart: the signals that
   // it blocks at its gate. What the kernel knows is true only once it waits there.
   std::uint64_t blocked_signals;
-  std::uint8_t reserved[24];
+  // Written by the thread: how many of its calls the shim has begun and not ended. More than one:
+  // handlers' within others'. Too many where a handler has left by longjmp.
+  std::atomic<std::uint32_t> open_calls;
+  std::uint8_t reserved[20];
 };
 static_assert(sizeof(ThreadSlot) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);

@@ -34,13 +34,8 @@ std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
 
 void ComputingAhead::Open(int home, const std::vector<int>& further) {
   for (const int cpu : further) {
-    cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor);
+    cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor, IsClaimed);
   }
-  LookForClaims();
-}
-
-void ComputingAhead::LookForClaims() {
-  for (FurtherCpu& cpu : cpus_) cpu.SetClaimed(IsClaimed(cpu.cpu()));
 }
 
 bool ComputingAhead::MaySend(const Task& task) const {
@@ -53,7 +48,9 @@ bool ComputingAhead::MaySend(const Task& task) const {
       task.is_brief || task.executes || task.spins || task.is_deliverer || task.notified_early ||
       task.early_trap.has_value() || process.expelled || process.stopped || process.stays_home ||
       stays_home_ || parts_.run.IsInGrace();
-  return is_ordinary && !is_busy_otherwise;
+  // Stopped in the midst of a call, it would do what it is about to do to others in no turn.
+  const bool is_in_call = SlotOf(task).open_calls.load() != 0;
+  return is_ordinary && !is_busy_otherwise && !is_in_call;
 }
 
 void ComputingAhead::SendIfItComputes(Task& task) {
@@ -64,16 +61,17 @@ void ComputingAhead::SendIfItComputes(Task& task) {
   if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
   const std::int64_t cpu_ns = HostClockOf(task);
   if (cpu_ns < 0) return;  // it is about to end
-  Charge(task, task.metered.ChargeAt(cpu_ns));
+  // It computed that here.
+  parts_.run.ChargeAsDebt(task, task.metered.ChargeAt(cpu_ns) - task.charged_ns);
   // To go there and back again takes its time, too.
   const std::int64_t most_ns = MostAheadNs();
   if (task.debt_ns > most_ns / 2) return;
   ClockGrant& grant = task.grant;
   grant.counts_work |= shm::kIsAhead;
   SlotOf(task).clock.counts_work = grant.counts_work;
-  parts_.cpu.active().Ended(task);
   task.ahead_from_ns = task.charged_ns;
   if (!cpu->Send(task, tsc, task.metered.HostNs(most_ns - task.debt_ns))) return;
+  parts_.cpu.active().Ended(task);
   if (!std::exchange(task.owes_ahead, true)) owing_.push_back(&task);
 }
 
@@ -125,11 +123,7 @@ void ComputingAhead::Forget(const Task& task) {
 
 // What it is to be charged in all; less than so far where it was taken to have computed more.
 void ComputingAhead::Charge(Task& task, std::int64_t charged_ns) {
-  const std::int64_t ns = charged_ns - task.charged_ns, host_ns = task.metered.HostNs(ns);
-  task.charged_ns += ns;
-  task.debt_ns += ns;
-  parts_.run.report.client_ns += host_ns;
-  parts_.run.report.ahead_ns += host_ns;
+  parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged_ns - task.charged_ns);
 }
 
 void ComputingAhead::ChargeAhead(Task& task) {

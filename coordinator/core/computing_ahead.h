@@ -46,8 +46,6 @@ class ComputingAhead {
   // process is bound to one.
   static std::vector<int> CpusBeside(int home, const RunState& run);
   void Open(int home, const std::vector<int>& further);
-  // Other runs come and go.
-  void LookForClaims();
 
   // The thread's turn has just ended. If it computes on, it may do so on another processor.
   void SendIfItComputes(Task& task);

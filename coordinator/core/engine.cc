@@ -279,7 +279,6 @@ void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
-  ahead_.LookForClaims();
   if (run_.options.on_progress) {
     if (shows_++ % kShowsPerFlush == 0) records_.Flush();
     run_.options.on_progress(reporter_.Now());

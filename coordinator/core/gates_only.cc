@@ -94,9 +94,7 @@ void Engine::BringToGate(Task& task) {
 void Engine::ChargeUndispatched(Task& task) {
   if (!run_.Preempts() || task.slot < 0) return;
   const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
-  task.charged_ns += ns;
-  task.debt_ns += ns;
-  run_.report.client_ns += task.metered.HostNs(ns);
+  run_.ChargeAsDebt(task, ns);
 }
 
 }  // namespace tcs

@@ -49,7 +49,7 @@ std::string Engine::Prepare() {
   if (!taken.empty()) return taken;
   ClientsRunOn(claim_.cpu);
   const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
-  if (std::string error = BindTo(claim_.cpu); !error.empty()) return error;
+  if (!BindTo(0, claim_.cpu)) return "cannot bind to CPU " + std::to_string(claim_.cpu);
   if (run_.gates_only) {
     IgnoreRealTimeLimits();
     BeWokenInTime();

@@ -1,11 +1,12 @@
 #include "coordinator/host/further_cpu.h"
 
-#include <sched.h>
+#include <immintrin.h>
 #include <signal.h>
 #include <x86intrin.h>
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "coordinator/os/host.h"
 
@@ -16,18 +17,18 @@ namespace {
 constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
-
-bool Bind(pid_t tid, int cpu) {
-  cpu_set_t one;
-  CPU_ZERO(&one);
-  CPU_SET(cpu, &one);
-  return sched_setaffinity(tid, sizeof one, &one) == 0;
-}
+constexpr std::int64_t kWayToSleepNs = 20'000, kMostWayHomeNs = 2'000'000;
+constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 
 }  // namespace
 
-FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor)
-    : cpu_(cpu), home_(home), ticks_per_ns_(ticks_per_ns), executor_(executor) {}
+FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+                       std::function<bool(int)> is_claimed)
+    : cpu_(cpu),
+      home_(home),
+      ticks_per_ns_(ticks_per_ns),
+      executor_(executor),
+      asks_whether_claimed_(std::move(is_claimed)) {}
 
 FurtherCpu::~FurtherCpu() {
   {
@@ -48,7 +49,7 @@ void FurtherCpu::StartWarden() {
 }
 
 void FurtherCpu::Guard() {
-  Bind(0, cpu_);
+  BindTo(0, cpu_);
   std::unique_lock lock(mutex_);
   while (!ends_) {
     if (tid_ == 0) {
@@ -56,17 +57,22 @@ void FurtherCpu::Guard() {
       continue;
     }
     Look(__rdtsc());
+    LookForClaims(__rdtsc());
     const std::int64_t left_ns = allowed_ns_.load() - Computed();
-    if (left_ns > 0) {
+    if (left_ns > 0 && !is_claimed_.load()) {
       changed_.wait_for(
           lock, std::chrono::nanoseconds(std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs)));
       continue;
     }
     executor_.Hold(tid_);
-    Bind(tid_, home_);
+    BindTo(tid_, home_);
     tid_ = 0;
     has_left_.store(true);
   }
+}
+
+std::uint64_t FurtherCpu::TicksIn(std::int64_t ns) const {
+  return static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
 }
 
 std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
@@ -80,13 +86,20 @@ std::int64_t FurtherCpu::Computed() const {
 // The thread does not run meanwhile, so that its CPU clock is right.
 void FurtherCpu::Look(std::uint64_t tsc) { ahead_.Know(PassedNs(tsc), Computed()); }
 
+// Other runs come and go.
+void FurtherCpu::LookForClaims(std::uint64_t tsc) {
+  if (tsc < looks_for_claims_tsc_) return;
+  looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
+  is_claimed_.store(asks_whether_claimed_(cpu_));
+}
+
 bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns) {
   UniqueFd clock(OpenThreadCpuClock(thread.tid));
   const std::int64_t begun_ns = clock ? ReadThreadCpuClock(clock.get()) : -1;
   if (begun_ns < 0) return false;
   if (!warden_.joinable()) StartWarden();
   executor_.LetGo(thread.tid);
-  if (!Bind(thread.tid, cpu_)) {
+  if (!BindTo(thread.tid, cpu_)) {
     executor_.Hold(thread.tid);
     not_before_tsc_ = UINT64_MAX;
     return false;
@@ -97,7 +110,7 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   allowed_ns_.store(allowed_ns);
   has_left_.store(false);
   {
-    const std::lock_guard lock(mutex_);
+    const auto lock = Lock();
     tid_ = thread.tid;
     since_tsc_ = tsc;
     clock_ = std::move(clock);
@@ -109,29 +122,54 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
 }
 
 std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
-  const std::lock_guard lock(mutex_);
+  const auto lock = Lock();
   return has_left_.load() ? Computed() : ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
-  const std::lock_guard lock(mutex_);
-  return ahead_.IsStarvedBy(PassedNs(tsc));
+  const auto lock = Lock();
+  return is_claimed_.load() || ahead_.IsStarvedBy(PassedNs(tsc));
+}
+
+// If this process slept meanwhile, threads would run whose turn it is not.
+std::unique_lock<std::mutex> FurtherCpu::Lock() {
+  std::unique_lock lock(mutex_, std::defer_lock);
+  while (!lock.try_lock()) _mm_pause();
+  return lock;
+}
+
+// One that has spoken is on its way to sleep. One that computes on is sent home by the warden: the
+// kernel would have this process sleep until a thread that runs elsewhere has stopped.
+void FurtherCpu::AwaitStandstill() const {
+  const pid_t tid = thread_->tid;
+  const std::uint64_t sleeps_by_tsc = __rdtsc() + TicksIn(kWayToSleepNs);
+  while (ThreadState(tid) == 'R' && __rdtsc() < sleeps_by_tsc) _mm_pause();
+}
+
+void FurtherCpu::HaveSentHome() {
+  allowed_ns_.store(0);
+  changed_.notify_one();
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
+  while (!has_left_.load() && __rdtsc() < until_tsc) _mm_pause();
 }
 
 void FurtherCpu::BringHome() {
-  const std::lock_guard lock(mutex_);
+  if (!has_left_.load()) AwaitStandstill();
+  if (!has_left_.load() && ThreadState(thread_->tid) == 'R') HaveSentHome();
+  const auto lock = Lock();
   if (tid_ != 0) {
     executor_.Hold(tid_);
-    Bind(tid_, home_);
+    BindTo(tid_, home_);
   }
   tid_ = 0;
   thread_->is_ahead = false;
   thread_ = nullptr;
+  if (is_claimed_.exchange(false)) LeaveToOthers(__rdtsc());
 }
 
 void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {
   const std::int64_t ns = kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings);
-  not_before_tsc_ = tsc + static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
+  not_before_tsc_ = tsc + TicksIn(ns);
 }
 
 }  // namespace tcs

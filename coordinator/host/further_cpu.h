@@ -16,6 +16,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -28,8 +29,10 @@ namespace tcs {
 
 class FurtherCpu {
  public:
-  // Threads come from and go back to the processor `home`.
-  FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor);
+  // Threads come from and go back to the processor `home`. `is_claimed`: whether another run has
+  // claimed the processor of that number; any thread may ask.
+  FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+             std::function<bool(int)> is_claimed);
   ~FurtherCpu();
   FurtherCpu(const FurtherCpu&) = delete;
   FurtherCpu& operator=(const FurtherCpu&) = delete;
@@ -38,11 +41,7 @@ class FurtherCpu {
   // The thread that is here, or has been sent home since and is still said to be here; or null.
   HostThread* thread() const { return thread_; }
   // Others need the processor: nobody is to be sent here before `tsc`.
-  bool IsFreeAt(std::uint64_t tsc) const {
-    return thread_ == nullptr && !is_claimed_ && tsc >= not_before_tsc_;
-  }
-  // Another run takes its turns here, or does so no longer.
-  void SetClaimed(bool is_claimed) { is_claimed_ = is_claimed; }
+  bool IsFreeAt(std::uint64_t tsc) const { return thread_ == nullptr && tsc >= not_before_tsc_; }
 
   // The thread, which has stopped, computes on here, for as long as its CPU clock counts
   // `allowed_ns` from now on. False if the kernel does not let it.
@@ -51,38 +50,45 @@ class FurtherCpu {
   void Allow(std::int64_t allowed_ns) { allowed_ns_.store(allowed_ns); }
   // What it has computed by then since it was sent (ahead_clock.h).
   std::int64_t ComputedBy(std::uint64_t tsc);
-  // Others had the processor for long, by then.
+  // Others had the processor for long, by then, or have claimed it.
   bool IsStarvedBy(std::uint64_t tsc);
   // It has come to its limit, and is at home.
   bool HasLeft() const { return has_left_.load(); }
 
   // It stands still at home, if it lives, and is not said to be here any more. Where it computed,
-  // this process sleeps until it has stopped.
+  // this process looks on until it has stopped, and does not sleep.
   void BringHome();
   // Others had the processor for long: nobody comes here for some time, the longer the more often.
   void LeaveToOthers(std::uint64_t tsc);
 
  private:
+  std::unique_lock<std::mutex> Lock();
+  void AwaitStandstill() const;
+  void HaveSentHome();
   void StartWarden();
   void Guard();
+  std::uint64_t TicksIn(std::int64_t ns) const;
   std::int64_t PassedNs(std::uint64_t tsc) const;
   std::int64_t Computed() const;
   void Look(std::uint64_t tsc);
+  void LookForClaims(std::uint64_t tsc);
 
   const int cpu_, home_;
   const double ticks_per_ns_;
   Executor& executor_;
+  const std::function<bool(int)> asks_whether_claimed_;
   HostThread* thread_ = nullptr;
-  bool is_claimed_ = false;
   int left_to_others_ = 0;  // in a row
   std::uint64_t not_before_tsc_ = 0;
   std::atomic<std::int64_t> allowed_ns_{0};
   std::atomic<bool> has_left_{false};
+  std::atomic<bool> is_claimed_{false};  // another run was found to take its turns here
 
   std::mutex mutex_;  // of what follows
   std::condition_variable changed_;
   pid_t tid_ = 0;  // whom the warden looks after; 0: nobody
   std::uint64_t since_tsc_ = 0;
+  std::uint64_t looks_for_claims_tsc_ = 0;
   UniqueFd clock_;  // its CPU clock,
   std::int64_t begun_ns_ = 0;
   AheadClock ahead_;

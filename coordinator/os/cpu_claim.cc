@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -23,6 +24,9 @@ namespace tcs {
 namespace {
 
 constexpr useconds_t kRetryUs = 20'000;
+// Somebody who only looks (IsClaimed) has it for an instant.
+constexpr int kLookers = 3;
+constexpr useconds_t kLookUs = 200;
 
 // Highest first.
 std::vector<int> AllowedCpus() {
@@ -36,22 +40,35 @@ std::vector<int> AllowedCpus() {
   return cpus;
 }
 
-// None: another process holds the claim. Without a descriptor: it cannot be made.
-std::optional<UniqueFd> TryToClaim(int cpu) {
-  const std::string folder = "/sys/devices/system/cpu/cpu" + std::to_string(cpu);
-  UniqueFd fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!fd || flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
-  if (errno == EWOULDBLOCK) return std::nullopt;
-  return UniqueFd();
+std::string FolderOf(int cpu) { return "/sys/devices/system/cpu/cpu" + std::to_string(cpu); }
+
+UniqueFd OpenFolderOf(int cpu) {
+  return UniqueFd(open(FolderOf(cpu).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
-// Who holds the lock on the CPU's folder, 0 if it is nobody whom this process can see; none if
-// nobody holds it.
-std::optional<pid_t> HolderOf(int cpu) {
-  struct stat folder;
-  if (stat(("/sys/devices/system/cpu/cpu" + std::to_string(cpu)).c_str(), &folder) != 0) {
-    return std::nullopt;
+// A lock belongs to all who have inherited the descriptor on which it was taken. One for each CPU,
+// for the processes that this one forks; in those, until they have claimed one.
+std::map<int, UniqueFd> g_shared_folders;
+constexpr std::size_t kMostShared = 256;
+
+// None: another process holds the claim. Without a descriptor: it cannot be made.
+std::optional<UniqueFd> TryToClaim(int cpu) {
+  const auto shared = g_shared_folders.find(cpu);
+  UniqueFd fd = shared == g_shared_folders.end()
+                    ? OpenFolderOf(cpu)
+                    : UniqueFd(fcntl(shared->second.get(), F_DUPFD_CLOEXEC, 0));
+  for (int looker = 0; fd; ++looker, usleep(kLookUs)) {
+    if (flock(fd.get(), LOCK_EX | LOCK_NB) == 0) return fd;
+    if (errno != EWOULDBLOCK) return UniqueFd();
+    if (looker == kLookers) return std::nullopt;
   }
+  return fd;
+}
+
+// Who holds the lock on the CPU's folder; 0 if it is nobody, or nobody whom this process can see.
+pid_t HolderOf(int cpu) {
+  struct stat folder;
+  if (stat(FolderOf(cpu).c_str(), &folder) != 0) return 0;
   std::ifstream locks("/proc/locks");
   const std::string inode = ":" + std::to_string(folder.st_ino);
   // 1: FLOCK  ADVISORY  WRITE 1234 00:16:5678 0 EOF
@@ -65,7 +82,7 @@ std::optional<pid_t> HolderOf(int cpu) {
       return std::max(pid, 0);
     }
   }
-  return std::nullopt;
+  return 0;
 }
 
 // As it was typed; shortened.
@@ -100,7 +117,7 @@ std::int64_t AgeOf(pid_t pid) {
 std::string WhoHas(const std::vector<int>& cpus) {
   std::string who;
   for (const int cpu : cpus) {
-    const pid_t pid = HolderOf(cpu).value_or(0);
+    const pid_t pid = HolderOf(cpu);
     if (pid == 0) continue;
     who +=
         (who.empty() ? " (CPU " : "; CPU ") + std::to_string(cpu) + ": pid " + std::to_string(pid);
@@ -112,7 +129,21 @@ std::string WhoHas(const std::vector<int>& cpus) {
 
 }  // namespace
 
-bool IsClaimed(int cpu) { return HolderOf(cpu).has_value(); }
+CpuClaim::~CpuClaim() {
+  if (fd) flock(fd.get(), LOCK_UN);
+}
+
+void ShareClaimsOfChildren() {
+  for (const int cpu : AllowedCpus()) {
+    if (g_shared_folders.size() == kMostShared) return;
+    if (UniqueFd fd = OpenFolderOf(cpu)) g_shared_folders.emplace(cpu, std::move(fd));
+  }
+}
+
+bool IsClaimed(int cpu) {
+  const UniqueFd fd = OpenFolderOf(cpu);
+  return fd && flock(fd.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
 
 int LastAllowedCpu() {
   const std::vector<int> cpus = AllowedCpus();
@@ -124,7 +155,10 @@ CpuClaim ClaimCpu(bool waits, std::string* taken) {
   if (cpus.size() > 1) cpus.pop_back();
   for (bool said = false;; usleep(kRetryUs)) {
     for (const int cpu : cpus) {
-      if (std::optional<UniqueFd> fd = TryToClaim(cpu)) return {cpu, std::move(*fd)};
+      std::optional<UniqueFd> fd = TryToClaim(cpu);
+      if (!fd) continue;
+      g_shared_folders.clear();
+      return {cpu, std::move(*fd)};
     }
     if (!said) {
       const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);

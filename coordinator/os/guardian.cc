@@ -13,6 +13,7 @@
 #include <new>
 #include <string>
 
+#include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/keeper.h"
 #include "coordinator/os/say.h"
@@ -112,6 +113,7 @@ std::vector<pid_t> GuardsOf(pid_t coordinator) {
 int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   ShareState();
+  ShareClaimsOfChildren();
   sigset_t awaited, before;
   sigemptyset(&awaited);
   for (const int signal : {SIGCHLD, SIGTERM, SIGHUP, SIGINT}) sigaddset(&awaited, signal);

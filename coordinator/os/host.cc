@@ -66,11 +66,11 @@ std::string TakeCoordinatorLevel() {
 
 }  // namespace
 
-std::string BindTo(int cpu) {
+bool BindTo(pid_t tid, int cpu) {
   cpu_set_t one;
   CPU_ZERO(&one);
   CPU_SET(static_cast<std::size_t>(cpu), &one);
-  return sched_setaffinity(0, sizeof one, &one) == 0 ? "" : "cannot bind to a CPU";
+  return sched_setaffinity(tid, sizeof one, &one) == 0;
 }
 
 std::string WhyNoRealTime() {

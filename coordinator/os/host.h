@@ -30,8 +30,9 @@ enum class Level : int {
 // Nanoseconds per TSC tick times 2^32, measured against CLOCK_MONOTONIC_RAW for some 20 ms.
 std::uint64_t CalibrateTsc();
 
-// Binds the calling process to the CPU. Empty on success, else one sentence.
-std::string BindTo(int cpu);
+// The thread, 0 for the calling one, runs on that CPU only. While it runs on another one the caller
+// sleeps until it has stopped. False if the kernel does not let it.
+bool BindTo(pid_t tid, int cpu);
 
 // Why this process cannot have the coordinator's level; empty if it can. It has it in between.
 std::string WhyNoRealTime();

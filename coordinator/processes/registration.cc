@@ -160,6 +160,7 @@ void Registration::PlaceAtGate(Task& task, std::int64_t at_ns) {
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);
+  slot.open_calls.store(0);
   slot.receipts.count.store(0);
   shm::NoteStarted(slot.receipts);
   slot.gate.store(shm::kGateClosed);

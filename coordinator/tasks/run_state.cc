@@ -18,6 +18,14 @@ void RunState::Warn(const std::string& text) {
   if (options.on_warning) options.on_warning(text);
 }
 
+std::int64_t RunState::ChargeAsDebt(Task& task, std::int64_t ns) {
+  task.charged_ns += ns;
+  task.debt_ns += ns;
+  const std::int64_t host_ns = task.metered.HostNs(ns);
+  report.client_ns += host_ns;
+  return host_ns;
+}
+
 std::int64_t RunState::WrittenAt() const {
   const Task& task = *turn.task();
   const std::int64_t start = task.cpu->progress_ns;

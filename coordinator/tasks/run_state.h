@@ -51,6 +51,10 @@ struct RunState {
   bool Preempts() const { return gates_only && !IsFixed(); }
   bool IsInGrace() const { return grace_began_ns != shm::kNeverNs; }
 
+  // What the thread has computed outside of a turn it is charged at once, and passes in its turns.
+  // Returns it as the host's.
+  std::int64_t ChargeAsDebt(Task& task, std::int64_t ns);
+
   // The furthest that two leaves, or a program's clock and the world, have been apart.
   std::int64_t DriftNs() const { return std::max(root.drift_ns(), most_lead.ns()); }
 

@@ -41,7 +41,7 @@ DdsArea* MapArea(std::uint32_t process) {
 }
 
 std::uint32_t Join() {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return 0;
   const Reply reply = Exchange(*t, Request{.kind = NotificationKind::kDdsJoin});
   const auto process = static_cast<std::uint32_t>(reply.values[0]);
@@ -61,7 +61,7 @@ bool Send(const iovec* parts, int count) {
   std::size_t size = 0;
   for (int i = 0; i < count; ++i) size += parts[i].iov_len;
   if (size > tcs::shm::kDdsBoxSize) return false;
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr) return true;  // the run is over
   char* to = Outbox();
   // The outbox is the parent's, which may be writing there. The coordinator says what is lost.
@@ -85,7 +85,7 @@ bool AnyIsFull() { return g_area != nullptr && g_area->full_count.load() != 0; }
 bool IsFull(std::uint32_t process) { return g_area != nullptr && g_area->IsFull(process); }
 
 bool AwaitRoom(std::uint32_t process, std::int64_t until_ns) {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || g_area == nullptr) return false;
   Exchange(*t,
            Request{.kind = NotificationKind::kDdsRoom, .deadline_ns = until_ns, .args = {process}});
@@ -110,14 +110,14 @@ void AwaitDeliverer(GuestThread& t) {
 }
 
 void Sync() {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || g_area == nullptr || t_delivers) return;
   HoldForRead(*t);
   AwaitDeliverer(*t);
 }
 
 void Settle() {
-  GuestThread* t = Enter();
+  const Entered t;
   if (t != nullptr && g_area != nullptr && !t_delivers) AwaitDeliverer(*t);
 }
 
@@ -152,7 +152,7 @@ const char* DdsLibrary(char (&path)[kDdsPathSize]) {
 
 void TellOfSockets(shm::WhySockets why) {
   static bool told = false;
-  GuestThread* t = Enter();
+  const Entered t;
   if (t == nullptr || told) return;
   told = true;
   Exchange(

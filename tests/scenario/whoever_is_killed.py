@@ -120,7 +120,11 @@ def one_round(party, folder):
         if victim is None:
             party, victim = "guardian", run.pid
         was_running = has_begun()
-        os.kill(-victim if party == "group" else victim, signal.SIGKILL)
+        try:
+            os.kill(-victim if party == "group" else victim, signal.SIGKILL)
+        except ProcessLookupError:  # it has ended by itself just now
+            party, victim = "guardian", run.pid
+            os.kill(victim, signal.SIGKILL)
         ends = SENTENCES[party] is not None
         if not ends:
             time.sleep(0.3)

@@ -25,7 +25,7 @@ class FurtherCpuTest : public testing::Test {
     const std::vector<CpuPlace> cpus = CpuPlaces();
     if (cpus.size() < 2) GTEST_SKIP() << "this machine has one processor";
     home_ = cpus[0].number;
-    cpu_.emplace(cpus[1].number, home_, 1.0, executor_);
+    cpu_.emplace(cpus[1].number, home_, 1.0, executor_, [this](int) { return is_claimed_.load(); });
     computing_ = std::thread([this] {
       cpu_set_t home;
       CPU_ZERO(&home);
@@ -49,7 +49,7 @@ class FurtherCpuTest : public testing::Test {
   int home_ = -1;
   std::optional<FurtherCpu> cpu_;
   HostThread thread_;
-  std::atomic<bool> begun_{false}, ends_{false};
+  std::atomic<bool> begun_{false}, ends_{false}, is_claimed_{false};
   std::atomic<int> where_{-1};
   std::thread computing_;
 };
@@ -86,11 +86,14 @@ TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
   EXPECT_FALSE(cpu_->Send(thread_, __rdtsc(), kMs)) << "it cannot be sent again";
 }
 
-TEST_F(FurtherCpuTest, AClaimedProcessorIsNotFree) {
-  cpu_->SetClaimed(true);
+TEST_F(FurtherCpuTest, AProcessorThatAnotherRunHasClaimedIsLeftToIt) {
+  is_claimed_ = true;
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  while (!cpu_->HasLeft()) sched_yield();
+  EXPECT_TRUE(cpu_->IsStarvedBy(__rdtsc()));
+  cpu_->BringHome();
+  EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
   EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc()));
-  cpu_->SetClaimed(false);
-  EXPECT_TRUE(cpu_->IsFreeAt(__rdtsc()));
 }
 
 TEST_F(FurtherCpuTest, OneThatIsLeftToOthersIsFreeLaterTheOftenerTheLater) {

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <string>
 
+#include "coordinator/os/cpu_claim.h"
+
 namespace tcs {
 namespace {
 
@@ -210,6 +212,59 @@ TEST_F(WhoeverIsKilled, ACoordinatorThatATracerHolds) {
   EXPECT_EQ(waitpid(coordinator_, &status, __WALL), coordinator_);
   EXPECT_TRUE(WIFSIGNALED(status)) << status;
   EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian_)));
+}
+
+// As a run does; tells of itself and of its CPU.
+int ClaimAndLive() {
+  std::string taken;
+  const CpuClaim claim = ClaimCpu(true, &taken);
+  Tell(getpid());
+  Tell(claim.cpu);
+  for (;;) pause();
+  return 0;
+}
+
+// Whoever clears the CPU of a dead coordinator's threads would otherwise meet another run's.
+TEST(Guardian, TheClaimOfACoordinatorThatIsKilledEndsWithTheGuardian) {
+  ASSERT_EQ(pipe(g_told), 0);
+  const pid_t guardian = Guard(ClaimAndLive, {});
+  const pid_t coordinator = Told();
+  const int cpu = Told();
+  const pid_t keeper = ParentOf(coordinator);
+  kill(guardian, SIGSTOP);
+  kill(keeper, SIGSTOP);
+  kill(coordinator, SIGKILL);
+  EXPECT_TRUE(EndsSoon(coordinator));
+  EXPECT_TRUE(IsClaimed(cpu));
+  kill(keeper, SIGCONT);
+  EXPECT_TRUE(EndsSoon(keeper));
+  EXPECT_TRUE(IsClaimed(cpu));
+  kill(guardian, SIGCONT);
+  EXPECT_TRUE(WIFSIGNALED(StatusOf(guardian)));
+  std::string taken;
+  EXPECT_GE(ClaimCpu(true, &taken).cpu, 0);
+  close(g_told[0]);
+  close(g_told[1]);
+}
+
+TEST(Guardian, AClaimThatIsGivenBackIsEverybodys) {
+  ASSERT_EQ(pipe(g_told), 0);
+  const pid_t guardian = Guard(
+      [] {
+        std::string taken;
+        Tell(ClaimCpu(true, &taken).cpu);
+        pause();
+        return 0;
+      },
+      {});
+  const int cpu = Told();
+  std::string taken;
+  const CpuClaim own = ClaimCpu(true, &taken);
+  EXPECT_GE(own.cpu, cpu);
+  kill(guardian, SIGTERM);
+  StatusOf(guardian);
+  close(g_told[0]);
+  close(g_told[1]);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace tcs::shm {
 namespace {
 
-TEST(Layout, VersionTwelveHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 14u);
+TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
+  EXPECT_EQ(kVersion, 15u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1152u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
