@@ -113,6 +113,27 @@ std::string PhysicsTable(const PhysicsRows& physics) {
   return text;
 }
 
+std::string DispatchTable(const DispatchRows& dispatches) {
+  static constexpr char kLine[] = "{:>7}{:>9}{:>8}{:>7}  {:<11}{:>14}\n";
+  std::string text =
+      fmt::format(kLine, "clients", "bare µs", "tcs µs", "ratio", "", "coordinating");
+  for (const DispatchRow& row : dispatches.rows) {
+    text += fmt::format(kLine, row.clients, Brief(row.bare_us), Brief(row.tcs_us),
+                        Brief(row.ratio.median),
+                        fmt::format("{}-{}", Brief(row.ratio.lowest), Brief(row.ratio.highest)),
+                        Brief(row.coordinating_us));
+  }
+  const double most = dispatches.rows.back().tcs_us / dispatches.rows.front().tcs_us;
+  const double bare = dispatches.rows.back().bare_us / dispatches.rows.front().bare_us;
+  text += fmt::format(
+      "A dispatch of one of so many clients on a core, without what it computes, beside what the "
+      "kernel\nneeds to have one of so many processes run and say so. From {} to {} clients {} "
+      "times as much\n(the kernel alone: {}). Medians of {} round{}.\n",
+      dispatches.rows.front().clients, dispatches.rows.back().clients, Brief(most), Brief(bare),
+      dispatches.rounds, dispatches.rounds == 1 ? "" : "s");
+  return text;
+}
+
 std::string FleetTable(const FleetRows& fleets) {
   static constexpr char kLine[] =
       "{:>6}{:>6}{:>9}{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
@@ -181,6 +202,7 @@ std::string ToTables(const Results& results) {
   }
   if (results.dds.has_value()) tables.push_back(DdsTable(*results.dds));
   if (results.physics.has_value()) tables.push_back(PhysicsTable(*results.physics));
+  if (results.dispatches.has_value()) tables.push_back(DispatchTable(*results.dispatches));
   if (results.fleets.has_value()) tables.push_back(FleetTable(*results.fleets));
   return fmt::format("{}", fmt::join(tables, "\n"));
 }
@@ -219,6 +241,17 @@ std::string ToJson(const Results& results) {
                             {"same_ratio", ToJson(row.same)},
                             {"checkpoint_us", row.checkpoint_us},
                             {"steps_per_sample", row.steps_per_sample}});
+    }
+  }
+  if (const auto& dispatches = results.dispatches; dispatches.has_value()) {
+    Json& to = json["dispatches"];
+    to = {{"rounds", dispatches->rounds}, {"rows", Json::array()}};
+    for (const DispatchRow& row : dispatches->rows) {
+      to["rows"].push_back({{"clients", row.clients},
+                            {"bare_us", row.bare_us},
+                            {"tcs_us", row.tcs_us},
+                            {"ratio", ToJson(row.ratio)},
+                            {"coordinating_us", row.coordinating_us}});
     }
   }
   if (const auto& fleets = results.fleets; fleets.has_value()) {

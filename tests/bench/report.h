@@ -7,6 +7,7 @@
 
 #include "tests/bench/call_ratios.h"
 #include "tests/bench/dds_rows.h"
+#include "tests/bench/dispatch_rows.h"
 #include "tests/bench/fleet_rows.h"
 #include "tests/bench/physics_rows.h"
 #include "tests/bench/under_load.h"
@@ -20,6 +21,7 @@ struct Results {
   std::optional<DdsRows> dds;
   std::optional<PhysicsRows> physics;
   std::optional<FleetRows> fleets;
+  std::optional<DispatchRows> dispatches;
 };
 
 std::string ToTables(const Results& results);
