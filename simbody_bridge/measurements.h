@@ -1,14 +1,18 @@
 // What sensors of robots measure, as values: each transport makes its messages of them.
 //
 // SI units. Frames are named as the scenario names them; a mounted sensor looks along the x axis of
-// its frame, with z up, as REP-103 has bodies.
+// its frame, with z up, as REP-103 has bodies. A distance that is farther than what a sensor
+// reaches is infinity, and one that is nearer minus infinity (REP-117).
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "simbody_bridge/geodesy.h"
 #include "simbody_bridge/inertial.h"
 #include "simbody_bridge/model/pose.h"
 
@@ -27,19 +31,81 @@ struct OdometryMeasurement {
   std::array<double, 3> linear_mps{}, angular_radps{};
 };
 
+struct TransformsMeasurement {
+  struct Transform {
+    std::string frame, child_frame;
+    Pose pose;
+  };
+  std::vector<Transform> transforms;
+};
+
+struct DescriptionMeasurement {
+  std::string text;
+};
+
 // Rays side by side, the first of them at the time of the measurement.
 struct ScanMeasurement {
   std::string frame;
   double first_rad = 0, step_rad = 0;  // about z
   double ray_s = 0, scan_s = 0;        // between two rays, between two scans
   double least_m = 0, most_m = 0;
-  // What is farther than the most is at infinity, and what is nearer than the least at minus
-  // infinity (REP-117).
   std::vector<double> ranges_m;
+};
+
+// What rays in several layers have met, each seen from where the sensor was then.
+struct CloudMeasurement {
+  struct Point {
+    std::array<double, 3> direction{};  // of unit length
+    double range_m = 0;
+    double after_s = 0;       // the first ray
+    std::uint16_t layer = 0;  // from below
+  };
+  std::string frame;
+  std::vector<Point> points;
+};
+
+struct RangeMeasurement {
+  std::string frame;
+  bool is_infrared = false;  // else ultrasound
+  double field_of_view_rad = 0;
+  double least_m = 0, most_m = 0;
+  double range_m = 0;
+};
+
+// How far ahead it is, along x, to what each pixel sees; rows from above, from the left.
+struct DepthMeasurement {
+  std::string frame;
+  std::size_t width = 0, height = 0;
+  std::vector<double> depths_m;
+};
+
+struct GnssMeasurement {
+  std::string frame;
+  Geodetic origin;                // of the world
+  std::array<double, 3> enu_m{};  // from there, along the world's axes
+  Geodetic position() const { return ToGeodetic(origin, enu_m); }
+};
+
+struct MagneticMeasurement {
+  std::string frame;
+  std::array<double, 3> field_t{};  // along the axes of the frame
+};
+
+struct PressureMeasurement {
+  std::string frame;
+  double pressure_pa = 0;
+};
+
+struct ContactMeasurement {
+  std::string frame;
+  bool is_touching = false;
 };
 
 // Empty: not of such a sensor.
 using Measurement =
-    std::variant<std::monostate, ImuMeasurement, OdometryMeasurement, ScanMeasurement>;
+    std::variant<std::monostate, ImuMeasurement, OdometryMeasurement, TransformsMeasurement,
+                 DescriptionMeasurement, ScanMeasurement, CloudMeasurement, RangeMeasurement,
+                 DepthMeasurement, GnssMeasurement, MagneticMeasurement, PressureMeasurement,
+                 ContactMeasurement>;
 
 }  // namespace tcs

@@ -21,6 +21,7 @@
 #include "simbody_bridge/inertial.h"
 #include "simbody_bridge/measurements.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/joint_trajectory.h"
 #include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
@@ -74,6 +75,7 @@ struct GoalNames {
   std::span<const std::string> names;               // that JointGoal::joint counts
   JointQuantity quantity = JointQuantity::kEffort;  // what a number is that does not say it
   bool are_wheels = false;                          // a command says how fast the robot is to go
+  bool follow_trajectories = false;                 // a command is one
 };
 
 // Who is given what comes in. Channels are numbered as the scenario lists those of commands.
@@ -83,6 +85,7 @@ class CommandSink {
   virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
   virtual void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) = 0;
+  virtual void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) = 0;
   // The joints or rotors that the channel drives; none: wrenches are for its body or link.
   virtual std::optional<GoalNames> GoalsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.

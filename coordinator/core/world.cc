@@ -50,6 +50,9 @@ World::World(std::function<void(const std::string&)> warn)
           [this](VirtualTime sent, VirtualDuration latency, int link, WrenchFrame frame,
                  const Wrench& wrench) {
             dynamics_->ApplyToLink(link, frame, wrench, ActsAt(sent, latency));
+          },
+          [this](VirtualTime at, std::span<const int> joints, std::span<JointState> states) {
+            dynamics_->ReadJoints(std::max(at, dynamics_->Now()), joints, states);
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {

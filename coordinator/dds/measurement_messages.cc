@@ -1,6 +1,8 @@
 #include "coordinator/dds/measurement_messages.h"
 
 #include <algorithm>
+#include <cstring>
+#include <iterator>
 #include <type_traits>
 
 #include "coordinator/dds/ros_fields.h"
@@ -47,14 +49,147 @@ Owned<LaserScanMessage> ToMessage(std::int64_t stamp_ns, const ScanMeasurement& 
   return scan;
 }
 
-std::vector<std::byte> EncodeMeasurement(std::int64_t stamp_ns, const Measurement& measurement) {
+Owned<TransformsMessage> ToMessage(std::int64_t stamp_ns, const TransformsMeasurement& measured) {
+  Owned<TransformsMessage> message;
+  Resize(&message->transforms, measured.transforms.size());
+  for (std::size_t i = 0; i < measured.transforms.size(); ++i) {
+    const auto& [frame, child_frame, pose] = measured.transforms[i];
+    auto& transform = message->transforms._buffer[i];
+    SetHeader(&transform.header, stamp_ns, frame);
+    SetText(&transform.child_frame_id, child_frame);
+    transform.transform = {ToVector3(pose.position_m), ToQuaternion(pose.orientation_xyzw)};
+  }
+  return message;
+}
+
+Owned<StringMessage> ToMessage(std::int64_t, const DescriptionMeasurement& measured) {
+  Owned<StringMessage> message;
+  SetText(&message->data, measured.text);
+  return message;
+}
+
+namespace {
+
+// The numbers of PointField's types.
+constexpr std::uint8_t kFloat32 = 7, kUint16 = 4;
+
+struct CloudField {
+  const char* name;
+  std::uint8_t type;
+  std::uint32_t offset;
+};
+constexpr CloudField kCloudFields[] = {{"x", kFloat32, 0},
+                                       {"y", kFloat32, 4},
+                                       {"z", kFloat32, 8},
+                                       {"time", kFloat32, 12},
+                                       {"ring", kUint16, 16}};
+constexpr std::uint32_t kPointBytes = 18;
+
+template <class Value>
+void Put(Value value, std::uint8_t** to) {
+  std::memcpy(*to, &value, sizeof value);
+  *to += sizeof value;
+}
+
+}  // namespace
+
+Owned<PointCloudMessage> ToMessage(std::int64_t stamp_ns, const CloudMeasurement& measured) {
+  Owned<PointCloudMessage> cloud;
+  const auto points = static_cast<std::uint32_t>(measured.points.size());
+  SetHeader(&cloud->header, stamp_ns, measured.frame);
+  cloud->height = 1;
+  cloud->width = points;
+  Resize(&cloud->fields, std::size(kCloudFields));
+  for (std::size_t i = 0; i < std::size(kCloudFields); ++i) {
+    auto& field = cloud->fields._buffer[i];
+    SetText(&field.name, kCloudFields[i].name);
+    field.offset = kCloudFields[i].offset;
+    field.datatype = kCloudFields[i].type;
+    field.count = 1;
+  }
+  cloud->point_step = kPointBytes;
+  cloud->row_step = kPointBytes * points;
+  cloud->is_dense = true;
+  Resize(&cloud->data, std::size_t{kPointBytes} * points);
+  std::uint8_t* to = cloud->data._buffer;
+  for (const CloudMeasurement::Point& point : measured.points) {
+    for (const double axis : point.direction) Put(static_cast<float>(axis * point.range_m), &to);
+    Put(static_cast<float>(point.after_s), &to);
+    Put(point.layer, &to);
+  }
+  return cloud;
+}
+
+Owned<RangeMessage> ToMessage(std::int64_t stamp_ns, const RangeMeasurement& measured) {
+  Owned<RangeMessage> range;
+  SetHeader(&range->header, stamp_ns, measured.frame);
+  range->radiation_type = measured.is_infrared ? 1 : 0;
+  range->field_of_view = static_cast<float>(measured.field_of_view_rad);
+  range->min_range = static_cast<float>(measured.least_m);
+  range->max_range = static_cast<float>(measured.most_m);
+  range->range = static_cast<float>(measured.range_m);
+  return range;
+}
+
+Owned<ImageMessage> ToMessage(std::int64_t stamp_ns, const DepthMeasurement& measured) {
+  Owned<ImageMessage> image;
+  SetHeader(&image->header, stamp_ns, measured.frame);
+  image->height = static_cast<std::uint32_t>(measured.height);
+  image->width = static_cast<std::uint32_t>(measured.width);
+  SetText(&image->encoding, "32FC1");
+  image->step = image->width * static_cast<std::uint32_t>(sizeof(float));
+  Resize(&image->data, measured.depths_m.size() * sizeof(float));
+  std::uint8_t* to = image->data._buffer;
+  for (const double depth_m : measured.depths_m) Put(static_cast<float>(depth_m), &to);
+  return image;
+}
+
+Owned<NavSatFixMessage> ToMessage(std::int64_t stamp_ns, const GnssMeasurement& measured) {
+  Owned<NavSatFixMessage> fix;
+  const Geodetic position = measured.position();
+  SetHeader(&fix->header, stamp_ns, measured.frame);
+  fix->status.service = 1;  // GPS; the status 0 is a fix
+  fix->latitude = position.latitude_deg;
+  fix->longitude = position.longitude_deg;
+  fix->altitude = position.altitude_m;
+  return fix;
+}
+
+Owned<MagneticFieldMessage> ToMessage(std::int64_t stamp_ns, const MagneticMeasurement& measured) {
+  Owned<MagneticFieldMessage> magnetic;
+  SetHeader(&magnetic->header, stamp_ns, measured.frame);
+  magnetic->magnetic_field = ToVector3(measured.field_t);
+  return magnetic;
+}
+
+Owned<FluidPressureMessage> ToMessage(std::int64_t stamp_ns, const PressureMeasurement& measured) {
+  Owned<FluidPressureMessage> pressure;
+  SetHeader(&pressure->header, stamp_ns, measured.frame);
+  pressure->fluid_pressure = measured.pressure_pa;
+  return pressure;
+}
+
+Owned<BoolMessage> ToMessage(std::int64_t, const ContactMeasurement& measured) {
+  Owned<BoolMessage> contact;
+  contact->data = measured.is_touching;
+  return contact;
+}
+
+std::vector<std::byte> EncodeMeasurement(std::int64_t stamp_ns, const Measurement& measurement,
+                                         RosRelease release) {
   return std::visit(
-      [stamp_ns](const auto& measured) -> std::vector<std::byte> {
-        if constexpr (std::is_same_v<decltype(measured), const std::monostate&>) {
+      [&](const auto& measured) -> std::vector<std::byte> {
+        using Measured = std::remove_cvref_t<decltype(measured)>;
+        if constexpr (std::is_same_v<Measured, std::monostate>) {
           TCS_CHECK(false);
           return {};
         } else {
-          return ToCdr(ToMessage(stamp_ns, measured));
+          std::vector<std::byte> cdr = ToCdr(ToMessage(stamp_ns, measured));
+          // Up to Humble a Range ends before its variance.
+          if (std::is_same_v<Measured, RangeMeasurement> && release == RosRelease::kHumble) {
+            cdr.resize(cdr.size() - sizeof(float));
+          }
+          return cdr;
         }
       },
       measurement);

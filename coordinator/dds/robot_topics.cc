@@ -65,4 +65,13 @@ std::variant<PlanarSpeed, MessageError> DecodeSpeed(std::span<const std::byte> c
   return ToPlanarSpeed(*std::get<Owned<TwistMessage>>(twist));
 }
 
+std::variant<JointTrajectory, MessageError> DecodeTrajectory(std::span<const std::string> joints,
+                                                             VirtualDuration realtime_offset,
+                                                             std::span<const std::byte> cdr) {
+  const auto message = FromCdr<JointTrajectoryMessage>(cdr);
+  if (const auto* error = std::get_if<CdrError>(&message)) return MessageError{error->message};
+  return ToJointTrajectory(*std::get<Owned<JointTrajectoryMessage>>(message), joints,
+                           realtime_offset);
+}
+
 }  // namespace tcs::dds

@@ -51,4 +51,8 @@ class SensorEncoder {
 // kTwist is for robots on wheels.
 [[nodiscard]] std::variant<PlanarSpeed, MessageError> DecodeSpeed(std::span<const std::byte> cdr);
 
+[[nodiscard]] std::variant<JointTrajectory, MessageError> DecodeTrajectory(
+    std::span<const std::string> joints, VirtualDuration realtime_offset,
+    std::span<const std::byte> cdr);
+
 }  // namespace tcs::dds

@@ -165,24 +165,64 @@ std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
   return goals;
 }
 
-std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
-    const JointStateMessage& message, std::span<const std::string> joints) {
-  const std::size_t count = message.name._length;
-  std::vector<JointGoal> goals(count);
+namespace {
+
+// Where the joints that a message names are among `joints`; else what is wrong with a name.
+std::variant<std::vector<std::size_t>, MessageError> PlacesOf(const dds_sequence_string& names,
+                                                              std::span<const std::string> joints) {
+  std::vector<std::size_t> places;
   std::vector<char> is_named(joints.size(), 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string_view name = message.name._buffer[i];
+  for (std::size_t i = 0; i < names._length; ++i) {
+    const std::string_view name = names._buffer[i];
     const auto found = std::find(joints.begin(), joints.end(), name);
     if (found == joints.end()) {
       constexpr std::size_t kLongestQuote = 40;
       return MessageError{"names '" + std::string(name.substr(0, kLongestQuote)) +
                           "', which the channel does not drive"};
     }
-    goals[i].joint = static_cast<std::size_t>(found - joints.begin());
-    if (std::exchange(is_named[goals[i].joint], 1) != 0) {
+    places.push_back(static_cast<std::size_t>(found - joints.begin()));
+    if (std::exchange(is_named[places.back()], 1) != 0) {
       return MessageError{"names '" + std::string(name) + "' twice"};
     }
   }
+  return places;
+}
+
+}  // namespace
+
+std::variant<JointTrajectory, MessageError> ToJointTrajectory(const JointTrajectoryMessage& message,
+                                                              std::span<const std::string> joints,
+                                                              VirtualDuration realtime_offset) {
+  auto places = PlacesOf(message.joint_names, joints);
+  if (auto* error = std::get_if<MessageError>(&places)) return std::move(*error);
+  JointTrajectory trajectory;
+  trajectory.joints = std::get<0>(std::move(places));
+  const auto at = [](std::int64_t seconds, std::uint32_t nanoseconds) {
+    return VirtualDuration::Nanoseconds(seconds * 1'000'000'000 + nanoseconds);
+  };
+  const TimeMessage& stamp = message.header.stamp;
+  if (stamp.sec != 0 || stamp.nanosec != 0) {
+    trajectory.start = VirtualTime{} + (at(stamp.sec, stamp.nanosec) - realtime_offset);
+  }
+  const auto list = [](const dds_sequence_double& numbers) {
+    return std::vector<double>(numbers._buffer, numbers._buffer + numbers._length);
+  };
+  for (std::size_t i = 0; i < message.points._length; ++i) {
+    const auto& point = message.points._buffer[i];
+    trajectory.points.push_back({at(point.time_from_start.sec, point.time_from_start.nanosec),
+                                 list(point.positions), list(point.velocities)});
+  }
+  if (std::string wrong = WhatIsWrongWith(trajectory); !wrong.empty()) return MessageError{wrong};
+  return trajectory;
+}
+
+std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
+    const JointStateMessage& message, std::span<const std::string> joints) {
+  const std::size_t count = message.name._length;
+  auto places = PlacesOf(message.name, joints);
+  if (auto* error = std::get_if<MessageError>(&places)) return std::move(*error);
+  std::vector<JointGoal> goals;
+  for (const std::size_t joint : std::get<0>(places)) goals.push_back({joint});
   const std::pair<const dds_sequence_double*, JointQuantity> lists[] = {
       {&message.position, JointQuantity::kPosition},
       {&message.velocity, JointQuantity::kVelocity},

@@ -18,6 +18,7 @@
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/inertial.h"
 #include "simbody_bridge/model/joint_goal.h"
+#include "simbody_bridge/model/joint_trajectory.h"
 #include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs::dds {
@@ -71,5 +72,11 @@ struct MessageError {
 // For any of `joints`, by name; lists of positions, velocities and efforts may be empty.
 [[nodiscard]] std::variant<std::vector<JointGoal>, MessageError> ToJointGoals(
     const JointStateMessage& message, std::span<const std::string> joints);
+
+// For any of `joints`, by name. A stamp of 0 means that it starts when it comes, as ROS 2 has it;
+// another one is so far ahead of virtual time. Accelerations and efforts mean nothing here.
+[[nodiscard]] std::variant<JointTrajectory, MessageError> ToJointTrajectory(
+    const JointTrajectoryMessage& message, std::span<const std::string> joints,
+    VirtualDuration realtime_offset);
 
 }  // namespace tcs::dds

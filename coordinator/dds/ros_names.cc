@@ -21,15 +21,20 @@ bool IsWordCharacter(char c) { return IsDigit(c) || c == '_' || IsLetter(c); }
 
 const std::vector<std::string>& SensorMessageNames() {
   static const std::vector<std::string> names = {
-      "nav_msgs/msg/Odometry", "sensor_msgs/msg/Imu", "sensor_msgs/msg/JointState",
-      "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"};
+      "nav_msgs/msg/Odometry",         "sensor_msgs/msg/Imu",
+      "sensor_msgs/msg/JointState",    "geometry_msgs/msg/Twist",
+      "sensor_msgs/msg/LaserScan",     "sensor_msgs/msg/PointCloud2",
+      "sensor_msgs/msg/Range",         "sensor_msgs/msg/Image",
+      "sensor_msgs/msg/NavSatFix",     "sensor_msgs/msg/MagneticField",
+      "sensor_msgs/msg/FluidPressure", "tf2_msgs/msg/TFMessage",
+      "std_msgs/msg/String",           "std_msgs/msg/Bool"};
   return names;
 }
 
 const std::vector<std::string>& CommandMessageNames() {
   static const std::vector<std::string> names = {
       "geometry_msgs/msg/Wrench", "std_msgs/msg/Float64MultiArray", "sensor_msgs/msg/JointState",
-      "geometry_msgs/msg/Twist"};
+      "geometry_msgs/msg/Twist", "trajectory_msgs/msg/JointTrajectory"};
   return names;
 }
 

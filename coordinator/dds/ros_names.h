@@ -14,10 +14,25 @@ namespace tcs::dds {
 
 // Messages that tell the state of bodies; the first kBodyMessages those of
 // free bodies, all others those of robots' own sensors.
-enum class SensorMessage { kOdometry, kImu, kJointState, kTwist, kLaserScan };
+enum class SensorMessage {
+  kOdometry,
+  kImu,
+  kJointState,
+  kTwist,
+  kLaserScan,
+  kPointCloud,
+  kRange,
+  kImage,
+  kNavSatFix,
+  kMagneticField,
+  kFluidPressure,
+  kTransforms,
+  kString,
+  kBool
+};
 inline constexpr std::size_t kBodyMessages = 4;
 // Messages that move them; those after the first move joints.
-enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState, kTwist };
+enum class CommandMessage { kWrench, kFloat64MultiArray, kJointState, kTwist, kJointTrajectory };
 
 // In the order of the enumerators.
 [[nodiscard]] const std::vector<std::string>& SensorMessageNames();

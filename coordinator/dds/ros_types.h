@@ -35,6 +35,16 @@ using ImuMessage = sensor_msgs_msg_dds__Imu_;
 using JointStateMessage = sensor_msgs_msg_dds__JointState_;
 using Float64MultiArrayMessage = std_msgs_msg_dds__Float64MultiArray_;
 using LaserScanMessage = sensor_msgs_msg_dds__LaserScan_;
+using RangeMessage = sensor_msgs_msg_dds__Range_;
+using PointCloudMessage = sensor_msgs_msg_dds__PointCloud2_;
+using NavSatFixMessage = sensor_msgs_msg_dds__NavSatFix_;
+using MagneticFieldMessage = sensor_msgs_msg_dds__MagneticField_;
+using FluidPressureMessage = sensor_msgs_msg_dds__FluidPressure_;
+using ImageMessage = sensor_msgs_msg_dds__Image_;
+using TransformsMessage = tf2_msgs_msg_dds__TFMessage_;
+using BoolMessage = std_msgs_msg_dds__Bool_;
+using StringMessage = std_msgs_msg_dds__String_;
+using JointTrajectoryMessage = trajectory_msgs_msg_dds__JointTrajectory_;
 using ClockMessage = rosgraph_msgs_msg_dds__Clock_;
 using HumbleParticipantMessage = rmw_dds_common_msg_dds__ParticipantEntitiesInfo_;
 using IronParticipantMessage = rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_;
@@ -53,6 +63,16 @@ TCS_DESCRIBED_BY(ImuMessage, sensor_msgs_msg_dds__Imu_)
 TCS_DESCRIBED_BY(JointStateMessage, sensor_msgs_msg_dds__JointState_)
 TCS_DESCRIBED_BY(Float64MultiArrayMessage, std_msgs_msg_dds__Float64MultiArray_)
 TCS_DESCRIBED_BY(LaserScanMessage, sensor_msgs_msg_dds__LaserScan_)
+TCS_DESCRIBED_BY(RangeMessage, sensor_msgs_msg_dds__Range_)
+TCS_DESCRIBED_BY(PointCloudMessage, sensor_msgs_msg_dds__PointCloud2_)
+TCS_DESCRIBED_BY(NavSatFixMessage, sensor_msgs_msg_dds__NavSatFix_)
+TCS_DESCRIBED_BY(MagneticFieldMessage, sensor_msgs_msg_dds__MagneticField_)
+TCS_DESCRIBED_BY(FluidPressureMessage, sensor_msgs_msg_dds__FluidPressure_)
+TCS_DESCRIBED_BY(ImageMessage, sensor_msgs_msg_dds__Image_)
+TCS_DESCRIBED_BY(TransformsMessage, tf2_msgs_msg_dds__TFMessage_)
+TCS_DESCRIBED_BY(BoolMessage, std_msgs_msg_dds__Bool_)
+TCS_DESCRIBED_BY(StringMessage, std_msgs_msg_dds__String_)
+TCS_DESCRIBED_BY(JointTrajectoryMessage, trajectory_msgs_msg_dds__JointTrajectory_)
 TCS_DESCRIBED_BY(ClockMessage, rosgraph_msgs_msg_dds__Clock_)
 TCS_DESCRIBED_BY(HumbleParticipantMessage, rmw_dds_common_msg_dds__ParticipantEntitiesInfo_)
 TCS_DESCRIBED_BY(IronParticipantMessage, rmw_dds_common_iron_msg_dds__ParticipantEntitiesInfo_)

@@ -64,8 +64,7 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   const bool of_joints = !of_instrument && IsOfModel(map, "bodies");
   std::vector<std::string> keys = {"rate", "latency", "dropout", "jitter"};
   if (of_instrument) {
-    const std::vector<std::string> own = InstrumentKeys(map);
-    keys.insert(keys.begin(), own.begin(), own.end());
+    keys = InstrumentKeys(map);
   } else if (of_joints) {
     keys.insert(keys.begin(), {"model", "joints"});
   } else {
@@ -81,6 +80,7 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   channel.errors = LoadSensorErrors(map, entry.key, scenario.seed);
   if (of_instrument) {
     LoadInstrument(map, scenario, &channel);
+    if (type != ChannelType::kDds) CheckFitsDatagram(map, *channel.instrument);
   } else if (of_joints) {
     channel.joints = LoadJointGroup(map, scenario);
   } else {

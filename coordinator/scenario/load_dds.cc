@@ -43,8 +43,21 @@ void LoadHistory(const YamlMap& map, dds::Qos* qos) {
   qos->depth = static_cast<int>(depth->AsInteger(1, kGreatestDepth));
 }
 
+// ROS 2's profiles, by their names.
+dds::Qos LoadProfile(const YamlValue& value) {
+  const std::string name = value.AsText();
+  if (name == "default") return {};
+  if (name == "sensor_data") return {.reliability = dds::Reliability::kBestEffort, .depth = 5};
+  value.Fail("is the unknown '" + name + "'; " +
+             Suggest(name, {"default", "sensor_data"}, "profiles"));
+}
+
 // Over what `qos` says already.
 void LoadQos(const YamlValue& value, Side side, dds::Qos* qos) {
+  if (!value.IsMap()) {
+    *qos = LoadProfile(value);
+    return;
+  }
   const YamlMap map = value.AsMap();
   map.AllowOnly({"reliability", "history", "depth", "durability", "deadline", "lifespan", "lease"});
   if (const YamlValue* v = map.Find("reliability")) {
@@ -118,16 +131,25 @@ dds::SensorMessage LoadSensorMessage(const YamlValue& value) {
 DdsSensorEnd LoadInstrumentEnd(const YamlMap& map, const SensorChannelSpec& sensor,
                                DdsTopics* topics) {
   DdsSensorEnd to;
-  to.message = MessageOf(*sensor.instrument);
+  to.message = MessageOf(map);
   const std::string& name = dds::NameOf(to.message);
   if (const YamlValue* v = map.Find("message")) {
     if (dds::FullMessageName(v->AsText()) != name) {
       v->Fail("is " + v->AsText() + ", but this kind of sensor writes " + name + "; remove it");
     }
   }
-  to.end = LoadEnd(map, name, Side::kWriter, {}, topics);
+  to.end = LoadEnd(map, name, Side::kWriter, DefaultEndOf(map), topics);
   CheckDeadline(map, to.end, sensor.period);
   return to;
+}
+
+// What nearly everybody reads.
+dds::CommandMessage MessageFor(const CommandChannelSpec& command) {
+  if (command.rotors) return dds::CommandMessage::kFloat64MultiArray;
+  if (!command.joints) return dds::CommandMessage::kWrench;
+  if (command.joints->wheels) return dds::CommandMessage::kTwist;
+  if (command.joints->setpoint_period) return dds::CommandMessage::kJointTrajectory;
+  return dds::CommandMessage::kFloat64MultiArray;
 }
 
 dds::CommandMessage LoadCommandMessage(const YamlValue& value, const CommandChannelSpec& command) {
@@ -141,14 +163,18 @@ dds::CommandMessage LoadCommandMessage(const YamlValue& value, const CommandChan
   const auto message =
       static_cast<dds::CommandMessage>(LoadMessage(value, dds::CommandMessageNames()));
   if (!command.joints) return message;
-  const bool has_wheels = command.joints->wheels.has_value();
-  if (has_wheels && name != twist) {
-    value.Fail("is " + name + ", but a robot on wheels is told its velocity by " + twist +
-               "; read that");
-  }
-  if (!has_wheels && name == twist) {
-    value.Fail("is the velocity of a robot on wheels; add drive: differential");
-  }
+  const auto is_for = [&](bool wants, dds::CommandMessage wanted, const char* who,
+                          const char* drive) {
+    const std::string& only = dds::NameOf(wanted);
+    if (wants && name != only) {
+      value.Fail("is " + name + ", but " + who + " told by " + only + "; read that");
+    }
+    if (!wants && name == only) value.Fail(std::string("wants drive: ") + drive + "; add that");
+  };
+  is_for(command.joints->wheels.has_value(), dds::CommandMessage::kTwist,
+         "how fast a robot on wheels is to go is", "differential");
+  is_for(command.joints->setpoint_period.has_value(), dds::CommandMessage::kJointTrajectory,
+         "trajectories are", "trajectory");
   return message;
 }
 
@@ -197,11 +223,8 @@ DdsSensorEnd LoadDdsSensorEnd(const YamlMap& map, const SensorChannelSpec& senso
 DdsCommandEnd LoadDdsCommandEnd(const YamlMap& map, const CommandChannelSpec& command,
                                 DdsTopics* topics) {
   DdsCommandEnd from;
-  from.message =
-      LoadCommandMessage(map.Require("message", command.joints && command.joints->wheels
-                                                    ? "message: geometry_msgs/msg/Twist"
-                                                    : "message: geometry_msgs/msg/Wrench"),
-                         command);
+  from.message = LoadCommandMessage(
+      map.Require("message", "message: " + dds::NameOf(MessageFor(command))), command);
   const bool has_goals = command.joints || command.rotors;
   if (has_goals == (from.message == dds::CommandMessage::kWrench)) {
     const std::string what = command.joints ? "joints" : "rotors";

@@ -16,13 +16,19 @@ int LoadLink(const YamlValue& value, const Scenario& scenario, std::string* name
 // Whether the channel with the keys of `map` is about such a sensor.
 bool IsAboutInstrument(const YamlMap& map);
 
-// The keys that the kind in `map` has beside those of all sensors.
+// The keys that the kind in `map` has beside those of the transport.
 std::vector<std::string> InstrumentKeys(const YamlMap& map);
 
-// The sensor, and what is wrong with what it measures, into `channel`, whose period is known.
+// The sensor, and what is wrong with what it measures, into `channel`, whose period is known; where
+// it has to say something only once the period becomes 0.
 void LoadInstrument(const YamlMap& map, const Scenario& scenario, SensorChannelSpec* channel);
 
-// The message that tells of it on DDS.
-dds::SensorMessage MessageOf(const InstrumentSpec& spec);
+// For channels of JSON in datagrams: not all kinds fit.
+void CheckFitsDatagram(const YamlMap& map, const InstrumentSpec& spec);
+
+// The message that tells of the sensor on DDS, and its topic where nothing else is said: that may
+// have no name.
+dds::SensorMessage MessageOf(const YamlMap& map);
+DdsTopicSpec DefaultEndOf(const YamlMap& map);
 
 }  // namespace tcs

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/scenario/sections.h"
 
 namespace tcs {
 
@@ -40,6 +41,7 @@ auto& JointOf(int index, Models& models) {
 }
 
 constexpr const char* kDifferential = "differential";
+constexpr const char* kTrajectory = "trajectory";
 
 enum class Use { kRead, kDrive };
 
@@ -122,7 +124,7 @@ JointQuantity LoadQuantity(const YamlValue& value) {
   const auto found = std::ranges::find(kJointQuantities, text);
   if (found == kJointQuantities.end()) {
     std::vector<std::string> known(kJointQuantities.begin(), kJointQuantities.end());
-    known.push_back(kDifferential);
+    known.insert(known.end(), {kDifferential, kTrajectory});
     value.Fail("is the unknown '" + text + "'; " + Suggest(text, known, "drives"));
   }
   return static_cast<JointQuantity>(found - kJointQuantities.begin());
@@ -144,9 +146,9 @@ JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario) {
 
 namespace {
 
-bool IsDifferential(const YamlMap& map) {
+bool Drives(const YamlMap& map, const char* what) {
   const YamlValue* drive = map.Find("drive");
-  return drive != nullptr && drive->AsText() == kDifferential;
+  return drive != nullptr && drive->AsText() == what;
 }
 
 // Wheels that nobody limits turn as fast as their servos make them.
@@ -159,21 +161,41 @@ double LimitOf(const JointGroup& wheels, const RobotModel& model, int first) {
   return most_radps;
 }
 
-JointDriveSpec LoadWheelDrive(const YamlMap& map, const Scenario& scenario) {
+}  // namespace
+
+WheelGroup LoadWheels(const YamlMap& map, const Scenario& scenario) {
   const std::size_t index = FindModel(map.Require("model", "model: rover"), scenario);
   const RobotModel& model = scenario.world->models[index];
   const int first = FirstJointOf(index, scenario);
-  JointDriveSpec spec;
-  spec.quantity = JointQuantity::kVelocity;
-  spec.group.model = model.name;
-  spec.wheels.emplace();
-  AddNamed(map.Require("left", "left: left_wheel_joint"), model, first, Use::kDrive, &spec.group);
-  spec.wheels->left = spec.group.joints.size();
+  WheelGroup wheels;
+  wheels.group.model = model.name;
+  AddNamed(map.Require("left", "left: left_wheel_joint"), model, first, Use::kDrive, &wheels.group);
+  wheels.left = wheels.group.joints.size();
   AddNamed(map.Require("right", "right: right_wheel_joint"), model, first, Use::kDrive,
-           &spec.group);
-  spec.wheels->base = LoadWheelBase(map);
-  spec.wheels->most_radps = LimitOf(spec.group, model, first);
-  spec.wheels->timeout = VirtualDuration::Milliseconds(500);
+           &wheels.group);
+  wheels.most_radps = LimitOf(wheels.group, model, first);
+  return wheels;
+}
+
+ModelPlace FindModelPlace(const YamlValue& value, const Scenario& scenario) {
+  const std::vector<RobotModel>& models = scenario.world->models;
+  const std::size_t index = FindModel(value, scenario);
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < index; ++i) first += models[i].links.size();
+  return {&models[index], static_cast<int>(first)};
+}
+
+namespace {
+
+JointDriveSpec LoadWheelDrive(const YamlMap& map, const Scenario& scenario) {
+  const WheelGroup wheels = LoadWheels(map, scenario);
+  JointDriveSpec spec;
+  spec.group = wheels.group;
+  spec.quantity = JointQuantity::kVelocity;
+  spec.wheels = {.base = LoadWheelBase(map),
+                 .left = wheels.left,
+                 .most_radps = wheels.most_radps,
+                 .timeout = VirtualDuration::Milliseconds(500)};
   if (const YamlValue* v = map.Find("timeout")) spec.wheels->timeout = v->AsDuration();
   const std::vector<double> damping =
       LoadGains(map.Require("damping", "damping: 2"), spec.group.joints.size());
@@ -184,11 +206,14 @@ JointDriveSpec LoadWheelDrive(const YamlMap& map, const Scenario& scenario) {
 }  // namespace
 
 std::vector<std::string> JointDriveKeys(const YamlMap& map) {
-  if (IsDifferential(map)) {
+  if (Drives(map, kDifferential)) {
     return {"model",  "drive",   "left",    "right",  "separation",
             "radius", "damping", "timeout", "latency"};
   }
-  return {"model", "joints", "drive", "stiffness", "damping", "latency", "lag"};
+  std::vector<std::string> keys = {"model",   "joints",  "drive", "stiffness",
+                                   "damping", "latency", "lag"};
+  if (Drives(map, kTrajectory)) keys.push_back("rate");
+  return keys;
 }
 
 WheelBase LoadWheelBase(const YamlMap& map) {
@@ -197,12 +222,18 @@ WheelBase LoadWheelBase(const YamlMap& map) {
 }
 
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario) {
-  if (IsDifferential(map)) return LoadWheelDrive(map, scenario);
+  if (Drives(map, kDifferential)) return LoadWheelDrive(map, scenario);
   JointDriveSpec spec;
   spec.group = LoadGroup(map, scenario, Use::kDrive);
   const std::size_t count = spec.group.joints.size();
   spec.gains.resize(count);
-  if (const YamlValue* drive = map.Find("drive")) spec.quantity = LoadQuantity(*drive);
+  if (Drives(map, kTrajectory)) {
+    spec.quantity = JointQuantity::kPosition;
+    spec.setpoint_period = VirtualDuration::Milliseconds(10);
+    if (const YamlValue* rate = map.Find("rate")) spec.setpoint_period = LoadPeriod(*rate);
+  } else if (const YamlValue* drive = map.Find("drive")) {
+    spec.quantity = LoadQuantity(*drive);
+  }
   if (spec.quantity == JointQuantity::kPosition) map.Require("stiffness", "stiffness: 500");
   if (spec.quantity == JointQuantity::kVelocity) map.Require("damping", "damping: 20");
   if (const YamlValue* v = map.Find("stiffness")) {

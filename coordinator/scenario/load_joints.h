@@ -30,7 +30,22 @@ void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scena
 // The index of the model that `value` names.
 std::size_t FindModel(const YamlValue& value, const Scenario& scenario);
 
+// `model`, and `left` and `right`: wheels, those on the left first.
+struct WheelGroup {
+  JointGroup group;
+  std::size_t left = 0;
+  double most_radps = 0;  // that none of them is to turn faster than
+};
+WheelGroup LoadWheels(const YamlMap& map, const Scenario& scenario);
+
 // `separation` and `radius`.
 WheelBase LoadWheelBase(const YamlMap& map);
+
+// The model that `value` names, and as which its links are numbered.
+struct ModelPlace {
+  const RobotModel* model;
+  int first_link;
+};
+ModelPlace FindModelPlace(const YamlValue& value, const Scenario& scenario);
 
 }  // namespace tcs

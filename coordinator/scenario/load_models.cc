@@ -120,6 +120,7 @@ class Models {
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
     RobotModel model = Read(urdf, use, PackagesOf(map));
     model.name = entry.key;
+    scenario_.urdf_files[model.name] = PathOf(urdf);
     if (const YamlValue* v = map.Find("at")) {
       const YamlMap at = v->AsMap();
       at.AllowOnly({"position", "orientation"});

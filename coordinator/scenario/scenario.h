@@ -190,7 +190,9 @@ struct JointDriveSpec {
   std::vector<JointGains> gains;                    // of each joint
   std::vector<JointLimits> limits{};                // likewise: what is wanted is kept within them
   VirtualDuration lag{};                            // Joint::drive_lag of all of them
-  std::optional<WheelDriveSpec> wheels;             // which they are
+  std::optional<WheelDriveSpec> wheels;             // which they are, or
+  // Trajectories come in, and the servos have new setpoints so often.
+  std::optional<VirtualDuration> setpoint_period;
 };
 
 // Rotors of a model that a channel drives.
@@ -259,7 +261,8 @@ struct Scenario {
   VirtualDuration duration = VirtualDuration::Seconds(10);
   VirtualDuration drift_bound = VirtualDuration::Milliseconds(1);
   std::uint64_t seed = 1;
-  std::optional<WorldSpec> world;  // none: no dynamics
+  std::optional<WorldSpec> world;                 // none: no dynamics
+  std::map<std::string, std::string> urdf_files;  // of the models that come from such
   std::vector<RobotSpec> robots;
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;

@@ -43,6 +43,9 @@ void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
     };
     if (spec.joints) add("joint", spec.joints->group.names, spec.joints->group.model);
     if (spec.rotors) add("rotor", spec.rotors->names, spec.rotors->model);
+    if (spec.joints && spec.joints->setpoint_period) {
+      channel.follower.emplace(spec.joints->group, *spec.joints->setpoint_period);
+    }
   }
 }
 
@@ -111,6 +114,13 @@ void Commands::SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& g
         rotors.is_normalised ? given * most_radps : given);
 }
 
+void Commands::Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) {
+  Channel& on = channels_[channel];
+  ++on.taken;
+  ++taken_;
+  on.follower->Follow(sent, trajectory);
+}
+
 void Commands::Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) {
   Channel& on = channels_[channel];
   ++on.taken;
@@ -139,13 +149,23 @@ void Commands::Halt(Channel* channel) {
 
 VirtualTime Commands::NextStop() const {
   VirtualTime next = VirtualTime::Never();
-  for (const Channel& channel : channels_) next = std::min(next, channel.halts);
+  for (const Channel& channel : channels_) {
+    next = std::min(next, channel.halts);
+    if (channel.follower) next = std::min(next, channel.follower->NextStop());
+  }
   return next;
 }
 
 void Commands::ActUntil(VirtualTime until) {
   for (Channel& channel : channels_) {
     if (channel.halts <= until && !channel.halts.IsNever()) Halt(&channel);
+    if (!channel.follower) continue;
+    channel.follower->ActUntil(until, read_, [&](VirtualTime at, std::span<const JointGoal> goals) {
+      for (const JointGoal& goal : goals) {
+        account_.Take(channel.accounts[goal.joint], at + channel.spec.latency);
+        DriveJoint(channel, at, goal);
+      }
+    });
   }
 }
 
@@ -153,7 +173,7 @@ std::optional<GoalNames> Commands::GoalsOf(std::size_t channel) const {
   const CommandChannelSpec& spec = channels_[channel].spec;
   if (spec.joints) {
     return GoalNames{spec.joints->group.names, spec.joints->quantity,
-                     spec.joints->wheels.has_value()};
+                     spec.joints->wheels.has_value(), spec.joints->setpoint_period.has_value()};
   }
   if (spec.rotors) return GoalNames{spec.rotors->names, JointQuantity::kVelocity};
   return {};

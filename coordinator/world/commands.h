@@ -13,6 +13,7 @@
 #include "coordinator/channel/channel.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/world/actuator_account.h"
+#include "coordinator/world/trajectory_follower.h"
 
 namespace tcs {
 
@@ -30,14 +31,16 @@ class Commands final : public CommandSink {
   using Push = std::function<void(VirtualTime sent, VirtualDuration latency, int link, WrenchFrame,
                                   const Wrench&)>;
 
-  // `warn` is told of the first thing on each channel that was no command.
+  // `warn` is told of the first thing on each channel that was no command. `read` is asked by
+  // firmware that follows trajectories.
   Commands(std::function<void(const std::string&)> warn, Act act, Drive drive = {}, Spin spin = {},
-           Push push = {})
+           Push push = {}, TrajectoryFollower::ReadJoints read = {})
       : warn_(std::move(warn)),
         act_(std::move(act)),
         drive_(std::move(drive)),
         spin_(std::move(spin)),
-        push_(std::move(push)) {}
+        push_(std::move(push)),
+        read_(std::move(read)) {}
 
   // The scenario's channels; before anything comes in.
   void Open(const std::vector<CommandChannelSpec>& specs);
@@ -45,6 +48,7 @@ class Commands final : public CommandSink {
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
   void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override;
+  void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) override;
   std::optional<GoalNames> GoalsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }
@@ -71,6 +75,7 @@ class Commands final : public CommandSink {
     std::vector<std::size_t> accounts{};  // of each joint or rotor
     std::int64_t taken = 0, refused = 0;
     VirtualTime halts = VirtualTime::Never();  // unless a command comes before
+    std::optional<TrajectoryFollower> follower{};
   };
   void DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal);
   void SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal);
@@ -81,6 +86,7 @@ class Commands final : public CommandSink {
   Drive drive_;
   Spin spin_;
   Push push_;
+  TrajectoryFollower::ReadJoints read_;
   ActuatorAccount account_;
   std::vector<Channel> channels_;  // as in the scenario
   std::int64_t taken_ = 0;

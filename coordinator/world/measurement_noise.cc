@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "coordinator/world/random_stream.h"
 #include "simbody_bridge/link_motion.h"
@@ -36,7 +37,25 @@ class MeasurementNoise::Draws {
     Add(MeasuredField::kLinearVelocity, &odometry.linear_mps);
     Add(MeasuredField::kAngularVelocity, &odometry.angular_radps);
   }
+  void operator()(TransformsMeasurement&) const {}
+  void operator()(DescriptionMeasurement&) const {}
+  void operator()(ContactMeasurement&) const {}
   void operator()(ScanMeasurement& scan) const { Add(MeasuredField::kRange, scan.ranges_m); }
+  void operator()(CloudMeasurement& cloud) const {
+    Numbers numbers(*this, MeasuredField::kRange);
+    for (CloudMeasurement::Point& point : cloud.points) numbers.Add(&point.range_m);
+  }
+  void operator()(RangeMeasurement& range) const {
+    Add(MeasuredField::kRange, std::span(&range.range_m, 1));
+  }
+  void operator()(DepthMeasurement& depth) const { Add(MeasuredField::kRange, depth.depths_m); }
+  void operator()(GnssMeasurement& gnss) const { Add(MeasuredField::kPosition, &gnss.enu_m); }
+  void operator()(MagneticMeasurement& magnetic) const {
+    Add(MeasuredField::kMagneticField, &magnetic.field_t);
+  }
+  void operator()(PressureMeasurement& pressure) const {
+    Add(MeasuredField::kPressure, std::span(&pressure.pressure_pa, 1));
+  }
 
  private:
   std::array<double, 3> ErrorOf(MeasuredField field) const {
@@ -53,15 +72,26 @@ class MeasurementNoise::Draws {
   void Turn(MeasuredField field, std::array<double, 4>* orientation) const {
     *orientation = Turned(*orientation, ErrorOf(field));
   }
-  // To each number that is one; all have a place in the stream.
-  template <class Numbers>
-  void Add(MeasuredField field, Numbers& numbers) const {
-    const auto index = static_cast<std::size_t>(field);
-    RandomStream random = StreamOf(noise_.seed_, RandomPurpose::kNoise, index, sample_);
-    for (auto& number : numbers) {
-      const double error = noise_.biases_[index][0] + noise_.errors_[index].noise * random.Normal();
-      if (std::isfinite(number)) number += error;
+  // Many of one field. To each number that is one; all have a place in the stream.
+  class Numbers {
+   public:
+    Numbers(const Draws& draws, MeasuredField field)
+        : bias_(draws.noise_.biases_[static_cast<std::size_t>(field)][0]),
+          noise_(draws.noise_.errors_[static_cast<std::size_t>(field)].noise),
+          random_(StreamOf(draws.noise_.seed_, RandomPurpose::kNoise,
+                           static_cast<std::size_t>(field), draws.sample_)) {}
+    void Add(double* number) {
+      const double error = bias_ + noise_ * random_.Normal();
+      if (std::isfinite(*number)) *number += error;
     }
+
+   private:
+    double bias_, noise_;
+    RandomStream random_;
+  };
+  void Add(MeasuredField field, std::span<double> all) const {
+    Numbers numbers(*this, field);
+    for (double& number : all) numbers.Add(&number);
   }
 
   const MeasurementNoise& noise_;

@@ -95,7 +95,8 @@ bool Sensors::Look(Sensor& sensor, VirtualTime now, const Eyes& eyes) {
     return false;
   }
   sensor.look = 0;
-  sensor.next = sensor.began + sensor.timing.period;
+  sensor.next = sensor.timing.period == VirtualDuration{} ? VirtualTime::Never()
+                                                          : sensor.began + sensor.timing.period;
   Reading reading{sensor.began, {}};
   reading.measured = sensor.instrument->Finish();
   return SendOff(sensor, now, std::move(reading));

@@ -25,7 +25,8 @@
 namespace tcs {
 
 struct SensorTiming {
-  VirtualDuration period;   // between samples, of which the first is at time 0
+  VirtualDuration
+      period;  // between samples, of which the first is at time 0; 0: it is the only one
   VirtualDuration latency;  // from the sample to its arrival
 };
 

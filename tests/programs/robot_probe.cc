@@ -3,15 +3,24 @@
 // commands. It knows nothing of tcs.
 //
 //   robot_probe SECONDS WHAT...
-//     imu:/TOPIC odometry:/TOPIC scan:/TOPIC joints:/TOPIC   are read
-//     twist:/TOPIC:FORWARD:TURN                              is written every 100 ms
-//     hold:/STATES:/EFFORTS:ANGLE                            holds a pendulum of 1 kg and 1 m
-//     there, by efforts
+//
+// WHAT is one of:
+//
+//   KIND:/TOPIC
+//     is read: imu, odometry, scan, joints, cloud, range, image, gnss, magnetic, pressure, bool,
+//     transforms; fixed (transforms) and text also as they were said before
+//   twist:/TOPIC:FORWARD:TURN
+//     is written every 100 ms
+//   trajectory:/TOPIC:JOINT:ANGLE:SECONDS[:ANGLE:SECONDS]
+//     is written once, as soon as somebody reads it
+//   hold:/STATES:/EFFORTS:ANGLE
+//     holds a pendulum of 1 kg and 1 m there, by efforts
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,6 +30,8 @@
 #include "nav_msgs.h"
 #include "sensor_msgs.h"
 #include "std_msgs.h"
+#include "tf2_msgs.h"
+#include "trajectory_msgs.h"
 
 namespace {
 
@@ -107,6 +118,88 @@ void Tell(const sensor_msgs_msg_dds__JointState_& joints, Json* json) {
       .Add("effort", joints.effort._buffer, joints.effort._length);
 }
 
+// The first points, each as its fields say.
+void Tell(const sensor_msgs_msg_dds__PointCloud2_& cloud, Json* json) {
+  std::string fields;
+  for (std::size_t i = 0; i < cloud.fields._length; ++i)
+    fields += cloud.fields._buffer[i].name + std::string(" ");
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < cloud.width * cloud.height; ++i) {
+    const unsigned char* point = cloud.data._buffer + i * cloud.point_step;
+    for (std::size_t field = 0; field < 4; ++field) {
+      float value;
+      memcpy(&value, point + cloud.fields._buffer[field].offset, sizeof value);
+      numbers.push_back(value);
+    }
+    unsigned short ring;
+    memcpy(&ring, point + cloud.fields._buffer[4].offset, sizeof ring);
+    numbers.push_back(ring);
+  }
+  json->Add(cloud.header)
+      .Add("fields", fields.c_str())
+      .Add("points", numbers.data(), numbers.size());
+}
+
+void Tell(const sensor_msgs_msg_dds__Range_& range, Json* json) {
+  json->Add(range.header)
+      .Add("radiation_type", range.radiation_type)
+      .Add("field_of_view", range.field_of_view)
+      .Add("min_range", range.min_range)
+      .Add("max_range", range.max_range)
+      .Add("range", range.range)
+      .Add("variance", range.variance);
+}
+
+void Tell(const sensor_msgs_msg_dds__Image_& image, Json* json) {
+  std::vector<float> depths(image.data._length / sizeof(float));
+  memcpy(depths.data(), image.data._buffer, depths.size() * sizeof(float));
+  json->Add(image.header)
+      .Add("height", image.height)
+      .Add("width", image.width)
+      .Add("encoding", image.encoding)
+      .Add("step", image.step)
+      .Add("depths", depths.data(), depths.size());
+}
+
+void Tell(const sensor_msgs_msg_dds__NavSatFix_& fix, Json* json) {
+  json->Add(fix.header)
+      .Add("status", fix.status.status)
+      .Add("latitude", fix.latitude)
+      .Add("longitude", fix.longitude)
+      .Add("altitude", fix.altitude);
+}
+
+void Tell(const sensor_msgs_msg_dds__MagneticField_& magnetic, Json* json) {
+  json->Add(magnetic.header).Add("field", magnetic.magnetic_field);
+}
+
+void Tell(const sensor_msgs_msg_dds__FluidPressure_& pressure, Json* json) {
+  json->Add(pressure.header).Add("pressure", pressure.fluid_pressure);
+}
+
+void Tell(const tf2_msgs_msg_dds__TFMessage_& message, Json* json) {
+  std::string list;
+  for (std::size_t i = 0; i < message.transforms._length; ++i) {
+    const auto& transform = message.transforms._buffer[i];
+    Json one;
+    one.Add(transform.header)
+        .Add("child_frame_id", transform.child_frame_id)
+        .Add("translation", transform.transform.translation)
+        .Add("rotation", transform.transform.rotation);
+    list += (i == 0 ? "" : ", ") + one.text();
+  }
+  json->Add("transforms", "[" + list + "]");
+}
+
+void Tell(const std_msgs_msg_dds__Bool_& message, Json* json) {
+  json->Add("data", std::string(message.data ? "true" : "false"));
+}
+
+void Tell(const std_msgs_msg_dds__String_& text, Json* json) {
+  json->Add("length", static_cast<double>(strlen(text.data)))
+      .Add("begins", std::string(text.data).substr(0, 5).c_str());
+}
+
 // What is done once, and after every wait.
 using Step = std::function<void()>;
 
@@ -119,8 +212,10 @@ struct Program {
     return OrDie(dds_create_topic(participant, &type, ("rt" + name).c_str(), nullptr, nullptr),
                  name);
   }
-  dds_entity_t Reader(const dds_topic_descriptor_t& type, const std::string& topic) {
+  dds_entity_t Reader(const dds_topic_descriptor_t& type, const std::string& topic,
+                      bool is_latched = false) {
     dds_qos_t* qos = dds_create_qos();
+    if (is_latched) dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
     dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
     dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
     const dds_entity_t reader =
@@ -151,8 +246,8 @@ struct Program {
   }
 
   template <class Message>
-  void Read(const dds_topic_descriptor_t& type, const std::string& topic) {
-    on_data.push_back([topic, reader = Reader(type, topic)] {
+  void Read(const dds_topic_descriptor_t& type, const std::string& topic, bool is_latched = false) {
+    on_data.push_back([topic, reader = Reader(type, topic, is_latched)] {
       TakeAll<Message>(reader, [&](const Message& message) {
         Json json;
         json.Add("topic", topic.c_str());
@@ -167,6 +262,34 @@ struct Program {
     on_time.push_back([=] {
       const geometry_msgs_msg_dds__Twist_ twist{{forward, 0, 0}, {0, 0, turn}};
       OrDie(dds_write(writer, &twist), "write a twist");
+    });
+  }
+
+  void WriteTrajectory(const std::string& topic, const std::string& joint,
+                       const std::vector<double>& numbers) {
+    const dds_entity_t writer = Writer(trajectory_msgs_msg_dds__JointTrajectory__desc, topic);
+    on_time.push_back([=, written = false]() mutable {
+      dds_publication_matched_status_t matched;
+      OrDie(dds_get_publication_matched_status(writer, &matched), "look who reads");
+      if (written || matched.current_count == 0) return;
+      written = true;
+      std::string name = joint, frame;
+      char* names[] = {name.data()};
+      std::vector<double> positions;
+      for (std::size_t i = 0; i < numbers.size(); i += 2) positions.push_back(numbers[i]);
+      std::vector<trajectory_msgs_msg_dds__JointTrajectoryPoint_> points(positions.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i].positions = {1, 1, &positions[i], false};
+        const double at = numbers[2 * i + 1];
+        points[i].time_from_start = {static_cast<int>(at),
+                                     static_cast<unsigned>((at - floor(at)) * 1e9)};
+      }
+      const auto count = static_cast<std::uint32_t>(points.size());
+      trajectory_msgs_msg_dds__JointTrajectory_ trajectory{};
+      trajectory.header.frame_id = frame.data();
+      trajectory.joint_names = {1, 1, names, false};
+      trajectory.points = {count, count, points.data(), false};
+      OrDie(dds_write(writer, &trajectory), "write a trajectory");
     });
   }
 
@@ -189,16 +312,40 @@ struct Program {
     const std::string& kind = what[0];
     if (kind == "imu")
       return Read<sensor_msgs_msg_dds__Imu_>(sensor_msgs_msg_dds__Imu__desc, what[1]);
-    if (kind == "odometry") {
+    if (kind == "odometry")
       return Read<nav_msgs_msg_dds__Odometry_>(nav_msgs_msg_dds__Odometry__desc, what[1]);
-    }
-    if (kind == "scan") {
+    if (kind == "scan")
       return Read<sensor_msgs_msg_dds__LaserScan_>(sensor_msgs_msg_dds__LaserScan__desc, what[1]);
-    }
-    if (kind == "joints") {
+    if (kind == "joints")
       return Read<sensor_msgs_msg_dds__JointState_>(sensor_msgs_msg_dds__JointState__desc, what[1]);
-    }
+    if (kind == "cloud")
+      return Read<sensor_msgs_msg_dds__PointCloud2_>(sensor_msgs_msg_dds__PointCloud2__desc,
+                                                     what[1]);
+    if (kind == "range")
+      return Read<sensor_msgs_msg_dds__Range_>(sensor_msgs_msg_dds__Range__desc, what[1]);
+    if (kind == "image")
+      return Read<sensor_msgs_msg_dds__Image_>(sensor_msgs_msg_dds__Image__desc, what[1]);
+    if (kind == "gnss")
+      return Read<sensor_msgs_msg_dds__NavSatFix_>(sensor_msgs_msg_dds__NavSatFix__desc, what[1]);
+    if (kind == "magnetic")
+      return Read<sensor_msgs_msg_dds__MagneticField_>(sensor_msgs_msg_dds__MagneticField__desc,
+                                                       what[1]);
+    if (kind == "pressure")
+      return Read<sensor_msgs_msg_dds__FluidPressure_>(sensor_msgs_msg_dds__FluidPressure__desc,
+                                                       what[1]);
+    if (kind == "transforms")
+      return Read<tf2_msgs_msg_dds__TFMessage_>(tf2_msgs_msg_dds__TFMessage__desc, what[1]);
+    if (kind == "fixed")
+      return Read<tf2_msgs_msg_dds__TFMessage_>(tf2_msgs_msg_dds__TFMessage__desc, what[1], true);
+    if (kind == "text")
+      return Read<std_msgs_msg_dds__String_>(std_msgs_msg_dds__String__desc, what[1], true);
+    if (kind == "bool") return Read<std_msgs_msg_dds__Bool_>(std_msgs_msg_dds__Bool__desc, what[1]);
     if (kind == "twist") return WriteTwist(what[1], std::stod(what[2]), std::stod(what[3]));
+    if (kind == "trajectory") {
+      std::vector<double> numbers;
+      for (std::size_t i = 3; i < what.size(); ++i) numbers.push_back(std::stod(what[i]));
+      return WriteTrajectory(what[1], what[2], numbers);
+    }
     if (kind == "hold") return Hold(what[1], what[2], std::stod(what[3]));
     fprintf(stderr, "nobody knows what '%s' is\n", kind.c_str());
     exit(2);

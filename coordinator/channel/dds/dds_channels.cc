@@ -37,7 +37,9 @@ class DdsChannels::SensorOutlet final : public Outlet {
 
  private:
   std::vector<std::byte> Encoded(const Reading& reading, std::int64_t stamp_ns) const {
-    if (spec_.instrument) return dds::EncodeMeasurement(stamp_ns, reading.measured);
+    if (spec_.instrument) {
+      return dds::EncodeMeasurement(stamp_ns, reading.measured, transport_.scenario_.ros);
+    }
     if (spec_.joints) {
       std::vector<JointState> states;
       for (const JointReading& joint : reading.joints) states.push_back(joint.state);
@@ -81,7 +83,7 @@ class DdsChannels::CommandInlet final : public Inlet {
       for (const Actuator& actuator : transport_.actuators_) {
         const auto& readers = sample->readers;
         if (std::find(readers.begin(), readers.end(), actuator.reader) == readers.end()) continue;
-        Decode(actuator, *sample, sink);
+        Decode(actuator, *sample, transport_.realtime_offset_, sink);
       }
     }
   }
@@ -93,7 +95,7 @@ class DdsChannels::CommandInlet final : public Inlet {
 
  private:
   static void Decode(const Actuator& actuator, const dds::OwnEndpoints::Sample& sample,
-                     CommandSink& sink) {
+                     VirtualDuration realtime_offset, CommandSink& sink) {
     const auto give = [&](const auto& decoded) {
       if (const auto* error = std::get_if<dds::MessageError>(&decoded)) {
         sink.Refuse(actuator.channel,
@@ -107,6 +109,8 @@ class DdsChannels::CommandInlet final : public Inlet {
     const std::optional<GoalNames> goals = sink.GoalsOf(actuator.channel);
     if (goals && goals->are_wheels) {
       give(dds::DecodeSpeed(sample.cdr));
+    } else if (goals && goals->follow_trajectories) {
+      give(dds::DecodeTrajectory(goals->names, realtime_offset, sample.cdr));
     } else if (goals) {
       give(dds::DecodeJointCommand(message, goals->names, goals->quantity, sample.cdr));
     } else {

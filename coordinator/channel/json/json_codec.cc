@@ -211,6 +211,108 @@ std::variant<PlanarSpeed, DecodeError> DecodeSpeed(std::string_view text) {
   return speed;
 }
 
+namespace {
+
+constexpr std::string_view kTrajectoryExample =
+    R"({"joints": ["elbow"], "points": [{"positions": [0.5], "time_from_start": 1.0}]})";
+
+// Seconds, not before 0 and of at most some years.
+std::optional<VirtualDuration> Seconds(const Json& value) {
+  constexpr double kMost = 1e8;
+  const auto number = FiniteNumber(value);
+  if (!number || *number < 0 || *number > kMost) return std::nullopt;
+  return VirtualDuration::Nanoseconds(std::llround(*number * 1e9));
+}
+
+std::optional<std::vector<double>> Numbers(const Json& value) {
+  if (!value.is_array()) return std::nullopt;
+  std::vector<double> numbers;
+  for (const Json& each : value) {
+    const auto number = FiniteNumber(each);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+// What is wrong with a point; empty: it is in `point`.
+std::string TakePoint(const Json& value, JointTrajectory::Point* point) {
+  if (!value.is_object() || !value.contains("positions") || !value.contains("time_from_start")) {
+    return "has a point without positions or time_from_start";
+  }
+  for (const auto& [key, part] : value.items()) {
+    if (key == "time_from_start") {
+      const auto at = Seconds(part);
+      if (!at) return "has a time_from_start that is no number of seconds";
+      point->at = *at;
+      continue;
+    }
+    if (key != "positions" && key != "velocities") {
+      return "has a point with the unknown key " + Quote(key);
+    }
+    const auto numbers = Numbers(part);
+    if (!numbers) return "has " + key + " that are not a list of finite numbers";
+    (key == "positions" ? point->positions : point->velocities) = *numbers;
+  }
+  return {};
+}
+
+// The same of the names of joints.
+std::string TakeJoints(const Json& value, std::span<const std::string> joints,
+                       std::vector<std::size_t>* places) {
+  if (!value.is_array()) return "has joints that are not a list of names";
+  for (const Json& name : value) {
+    const auto found = name.is_string()
+                           ? std::find(joints.begin(), joints.end(), name.get<std::string>())
+                           : joints.end();
+    if (found == joints.end()) {
+      return "names the joint " + Quote(name.is_string() ? name.get<std::string>() : name.dump()) +
+             ", which the channel does not drive";
+    }
+    const auto place = static_cast<std::size_t>(found - joints.begin());
+    if (std::find(places->begin(), places->end(), place) != places->end()) {
+      return "names the joint " + Quote(*found) + " twice";
+    }
+    places->push_back(place);
+  }
+  return {};
+}
+
+// And of one key of a trajectory.
+std::string TakePart(const std::string& key, const Json& value, std::span<const std::string> joints,
+                     JointTrajectory* trajectory) {
+  if (key == "joints") return TakeJoints(value, joints, &trajectory->joints);
+  if (key == "start") {
+    const auto start = Seconds(value);
+    if (!start) return "has a start that is no number of seconds";
+    trajectory->start = VirtualTime{} + *start;
+    return {};
+  }
+  if (key != "points") return "has the unknown key " + Quote(key);
+  if (!value.is_array()) return "has points that are not a list";
+  for (const Json& point : value) {
+    std::string wrong = TakePoint(point, &trajectory->points.emplace_back());
+    if (!wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::variant<JointTrajectory, DecodeError> DecodeTrajectory(std::string_view text,
+                                                            std::span<const std::string> joints) {
+  const auto parsed = ParseObject(text, kTrajectoryExample);
+  if (const auto* error = std::get_if<DecodeError>(&parsed)) return *error;
+  JointTrajectory trajectory;
+  for (const auto& [key, value] : std::get<Json>(parsed).items()) {
+    const std::string wrong = TakePart(key, value, joints, &trajectory);
+    if (!wrong.empty()) return Mistake(wrong, kTrajectoryExample);
+  }
+  const std::string wrong = WhatIsWrongWith(trajectory);
+  if (!wrong.empty()) return Mistake(wrong, kTrajectoryExample);
+  return trajectory;
+}
+
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
                  VirtualTime sent, CommandSink& sink) {
   const auto give = [&](const auto& decoded) {
@@ -223,6 +325,8 @@ void TakeCommand(std::string_view what, std::string_view text, std::size_t chann
   const std::optional<GoalNames> goals = sink.GoalsOf(channel);
   if (goals && goals->are_wheels) {
     give(DecodeSpeed(text));
+  } else if (goals && goals->follow_trajectories) {
+    give(DecodeTrajectory(text, goals->names));
   } else if (goals) {
     give(DecodeJointCommand(text, goals->names, goals->quantity));
   } else {

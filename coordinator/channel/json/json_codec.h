@@ -45,6 +45,12 @@ struct DecodeError {
 // zero then. The same is an error.
 [[nodiscard]] std::variant<PlanarSpeed, DecodeError> DecodeSpeed(std::string_view text);
 
+// {"joints":["NAME"],"points":[{"positions":[q],"velocities":[v],"time_from_start":1.0}]} for any
+// of `joints`, in seconds; velocities may be left out. With "start", a virtual time in seconds, it
+// starts then. The same is an error.
+[[nodiscard]] std::variant<JointTrajectory, DecodeError> DecodeTrajectory(
+    std::string_view text, std::span<const std::string> joints);
+
 // Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
                  VirtualTime sent, CommandSink& sink);

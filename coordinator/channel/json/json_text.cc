@@ -33,12 +33,11 @@ void AppendList(std::span<const double> values, std::string& text) {
 }
 
 // Divided, not multiplied by 1e-9: the double nearest to the decimal fraction.
-JsonObject::JsonObject(VirtualTime at) : text_(R"({"time":)") {
-  AppendNumber(static_cast<double>(at.ns()) / 1e9, text_);
-}
+JsonObject::JsonObject(VirtualTime at) { Add("time", static_cast<double>(at.ns()) / 1e9); }
 
 void JsonObject::Begin(std::string_view key) {
-  text_ += ",\"";
+  if (text_.size() > 1) text_ += ',';
+  text_ += '"';
   text_ += key;
   text_ += "\":";
 }

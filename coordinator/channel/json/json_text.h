@@ -19,6 +19,8 @@ void AppendList(std::span<const double> values, std::string& text);
 // An object that is written key by key.
 class JsonObject {
  public:
+  JsonObject() = default;
+  // Its first key is "time".
   explicit JsonObject(VirtualTime at);
 
   void Add(std::string_view key, double value);
@@ -31,7 +33,7 @@ class JsonObject {
 
  private:
   void Begin(std::string_view key);
-  std::string text_;
+  std::string text_ = "{";
 };
 
 }  // namespace tcs

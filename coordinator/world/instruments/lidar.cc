@@ -6,62 +6,61 @@
 namespace tcs {
 namespace {
 
-// Between two looks links move as their velocities say; a wheel that turns at 100 rad/s goes half a
-// radian in this time.
-constexpr VirtualDuration kLooksApart = VirtualDuration::Milliseconds(5);
-
-Instrument::Looks LooksOf(VirtualDuration sweep) {
-  if (sweep == VirtualDuration{}) return {};
-  const std::int64_t parts = (sweep.ns() + kLooksApart.ns() - 1) / kLooksApart.ns();
-  // Rounded down: the last look is not after the next sweep's first.
-  return {static_cast<int>(parts) + 1, VirtualDuration::Nanoseconds(sweep.ns() / parts)};
+double StepOf(double first, double last, std::size_t count) {
+  return count > 1 ? (last - first) / static_cast<double>(count - 1) : 0;
 }
 
 }  // namespace
 
-double WithinReach(double distance_m, double least_m, double most_m) {
+double WithinReach(double distance_m, const ReachSpec& reach) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (distance_m > most_m) return kInfinity;
-  return distance_m < least_m ? -kInfinity : distance_m;
+  if (distance_m > reach.most_m) return kInfinity;
+  return distance_m < reach.least_m ? -kInfinity : distance_m;
 }
 
 Lidar::Lidar(const LidarSpec& spec, VirtualDuration period, const WorldSpec& world)
-    : spec_(spec), looks_(LooksOf(spec.sweep)), seen_(spec.mount, world) {
-  const auto gaps = static_cast<double>(spec.rays > 1 ? spec.rays - 1 : 1);
+    : spec_(spec), sweep_(spec.mount, spec.rays, spec.sweep, world) {
   measured_.frame = spec.mount.frame;
   measured_.first_rad = spec.first_rad;
-  measured_.step_rad = spec.rays > 1 ? (spec.last_rad - spec.first_rad) / gaps : 0;
-  measured_.ray_s = spec.rays > 1 ? spec.sweep.seconds() / gaps : 0;
+  measured_.step_rad = StepOf(spec.first_rad, spec.last_rad, spec.rays);
+  measured_.ray_s = sweep_.column_s();
   measured_.scan_s = period.seconds();
-  measured_.least_m = spec.least_m;
-  measured_.most_m = spec.most_m;
+  measured_.least_m = spec.reach.least_m;
+  measured_.most_m = spec.reach.most_m;
   measured_.ranges_m.resize(spec.rays);
 }
 
 void Lidar::Look(int number, VirtualTime, const Eyes& eyes) {
-  if (number == 0) {
-    seen_.Begin(eyes);
-    cast_ = 0;
-  } else {
-    seen_.GoOn(looks_.apart, eyes);
-  }
-  CastUpTo(number);
+  sweep_.Look(number, eyes, [this](std::size_t ray, const Seen& seen) {
+    const double angle = spec_.first_rad + static_cast<double>(ray) * measured_.step_rad;
+    measured_.ranges_m[ray] =
+        WithinReach(seen.Cast({std::cos(angle), std::sin(angle), 0}), spec_.reach);
+  });
 }
 
-// All rays up to that look.
-void Lidar::CastUpTo(int look) {
-  const bool is_last = look + 1 == looks_.count;
-  for (; cast_ < spec_.rays; ++cast_) {
-    const auto ray = static_cast<double>(cast_);
-    if (looks_.count > 1) {
-      const double looks_passed = ray * measured_.ray_s / looks_.apart.seconds();
-      if (looks_passed > look && !is_last) return;
-      if (look > 0) seen_.GoTo(looks_passed - (look - 1));
+Lidar3d::Lidar3d(const Lidar3dSpec& spec, const WorldSpec& world)
+    : spec_(spec), sweep_(spec.lidar.mount, spec.lidar.rays, spec.lidar.sweep, world) {
+  measured_.frame = spec.lidar.mount.frame;
+}
+
+void Lidar3d::Look(int number, VirtualTime, const Eyes& eyes) {
+  const LidarSpec& lidar = spec_.lidar;
+  const double step_rad = StepOf(lidar.first_rad, lidar.last_rad, lidar.rays);
+  const double rise_rad = StepOf(spec_.lowest_rad, spec_.highest_rad, spec_.layers);
+  if (number == 0) measured_.points.clear();
+  sweep_.Look(number, eyes, [&](std::size_t column, const Seen& seen) {
+    const auto place = static_cast<double>(column);
+    const double angle = lidar.first_rad + place * step_rad;
+    for (std::size_t layer = 0; layer < spec_.layers; ++layer) {
+      const double rise = spec_.lowest_rad + static_cast<double>(layer) * rise_rad;
+      const std::array<double, 3> direction = {std::cos(rise) * std::cos(angle),
+                                               std::cos(rise) * std::sin(angle), std::sin(rise)};
+      const double range_m = WithinReach(seen.Cast(direction), lidar.reach);
+      if (!std::isfinite(range_m)) continue;
+      measured_.points.push_back(
+          {direction, range_m, place * sweep_.column_s(), static_cast<std::uint16_t>(layer)});
     }
-    const double angle = spec_.first_rad + ray * measured_.step_rad;
-    measured_.ranges_m[cast_] =
-        WithinReach(seen_.Cast({std::cos(angle), std::sin(angle), 0}), spec_.least_m, spec_.most_m);
-  }
+  });
 }
 
 }  // namespace tcs

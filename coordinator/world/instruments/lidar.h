@@ -1,30 +1,42 @@
-// A scanner that turns: each ray looks at its own instant.
+// Scanners that turn, with one layer of rays and with several.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "coordinator/world/instruments/instrument.h"
-#include "coordinator/world/instruments/seen.h"
+#include "coordinator/world/instruments/ray_sweep.h"
 
 namespace tcs {
 
 class Lidar final : public Instrument {
  public:
   Lidar(const LidarSpec& spec, VirtualDuration period, const WorldSpec& world);
-  Looks looks() const override { return looks_; }
+  Looks looks() const override { return sweep_.looks(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
  private:
-  void CastUpTo(int look);
-
   LidarSpec spec_;
-  Looks looks_;
-  Seen seen_;
+  RaySweep sweep_;
   ScanMeasurement measured_;
-  std::size_t cast_ = 0;  // rays of this sweep
 };
 
-// A distance as a sensor tells it that measures from `least_m` to `most_m`: what is beyond is at
-// infinity, what is before at minus infinity (REP-117).
-double WithinReach(double distance_m, double least_m, double most_m);
+class Lidar3d final : public Instrument {
+ public:
+  Lidar3d(const Lidar3dSpec& spec, const WorldSpec& world);
+  Looks looks() const override { return sweep_.looks(); }
+  void Look(int number, VirtualTime now, const Eyes& eyes) override;
+  Measurement Finish() override { return measured_; }
+
+ private:
+  Lidar3dSpec spec_;
+  RaySweep sweep_;
+  CloudMeasurement measured_;
+};
+
+// A distance as a sensor tells it: what is beyond its reach is at infinity, what is before at minus
+// infinity (REP-117).
+double WithinReach(double distance_m, const ReachSpec& reach);
 
 }  // namespace tcs

@@ -1,10 +1,15 @@
 // Sensors that look at how one link moves.
 #pragma once
 
+#include <array>
+
 #include "coordinator/world/instruments/instrument.h"
 #include "simbody_bridge/link_inertial.h"
 
 namespace tcs {
+
+// How the frame of the mount moves.
+LinkState LookAt(const Mount& mount, const Eyes& eyes);
 
 class Imu final : public Instrument {
  public:
@@ -29,7 +34,40 @@ class Truth final : public Instrument {
   OdometryMeasurement measured_;
 };
 
-// How the frame of the mount moves.
-LinkState LookAt(const Mount& mount, const Eyes& eyes);
+class Gnss final : public Instrument {
+ public:
+  explicit Gnss(const GnssSpec& spec);
+  void Look(int number, VirtualTime now, const Eyes& eyes) override;
+  Measurement Finish() override { return measured_; }
+
+ private:
+  GnssSpec spec_;
+  GnssMeasurement measured_;
+};
+
+class Magnetometer final : public Instrument {
+ public:
+  explicit Magnetometer(const MagnetometerSpec& spec);
+  void Look(int number, VirtualTime now, const Eyes& eyes) override;
+  Measurement Finish() override { return measured_; }
+
+ private:
+  MagnetometerSpec spec_;
+  MagneticMeasurement measured_;
+};
+
+class Barometer final : public Instrument {
+ public:
+  explicit Barometer(const BarometerSpec& spec);
+  void Look(int number, VirtualTime now, const Eyes& eyes) override;
+  Measurement Finish() override { return measured_; }
+
+ private:
+  BarometerSpec spec_;
+  PressureMeasurement measured_;
+};
+
+// In the standard atmosphere, so far above where it is `ground_pa`.
+double PressureAt(double height_m, double ground_pa);
 
 }  // namespace tcs

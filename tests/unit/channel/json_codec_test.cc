@@ -293,5 +293,65 @@ TEST(JsonCodec, TheVelocityOfARobotOnWheels) {
   EXPECT_THAT(std::get<DecodeError>(DecodeSpeed(R"({"x": 1})")).message, HasSubstr("unknown key"));
 }
 
+TEST(JsonCodec, WhereLinksAre) {
+  const TransformsMeasurement transforms{{{"base", "wheel", {{1, 2, 3}, {0, 0, 0, 1}}}}};
+  EXPECT_EQ(EncodeReading(Measured(transforms), {}),
+            R"({"time":1.23,"transforms":[{"frame_id":"base","child_frame_id":"wheel",)"
+            R"("translation":[1.0,2.0,3.0],"rotation":[0.0,0.0,0.0,1.0]}]})");
+}
+
+TEST(JsonCodec, WhatSmallSensorsMeasure) {
+  const RangeMeasurement range{
+      .frame = "sonar", .field_of_view_rad = 0.5, .least_m = 0.1, .most_m = 4, .range_m = 1.5};
+  EXPECT_EQ(EncodeReading(Measured(range), {}),
+            R"({"time":1.23,"frame_id":"sonar","field_of_view":0.5,"range_min":0.1,)"
+            R"("range_max":4.0,"range":1.5})");
+  EXPECT_EQ(EncodeReading(Measured(MagneticMeasurement{"mag", {0, 2e-5, 0}}), {}),
+            R"({"time":1.23,"frame_id":"mag","magnetic_field":[0.0,2e-05,0.0]})");
+  EXPECT_EQ(EncodeReading(Measured(PressureMeasurement{"baro", 101325}), {}),
+            R"({"time":1.23,"frame_id":"baro","pressure":101325.0})");
+  EXPECT_EQ(EncodeReading(Measured(ContactMeasurement{"foot", true}), {}),
+            R"({"time":1.23,"frame_id":"foot","touches":true})");
+}
+
+std::string TrajectoryComplaint(std::string_view text) {
+  const std::vector<std::string> joints = {"elbow", "wrist"};
+  const auto decoded = DecodeTrajectory(text, joints);
+  const auto* error = std::get_if<DecodeError>(&decoded);
+  return error == nullptr ? "" : error->message;
+}
+
+TEST(JsonCodec, Trajectories) {
+  const std::vector<std::string> joints = {"elbow", "wrist"};
+  const auto decoded = DecodeTrajectory(
+      R"({"joints": ["wrist"], "start": 2.5, "points":
+          [{"positions": [0.5], "time_from_start": 1}, {"positions": [1], "velocities": [0], "time_from_start": 2}]})",
+      joints);
+  const auto& trajectory = std::get<JointTrajectory>(decoded);
+  EXPECT_THAT(trajectory.joints, ElementsAre(1));
+  EXPECT_EQ(trajectory.start, VirtualTime::FromNanoseconds(2'500'000'000));
+  ASSERT_EQ(trajectory.points.size(), 2u);
+  EXPECT_EQ(trajectory.points[0].at, VirtualDuration::Seconds(1));
+  EXPECT_TRUE(trajectory.points[0].velocities.empty());
+  EXPECT_THAT(trajectory.points[1].velocities, ElementsAre(0));
+}
+
+TEST(JsonCodec, WhatIsNoTrajectoryIsSaid) {
+  EXPECT_THAT(TrajectoryComplaint("{}"), HasSubstr("has no points"));
+  EXPECT_THAT(TrajectoryComplaint(R"({"joints": ["knee"], "points": []})"),
+              HasSubstr(R"("knee", which the channel does not drive)"));
+  EXPECT_THAT(TrajectoryComplaint(R"({"joints": ["wrist", "wrist"], "points": []})"),
+              HasSubstr("twice"));
+  EXPECT_THAT(TrajectoryComplaint(R"({"joints": ["wrist"], "points": [{"positions": [1]}]})"),
+              HasSubstr("without positions or time_from_start"));
+  EXPECT_THAT(TrajectoryComplaint(
+                  R"({"joints": ["wrist"], "points": [{"positions": [], "time_from_start": 1}]})"),
+              HasSubstr("another number"));
+  EXPECT_THAT(
+      TrajectoryComplaint(
+          R"({"joints": ["wrist"], "points": [{"positions": [1], "time_from_start": -1}]})"),
+      HasSubstr("no number of seconds"));
+}
+
 }  // namespace
 }  // namespace tcs

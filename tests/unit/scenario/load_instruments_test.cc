@@ -93,8 +93,8 @@ TEST_F(LoadInstruments, AreAsWritten) {
   EXPECT_EQ(lidar.rays, 181u);
   EXPECT_EQ(lidar.first_rad, -1.5);
   EXPECT_EQ(lidar.last_rad, 1.5);
-  EXPECT_EQ(lidar.least_m, 0.2);
-  EXPECT_EQ(lidar.most_m, 8);
+  EXPECT_EQ(lidar.reach.least_m, 0.2);
+  EXPECT_EQ(lidar.reach.most_m, 8);
   // At the speed of a turn each 100 ms.
   EXPECT_NEAR(lidar.sweep.seconds(), 0.1 * 3 / (2 * std::numbers::pi), 1e-9);
   const FieldError& range =
@@ -125,6 +125,63 @@ TEST_F(LoadInstruments, RobotsOnWheelsAreAsWritten) {
   EXPECT_EQ(wheels.timeout, Ms(500));
 }
 
+constexpr std::string_view kMore = R"(
+  wheels: {type: dds, sensors: {kind: wheel_odometry, model: cart, left: left_joint, right: right_joint, separation: 0.5, radius: 0.2, child_frame: base, topic: /wheels}}
+  tf: {type: dds, sensors: {kind: transforms, model: cart, world_frame: map, prefix: a/}}
+  tf_static: {type: dds, sensors: {kind: fixed_transforms, model: cart}}
+  description: {type: dds, sensors: {kind: description, model: cart, latency: 5ms}}
+  points: {type: dds, sensors: {kind: lidar_3d, on: cart, rays: 10, layers: 4, elevations: [-0.1, 0.3], topic: /points}}
+  sonar: {type: dds, sensors: {kind: range, on: cart, field_of_view: 0.4, radiation: infrared, topic: /sonar, qos: sensor_data}}
+  depth: {type: dds, sensors: {kind: depth_camera, on: cart, width: 32, height: 24, topic: /depth}}
+  fix: {type: dds, sensors: {kind: gnss, on: cart, origin: [48, 11, 500], noise: {position: 1.5}, topic: /fix}}
+  mag: {type: dds, sensors: {kind: magnetometer, on: cart, field: [1e-5, 0, 0], topic: /mag}}
+  baro: {type: dds, sensors: {kind: barometer, on: cart, ground: 100000, topic: /baro}}
+  bump: {type: dds, sensors: {kind: contact, on: cart/hull, margin: 0.01, topic: /bump}}
+  follow: {type: dds, commands: {model: cart, drive: trajectory, stiffness: 5, rate: 50, message: trajectory_msgs/msg/JointTrajectory, topic: /follow}}
+)";
+
+TEST_F(LoadInstruments, AllKindsAreAsWritten) {
+  const Scenario scenario = ScenarioOf(
+      LoadScenario(folder_.Write("s.yaml", std::string(kGood) + std::string(kMore).substr(1))));
+  ASSERT_EQ(scenario.sensors.size(), 14u);
+  const auto spec = [&](std::size_t i) { return scenario.sensors[i].instrument.value(); };
+  const auto end = [&](std::size_t i) { return std::get<DdsSensorEnd>(scenario.sensors[i].to); };
+  const auto wheels = std::get<WheelOdometrySpec>(spec(3));
+  EXPECT_THAT(wheels.joints, ElementsAre(1, 2));
+  EXPECT_EQ(wheels.left, 1u);
+  EXPECT_EQ(wheels.base.radius_m, 0.2);
+  EXPECT_EQ(wheels.frame, "odom");
+  EXPECT_EQ(wheels.child_frame, "base");
+  const auto transforms = std::get<TransformsSpec>(spec(4));
+  ASSERT_EQ(transforms.pairs.size(), 3u);
+  EXPECT_EQ(transforms.pairs[0].parent, -1);
+  EXPECT_EQ(transforms.pairs[0].parent_frame, "map");
+  EXPECT_EQ(transforms.pairs[1].parent_frame, "a/hull");
+  EXPECT_EQ(transforms.pairs[1].child, 3);
+  EXPECT_EQ(end(4).end.topic, "/tf");
+  EXPECT_EQ(end(4).end.qos, dds::Qos());
+  EXPECT_EQ(std::get<FixedTransformsSpec>(spec(5)).transforms.pairs.size(), 1u);
+  EXPECT_EQ(end(5).end.topic, "/tf_static");
+  EXPECT_EQ(end(5).end.qos.durability, dds::Durability::kTransientLocal);
+  EXPECT_EQ(scenario.sensors[5].period, VirtualDuration{});
+  EXPECT_EQ(std::get<DescriptionSpec>(spec(6)).text, kRobot);
+  EXPECT_EQ(end(6).end.topic, "/robot_description");
+  EXPECT_EQ(scenario.sensors[6].latency, Ms(5));
+  const auto points = std::get<Lidar3dSpec>(spec(7));
+  EXPECT_EQ(points.layers, 4u);
+  EXPECT_EQ(points.lowest_rad, -0.1);
+  EXPECT_EQ(points.lidar.rays, 10u);
+  EXPECT_TRUE(std::get<RangeSpec>(spec(8)).is_infrared);
+  EXPECT_EQ(end(8).end.qos.reliability, dds::Reliability::kBestEffort);
+  EXPECT_EQ(end(8).end.qos.depth, 5);
+  EXPECT_EQ(std::get<DepthCameraSpec>(spec(9)).height, 24u);
+  EXPECT_EQ(std::get<GnssSpec>(spec(10)).origin, (Geodetic{48, 11, 500}));
+  EXPECT_EQ(std::get<MagnetometerSpec>(spec(11)).field_t[0], 1e-5);
+  EXPECT_EQ(std::get<BarometerSpec>(spec(12)).ground_pa, 100'000);
+  EXPECT_EQ(std::get<ContactSpec>(spec(13)).margin_m, 0.01);
+  EXPECT_EQ(scenario.commands.at(1).joints->setpoint_period, Ms(20));
+}
+
 struct Mistake {
   const char* name;
   std::string_view from, to, place;
@@ -143,6 +200,71 @@ TEST_P(InstrumentMistake, IsOneSentenceWithItsPlace) {
     EXPECT_THAT(complaint, HasSubstr(std::string(words)));
   }
 }
+
+class MoreMistakes : public LoadInstruments, public testing::WithParamInterface<Mistake> {};
+
+TEST_P(MoreMistakes, AreOneSentenceWithItsPlace) {
+  const Mistake& mistake = GetParam();
+  const std::string text = std::string(kGood) + std::string(kMore).substr(1);
+  const std::string path = folder_.Write("s.yaml", WithReplaced(mistake.from, mistake.to, text));
+  const std::string complaint = Complaint(folder_, LoadScenario(path));
+  EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
+  for (const std::string_view words : mistake.words) {
+    EXPECT_THAT(complaint, HasSubstr(std::string(words)));
+  }
+}
+
+const Mistake kMoreMistakes[] = {
+    {"TransformsOfABox",
+     "kind: transforms, model: cart, world_frame: map",
+     "kind: transforms, model: crate",
+     "s.yaml:30",
+     {"no joint that is not fixed"}},
+    {"RateOfWhatIsSaidOnce",
+     "kind: fixed_transforms, model: cart",
+     "kind: fixed_transforms, model: cart, rate: 5",
+     "s.yaml:31",
+     {"unknown key 'rate'"}},
+    {"DescriptionOfABox",
+     "kind: description, model: cart",
+     "kind: description, model: crate",
+     "s.yaml:32",
+     {"comes from no file"}},
+    {"CloudInADatagram",
+     "type: dds, sensors: {kind: lidar_3d, on: cart, rays: 10, layers: 4, elevations: [-0.1, 0.3], "
+     "topic: "
+     "/points}",
+     "type: udp_json, sensors: {kind: lidar_3d, on: cart, to: \"127.0.0.1:47011\"}",
+     "s.yaml:33",
+     {"make the channel's type dds"}},
+    {"TooManyRays", "rays: 10, layers: 4", "rays: 100000, layers: 40", "s.yaml:33", {"a million"}},
+    {"BeyondStraightUp", "[-0.1, 0.3]", "[-0.1, 3]", "s.yaml:33", {"straight up"}},
+    {"WideCone", "field_of_view: 0.4", "field_of_view: 4", "s.yaml:34", {"half a turn"}},
+    {"UnknownRadiation", "infrared", "infrred", "s.yaml:34", {"'infrared'?"}},
+    {"UnknownProfile", "sensor_data", "sensors_data", "s.yaml:34", {"'sensor_data'?"}},
+    {"LargeImage", "width: 32", "width: 3200", "s.yaml:35", {"width"}},
+    {"NotOnEarth", "[48, 11, 500]", "[148, 11, 500]", "s.yaml:36", {"not on the earth"}},
+    {"NoOrigin", "origin: [48, 11, 500], ", "", "s.yaml:36", {"lacks the key 'origin'"}},
+    {"NoPressure", "ground: 100000", "ground: 0", "s.yaml:38", {"ground"}},
+    {"NegativeMargin", "margin: 0.01", "margin: -0.01", "s.yaml:39", {"margin"}},
+    {"TrajectoryAsNumbers",
+     "trajectory_msgs/msg/JointTrajectory",
+     "std_msgs/msg/Float64MultiArray",
+     "s.yaml:40",
+     {"trajectories are told by trajectory_msgs/msg/JointTrajectory"}},
+    {"NumbersAsTrajectory",
+     "drive: trajectory, stiffness: 5, rate: 50",
+     "drive: effort",
+     "s.yaml:40",
+     {"wants drive: trajectory"}},
+    {"TrajectoryWithoutStiffness",
+     "stiffness: 5, ",
+     "",
+     "s.yaml:40",
+     {"lacks the key 'stiffness'"}},
+};
+INSTANTIATE_TEST_SUITE_P(Of, MoreMistakes, testing::ValuesIn(kMoreMistakes),
+                         [](const auto& mistake) { return mistake.param.name; });
 
 const Mistake kMistakes[] = {
     {"UnknownKind", "kind: imu", "kind: imus", "s.yaml:12", {"unknown 'imus'", "'imu'?"}},
@@ -176,13 +298,13 @@ const Mistake kMistakes[] = {
      "geometry_msgs/msg/Twist",
      "std_msgs/msg/Float64MultiArray",
      "s.yaml:28",
-     {"told its velocity by geometry_msgs/msg/Twist"}},
+     {"told by geometry_msgs/msg/Twist"}},
     {"TwistWithoutWheels",
      "drive: differential, left: left_joint, right: [right_joint], separation: 0.4, radius: 0.1, "
      "damping: 2",
      "drive: effort",
      "s.yaml:28",
-     {"add drive: differential"}},
+     {"wants drive: differential"}},
     {"LaserOfBodies",
      "sensors: {kind: odometry, on: cart, to: \"127.0.0.1:47010\"}",
      "sensors: {model: cart, to: \"127.0.0.1:47010\", kind: odometry}",

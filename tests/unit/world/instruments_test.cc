@@ -149,9 +149,9 @@ double ToWalls(double x, double y, double angle, double half_x, double half_y) {
 }
 
 std::vector<Shape> Room() {
-  return {Fixture(PlaneShape{}), Fixture(BoxShape{{1, 20, 4}}, {5.5, 0, 0}),
-          Fixture(BoxShape{{1, 20, 4}}, {-5.5, 0, 0}), Fixture(BoxShape{{20, 1, 4}}, {0, 3.5, 0}),
-          Fixture(BoxShape{{20, 1, 4}}, {0, -3.5, 0})};
+  return {Fixture(PlaneShape{}), Fixture(BoxShape{{1, 20, 10}}, {5.5, 0, 0}),
+          Fixture(BoxShape{{1, 20, 10}}, {-5.5, 0, 0}), Fixture(BoxShape{{20, 1, 10}}, {0, 3.5, 0}),
+          Fixture(BoxShape{{20, 1, 10}}, {0, -3.5, 0})};
 }
 
 TEST_P(Instruments, ALidarInARoomSeesItsWalls) {
@@ -201,11 +201,124 @@ TEST_P(Instruments, WhatIsOutOfReachIsAtInfinity) {
   lidar.rays = 2;
   lidar.first_rad = 0;
   lidar.last_rad = std::numbers::pi / 2;
-  lidar.least_m = 3.5;
-  lidar.most_m = 4.5;
+  lidar.reach.least_m = 3.5;
+  lidar.reach.most_m = 4.5;
   const auto scan = Last<ScanMeasurement>(lidar, Ms(100), At(0));
   EXPECT_EQ(scan.ranges_m[0], kNoLimit);
   EXPECT_EQ(scan.ranges_m[1], -kNoLimit);
+}
+
+TEST_P(Instruments, ALidarWithLayersMeetsTheWallsAndTheFloor) {
+  world_.models = {Block("block", {1, -0.5, 0.1})};
+  world_.models[0].has_fixed_base = true;
+  world_.fixtures = Room();
+  Start();
+  Lidar3dSpec spec;
+  spec.lidar.mount.at.position_m = {0, 0, 0.4};
+  spec.lidar.rays = 90;
+  spec.lidar.last_rad = std::numbers::pi * (1 - 2.0 / 90);
+  spec.lidar.sweep = Ms(100);
+  spec.layers = 3;
+  spec.lowest_rad = -0.3;
+  spec.highest_rad = 0.3;
+  const auto cloud = Last<CloudMeasurement>(spec, Ms(100), At(500));
+  ASSERT_EQ(cloud.points.size(), 270u);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const auto& [direction, range_m, after_s, layer] = cloud.points[i];
+    EXPECT_EQ(layer, i % 3);
+    EXPECT_NEAR(after_s, 0.1 * static_cast<double>(i / 3) / 89, 1e-12);
+    const double angle = -std::numbers::pi + 2 * std::numbers::pi * static_cast<double>(i / 3) / 90;
+    const double to_wall = ToWalls(1, -0.5, angle, 5, 3) / std::cos(0.3 * (layer - 1.0));
+    const double to_floor = layer == 0 ? 0.5 / std::sin(0.3) : kNoLimit;
+    EXPECT_NEAR(range_m, std::min(layer == 1 ? ToWalls(1, -0.5, angle, 5, 3) : to_wall, to_floor),
+                1e-5)
+        << i;
+  }
+}
+
+TEST_P(Instruments, ARangeFinderSeesWhatIsNearestInItsCone) {
+  world_.models = {Turntable(0)};
+  // To the left of where it looks, within its cone; another one is beyond it.
+  world_.fixtures = {Fixture(SphereShape{0.2}, {2, 0.2, 0}),
+                     Fixture(SphereShape{0.2}, {1, 0.6, 0})};
+  Start();
+  RangeSpec spec;
+  spec.mount.link = 1;
+  spec.field_of_view_rad = 0.2;
+  const auto range = Last<RangeMeasurement>(spec, Ms(100), At(0));
+  EXPECT_NEAR(range.range_m, std::hypot(2, 0.2) - 0.2, 1e-4);
+  spec.field_of_view_rad = 0.0001;
+  spec.reach.most_m = 1;
+  EXPECT_EQ(Last<RangeMeasurement>(spec, Ms(100), At(0)).range_m, kNoLimit);
+}
+
+TEST_P(Instruments, ADepthCameraSeesHowFarAheadThingsAre) {
+  world_.models = {Turntable(0)};
+  // A wall 3 m ahead, and before its upper left quarter a board at 2 m.
+  world_.fixtures = {Fixture(BoxShape{{1, 20, 20}}, {3.5, 0, 0}),
+                     Fixture(BoxShape{{0.1, 10, 10}}, {2.05, 5, 5})};
+  Start();
+  DepthCameraSpec spec;
+  spec.mount.link = 1;
+  spec.width = 8;
+  spec.height = 6;
+  const auto depth = Last<DepthMeasurement>(spec, Ms(100), At(0));
+  ASSERT_EQ(depth.depths_m.size(), 48u);
+  for (std::size_t row = 0; row < 6; ++row) {
+    for (std::size_t column = 0; column < 8; ++column) {
+      EXPECT_NEAR(depth.depths_m[row * 8 + column], row < 3 && column < 4 ? 2 : 3, 1e-9)
+          << row << ' ' << column;
+    }
+  }
+}
+
+TEST_P(Instruments, TheSensorsOfTheSkyAreWhereTheirMountIs) {
+  world_.models = {Turntable(std::numbers::pi / 2)};
+  Start();
+  GnssSpec gnss;
+  gnss.mount.link = 1;
+  gnss.mount.at.position_m = {2, 0, 3};
+  gnss.origin = {48, 11, 500};
+  const auto fix = Last<GnssMeasurement>(gnss, Ms(10), At(1000));
+  EXPECT_NEAR(fix.enu_m[0], 0, 1e-5);
+  EXPECT_NEAR(fix.enu_m[1], 2, 1e-5);
+  EXPECT_NEAR(fix.position().altitude_m, 503, 1e-5);
+  MagnetometerSpec magnetometer;
+  magnetometer.mount.link = 1;
+  magnetometer.field_t = {0, 2e-5, -4e-5};
+  const auto field = Last<MagneticMeasurement>(magnetometer, Ms(10), At(1000));
+  EXPECT_NEAR(field.field_t[0], 2e-5, 1e-10);  // it looks to the north by now
+  EXPECT_NEAR(field.field_t[1], 0, 1e-10);
+  EXPECT_NEAR(field.field_t[2], -4e-5, 1e-15);
+  BarometerSpec barometer;
+  barometer.mount.link = 1;
+  barometer.mount.at.position_m = {0, 0, 1000};
+  const auto pressure = Last<PressureMeasurement>(barometer, Ms(10), At(1000));
+  EXPECT_NEAR(pressure.pressure_pa, 89'874.6, 1);  // ISA's table
+}
+
+TEST_P(Instruments, TransformsLeadFromTheWorldToEachLink) {
+  world_.models = {Turntable(2)};
+  world_.models[0].at.position_m = {1, 2, 3};
+  world_.models[0].joints[0].origin.position_m = {0, 0, 0.5};
+  Start();
+  const TransformsSpec spec{{{-1, 0, "map", "base"}, {0, 1, "base", "table"}}};
+  const auto told = Last<TransformsMeasurement>(spec, Ms(10), At(1000));
+  ASSERT_EQ(told.transforms.size(), 2u);
+  EXPECT_EQ(told.transforms[0].frame, "map");
+  EXPECT_EQ(told.transforms[0].pose.position_m, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(told.transforms[1].child_frame, "table");
+  EXPECT_NEAR(told.transforms[1].pose.position_m[2], 0.5, 1e-12);
+  EXPECT_NEAR(told.transforms[1].pose.orientation_xyzw[2], std::sin(1), 1e-6);
+}
+
+TEST_P(Instruments, ABumperFeelsWhatItsLinkStandsOn) {
+  world_.models = {Block("block", {0, 0, 0.5})};
+  world_.fixtures = {Fixture(PlaneShape{})};
+  Start();
+  const ContactSpec spec{};
+  EXPECT_FALSE(Last<ContactMeasurement>(spec, Ms(10), At(200)).is_touching);
+  EXPECT_TRUE(Last<ContactMeasurement>(spec, Ms(10), At(2000)).is_touching);
 }
 
 std::vector<EngineKind> EnginesWithModels() {
@@ -220,6 +333,35 @@ INSTANTIATE_TEST_SUITE_P(On, Instruments, testing::ValuesIn(EnginesWithModels())
                          [](const auto& engine) {
                            return std::string(TraitsOf(engine.param).name);
                          });
+
+// Wheels that have turned by so much: along a straight line, on the spot, and along an arc.
+TEST(WheelOdometry, IsAlongTheArcsThatTheWheelsSay) {
+  WheelOdometrySpec spec;
+  spec.joints = {0, 1};
+  spec.base = {.separation_m = 0.5, .radius_m = 0.1};
+  const auto odometry = MakeInstrument(spec, Ms(10), {});
+  std::array<double, 2> turned = {7, -3};
+  const Eyes eyes{.links = {}, .joints = [&](std::span<const int>, std::span<JointState> states) {
+                    for (std::size_t i = 0; i < 2; ++i) states[i].position = turned[i];
+                  }};
+  const auto after = [&](double left, double right) {
+    turned = {turned[0] + left, turned[1] + right};
+    odometry->Look(0, {}, eyes);
+    return std::get<OdometryMeasurement>(odometry->Finish()).pose;
+  };
+  EXPECT_EQ(after(0, 0).position_m, (std::array<double, 3>{}));
+  EXPECT_NEAR(after(10, 10).position_m[0], 1, 1e-12);
+  // A quarter of a circle to the left with a radius of 1 m.
+  const double quarter = std::numbers::pi / 2;
+  const Pose pose = after(0.75 * quarter / 0.1, 1.25 * quarter / 0.1);
+  EXPECT_NEAR(pose.position_m[0], 2, 1e-12);
+  EXPECT_NEAR(pose.position_m[1], 1, 1e-12);
+  EXPECT_NEAR(pose.orientation_xyzw[2], std::sin(quarter / 2), 1e-12);
+  // On the spot, half round.
+  const Pose turned_round = after(-0.25 * 2 * quarter / 0.1, 0.25 * 2 * quarter / 0.1);
+  EXPECT_NEAR(turned_round.position_m[1], 1, 1e-12);
+  EXPECT_NEAR(turned_round.orientation_xyzw[2], std::sin(1.5 * quarter), 1e-12);
+}
 
 }  // namespace
 }  // namespace tcs
