@@ -41,6 +41,11 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
       contact_step_.Take(tree, step, std::min(kContactStep, step.limit).seconds());
     } else {
       steps_.TakeControlled(tree, step, std::min(limit_s, free_s));
+      // It was pushed harder than is trusted.
+      while (step.length_s > kContactStep.seconds() &&
+             tree.MayHaveTouched(step.to, step.length_s)) {
+        steps_.TakeControlled(tree, step, step.length_s / 2);
+      }
     }
   }
 
