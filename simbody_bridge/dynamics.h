@@ -177,6 +177,9 @@ struct WorldSpec {
   // Bodies (by index) that are integrated as one system. Others are islands of one body each: free
   // bodies cannot touch or pull each other.
   std::vector<std::vector<int>> together;
+  // Models (by index) that are one system from the start on, and stay one. Others that can touch
+  // each other are one for as long as they are near each other.
+  std::vector<std::vector<int>> models_together;
 };
 
 class DynamicsError : public std::runtime_error {
@@ -197,11 +200,13 @@ class Dynamics {
     std::int64_t steps = 0;       // of the engine
     std::int64_t changes = 0;     // steps that began with other wrenches than the one before ended
     std::int64_t taken_back = 0;  // commands that changed what had been integrated already
+    std::int64_t regrouped = 0;   // times that it was looked anew which models are near each other
   };
 
   virtual ~Dynamics() = default;
 
-  // How many systems the bodies were divided into.
+  // How many systems bodies and models are divided into; where models come near each other and
+  // part, as late as they have been integrated.
   virtual int island_count() const = 0;
 
   // No command for an earlier time comes any more, nor is an earlier state read.

@@ -2,25 +2,47 @@
 // system that is built from it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <span>
 #include <vector>
 
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/model_loads.h"
 
 namespace tcs {
 
 // A `System` is constructed from a forest, which outlives it, and gravity, and has start(),
-// ReadLinks and ReadJoints.
+// ReadLinks, ReadJoints and CopyBody.
 template <class System>
 class ForestEngine : public ModelEngine {
  public:
   ForestEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : models_(world.models), fixtures_(world.fixtures) {
-    for (const std::vector<int>& models : islands) {
-      forests_.push_back(MakeForest(models_, models, fixtures_));
-      systems_.emplace_back(forests_.back(), world.gravity_mps2);
+      : models_(world.models), fixtures_(world.fixtures), gravity_mps2_(world.gravity_mps2) {
+    for (const std::vector<int>& models : islands) AddIsland(models);
+  }
+
+  int AddIsland(const std::vector<int>& models) final {
+    Forest& forest = forests_.emplace_back(MakeForest(models_, models, fixtures_));
+    try {
+      systems_.emplace_back(forest, gravity_mps2_);
+    } catch (...) {
+      forests_.pop_back();
+      throw;
+    }
+    loads_.emplace_back(models_, models);
+    return static_cast<int>(systems_.size()) - 1;
+  }
+
+  void CopyModel(const ModelPlace& from, std::span<const double> state, const ModelPlace& to,
+                 std::span<double> into) const final {
+    const System& source = systems_[static_cast<std::size_t>(from.island)];
+    const System& target = systems_[static_cast<std::size_t>(to.island)];
+    std::size_t first = FirstBody(to);
+    for (std::size_t body = FirstBody(from); IsOf(from, body); ++body) {
+      source.CopyBody(body, state, target, first++, into);
     }
   }
 
@@ -28,19 +50,33 @@ class ForestEngine : public ModelEngine {
                  std::span<LinkState> read) final {
     At(island).ReadLinks(state, links, read);
   }
-  void ReadJoints(int island, std::span<const double> state, std::span<const Wrench> acting,
+  void ReadJoints(int island, std::span<const double> state, const Acting& acting,
                   std::span<const int> joints, std::span<JointState> read) final {
-    At(island).ReadJoints(state, acting, joints, read);
+    At(island).ReadJoints(state, LoadsOn(island).At(acting), joints, read);
   }
 
  protected:
   System& At(int island) { return systems_[static_cast<std::size_t>(island)]; }
+  ModelLoads& LoadsOn(int island) { return loads_[static_cast<std::size_t>(island)]; }
 
  private:
+  bool IsOf(const ModelPlace& place, std::size_t body) const {
+    const auto& models = forests_[static_cast<std::size_t>(place.island)].model_of_body;
+    return body < models.size() && models[body] == place.member;
+  }
+  // The bodies of a model follow each other.
+  std::size_t FirstBody(const ModelPlace& place) const {
+    const auto& models = forests_[static_cast<std::size_t>(place.island)].model_of_body;
+    return static_cast<std::size_t>(std::find(models.begin(), models.end(), place.member) -
+                                    models.begin());
+  }
+
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
+  const std::array<double, 3> gravity_mps2_;
   std::deque<Forest> forests_;
   std::deque<System> systems_;
+  std::deque<ModelLoads> loads_;
 };
 
 }  // namespace tcs

@@ -37,6 +37,14 @@ Island::Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work
   frontier_.wrenches.resize(static_cast<std::size_t>(bodies));
 }
 
+Island::Island(int index, Node start, std::vector<Command> commands, IslandEngine& engine,
+               Dynamics::Work& work)
+    : index_(index),
+      engine_(engine),
+      work_(work),
+      commands_(std::move(commands)),
+      frontier_(std::move(start)) {}
+
 // What acts on the body after all commands for `t` and before.
 const Wrench& Island::ActingAfter(VirtualTime t, int place) const {
   auto command = std::upper_bound(commands_.begin(), commands_.end(), t, IsEarlier);
@@ -88,17 +96,17 @@ std::size_t Island::CommandsUntil(VirtualTime t) const {
   return static_cast<std::size_t>(later - commands_.begin());
 }
 
-IslandStep* Island::NextStepTo(VirtualTime t) {
+IslandStep* Island::NextStepTo(VirtualTime t, VirtualDuration most) {
   if (t <= frontier_.at) return nullptr;
   if (used_ == legs_.size()) legs_.emplace_back();
   Leg& leg = legs_[used_];
   leg.start = frontier_;
-  Depart(&leg);
+  Depart(&leg, most);
   return &leg.step;
 }
 
 // The commands for the very instant take effect.
-void Island::Depart(Leg* leg) {
+void Island::Depart(Leg* leg, VirtualDuration most) {
   const Node& start = leg->start;
   IslandStep& step = leg->step;
   step.island = index_;
@@ -108,6 +116,7 @@ void Island::Depart(Leg* leg) {
   step.remainders = start.remainders;
   step.try_s = start.try_s;
   step.limit = engine_.LongestStep(index_);
+  if (!engine_.has_set_steps()) step.limit = std::min(step.limit, most);
   leg->changed_at = start.changed_at;
   for (const Command& command : commands_) {
     if (command.at > start.at) break;
@@ -180,12 +189,27 @@ VirtualTime Island::ChangeWithin(const Leg& leg) {
 
 void Island::FindFrontier() {
   const Leg& leg = legs_[used_ - 1];
-  frontier_.at = std::min(leg.to, ChangeWithin(leg));
-  StateOf(leg, frontier_.at, &frontier_.state);
-  frontier_.wrenches = leg.step.wrenches;
-  frontier_.remainders = leg.step.remainders;
-  frontier_.try_s = leg.step.next_try_s;
-  frontier_.changed_at = leg.changed_at;
+  GoTo(leg, std::min(leg.to, ChangeWithin(leg)), &frontier_);
+}
+
+void Island::GoTo(const Leg& leg, VirtualTime t, Node* node) {
+  node->at = t;
+  StateOf(leg, t, &node->state);
+  node->wrenches = leg.step.wrenches;
+  node->remainders = leg.step.remainders;
+  node->try_s = leg.step.next_try_s;
+  node->changed_at = leg.changed_at;
+}
+
+Island::Node Island::NodeAt(VirtualTime t) {
+  Require(t >= Origin().at && t <= frontier_.at, "an island goes on from where it is known");
+  if (t == frontier_.at) return frontier_;
+  std::size_t leg = used_ - 1;
+  while (legs_[leg].start.at > t) --leg;
+  if (legs_[leg].start.at == t) return legs_[leg].start;
+  Node node;
+  GoTo(legs_[leg], t, &node);
+  return node;
 }
 
 void Island::StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state) {
@@ -210,13 +234,13 @@ void Island::StateAt(VirtualTime t, std::vector<double>* state) {
   StateOf(legs_[leg], t, state);
 }
 
-Island::Acting Island::ActingUntil(VirtualTime t) const {
-  if (t >= frontier_.at) return {frontier_.wrenches, frontier_.remainders};
+Acting Island::ActingUntil(VirtualTime t) const {
+  if (t >= frontier_.at) return {frontier_.wrenches, frontier_.remainders, t};
   std::size_t leg = used_ - 1;
   while (leg > 0 && legs_[leg].start.at >= t) --leg;
   const Node& start = legs_[leg].start;
-  if (start.at >= t) return {start.wrenches, start.remainders};
-  return {legs_[leg].step.wrenches, legs_[leg].step.remainders};
+  if (start.at >= t) return {start.wrenches, start.remainders, t};
+  return {legs_[leg].step.wrenches, legs_[leg].step.remainders, t};
 }
 
 void Island::Save(Saved* saved) const {

@@ -18,34 +18,11 @@ namespace tcs {
 // How long a step is that was taken, in whole nanoseconds; 0 if it led nowhere.
 VirtualDuration LengthOf(const IslandStep& step);
 
+// Longer than any step.
+inline constexpr VirtualDuration kAnyLength = VirtualDuration::Seconds(1'000'000);
+
 class Island {
  public:
-  // The engine and `work` outlive this.
-  Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work);
-
-  // A command for `t`, not before the time that was settled last.
-  void Apply(int place, const Wrench& wrench, VirtualTime t);
-  // Neither a command for a time before `t` comes any more nor is a state before it asked for.
-  void Settle(VirtualTime t);
-
-  // The step to take on the way to the state at `t`; none: the state is known. It is valid until
-  // the next call. Once it has been taken, Took.
-  IslandStep* NextStepTo(VirtualTime t);
-  VirtualTime StepStart() const { return frontier_.at; }
-  void Took();
-
-  // Of a time since the one settled last, up to which no step is left to take.
-  void StateAt(VirtualTime t, std::vector<double>* state);
-  // What acted until that time: commands, and what is left of those before.
-  struct Acting {
-    const std::vector<Wrench>& wrenches;
-    const std::vector<Remainder>& remainders;
-  };
-  Acting ActingUntil(VirtualTime t) const;
-
-  // How many commands have taken effect by `t` and not been worked off.
-  std::size_t CommandsUntil(VirtualTime t) const;
-
   // All that the island goes on from. Of a default one vectors grow at the first use, and not
   // again.
   struct Command {
@@ -66,6 +43,38 @@ class Island {
     Node origin;
     std::vector<Command> commands;
   };
+
+  // The engine and `work` outlive this.
+  Island(int index, int bodies, IslandEngine& engine, Dynamics::Work& work);
+  // One that goes on from `start`, with these commands, none of which is for an earlier time.
+  Island(int index, Node start, std::vector<Command> commands, IslandEngine& engine,
+         Dynamics::Work& work);
+
+  // A command for `t`, not before the time that was settled last.
+  void Apply(int place, const Wrench& wrench, VirtualTime t);
+  // Neither a command for a time before `t` comes any more nor is a state before it asked for.
+  void Settle(VirtualTime t);
+
+  // The step to take on the way to the state at `t`; none: the state is known. It is valid until
+  // the next call, and no longer than `most` unless steps are set. Once it has been taken, Took.
+  IslandStep* NextStepTo(VirtualTime t, VirtualDuration most = kAnyLength);
+  void Took();
+  // Where the next step begins.
+  const Node& frontier() const { return frontier_; }
+
+  // Of a time since the one settled last, up to which no step is left to take.
+  void StateAt(VirtualTime t, std::vector<double>* state);
+  // What acted until that time.
+  Acting ActingUntil(VirtualTime t) const;
+
+  // What an island would go on from that began there; `t` as of StateAt.
+  Node NodeAt(VirtualTime t);
+  // All from the earliest time on that can still be asked for.
+  const std::vector<Command>& commands() const { return commands_; }
+
+  // How many commands have taken effect by `t` and not been worked off.
+  std::size_t CommandsUntil(VirtualTime t) const;
+
   void Save(Saved* saved) const;
   void Restore(const Saved& saved);
 
@@ -80,11 +89,12 @@ class Island {
   const Node& Origin() const { return used_ > 0 ? legs_.front().start : frontier_; }
   const Wrench& ActingAfter(VirtualTime t, int place) const;
   void TakeBackTo(VirtualTime t);
-  void Depart(Leg* leg);
+  void Depart(Leg* leg, VirtualDuration most);
   void LetLag(const Node& start, IslandStep* step) const;
   void LimitAfterChange(const Node& start, IslandStep* step) const;
   VirtualTime ChangeWithin(const Leg& leg);
   void FindFrontier();
+  void GoTo(const Leg& leg, VirtualTime t, Node* node);
   void StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state);
 
   const int index_;

@@ -30,6 +30,13 @@ struct IslandStep {
   std::vector<double> from_rate, to_rate;  // derivatives, of an engine that interpolates
 };
 
+// What acts on an island at an instant: the commands, and what is left of those before.
+struct Acting {
+  const std::vector<Wrench>& wrenches;
+  const std::vector<Remainder>& remainders;
+  VirtualTime at;
+};
+
 // Where an island starts.
 struct IslandStart {
   std::vector<double> state;

@@ -62,18 +62,34 @@ inline Wrench AsNumbers(double speed_radps, VirtualDuration lag) {
 // What a drive gives at a position and a velocity, within the joint's limit.
 double EffortOf(const JointDrive& drive, double limit, double position, double velocity);
 
+// Where a model is in the states of an island: its models are counted in their order there.
+struct ModelPlace {
+  int island = 0, member = 0;
+};
+
 class ModelEngine : public IslandEngine {
  public:
-  // How links and joints are in a state of their island, in which `acting` acts. Joints have one
-  // coordinate, or they are fixed.
+  // One more island, of these models, in addition to those that the engine was made with: its
+  // index. A model may be in many islands, each of which is one way to group it. Throws what the
+  // engine throws if it refuses it.
+  virtual int AddIsland(const std::vector<int>& models) = 0;
+  // How the model is in the state of one island, as it would be in that of another one.
+  virtual void CopyModel(const ModelPlace& from, std::span<const double> state,
+                         const ModelPlace& to, std::span<double> into) const = 0;
+
+  // How links and joints are in a state of their island, at an instant at which `acting` acts.
+  // Joints have one coordinate, or they are fixed.
   virtual void ReadLinks(int island, std::span<const double> state, std::span<const int> links,
                          std::span<LinkState> read) = 0;
-  virtual void ReadJoints(int island, std::span<const double> state, std::span<const Wrench> acting,
+  virtual void ReadJoints(int island, std::span<const double> state, const Acting& acting,
                           std::span<const int> joints, std::span<JointState> read) = 0;
 };
 
-// Which models each island has: those that can touch each other, however they move.
-std::vector<std::vector<int>> ModelIslandsOf(const WorldSpec& world);
+// The models of each island at least: those of world.models_together, and the others alone. Throws
+// DynamicsError where a model is named twice, or is none.
+std::vector<std::vector<int>> ModelUnitsOf(const WorldSpec& world);
+// Whether a model can touch others.
+bool CanMeet(const RobotModel& model);
 
 // The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if
 // the engine has no joints, or refuses the models all the same.

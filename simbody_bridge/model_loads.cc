@@ -34,29 +34,26 @@ Load NumbersOf(const Wrench& command, const Remainder& remainder, double share) 
 
 }  // namespace
 
-ModelLoads::ModelLoads(const std::vector<RobotModel>& models,
-                       const std::vector<std::vector<int>>& islands) {
-  for (const std::vector<int>& members : islands) {
-    int links = 0, joints = 0, first_link = 0, number = 0;
-    for (const int model : members) {
-      links += static_cast<int>(models[static_cast<std::size_t>(model)].links.size());
-      joints += static_cast<int>(models[static_cast<std::size_t>(model)].joints.size());
+ModelLoads::ModelLoads(std::span<const RobotModel> all, std::span<const int> models) {
+  int links = 0, joints = 0, first_link = 0, number = 0;
+  for (const int index : models) {
+    const RobotModel& model = all[static_cast<std::size_t>(index)];
+    links += static_cast<int>(model.links.size());
+    joints += static_cast<int>(model.joints.size());
+  }
+  for (const int index : models) {
+    const RobotModel& model = all[static_cast<std::size_t>(index)];
+    for (const Rotor& rotor : model.rotors) {
+      const int of_link = PlaceOfLink(first_link + rotor.link, WrenchFrame::kLink);
+      rotors_.push_back({static_cast<std::size_t>(PlaceOfRotor(links, joints, number++)),
+                         static_cast<std::size_t>(of_link), LoadOfSquare(rotor)});
     }
-    std::vector<SpinningRotor>& rotors = rotors_.emplace_back();
-    for (const int index : members) {
-      const RobotModel& model = models[static_cast<std::size_t>(index)];
-      for (const Rotor& rotor : model.rotors) {
-        const int of_link = PlaceOfLink(first_link + rotor.link, WrenchFrame::kLink);
-        rotors.push_back({static_cast<std::size_t>(PlaceOfRotor(links, joints, number++)),
-                          static_cast<std::size_t>(of_link), LoadOfSquare(rotor)});
-      }
-      first_link += static_cast<int>(model.links.size());
-    }
+    first_link += static_cast<int>(model.links.size());
   }
 }
 
 std::span<const Wrench> ModelLoads::At(const IslandStep& step, double after_s) {
-  return Sum(step.island, step.wrenches, step.remainders,
+  return Sum(step.wrenches, step.remainders,
              [&](const Wrench& command, const Remainder& remainder) {
                const double share =
                    ShareLeftAfter(command, ShareLeft(command, remainder, step.at), after_s);
@@ -64,17 +61,17 @@ std::span<const Wrench> ModelLoads::At(const IslandStep& step, double after_s) {
              });
 }
 
-std::span<const Wrench> ModelLoads::At(int island, const std::vector<Wrench>& commanded,
-                                       const std::vector<Remainder>& remainders, VirtualTime t) {
-  return Sum(island, commanded, remainders, [&](const Wrench& command, const Remainder& remainder) {
-    const double share = ShareLeft(command, remainder, t);
-    return Left{share, share * share};
-  });
+std::span<const Wrench> ModelLoads::At(const Acting& acting) {
+  return Sum(acting.wrenches, acting.remainders,
+             [&](const Wrench& command, const Remainder& remainder) {
+               const double share = ShareLeft(command, remainder, acting.at);
+               return Left{share, share * share};
+             });
 }
 
 // The square fades twice as fast.
 std::span<const Wrench> ModelLoads::MeanOver(const IslandStep& step, double seconds) {
-  return Sum(step.island, step.wrenches, step.remainders,
+  return Sum(step.wrenches, step.remainders,
              [&](const Wrench& command, const Remainder& remainder) {
                const double share = ShareLeft(command, remainder, step.at);
                if (!(share > 0)) return Left{0, 0};
@@ -85,11 +82,10 @@ std::span<const Wrench> ModelLoads::MeanOver(const IslandStep& step, double seco
 }
 
 template <class LeftOf>
-std::span<const Wrench> ModelLoads::Sum(int island, const std::vector<Wrench>& commanded,
+std::span<const Wrench> ModelLoads::Sum(const std::vector<Wrench>& commanded,
                                         const std::vector<Remainder>& remainders,
                                         const LeftOf& left_of) {
-  const std::vector<SpinningRotor>& rotors = rotors_[static_cast<std::size_t>(island)];
-  if (remainders.empty() && rotors.empty()) return commanded;
+  if (remainders.empty() && rotors_.empty()) return commanded;
   acting_ = commanded;
   for (std::size_t place = 0; place < remainders.size(); ++place) {
     const Left left = left_of(commanded[place], remainders[place]);
@@ -97,7 +93,7 @@ std::span<const Wrench> ModelLoads::Sum(int island, const std::vector<Wrench>& c
     acting_[place].force_n = numbers.force_n;
     acting_[place].torque_nm = numbers.torque_nm;
   }
-  for (const SpinningRotor& rotor : rotors) {
+  for (const SpinningRotor& rotor : rotors_) {
     const double aim = commanded[rotor.place].force_n[0];
     double square = aim * aim;
     if (!remainders.empty()) {

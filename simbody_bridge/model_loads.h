@@ -1,5 +1,6 @@
-// What acts on the links and joints of models, whichever engine moves them: the commands as they
-// act by now, of which some lag, and the rotors, each of which is a load on its link.
+// What acts on the links and joints of an island of models, whichever engine moves them: the
+// commands as they act by now, of which some lag, and the rotors, each of which is a load on its
+// link.
 #pragma once
 
 #include <span>
@@ -11,7 +12,8 @@ namespace tcs {
 
 class ModelLoads {
  public:
-  ModelLoads(const std::vector<RobotModel>& models, const std::vector<std::vector<int>>& islands);
+  // The island has the models of these indices.
+  ModelLoads(std::span<const RobotModel> all, std::span<const int> models);
 
   // By place (model_engine.h), as if nothing lagged and what rotors do were commanded to their
   // links. Valid until the next call.
@@ -20,9 +22,7 @@ class ModelLoads {
   std::span<const Wrench> At(const IslandStep& step, double after_s);
   // The mean over that time from its beginning on, which is exact: for steps with one force.
   std::span<const Wrench> MeanOver(const IslandStep& step, double seconds);
-  // At `t`, of what was commanded and what is left of the commands before.
-  std::span<const Wrench> At(int island, const std::vector<Wrench>& commanded,
-                             const std::vector<Remainder>& remainders, VirtualTime t);
+  std::span<const Wrench> At(const Acting& acting);
 
  private:
   struct SpinningRotor {
@@ -34,10 +34,10 @@ class ModelLoads {
     double share, square_of_share;
   };
   template <class LeftOf>
-  std::span<const Wrench> Sum(int island, const std::vector<Wrench>& commanded,
+  std::span<const Wrench> Sum(const std::vector<Wrench>& commanded,
                               const std::vector<Remainder>& remainders, const LeftOf& left_of);
 
-  std::vector<std::vector<SpinningRotor>> rotors_;  // of each island
+  std::vector<SpinningRotor> rotors_;
   std::vector<Wrench> acting_;
 };
 

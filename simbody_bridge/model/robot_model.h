@@ -124,7 +124,7 @@ struct RobotModel {
   // joint joins never do.
   bool has_self_collision = false;
   // Whether it collides with other models that do. If not it touches the world's fixtures alone,
-  // and is integrated by itself: a swarm that keeps apart is many times faster so.
+  // and is integrated by itself whoever is near.
   bool touches_models = true;
 };
 

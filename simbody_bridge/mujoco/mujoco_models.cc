@@ -1,5 +1,4 @@
 #include "simbody_bridge/forest_engine.h"
-#include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
 #include "simbody_bridge/set_steps.h"
@@ -10,17 +9,14 @@ namespace {
 class MujocoModels : public SetStepEngine<ForestEngine<MujocoSystem>> {
  public:
   MujocoModels(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
-      : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands),
-        loads_(world.models, islands) {}
+      : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), 0}; }
 
  private:
   void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {
-    At(step.island).Step(step.from, loads_.MeanOver(step, seconds), seconds, to);
+    At(step.island).Step(step.from, LoadsOn(step.island).MeanOver(step, seconds), seconds, to);
   }
-
-  ModelLoads loads_;
 };
 
 }  // namespace

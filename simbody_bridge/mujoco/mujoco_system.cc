@@ -185,6 +185,32 @@ void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> ac
   to->insert(to->end(), data_->qacc_warmstart, data_->qacc_warmstart + model_->nv);
 }
 
+void MujocoSystem::CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,
+                            std::size_t to_body, std::span<double> into) const {
+  const int from_joint = model_->body_jntadr[bodies_[body]];
+  const int to_joint = to.model_->body_jntadr[to.bodies_[to_body]];
+  if (from_joint < 0) return;
+  const int last = from_joint + model_->body_jntnum[bodies_[body]] - 1;
+  const bool is_free = model_->jnt_type[last] == mjJNT_FREE;
+  const bool is_ball = model_->jnt_type[last] == mjJNT_BALL;
+  const int positions = model_->jnt_qposadr[last] - model_->jnt_qposadr[from_joint] +
+                        (is_free   ? 7
+                         : is_ball ? 4
+                                   : 1);
+  const int speeds = model_->jnt_dofadr[last] - model_->jnt_dofadr[from_joint] +
+                     (is_free   ? 6
+                      : is_ball ? 3
+                                : 1);
+  const auto copy = [&](int from, int at, int count) {
+    std::copy_n(state.begin() + from, count, into.begin() + at);
+  };
+  copy(model_->jnt_qposadr[from_joint], to.model_->jnt_qposadr[to_joint], positions);
+  const int from_speed = model_->jnt_dofadr[from_joint], to_speed = to.model_->jnt_dofadr[to_joint];
+  copy(model_->nq + from_speed, to.model_->nq + to_speed, speeds);
+  // The solver's guess.
+  copy(model_->nq + model_->nv + from_speed, to.model_->nq + to.model_->nv + to_speed, speeds);
+}
+
 void MujocoSystem::ReadLinks(std::span<const double> state, std::span<const int> links,
                              std::span<LinkState> read) {
   Load(state);

@@ -26,6 +26,9 @@ class MujocoSystem {
   void Step(std::span<const double> from, std::span<const Wrench> acting, double seconds,
             std::vector<double>* to);
 
+  // What of a state is a body's, into a state of another system, in which it is `to_body`.
+  void CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,
+                std::size_t to_body, std::span<double> into) const;
   void ReadLinks(std::span<const double> state, std::span<const int> links,
                  std::span<LinkState> read);
   void ReadJoints(std::span<const double> state, std::span<const Wrench> acting,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simbody_bridge/model/moving_ball.h"
 #include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
@@ -13,14 +14,6 @@ namespace {
 // in by g / kContactRadps^2.
 constexpr double kContactRadps = 600;
 constexpr double kDampingRatio = 0.5;
-// What may accelerate what is about to touch.
-constexpr double kAccelerationMps2 = 20;
-
-// What a fall from rest takes, and what moves already less.
-double TimeOver(double gap, double speed) {
-  if (gap <= 0) return 0;
-  return 2 * gap / (speed + std::sqrt(speed * speed + 2 * kAccelerationMps2 * gap));
-}
 
 // Of each body, the mass of all bodies that hang together with it.
 std::vector<double> MassesTogether(const Forest& forest) {
@@ -88,13 +81,22 @@ double Contacts::TimeToTouch(const SimTK::State& state) {
   double least_s = std::numeric_limits<double>::infinity();
   if (pairs_.empty()) return least_s;
   Place(state);
+  gaps_.clear();
   for (const Pair& pair : pairs_) {
     const double gap = GapBetween({parts_[pair.first].solid, poses_[pair.first]},
                                   {parts_[pair.second].solid, poses_[pair.second]});
     if (gap <= 0) return 0;
+    gaps_.push_back(gap);
     least_s = std::min(least_s, TimeOver(gap, SpeedBetween(state, pair)));
   }
   return least_s;
+}
+
+bool Contacts::MayHaveTouched(const SimTK::State& state, double seconds) const {
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (SpeedBetween(state, pairs_[i]) * seconds > gaps_[i]) return true;
+  }
+  return false;
 }
 
 void Contacts::Find(const SimTK::State& state, std::vector<Contact>* contacts) {

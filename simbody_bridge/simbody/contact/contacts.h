@@ -28,6 +28,9 @@ class Contacts {
   // At least so long nothing touches that does not yet, in seconds; 0 where something may. `state`
   // is realized to Velocity. It trusts that nothing is pushed much harder than its weight.
   double TimeToTouch(const SimTK::State& state);
+  // Whether that trust was misplaced: so fast at `state`, realized to Velocity, something may have
+  // come through something else within `seconds` from the state that was asked about last.
+  bool MayHaveTouched(const SimTK::State& state, double seconds) const;
   // `state` is realized to Position.
   void Find(const SimTK::State& state, std::vector<Contact>* contacts);
 
@@ -50,6 +53,7 @@ class Contacts {
   std::vector<Part> parts_;
   std::vector<Pair> pairs_;
   std::vector<SimTK::Transform> poses_;  // of the parts, in the world: memory
+  std::vector<double> gaps_;             // of the pairs, as TimeToTouch found them
   std::vector<Touch> touches_;
 };
 

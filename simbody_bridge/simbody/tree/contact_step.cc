@@ -135,10 +135,10 @@ bool ContactStep::Update(double h) {
   return has_changed;
 }
 
-void ContactStep::Take(SimbodyTree& tree, IslandStep& step, double h) {
+void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   const std::size_t size = step.from.size();
   step.from_rate.resize(size);
-  tree.Evaluate(step.from, loads_.MeanOver(step, h), step.from_rate.data());
+  tree.Evaluate(step.from, loads.MeanOver(step, h), step.from_rate.data());
   const SimTK::State& state = tree.evaluated();
   step.length_s = h;
   step.next_try_s = step.try_s;

@@ -18,11 +18,8 @@ namespace tcs {
 
 class ContactStep {
  public:
-  // `loads` outlive this.
-  explicit ContactStep(ModelLoads& loads) : loads_(loads) {}
-
   // Takes a step as long as `length_s`, within step.limit.
-  void Take(SimbodyTree& tree, IslandStep& step, double length_s);
+  void Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
 
  private:
   // A contact's two bodies in one: velocities of the first beside the second at the point.
@@ -40,7 +37,6 @@ class ContactStep {
   void Solve(double h);
   bool Update(double h);
 
-  ModelLoads& loads_;
   // The speeds are `reduction_` times those of joints that mimic no other.
   Eigen::MatrixXd reduction_;
   Eigen::MatrixXd mass_, system_;

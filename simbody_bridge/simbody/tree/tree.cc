@@ -130,9 +130,15 @@ void SimbodyTree::SetStart() {
   start_.assign(y.getContiguousScalarData(), y.getContiguousScalarData() + y.size());
 }
 
+// What has been computed of a state that is loaded already is kept, but for what the commands act
+// on.
 void SimbodyTree::Load(std::span<const double> state) {
+  if (state.empty()) return;
+  const double* loaded = state_.getY().getContiguousScalarData();
+  if (is_loaded_ && std::memcmp(loaded, state.data(), state.size_bytes()) == 0) return;
   state_.updTime() = 0;
-  if (!state.empty()) std::copy(state.begin(), state.end(), &state_.updY()[0]);
+  std::copy(state.begin(), state.end(), &state_.updY()[0]);
+  is_loaded_ = true;
 }
 
 void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench> acting,
@@ -140,6 +146,7 @@ void SimbodyTree::Evaluate(std::span<const double> state, std::span<const Wrench
   try {
     acting_ = acting;
     Load(state);
+    state_.invalidateAll(SimTK::Stage::Dynamics);
     system_.realize(state_, SimTK::Stage::Acceleration);
     std::copy_n(state_.getYDot().getContiguousScalarData(), state.size(), rate);
   } catch (const std::exception&) {
@@ -198,6 +205,20 @@ double SimbodyTree::TimeToTouch(std::span<const double> state) {
   Load(state);
   system_.realize(state_, SimTK::Stage::Velocity);
   return contacts_->TimeToTouch(state_);
+}
+
+bool SimbodyTree::MayHaveTouched(std::span<const double> state, double seconds) {
+  if (!contacts_->has_pairs()) return false;
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  return contacts_->MayHaveTouched(state_, seconds);
+}
+
+void SimbodyTree::CopyBody(std::size_t body, std::span<const double> state, const SimbodyTree& to,
+                           std::size_t to_body, std::span<double> into) const {
+  const StateSlots &from = slots_[body], &at = to.slots_[to_body];
+  std::copy_n(&state[from.q], from.q_count, &into[at.q]);
+  std::copy_n(&state[from.u], from.u_count, &into[at.u]);
 }
 
 void SimbodyTree::ReadLinks(std::span<const double> state, std::span<const int> links,

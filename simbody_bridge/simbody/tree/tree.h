@@ -42,6 +42,8 @@ class SimbodyTree {
   double LongestStepFrom(std::span<const double> state) const;
   // At least so long nothing touches; 0 where something may.
   double TimeToTouch(std::span<const double> state);
+  // Whether something may have touched all the same within `seconds` from there to `state`.
+  bool MayHaveTouched(std::span<const double> state, double seconds);
 
   // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
   // Acceleration.
@@ -54,6 +56,9 @@ class SimbodyTree {
   const JointForce& joint_force() const { return *joint_force_; }
   Contacts& contacts() { return *contacts_; }
 
+  // What of a state is a body's, into a state of another tree, in which it is `to_body`.
+  void CopyBody(std::size_t body, std::span<const double> state, const SimbodyTree& to,
+                std::size_t to_body, std::span<double> into) const;
   void ReadLinks(std::span<const double> state, std::span<const int> links,
                  std::span<LinkState> read);
   void ReadJoints(std::span<const double> state, std::span<const Wrench> acting,
@@ -76,6 +81,7 @@ class SimbodyTree {
   const JointForce* joint_force_ = nullptr;  // Simbody owns it
   std::unique_ptr<Contacts> contacts_;
   SimTK::State state_;
+  bool is_loaded_ = false;
   std::span<const Wrench> acting_;  // while a state is evaluated
   struct {
     std::vector<double> state, rate;

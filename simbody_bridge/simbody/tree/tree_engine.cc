@@ -21,9 +21,7 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
       : ForestEngine(world, islands),
         has_set_steps_(world.integrator.fixed_step > VirtualDuration{}),
         longest_step_(world.integrator.StepOr(kLongestStep)),
-        loads_(world.models, islands),
-        steps_(world.integrator.accuracy, loads_),
-        contact_step_(loads_) {}
+        steps_(world.integrator.accuracy) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), kFirstTryS}; }
   VirtualDuration LongestStep(int /*island*/) const override { return longest_step_; }
@@ -31,18 +29,24 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
 
   void Take(IslandStep& step) override {
     SimbodyTree& tree = At(step.island);
+    ModelLoads& loads = LoadsOn(step.island);
     const double limit_s = step.limit.seconds();
     const double free_s = tree.TimeToTouch(step.from);
     if (has_set_steps_) {
       if (free_s < limit_s) {
-        contact_step_.Take(tree, step, limit_s);
+        contact_step_.Take(tree, loads, step, limit_s);
       } else {
-        steps_.TakeWhole(tree, step);
+        steps_.TakeWhole(tree, loads, step);
       }
     } else if (free_s < std::min(kContactStep, step.limit).seconds()) {
-      contact_step_.Take(tree, step, std::min(kContactStep, step.limit).seconds());
+      contact_step_.Take(tree, loads, step, std::min(kContactStep, step.limit).seconds());
     } else {
-      steps_.TakeControlled(tree, step, std::min(limit_s, free_s));
+      steps_.TakeControlled(tree, loads, step, std::min(limit_s, free_s));
+      // It was pushed harder than is trusted.
+      while (step.length_s > kContactStep.seconds() &&
+             tree.MayHaveTouched(step.to, step.length_s)) {
+        steps_.TakeControlled(tree, loads, step, step.length_s / 2);
+      }
     }
   }
 
@@ -58,7 +62,6 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
  private:
   const bool has_set_steps_;
   const VirtualDuration longest_step_;
-  ModelLoads loads_;
   TreeSteps steps_;
   ContactStep contact_step_;
   IslandStep shortened_;  // memory of Within

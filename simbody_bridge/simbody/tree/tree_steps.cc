@@ -16,21 +16,21 @@ double WholeNanoseconds(double seconds) {
 
 }  // namespace
 
-void TreeSteps::Begin(SimbodyTree& tree, IslandStep& step) {
+void TreeSteps::Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
   const std::size_t size = step.from.size();
   step.to.resize(size);
   step.from_rate.resize(size);
   state_.resize(size);
   middle_rate_.resize(size);
   end_rate_.resize(size);
-  tree.EvaluateOrRecall(step.from, loads_.At(step, 0), step.from_rate.data());
+  tree.EvaluateOrRecall(step.from, loads.At(step, 0), step.from_rate.data());
 }
 
-void TreeSteps::Try(SimbodyTree& tree, IslandStep& step, double h) {
+void TreeSteps::Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   KuttaMiddle(step, h, &state_);
-  tree.Evaluate(state_, loads_.At(step, h / 2), middle_rate_.data());
+  tree.Evaluate(state_, loads.At(step, h / 2), middle_rate_.data());
   KuttaEnd(step, middle_rate_, h, &state_);
-  tree.Evaluate(state_, loads_.At(step, h), end_rate_.data());
+  tree.Evaluate(state_, loads.At(step, h), end_rate_.data());
   KuttaStep(middle_rate_, end_rate_, h, &step);
 }
 
@@ -40,25 +40,26 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
                     [&](std::size_t joint) { return slots[joint]; });
 }
 
-void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit_s) {
-  Begin(tree, step);
+void TreeSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
+                               double limit_s) {
+  Begin(tree, loads, step);
   StepLength length(step,
                     std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
   if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
   for (;;) {
-    Try(tree, step, length.seconds());
+    Try(tree, loads, step, length.seconds());
     if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy_, &step)) break;
     length.Set(WholeNanoseconds(length.seconds()));
   }
   tree.Project(step.to);
   step.to_rate.resize(step.to.size());
-  tree.EvaluateOrRecall(step.to, loads_.At(step, step.length_s), step.to_rate.data());
+  tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
 }
 
-void TreeSteps::TakeWhole(SimbodyTree& tree, IslandStep& step) {
-  Begin(tree, step);
+void TreeSteps::TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
+  Begin(tree, loads, step);
   step.length_s = step.limit.seconds();
-  Try(tree, step, step.length_s);
+  Try(tree, loads, step, step.length_s);
   tree.Project(step.to);
 }
 

@@ -1,0 +1,99 @@
+#include "simbody_bridge/body_islands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "simbody_bridge/require.h"
+#include "simbody_bridge/take_steps.h"
+#include "simbody_bridge/world_check.h"
+
+namespace tcs {
+
+BodyIslands::BodyIslands(const WorldSpec& world, Dynamics::Work& work)
+    : members_(IslandsOf(world)), places_(world.bodies.size()) {
+  if (!members_.empty()) engine_ = MakeEngine(world, members_);
+  for (const BodySpec& body : world.bodies) names_.push_back(body.name);
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const int bodies = static_cast<int>(members_[i].size());
+    islands_.emplace_back(static_cast<int>(i), bodies, *engine_, work);
+    for (int place = 0; place < bodies; ++place) {
+      places_[static_cast<std::size_t>(members_[i][static_cast<std::size_t>(place)])] = {i, place};
+    }
+  }
+}
+
+const BodyIslands::Place& BodyIslands::PlaceOf(int body) const {
+  Require(body >= 0 && body < static_cast<int>(places_.size()), "no such body in the dynamics");
+  return places_[static_cast<std::size_t>(body)];
+}
+
+void BodyIslands::Apply(int body, const Wrench& wrench, VirtualTime t, VirtualTime now) {
+  const Place place = PlaceOf(body);
+  CheckWrench(names_[static_cast<std::size_t>(body)], wrench);
+  Island& island = islands_[place.island];
+  if (island.CommandsUntil(now) >= kMostPending) {
+    moving_.assign(1, place.island);
+    Reach(now, now);
+  }
+  island.Settle(now);
+  island.Apply(place.place, wrench, t);
+}
+
+void BodyIslands::Read(VirtualTime t, VirtualTime now, std::span<const int> bodies,
+                       std::span<BodyState> states) {
+  moving_.clear();
+  for (const int body : bodies) moving_.push_back(PlaceOf(body).island);
+  Reach(t, now);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Place& place = PlaceOf(bodies[i]);
+    islands_[place.island].StateAt(t, &state_);
+    states[i] = engine_->Read(static_cast<int>(place.island), place.place, state_);
+  }
+}
+
+// Takes all steps that lead to `t` of those in `moving_`: the next one of each, until no one needs
+// any more.
+void BodyIslands::Reach(VirtualTime t, VirtualTime now) {
+  std::sort(moving_.begin(), moving_.end());
+  moving_.erase(std::unique(moving_.begin(), moving_.end()), moving_.end());
+  for (const std::size_t island : moving_) islands_[island].Settle(now);
+  for (;;) {
+    steps_.clear();
+    std::size_t left = 0;
+    for (const std::size_t island : moving_) {
+      IslandStep* step = islands_[island].NextStepTo(t);
+      if (step == nullptr) continue;
+      moving_[left++] = island;
+      steps_.push_back(step);
+    }
+    moving_.resize(left);
+    if (steps_.empty()) return;
+    TakeSteps(*engine_, steps_, [this](const IslandStep& step) { return WhoDiverged(step); });
+    for (const std::size_t island : moving_) {
+      islands_[island].Took();
+      islands_[island].Settle(now);
+    }
+  }
+}
+
+std::string BodyIslands::WhoDiverged(const IslandStep& step) const {
+  const std::vector<int>& members = members_[static_cast<std::size_t>(step.island)];
+  std::size_t place = 0;
+  while (place + 1 < members.size() &&
+         AllFinite(engine_->Read(step.island, static_cast<int>(place), step.to))) {
+    ++place;
+  }
+  return fmt::format("body '{}'", names_[static_cast<std::size_t>(members[place])]);
+}
+
+void BodyIslands::Save(Saved* saved) const {
+  saved->resize(islands_.size());
+  for (std::size_t i = 0; i < islands_.size(); ++i) islands_[i].Save(&(*saved)[i]);
+}
+
+void BodyIslands::Restore(const Saved& saved) {
+  for (std::size_t i = 0; i < islands_.size(); ++i) islands_[i].Restore(saved[i]);
+}
+
+}  // namespace tcs

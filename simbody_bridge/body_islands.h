@@ -1,0 +1,51 @@
+// The islands of free bodies: each body by itself, but for those that are declared to be together.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "simbody_bridge/island.h"
+
+namespace tcs {
+
+// Commands that nobody reads the effect of are worked off once an island has so many.
+inline constexpr std::size_t kMostPending = 64;
+
+class BodyIslands {
+ public:
+  // `work` outlives this.
+  BodyIslands(const WorldSpec& world, Dynamics::Work& work);
+
+  int count() const { return static_cast<int>(islands_.size()); }
+  // As of Dynamics. Nothing before `now` matters any more.
+  void Apply(int body, const Wrench& wrench, VirtualTime t, VirtualTime now);
+  void Read(VirtualTime t, VirtualTime now, std::span<const int> bodies,
+            std::span<BodyState> states);
+
+  using Saved = std::vector<Island::Saved>;
+  void Save(Saved* saved) const;
+  void Restore(const Saved& saved);
+
+ private:
+  struct Place {
+    std::size_t island;
+    int place;  // among its bodies
+  };
+  const Place& PlaceOf(int body) const;
+  void Reach(VirtualTime t, VirtualTime now);
+  std::string WhoDiverged(const IslandStep& step) const;
+
+  const std::vector<std::vector<int>> members_;  // bodies of each island
+  std::unique_ptr<BodyEngine> engine_;           // none where there is no body
+  std::vector<std::string> names_;
+  std::vector<Place> places_;
+  std::vector<Island> islands_;
+  // Memory of Reach and Read.
+  std::vector<std::size_t> moving_;  // islands that somebody asks for, each once or more
+  std::vector<IslandStep*> steps_;   // of each of them
+  std::vector<double> state_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,78 @@
+#include "simbody_bridge/model/zones.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tcs {
+namespace {
+
+// How far somebody who is hit, or pushed harder than is trusted, may be past its zone before it is
+// noticed: a step of 1 ms at 50 m/s.
+constexpr double kMarginM = 0.05;
+// So much farther apart those have to be who part than those who stay apart.
+constexpr double kPartingM = 0.1;
+// Beside what it needs, of one that is in a group.
+constexpr double kRoomInGroupM = 0.1;
+constexpr double kMostRoomM = 1e6;
+
+// Of disjoint sets: each one's parent, a root is its own.
+std::size_t RootOf(std::vector<std::size_t>& parents, std::size_t i) {
+  while (parents[i] != i) {
+    parents[i] = parents[parents[i]];
+    i = parents[i];
+  }
+  return i;
+}
+
+}  // namespace
+
+double Zones::RoomFor(const Mover& mover) const {
+  return WayWithin(horizon_s_, mover.around.speed_mps) + kMarginM;
+}
+
+bool Zones::IsInTheWay(const Ball& other, const Mover& mover) const {
+  return GapBetween(other, mover.around.ball) - kMarginM < RoomFor(mover);
+}
+
+Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> others) const {
+  const std::size_t count = movers.size();
+  std::vector<std::size_t> parents(count);
+  std::iota(parents.begin(), parents.end(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double room = RoomFor(movers[i]) + RoomFor(movers[k]) +
+                          (movers[i].group_before == movers[k].group_before ? kPartingM : 0);
+      if (movers[i].unit == movers[k].unit ||
+          GapBetween(movers[i].around.ball, movers[k].around.ball) < room) {
+        parents[RootOf(parents, i)] = RootOf(parents, k);
+      }
+    }
+  }
+  Grouping grouping;
+  std::vector<std::size_t> group_of(count), group_of_root(count, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t& group = group_of_root[RootOf(parents, i)];
+    if (group == count) {
+      group = grouping.groups.size();
+      grouping.groups.emplace_back();
+    }
+    grouping.groups[group].push_back(i);
+    group_of[i] = group;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ball& ball = movers[i].around.ball;
+    const double own = RoomFor(movers[i]);
+    double room = grouping.groups[group_of[i]].size() > 1 ? own + kRoomInGroupM : kMostRoomM;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (group_of[k] == group_of[i]) continue;
+      // Both have what they need, and half each of what is left.
+      const double left = GapBetween(ball, movers[k].around.ball) - own - RoomFor(movers[k]);
+      room = std::min(room, own + left / 2);
+    }
+    for (const Ball& other : others) room = std::min(room, GapBetween(ball, other) - kMarginM);
+    grouping.zones.push_back({ball.center_m, ball.radius_m + room - kMarginM});
+  }
+  return grouping;
+}
+
+}  // namespace tcs

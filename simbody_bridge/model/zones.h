@@ -1,0 +1,45 @@
+// Which models are near each other, and the zones of those that are not: balls, each around a
+// model, that do not overlap unless the models are in one group. While all models stay in their
+// zones, none can touch one of another group. Whoever is about to leave its zone needs another one,
+// and so may those whose zones are in the way: they are grouped anew. Pure.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "simbody_bridge/model/moving_ball.h"
+
+namespace tcs {
+
+// Those that move in a group have zones of little room, and so it is looked again soon whether they
+// have parted; whoever is alone has all the room that there is.
+struct Mover {
+  MovingBall around;  // all shapes of a model
+  int unit = 0;       // models of one unit are always one group
+  int group_before = 0;
+};
+
+struct Grouping {
+  std::vector<std::vector<std::size_t>> groups;  // each mover is in one
+  std::vector<Ball> zones;                       // of each mover
+};
+
+class Zones {
+ public:
+  // Whoever has just got a zone cannot leave it before `horizon_s`.
+  explicit Zones(double horizon_s) : horizon_s_(horizon_s) {}
+
+  // Whether there is too little room for a zone beside `other`, the zone of a model that stays what
+  // it is.
+  bool IsInTheWay(const Ball& other, const Mover& mover) const;
+  // `others` are zones that stay, and are in nobody's way.
+  Grouping Group(std::span<const Mover> movers, std::span<const Ball> others) const;
+
+ private:
+  double RoomFor(const Mover& mover) const;
+
+  const double horizon_s_;
+};
+
+}  // namespace tcs

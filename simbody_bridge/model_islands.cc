@@ -1,0 +1,565 @@
+#include "simbody_bridge/model_islands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simbody_bridge/body_islands.h"
+#include "simbody_bridge/model/finite.h"
+#include "simbody_bridge/require.h"
+#include "simbody_bridge/take_steps.h"
+
+namespace tcs {
+namespace {
+
+// Of steps that the engine chooses. Whoever would have to step shorter to stay in its zone gets
+// another one.
+constexpr VirtualDuration kBrief = VirtualDuration::Milliseconds(1);
+// So many of them a new zone is good for.
+constexpr std::int64_t kStepsInZone = 5;
+// Islands that can meet go on in windows as long as this: what they are taken beyond the time at
+// which they meet is taken for nothing.
+constexpr VirtualDuration kWindow = VirtualDuration::Milliseconds(20);
+
+template <class Part>
+std::optional<int> Find(const std::vector<RobotModel>& models,
+                        const std::vector<std::size_t>& firsts,
+                        std::vector<Part> RobotModel::*parts, std::string_view model,
+                        std::string_view name) {
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (models[i].name != model) continue;
+    const std::vector<Part>& all = models[i].*parts;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].name == name) return static_cast<int>(firsts[i] + k);
+    }
+  }
+  return {};
+}
+
+VirtualDuration BriefestStep(const ModelEngine& engine) {
+  return engine.has_set_steps() ? engine.LongestStep(0) : kBrief;
+}
+
+}  // namespace
+
+ModelIslands::ModelIslands(const WorldSpec& world, Dynamics::Work& work)
+    : models_(world.models), work_(work), unit_of_(models_.size()), of_model_(models_.size()) {
+  const std::vector<std::vector<int>> units = ModelUnitsOf(world);
+  if (units.empty()) return;
+  FindParts();
+  engine_ = MakeModelEngine(world, units);
+  brief_ = BriefestStep(*engine_);
+  std::vector<GroupIsland*> meeting;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const int index = static_cast<int>(i);
+    auto group = std::make_unique<ModelGroup>(models_, units[i], index);
+    IslandStart start = engine_->StartOf(index);
+    Island::Node node;
+    node.state = std::move(start.state);
+    node.try_s = start.try_s;
+    node.wrenches.resize(static_cast<std::size_t>(group->places()));
+    group_of_island_.push_back(group.get());
+    AddIsland(std::make_unique<GroupIsland>(
+        GroupIsland{group.get(), {}, Island(index, std::move(node), {}, *engine_, work_)}));
+    groups_.emplace(units[i], std::move(group));
+    for (const int model : units[i]) unit_of_[static_cast<std::size_t>(model)] = index;
+    if (std::any_of(units[i].begin(), units[i].end(), [this](int model) {
+          return CanMeet(models_[static_cast<std::size_t>(model)]);
+        })) {
+      meeting.push_back(islands_.back().get());
+    }
+  }
+  if (meeting.size() < 2) return;
+  rules_.emplace((brief_ * kStepsInZone).seconds());
+  for (GroupIsland* of : meeting) AddMovers(*of, VirtualTime{});
+  Regroup(meeting, VirtualTime{});
+  regroupings_.clear();
+}
+
+void ModelIslands::FindParts() {
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const int model = static_cast<int>(i);
+    first_link_.push_back(links_.size());
+    first_joint_.push_back(joints_.size());
+    first_rotor_.push_back(rotors_.size());
+    for (std::size_t k = 0; k < models_[i].links.size(); ++k) {
+      links_.push_back({model, static_cast<int>(k)});
+    }
+    for (std::size_t k = 0; k < models_[i].joints.size(); ++k) {
+      joints_.push_back({model, static_cast<int>(k)});
+    }
+    for (std::size_t k = 0; k < models_[i].rotors.size(); ++k) {
+      rotors_.push_back({model, static_cast<int>(k)});
+    }
+  }
+}
+
+void ModelIslands::AddIsland(Owned island) {
+  for (const int model : island->group->models()) {
+    of_model_[static_cast<std::size_t>(model)] = island.get();
+  }
+  islands_.push_back(std::move(island));
+}
+
+std::optional<int> ModelIslands::FindLink(std::string_view model, std::string_view link) const {
+  return Find(models_, first_link_, &RobotModel::links, model, link);
+}
+
+std::optional<int> ModelIslands::FindJoint(std::string_view model, std::string_view joint) const {
+  return Find(models_, first_joint_, &RobotModel::joints, model, joint);
+}
+
+std::optional<int> ModelIslands::FindRotor(std::string_view model, std::string_view rotor) const {
+  return Find(models_, first_rotor_, &RobotModel::rotors, model, rotor);
+}
+
+namespace {
+
+template <class Part>
+const Part& PartAt(const std::vector<Part>& parts, int index) {
+  Require(index >= 0 && index < static_cast<int>(parts.size()), "no such link, joint or rotor");
+  return parts[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+void ModelIslands::ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
+                               VirtualTime now) {
+  const Part& part = PartAt(links_, link);
+  if (!AllFinite(wrench.force_n) || !AllFinite(wrench.torque_nm)) {
+    const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
+    throw DynamicsError(fmt::format("link '{}': a commanded wrench must be finite",
+                                    model.links[static_cast<std::size_t>(part.index)].name));
+  }
+  // The frame says along whose axes it is, and models' engines know of no lag.
+  const Wrench acting{.force_n = wrench.force_n, .torque_nm = wrench.torque_nm};
+  Require(wrench == acting, "a wrench on a link does not lag, and its frame is an argument");
+  Command(part.model, PlaceOfLink(part.index, frame), acting, t, now);
+}
+
+void ModelIslands::Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now) {
+  const Part& part = PartAt(joints_, joint);
+  const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
+  const Joint& driven = model.joints[static_cast<std::size_t>(part.index)];
+  Require(CoordinatesOf(driven.kind) == 1 && !driven.mimic.has_value(),
+          "a joint that is driven has one coordinate of its own");
+  const bool lags = driven.drive_lag > VirtualDuration{};
+  const Wrench numbers = lags ? AsNumbers(drive, driven.drive_lag) : AsNumbers(drive);
+  if (!AllFinite(numbers.force_n) || !AllFinite(numbers.torque_nm)) {
+    throw DynamicsError(fmt::format("joint '{}': what drives it must be finite", driven.name));
+  }
+  Command(part.model, PlaceOfJoint(static_cast<int>(model.links.size()), part.index), numbers, t,
+          now);
+}
+
+void ModelIslands::Spin(int rotor, double speed_radps, VirtualTime t, VirtualTime now) {
+  const Part& part = PartAt(rotors_, rotor);
+  const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
+  const Rotor& spun = model.rotors[static_cast<std::size_t>(part.index)];
+  if (!(speed_radps >= 0 && speed_radps <= spun.most_radps) || !std::isfinite(speed_radps)) {
+    throw DynamicsError(fmt::format("rotor '{}': its speed must be between 0 and {} rad/s",
+                                    spun.name, spun.most_radps));
+  }
+  const int links = static_cast<int>(model.links.size());
+  const int joints = static_cast<int>(model.joints.size());
+  Command(part.model, PlaceOfRotor(links, joints, part.index),
+          AsNumbers(speed_radps, spun.time_constant), t, now);
+}
+
+// What has been taken back may be needed again: so all islands that the model was in have it.
+void ModelIslands::Command(int model, int place, const Wrench& wrench, VirtualTime t,
+                           VirtualTime now) {
+  TakeBackMeetings(t);
+  if (IslandOf(model).island.CommandsUntil(now) >= kMostPending) {
+    asked_.assign(1, &IslandOf(model));
+    Reach(now, now);
+  }
+  const auto apply = [&](GroupIsland& of) {
+    of.island.Apply(of.group->PlaceIn(of.group->MemberOf(model), place), wrench, t);
+  };
+  for (const Regrouping& regrouping : regroupings_) {
+    for (const Owned& of : regrouping.before) {
+      const std::vector<int>& models = of->group->models();
+      if (std::binary_search(models.begin(), models.end(), model)) apply(*of);
+    }
+  }
+  GroupIsland& of = IslandOf(model);
+  of.island.Settle(Meets(of) ? SettledAt(now) : now);
+  apply(of);
+  if (Meets(of)) met_until_ = std::min(met_until_, of.island.frontier().at);
+}
+
+ModelIslands::GroupIsland& ModelIslands::HoldingAt(int model, VirtualTime t) const {
+  GroupIsland* holding = of_model_[static_cast<std::size_t>(model)];
+  for (auto regrouping = regroupings_.rbegin();
+       regrouping != regroupings_.rend() && regrouping->at >= t; ++regrouping) {
+    for (const Owned& of : regrouping->before) {
+      const std::vector<int>& models = of->group->models();
+      if (std::binary_search(models.begin(), models.end(), model)) holding = of.get();
+    }
+  }
+  return *holding;
+}
+
+template <class NumberIn, class ReadStretch>
+void ModelIslands::ForEachIsland(VirtualTime t, std::span<const Part> all,
+                                 std::span<const int> indices, const NumberIn& number_in,
+                                 const ReadStretch& read) {
+  for (std::size_t first = 0; first < indices.size(); first += local_.size()) {
+    GroupIsland& of = HoldingAt(all[static_cast<std::size_t>(indices[first])].model, t);
+    local_.clear();
+    for (const int index : indices.subspan(first)) {
+      const Part& part = all[static_cast<std::size_t>(index)];
+      if (&HoldingAt(part.model, t) != &of) break;
+      local_.push_back(number_in(*of.group, of.group->MemberOf(part.model), part.index));
+    }
+    of.island.StateAt(t, &state_);
+    read(of, first, local_.size());
+  }
+}
+
+void ModelIslands::ReachAll(VirtualTime t, VirtualTime now, std::span<const Part> all,
+                            std::span<const int> indices) {
+  asked_.clear();
+  for (const int index : indices) {
+    Require(index >= 0 && index < static_cast<int>(all.size()), "no such link or joint");
+    asked_.push_back(&IslandOf(all[static_cast<std::size_t>(index)].model));
+  }
+  Reach(t, now);
+}
+
+void ModelIslands::ReadLinks(VirtualTime t, VirtualTime now, std::span<const int> links,
+                             std::span<LinkState> states) {
+  ReachAll(t, now, links_, links);
+  ForEachIsland(
+      t, links_, links,
+      [](const ModelGroup& group, std::size_t member, int link) {
+        return group.LinkOf(member, link);
+      },
+      [&](GroupIsland& of, std::size_t first, std::size_t count) {
+        engine_->ReadLinks(of.group->island(), state_, local_, states.subspan(first, count));
+      });
+}
+
+void ModelIslands::ReadJoints(VirtualTime t, VirtualTime now, std::span<const int> joints,
+                              std::span<JointState> states) {
+  ReachAll(t, now, joints_, joints);
+  ForEachIsland(
+      t, joints_, joints,
+      [](const ModelGroup& group, std::size_t member, int joint) {
+        return group.JointOf(member, joint);
+      },
+      [&](GroupIsland& of, std::size_t first, std::size_t count) {
+        engine_->ReadJoints(of.group->island(), state_, of.island.ActingUntil(t), local_,
+                            states.subspan(first, count));
+      });
+}
+
+// Those in `asked_`; where one of them can meet others, all that can.
+void ModelIslands::Reach(VirtualTime t, VirtualTime now) {
+  const bool may_meet =
+      std::any_of(asked_.begin(), asked_.end(), [this](auto* of) { return Meets(*of); });
+  std::erase_if(asked_, [this](auto* of) { return Meets(*of); });
+  ReachAlone(t, now);
+  if (!may_meet || t <= met_until_) return;
+  SettleMeeting(SettledAt(now));
+  while (met_until_ < t) {
+    const VirtualTime until = std::min(t, met_until_ + kWindow);
+    ReachTogether(until);
+    met_until_ = until;
+    SettleMeeting(SettledAt(now));
+  }
+}
+
+void ModelIslands::ReachAlone(VirtualTime t, VirtualTime now) {
+  for (GroupIsland* of : asked_) of->island.Settle(now);
+  while (!asked_.empty()) {
+    steps_.clear();
+    stepping_.clear();
+    std::sort(asked_.begin(), asked_.end(),
+              [](const auto* a, const auto* b) { return a->group->island() < b->group->island(); });
+    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+    for (GroupIsland* of : asked_) {
+      IslandStep* step = of->island.NextStepTo(t);
+      if (step == nullptr) continue;
+      steps_.push_back(step);
+      stepping_.push_back(of);
+    }
+    asked_ = stepping_;
+    if (asked_.empty()) return;
+    TakeAll();
+    for (GroupIsland* of : asked_) of->island.Settle(now);
+  }
+}
+
+void ModelIslands::SettleMeeting(VirtualTime t) {
+  std::erase_if(regroupings_, [t](const Regrouping& of) { return of.at < t; });
+  for (const Owned& of : islands_) {
+    if (Meets(*of)) of->island.Settle(t);
+  }
+}
+
+// The earliest one that is about to leave its zone waits until all others have come as far: only
+// then is it known that nobody has met anybody before.
+void ModelIslands::ReachTogether(VirtualTime t) {
+  for (;;) {
+    GroupIsland* leaving = nullptr;
+    std::vector<std::pair<GroupIsland*, double>> going;
+    for (const Owned& of : islands_) {
+      const VirtualTime at = of->island.frontier().at;
+      if (!Meets(*of) || at >= t) continue;
+      const double stays_s = TimeToLeave(*of, of->island.frontier().state);
+      if (stays_s >= brief_.seconds()) {
+        going.emplace_back(of.get(), stays_s);
+        continue;
+      }
+      const auto order = [](const GroupIsland& one) {
+        return std::pair(one.island.frontier().at, one.group->models().front());
+      };
+      if (leaving == nullptr || order(*of) < order(*leaving)) leaving = of.get();
+    }
+    const VirtualTime until = leaving == nullptr ? t : leaving->island.frontier().at;
+    steps_.clear();
+    stepping_.clear();
+    for (const auto& [of, stays_s] : going) {
+      const auto most_ns = static_cast<std::int64_t>(std::min(stays_s, 1e3) * 1e9);
+      IslandStep* step = of->island.NextStepTo(until, VirtualDuration::Nanoseconds(most_ns));
+      if (step == nullptr) continue;
+      steps_.push_back(step);
+      stepping_.push_back(of);
+    }
+    if (!steps_.empty()) {
+      TakeAll();
+    } else if (leaving != nullptr) {
+      Regroup(InTheWayOf(*leaving, until), until);
+    } else {
+      return;
+    }
+  }
+}
+
+void ModelIslands::TakeAll() {
+  const auto who = [this](const IslandStep& step) { return WhoDiverged(step); };
+  TakeSteps(*engine_, steps_, who);
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    IslandStep& step = *steps_[i];
+    // It was pushed harder than is trusted.
+    while (!engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(*stepping_[i], step)) {
+      step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
+      TakeSteps(*engine_, {&steps_[i], 1}, who);
+    }
+    stepping_[i]->island.Took();
+  }
+}
+
+// At the end of the step, or half way there.
+bool ModelIslands::HasLeft(GroupIsland& of, const IslandStep& step) {
+  if (!Meets(of)) return false;
+  if (TimeToLeave(of, step.to) == 0) return true;
+  engine_->Within(step, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2), &state_);
+  return TimeToLeave(of, state_) == 0;
+}
+
+double ModelIslands::TimeToLeave(GroupIsland& of, std::span<const double> state) {
+  of.group->FindBalls(*engine_, state);
+  double least_s = std::numeric_limits<double>::infinity();
+  for (std::size_t member = 0; member < of.zones.size(); ++member) {
+    for (const MovingBall& ball : of.group->BallsOf(member)) {
+      least_s = std::min(least_s, tcs::TimeToLeave(of.zones[member], ball));
+    }
+  }
+  return least_s;
+}
+
+void ModelIslands::AddMovers(GroupIsland& of, VirtualTime at) {
+  of.island.StateAt(at, &state_);
+  of.group->FindBalls(*engine_, state_);
+  for (std::size_t member = 0; member < of.group->models().size(); ++member) {
+    const int model = of.group->models()[member];
+    movers_.push_back({Around(of.group->BallsOf(member)), unit_of_[static_cast<std::size_t>(model)],
+                       of.group->island()});
+    mover_models_.push_back(model);
+  }
+}
+
+// Whoever is too near to one that needs a new zone needs one, too.
+std::vector<ModelIslands::GroupIsland*> ModelIslands::InTheWayOf(GroupIsland& leaving,
+                                                                 VirtualTime at) {
+  std::vector<GroupIsland*> concerned = {&leaving};
+  movers_.clear();
+  mover_models_.clear();
+  AddMovers(leaving, at);
+  for (std::size_t i = 0; i < movers_.size(); ++i) {
+    for (const Owned& of : islands_) {
+      if (!Meets(*of) || std::find(concerned.begin(), concerned.end(), of.get()) != concerned.end())
+        continue;
+      const Mover mover = movers_[i];
+      if (std::none_of(of->zones.begin(), of->zones.end(),
+                       [&](const Ball& zone) { return rules_->IsInTheWay(zone, mover); })) {
+        continue;
+      }
+      concerned.push_back(of.get());
+      AddMovers(*of, at);
+    }
+  }
+  return concerned;
+}
+
+// `movers_` are the models of those concerned.
+void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at) {
+  ++work_.regrouped;
+  std::vector<Ball> others;
+  for (const Owned& of : islands_) {
+    if (std::find(concerned.begin(), concerned.end(), of.get()) != concerned.end()) continue;
+    others.insert(others.end(), of->zones.begin(), of->zones.end());
+  }
+  const Grouping grouping = rules_->Group(movers_, others);
+  std::vector<std::pair<GroupIsland*, Island::Node>> from;
+  for (GroupIsland* of : concerned) from.emplace_back(of, of->island.NodeAt(at));
+  std::vector<Owned> joined;
+  for (const std::vector<std::size_t>& group : grouping.groups) {
+    std::vector<std::pair<int, Ball>> members;
+    for (const std::size_t i : group) members.emplace_back(mover_models_[i], grouping.zones[i]);
+    std::sort(members.begin(), members.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<int> models;
+    std::vector<Ball> zones;
+    for (const auto& [model, zone] : members) {
+      models.push_back(model);
+      zones.push_back(zone);
+    }
+    joined.push_back(Join(models, zones, from, at));
+  }
+  Regrouping regrouping{at, {}, {}};
+  for (Owned& of : islands_) {
+    if (std::find(concerned.begin(), concerned.end(), of.get()) == concerned.end()) continue;
+    regrouping.before.push_back(std::move(of));
+  }
+  std::erase(islands_, nullptr);
+  for (Owned& of : joined) {
+    regrouping.after.push_back(of.get());
+    AddIsland(std::move(of));
+  }
+  regroupings_.push_back(std::move(regrouping));
+}
+
+ModelGroup& ModelIslands::GroupOf(const std::vector<int>& models) {
+  std::unique_ptr<ModelGroup>& group = groups_[models];
+  if (group == nullptr) {
+    try {
+      group = std::make_unique<ModelGroup>(models_, models, engine_->AddIsland(models));
+    } catch (const std::exception& e) {
+      groups_.erase(models);
+      throw DynamicsError(fmt::format("model '{}' and those near it cannot be one system: {}",
+                                      models_[static_cast<std::size_t>(models[0])].name, e.what()));
+    }
+    group_of_island_.push_back(group.get());
+  }
+  return *group;
+}
+
+ModelIslands::Owned ModelIslands::Join(
+    const std::vector<int>& models, const std::vector<Ball>& zones,
+    const std::vector<std::pair<GroupIsland*, Island::Node>>& from, VirtualTime at) {
+  ModelGroup& group = GroupOf(models);
+  const int island = group.island();
+  Island::Node node;
+  node.at = at;
+  node.state.resize(engine_->StartOf(island).state.size());
+  node.wrenches.resize(static_cast<std::size_t>(group.places()));
+  node.try_s = std::numeric_limits<double>::infinity();
+  std::vector<Island::Command> commands;
+  // The member of this group that a place of another one is about, if any is, and its place here.
+  const auto place_here = [&](const ModelGroup& other, int place) -> std::optional<int> {
+    const auto [member, own] = other.Locate(place);
+    const int model = other.models()[member];
+    if (!std::binary_search(models.begin(), models.end(), model)) return {};
+    return group.PlaceIn(group.MemberOf(model), own);
+  };
+  for (const auto& [of, part] : from) {
+    const ModelGroup& other = *of->group;
+    bool has_any = false;
+    for (std::size_t member = 0; member < other.models().size(); ++member) {
+      const int model = other.models()[member];
+      if (!std::binary_search(models.begin(), models.end(), model)) continue;
+      has_any = true;
+      engine_->CopyModel({other.island(), static_cast<int>(member)}, part.state,
+                         {island, static_cast<int>(group.MemberOf(model))}, node.state);
+    }
+    if (!has_any) continue;
+    node.try_s = std::min(node.try_s, part.try_s);
+    node.changed_at = std::max(node.changed_at, part.changed_at);
+    if (!part.remainders.empty()) node.remainders.resize(node.wrenches.size());
+    for (std::size_t place = 0; place < part.wrenches.size(); ++place) {
+      const std::optional<int> here = place_here(other, static_cast<int>(place));
+      if (!here) continue;
+      node.wrenches[static_cast<std::size_t>(*here)] = part.wrenches[place];
+      if (part.remainders.empty()) continue;
+      node.remainders[static_cast<std::size_t>(*here)] = part.remainders[place];
+    }
+    for (const Island::Command& command : of->island.commands()) {
+      if (command.at < at) continue;
+      const std::optional<int> here = place_here(other, command.place);
+      if (here) commands.push_back({command.at, *here, command.wrench});
+    }
+  }
+  std::stable_sort(commands.begin(), commands.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  return std::make_unique<GroupIsland>(GroupIsland{
+      &group, zones, Island(island, std::move(node), std::move(commands), *engine_, work_)});
+}
+
+// Whoever met after `t` goes on from there as if that had not been.
+void ModelIslands::TakeBackMeetings(VirtualTime t) {
+  while (!regroupings_.empty() && regroupings_.back().at > t) {
+    Regrouping& last = regroupings_.back();
+    std::erase_if(islands_, [&](const Owned& of) {
+      return std::find(last.after.begin(), last.after.end(), of.get()) != last.after.end();
+    });
+    for (Owned& of : last.before) AddIsland(std::move(of));
+    met_until_ = std::min(met_until_, last.at);
+    regroupings_.pop_back();
+  }
+}
+
+std::string ModelIslands::WhoDiverged(const IslandStep& step) const {
+  const std::vector<int>& models =
+      group_of_island_[static_cast<std::size_t>(step.island)]->models();
+  std::string text = "model '" + models_[static_cast<std::size_t>(models[0])].name + "'";
+  if (models.size() > 1) text += fmt::format(" or one of {} near it", models.size() - 1);
+  return text;
+}
+
+void ModelIslands::Save(VirtualTime now, Saved* saved) const {
+  const VirtualTime at = SettledAt(now);
+  std::vector<const GroupIsland*> holding;
+  for (std::size_t model = 0; model < of_model_.size(); ++model) {
+    holding.push_back(&HoldingAt(static_cast<int>(model), at));
+  }
+  std::sort(holding.begin(), holding.end(), [](const GroupIsland* a, const GroupIsland* b) {
+    return a->group->models() < b->group->models();
+  });
+  holding.erase(std::unique(holding.begin(), holding.end()), holding.end());
+  saved->resize(holding.size());
+  for (std::size_t i = 0; i < holding.size(); ++i) {
+    (*saved)[i].group = holding[i]->group;
+    (*saved)[i].zones = holding[i]->zones;
+    holding[i]->island.Save(&(*saved)[i].island);
+  }
+}
+
+void ModelIslands::Restore(const Saved& saved) {
+  islands_.clear();
+  regroupings_.clear();
+  met_until_ = VirtualTime::Never();
+  for (const SavedIsland& one : saved) {
+    AddIsland(std::make_unique<GroupIsland>(GroupIsland{
+        one.group, one.zones,
+        Island(one.group->island(), one.island.origin, one.island.commands, *engine_, work_)}));
+    if (!one.zones.empty()) met_until_ = std::min(met_until_, one.island.origin.at);
+  }
+}
+
+}  // namespace tcs

@@ -1,0 +1,129 @@
+// The islands of models. A model that others can touch is an island by itself as long as none of
+// them is near: as long as it stays in its zone (model/zones.h). When it is about to leave that, it
+// is looked anew who is near whom: those who are go on as one island from that instant, and those
+// who have parted as several. When that is follows from the models' motion alone; so their motion
+// remains a function of the commands, and what is taken back takes back the meetings, too.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simbody_bridge/island.h"
+#include "simbody_bridge/model/zones.h"
+#include "simbody_bridge/model_group.h"
+
+namespace tcs {
+
+class ModelIslands {
+ public:
+  // `work` outlives this.
+  ModelIslands(const WorldSpec& world, Dynamics::Work& work);
+
+  int count() const { return static_cast<int>(islands_.size()); }
+
+  // As of Dynamics. Nothing before `now` matters any more.
+  std::optional<int> FindLink(std::string_view model, std::string_view link) const;
+  std::optional<int> FindJoint(std::string_view model, std::string_view joint) const;
+  std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const;
+  void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
+                   VirtualTime now);
+  void Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now);
+  void Spin(int rotor, double speed_radps, VirtualTime t, VirtualTime now);
+  void ReadLinks(VirtualTime t, VirtualTime now, std::span<const int> links,
+                 std::span<LinkState> states);
+  void ReadJoints(VirtualTime t, VirtualTime now, std::span<const int> joints,
+                  std::span<JointState> states);
+
+  // What is gone on from.
+  struct SavedIsland {
+    ModelGroup* group = nullptr;
+    std::vector<Ball> zones;
+    Island::Saved island;
+  };
+  using Saved = std::vector<SavedIsland>;
+  void Save(VirtualTime now, Saved* saved) const;
+  void Restore(const Saved& saved);
+
+ private:
+  // A link, a joint or a rotor of a model.
+  struct Part {
+    int model, index;
+  };
+  struct GroupIsland {
+    ModelGroup* group;
+    std::vector<Ball> zones;  // of each of the models; none where none meets another
+    Island island;
+  };
+  using Owned = std::unique_ptr<GroupIsland>;
+  // When models were grouped anew.
+  struct Regrouping {
+    VirtualTime at;
+    std::vector<Owned> before;  // go on if it is taken back
+    std::vector<GroupIsland*> after;
+  };
+
+  void FindParts();
+  ModelGroup& GroupOf(const std::vector<int>& models);
+  void AddIsland(Owned island);
+  bool Meets(const GroupIsland& of) const { return !of.zones.empty(); }
+  GroupIsland& IslandOf(int model) { return *of_model_[static_cast<std::size_t>(model)]; }
+  // The island in which the model comes to `t`.
+  GroupIsland& HoldingAt(int model, VirtualTime t) const;
+  VirtualTime SettledAt(VirtualTime now) const { return std::min(now, met_until_); }
+
+  void Command(int model, int place, const Wrench& wrench, VirtualTime t, VirtualTime now);
+  void Reach(VirtualTime t, VirtualTime now);
+  void ReachAlone(VirtualTime t, VirtualTime now);
+  void ReachTogether(VirtualTime t);
+  void TakeAll();
+  bool HasLeft(GroupIsland& of, const IslandStep& step);
+  double TimeToLeave(GroupIsland& of, std::span<const double> state);
+  void SettleMeeting(VirtualTime t);
+
+  std::vector<GroupIsland*> InTheWayOf(GroupIsland& leaving, VirtualTime at);
+  void AddMovers(GroupIsland& of, VirtualTime at);
+  void Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at);
+  Owned Join(const std::vector<int>& models, const std::vector<Ball>& zones,
+             const std::vector<std::pair<GroupIsland*, Island::Node>>& from, VirtualTime at);
+  void TakeBackMeetings(VirtualTime t);
+  std::string WhoDiverged(const IslandStep& step) const;
+
+  // Calls `read` for each stretch of parts that are in one island, with their numbers there.
+  template <class NumberIn, class ReadStretch>
+  void ForEachIsland(VirtualTime t, std::span<const Part> all, std::span<const int> indices,
+                     const NumberIn& number_in, const ReadStretch& read);
+  void ReachAll(VirtualTime t, VirtualTime now, std::span<const Part> all,
+                std::span<const int> indices);
+
+  const std::vector<RobotModel> models_;
+  Dynamics::Work& work_;
+  std::unique_ptr<ModelEngine> engine_;                              // none where there is no model
+  std::vector<std::size_t> first_link_, first_joint_, first_rotor_;  // of each model
+  std::vector<Part> links_, joints_, rotors_;
+  std::vector<int> unit_of_;    // of each model
+  VirtualDuration brief_;       // no step is worth less
+  std::optional<Zones> rules_;  // none where no model can meet another one
+
+  std::map<std::vector<int>, std::unique_ptr<ModelGroup>> groups_;
+  std::vector<ModelGroup*> group_of_island_;  // by the engine's index
+  std::vector<Owned> islands_;
+  std::vector<GroupIsland*> of_model_;
+  std::vector<Regrouping> regroupings_;  // that can still be taken back, the latest last
+  // All islands that can meet are known until here, and so is who meets before.
+  VirtualTime met_until_;
+
+  // Memory of the functions above.
+  std::vector<GroupIsland*> asked_, stepping_;
+  std::vector<IslandStep*> steps_;
+  std::vector<Mover> movers_;
+  std::vector<int> mover_models_, local_;
+  std::vector<double> state_;
+};
+
+}  // namespace tcs
