@@ -1,6 +1,7 @@
 """What the examples' figures share: a sweep of one key of a scenario with `tcsim trials`, and a
 figure of what came of it, as SVG."""
 import csv
+import math
 import statistics
 import subprocess
 from pathlib import Path
@@ -33,18 +34,18 @@ def print_table(heading, series):
             print(f"{x:>12g}  {'  '.join(f'{y:.3g}' for y in ys)}")
 
 
-def draw(path, title, x_label, y_label, series):
-    """`series`: by name, (x, [y of each trial]) with rising x, which the axis shows by its logarithm.
-    Dots are trials, the line goes through their medians."""
-    import math
+def draw(path, title, x_label, y_label, series, logarithmic=True, middle=statistics.median):
+    """`series`: by name, (x, [y of each trial]) with rising x. Dots are trials, the line goes through
+    their middle."""
     width, height, left, bottom, top, right = 640, 400, 70, 50, 40, 20
     colours = ["#1f6fb4", "#d1495b", "#3a8f5c"]
     xs = [x for points in series.values() for x, _ in points]
     most = max(max(y for points in series.values() for _, ys in points for y in ys), 1e-9) * 1.08
-    low, high = math.log(min(xs)), math.log(max(xs))
+    scale = math.log if logarithmic else float
+    low, high = scale(min(xs)), scale(max(xs))
 
     def at(x, y):
-        share = (math.log(x) - low) / ((high - low) or 1)
+        share = (scale(x) - low) / ((high - low) or 1)
         return left + share * (width - left - right), height - bottom - y / most * (height - bottom - top)
 
     def text(x, y, words, more=""):
@@ -65,7 +66,7 @@ def draw(path, title, x_label, y_label, series):
     for x in sorted(set(xs)):
         svg.append(text(at(x, 0)[0], height - bottom + 18, f"{x:g}"))
     for (name, points), colour in zip(series.items(), colours):
-        line = " ".join("%.1f,%.1f" % at(x, statistics.median(ys)) for x, ys in points if ys)
+        line = " ".join("%.1f,%.1f" % at(x, middle(ys)) for x, ys in points if ys)
         svg.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
         for x, ys in points:
             svg += ['<circle cx="%.1f" cy="%.1f" r="3.5" fill="%s"/>' % (*at(x, y), colour) for y in ys]

@@ -1,9 +1,10 @@
-// A loop of a steady rate. Ticks are counted from the beginning on; those that have been missed are
-// left out.
+// A loop of a steady rate. Ticks are counted from the beginning on. One that is late is taken at
+// once; of several that are, only the last.
 #pragma once
 
 #include <time.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace examples {
@@ -16,17 +17,16 @@ inline double Seconds() {
 
 class Ticks {
  public:
-  explicit Ticks(double hz) : period_ns_(static_cast<std::int64_t>(1e9 / hz)), next_ns_(NowNs()) {}
+  explicit Ticks(double hz) : period_ns_(static_cast<std::int64_t>(1e9 / hz)), last_ns_(NowNs()) {}
 
   // Returns the seconds since the tick before.
   double WaitForNext() {
-    const std::int64_t missed = (NowNs() - next_ns_) / period_ns_;
-    const std::int64_t step_ns = (1 + (missed > 0 ? missed : 0)) * period_ns_;
-    next_ns_ += step_ns;
-    const timespec next{next_ns_ / 1'000'000'000, next_ns_ % 1'000'000'000};
+    const std::int64_t due = std::max<std::int64_t>(1, (NowNs() - last_ns_) / period_ns_);
+    last_ns_ += due * period_ns_;
+    const timespec next{last_ns_ / 1'000'000'000, last_ns_ % 1'000'000'000};
     while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr) != 0) {
     }
-    return 1e-9 * static_cast<double>(step_ns);
+    return 1e-9 * static_cast<double>(due * period_ns_);
   }
 
  private:
@@ -37,7 +37,7 @@ class Ticks {
   }
 
   const std::int64_t period_ns_;
-  std::int64_t next_ns_;
+  std::int64_t last_ns_;
 };
 
 }  // namespace examples
