@@ -21,6 +21,8 @@ constexpr std::int64_t kStepsInZone = 5;
 // Islands that can meet go on in windows as long as this: what they are taken beyond the time at
 // which they meet is taken for nothing.
 constexpr VirtualDuration kWindow = VirtualDuration::Milliseconds(20);
+// Of a step that has a zone's edge before it.
+constexpr VirtualDuration kLongestWay = VirtualDuration::Seconds(1000);
 
 template <class Part>
 std::optional<int> Find(const std::vector<RobotModel>& models,
@@ -250,24 +252,12 @@ void ModelIslands::Reach(VirtualTime t, VirtualTime now) {
 }
 
 void ModelIslands::ReachAlone(VirtualTime t, VirtualTime now) {
+  std::sort(asked_.begin(), asked_.end(),
+            [](const auto* a, const auto* b) { return a->group->island() < b->group->island(); });
+  asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
   for (GroupIsland* of : asked_) of->island.Settle(now);
-  while (!asked_.empty()) {
-    steps_.clear();
-    stepping_.clear();
-    std::sort(asked_.begin(), asked_.end(),
-              [](const auto* a, const auto* b) { return a->group->island() < b->group->island(); });
-    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
-    for (GroupIsland* of : asked_) {
-      IslandStep* step = of->island.NextStepTo(t);
-      if (step == nullptr) continue;
-      steps_.push_back(step);
-      stepping_.push_back(of);
-    }
-    asked_ = stepping_;
-    if (asked_.empty()) return;
-    TakeAll();
-    for (GroupIsland* of : asked_) of->island.Settle(now);
-  }
+  AdvanceAll(asked_, t);
+  for (GroupIsland* of : asked_) of->island.Settle(now);
 }
 
 void ModelIslands::SettleMeeting(VirtualTime t) {
@@ -281,61 +271,85 @@ void ModelIslands::SettleMeeting(VirtualTime t) {
 // then is it known that nobody has met anybody before.
 void ModelIslands::ReachTogether(VirtualTime t) {
   for (;;) {
-    GroupIsland* leaving = nullptr;
-    std::vector<std::pair<GroupIsland*, double>> going;
+    going_.clear();
     for (const Owned& of : islands_) {
-      const VirtualTime at = of->island.frontier().at;
-      if (!Meets(*of) || at >= t) continue;
-      const double stays_s = TimeToLeave(*of, of->island.frontier().state);
-      if (stays_s >= brief_.seconds()) {
-        going.emplace_back(of.get(), stays_s);
-        continue;
-      }
-      const auto order = [](const GroupIsland& one) {
-        return std::pair(one.island.frontier().at, one.group->models().front());
-      };
-      if (leaving == nullptr || order(*of) < order(*leaving)) leaving = of.get();
+      if (Meets(*of) && of->island.frontier().at < t) going_.push_back(of.get());
     }
-    const VirtualTime until = leaving == nullptr ? t : leaving->island.frontier().at;
-    steps_.clear();
-    stepping_.clear();
-    for (const auto& [of, stays_s] : going) {
-      const auto most_ns = static_cast<std::int64_t>(std::min(stays_s, 1e3) * 1e9);
-      IslandStep* step = of->island.NextStepTo(until, VirtualDuration::Nanoseconds(most_ns));
-      if (step == nullptr) continue;
-      steps_.push_back(step);
-      stepping_.push_back(of);
+    AdvanceAll(going_, t);
+    GroupIsland* leaving = nullptr;
+    const auto order = [](const GroupIsland& of) {
+      return std::pair(of.island.frontier().at, of.group->models().front());
+    };
+    for (GroupIsland* of : going_) {
+      if (of->is_leaving && (leaving == nullptr || order(*of) < order(*leaving))) leaving = of;
     }
-    if (!steps_.empty()) {
-      TakeAll();
-    } else if (leaving != nullptr) {
-      Regroup(InTheWayOf(*leaving, until), until);
-    } else {
-      return;
-    }
+    if (leaving == nullptr) return;
+    const VirtualTime at = leaving->island.frontier().at;
+    Regroup(InTheWayOf(*leaving, at), at);
   }
 }
 
-void ModelIslands::TakeAll() {
-  const auto who = [this](const IslandStep& step) { return WhoDiverged(step); };
-  TakeSteps(*engine_, steps_, who);
-  for (std::size_t i = 0; i < steps_.size(); ++i) {
-    IslandStep& step = *steps_[i];
-    // It was pushed harder than is trusted.
-    while (!engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(*stepping_[i], step)) {
-      step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
-      TakeSteps(*engine_, {&steps_[i], 1}, who);
+// Side by side. The failure is that of the island that came least far, whoever was first to fail.
+void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t) {
+  const auto advance = [&](std::size_t i, std::size_t /*worker*/) {
+    try {
+      Advance(*islands[i], t);
+    } catch (...) {
+      islands[i]->failure = std::current_exception();
     }
-    stepping_[i]->island.Took();
+  };
+  if (team_ != nullptr) {
+    team_->ForEach(islands.size(), &cost_, advance);
+  } else {
+    for (std::size_t i = 0; i < islands.size(); ++i) advance(i, 0);
   }
+  GroupIsland* failed = nullptr;
+  for (GroupIsland* of : islands) {
+    if (of->failure == nullptr) continue;
+    if (failed == nullptr || of->island.frontier().at < failed->island.frontier().at) failed = of;
+  }
+  if (failed == nullptr) return;
+  const std::exception_ptr failure = failed->failure;
+  for (GroupIsland* of : islands) of->failure = nullptr;
+  std::rethrow_exception(failure);
+}
+
+// To `t`, or to where one of the models is about to leave its zone.
+void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
+  of.is_leaving = false;
+  while (of.island.frontier().at < t) {
+    VirtualDuration most = kAnyLength;
+    if (Meets(of)) {
+      const double stays_s = TimeToLeave(of, of.island.frontier().state);
+      if (stays_s < brief_.seconds()) {
+        of.is_leaving = true;
+        return;
+      }
+      most = VirtualDuration::Nanoseconds(
+          static_cast<std::int64_t>(std::min(stays_s, kLongestWay.seconds()) * 1e9));
+    }
+    Take(of, *of.island.NextStepTo(t, most));
+  }
+}
+
+void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
+  const auto who = [this](const IslandStep& one) { return WhoDiverged(one); };
+  IslandStep* steps[] = {&step};
+  TakeSteps(*engine_, steps, who);
+  // It was pushed harder than is trusted.
+  while (Meets(of) && !engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(of, step)) {
+    step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
+    TakeSteps(*engine_, steps, who);
+  }
+  of.island.Took();
 }
 
 // At the end of the step, or half way there.
 bool ModelIslands::HasLeft(GroupIsland& of, const IslandStep& step) {
-  if (!Meets(of)) return false;
   if (TimeToLeave(of, step.to) == 0) return true;
-  engine_->Within(step, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2), &state_);
-  return TimeToLeave(of, state_) == 0;
+  std::vector<double> state;
+  engine_->Within(step, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2), &state);
+  return TimeToLeave(of, state) == 0;
 }
 
 double ModelIslands::TimeToLeave(GroupIsland& of, std::span<const double> state) {

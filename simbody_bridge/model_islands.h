@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "simbody_bridge/island.h"
 #include "simbody_bridge/model/zones.h"
 #include "simbody_bridge/model_group.h"
+#include "simbody_bridge/team.h"
 
 namespace tcs {
 
@@ -24,6 +26,9 @@ class ModelIslands {
  public:
   // `work` outlives this.
   ModelIslands(const WorldSpec& world, Dynamics::Work& work);
+
+  // Those whom islands are shared out to; outlives this.
+  void UseTeam(Team& team) { team_ = &team; }
 
   int count() const { return static_cast<int>(islands_.size()); }
 
@@ -57,6 +62,8 @@ class ModelIslands {
     ModelGroup* group;
     std::vector<Ball> zones;  // of each of the models; none where none meets another
     Island island;
+    bool is_leaving = false;  // one of them its zone, at the island's frontier
+    std::exception_ptr failure = nullptr;
   };
   using Owned = std::unique_ptr<GroupIsland>;
   // When models were grouped anew.
@@ -79,7 +86,9 @@ class ModelIslands {
   void Reach(VirtualTime t, VirtualTime now);
   void ReachAlone(VirtualTime t, VirtualTime now);
   void ReachTogether(VirtualTime t);
-  void TakeAll();
+  void AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t);
+  void Advance(GroupIsland& of, VirtualTime t);
+  void Take(GroupIsland& of, IslandStep& step);
   bool HasLeft(GroupIsland& of, const IslandStep& step);
   double TimeToLeave(GroupIsland& of, std::span<const double> state);
   void SettleMeeting(VirtualTime t);
@@ -116,9 +125,10 @@ class ModelIslands {
   // All islands that can meet are known until here, and so is who meets before.
   VirtualTime met_until_;
 
+  Team* team_ = nullptr;
+  PieceCost cost_;  // of an island, to where all are to go
   // Memory of the functions above.
-  std::vector<GroupIsland*> asked_, stepping_;
-  std::vector<IslandStep*> steps_;
+  std::vector<GroupIsland*> asked_, going_;
   std::vector<Mover> movers_;
   std::vector<int> mover_models_, local_;
   std::vector<double> state_;

@@ -193,7 +193,9 @@ int main(int argc, char** argv) {
     sub->add_option(
            "--host-cpus", host_cpus,
            "processors of the host to use at most, or auto for those that no other run has: on "
-           "further ones programs compute ahead (experimental); 1 unless told")
+           "further ones programs compute ahead (experimental), and the physics of what is apart "
+           "are "
+           "integrated; 1 unless told")
         ->check(CLI::IsMember({"auto"}) | CLI::Range(1, 1024));
     sub->add_flag("--no-wait", no_wait,
                   "fail at once where other runs have all processors, and say which");

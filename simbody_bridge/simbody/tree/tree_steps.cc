@@ -40,14 +40,15 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
                     [&](std::size_t joint) { return slots[joint]; });
 }
 
-void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double limit_s) {
+void TreeSteps::TakeControlled(SimbodyTree& tree, IslandStep& step, double accuracy,
+                               double limit_s) {
   Begin(tree, step);
   StepLength length(step,
                     std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
   if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
   for (;;) {
     Try(tree, step, length.seconds());
-    if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy_, &step)) break;
+    if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy, &step)) break;
     length.Set(WholeNanoseconds(length.seconds()));
   }
   tree.Project(step.to);
