@@ -47,10 +47,10 @@ class Islands : public Dynamics {
   }
 
   std::optional<int> FindLink(std::string_view model, std::string_view link) const override {
-    return models_.FindLink(model, link);
+    return models_.parts().FindLink(model, link);
   }
   std::optional<int> FindJoint(std::string_view model, std::string_view joint) const override {
-    return models_.FindJoint(model, joint);
+    return models_.parts().FindJoint(model, joint);
   }
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) override {
     RequirePresent(t);

@@ -12,12 +12,12 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "simbody_bridge/island.h"
 #include "simbody_bridge/model/zones.h"
 #include "simbody_bridge/model_group.h"
+#include "simbody_bridge/model_parts.h"
 #include "simbody_bridge/team.h"
 
 namespace tcs {
@@ -31,10 +31,9 @@ class ModelIslands {
   void UseTeam(Team& team) { team_ = &team; }
 
   int count() const { return static_cast<int>(islands_.size()); }
+  const ModelParts& parts() const { return parts_; }
 
   // As of Dynamics. Nothing before `now` matters any more.
-  std::optional<int> FindLink(std::string_view model, std::string_view link) const;
-  std::optional<int> FindJoint(std::string_view model, std::string_view joint) const;
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
                    VirtualTime now);
   void Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now);
@@ -54,10 +53,6 @@ class ModelIslands {
   void Restore(const Saved& saved);
 
  private:
-  // A link or a joint of a model.
-  struct Part {
-    int model, index;
-  };
   struct GroupIsland {
     ModelGroup* group;
     std::vector<Ball> zones;  // of each of the models; none where none meets another
@@ -73,8 +68,8 @@ class ModelIslands {
     std::vector<GroupIsland*> after;
   };
 
-  void FindParts();
   ModelGroup& GroupOf(const std::vector<int>& models);
+  void AddUnit(const std::vector<int>& models);
   void AddIsland(Owned island);
   bool Meets(const GroupIsland& of) const { return !of.zones.empty(); }
   GroupIsland& IslandOf(int model) { return *of_model_[static_cast<std::size_t>(model)]; }
@@ -96,26 +91,21 @@ class ModelIslands {
   std::vector<GroupIsland*> InTheWayOf(GroupIsland& leaving, VirtualTime at);
   void AddMovers(GroupIsland& of, VirtualTime at);
   void Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at);
-  Owned Join(const std::vector<int>& models, const std::vector<Ball>& zones,
-             const std::vector<std::pair<GroupIsland*, Island::Node>>& from, VirtualTime at);
   void TakeBackMeetings(VirtualTime t);
   std::string WhoDiverged(const IslandStep& step) const;
 
   // Calls `read` for each stretch of parts that are in one island, with their numbers there.
   template <class NumberIn, class ReadStretch>
-  void ForEachIsland(VirtualTime t, std::span<const Part> all, std::span<const int> indices,
-                     const NumberIn& number_in, const ReadStretch& read);
-  void ReachAll(VirtualTime t, VirtualTime now, std::span<const Part> all,
-                std::span<const int> indices);
+  void ReadParts(VirtualTime t, VirtualTime now, std::span<const ModelPart> parts,
+                 const NumberIn& number_in, const ReadStretch& read);
 
   const std::vector<RobotModel> models_;
+  const ModelParts parts_;
   Dynamics::Work& work_;
-  std::unique_ptr<ModelEngine> engine_;                // none where there is no model
-  std::vector<std::size_t> first_link_, first_joint_;  // of each model
-  std::vector<Part> links_, joints_;
-  std::vector<int> unit_of_;    // of each model
-  VirtualDuration brief_;       // no step is worth less
-  std::optional<Zones> rules_;  // none where no model can meet another one
+  std::unique_ptr<ModelEngine> engine_;  // none where there is no model
+  std::vector<int> unit_of_;             // of each model
+  VirtualDuration brief_;                // no step is worth less
+  std::optional<Zones> rules_;           // none where no model can meet another one
 
   std::map<std::vector<int>, std::unique_ptr<ModelGroup>> groups_;
   std::vector<ModelGroup*> group_of_island_;  // by the engine's index
@@ -131,6 +121,7 @@ class ModelIslands {
   std::vector<GroupIsland*> asked_, going_;
   std::vector<Mover> movers_;
   std::vector<int> mover_models_, local_;
+  std::vector<ModelPart> read_;
   std::vector<double> state_;
 };
 
