@@ -16,9 +16,10 @@ namespace {
 constexpr double kWorthAWakeNs = 200'000;
 // A helper looks for more as long before it sleeps: steps come in rounds.
 constexpr std::int64_t kLookNs = 30'000;
-// Who waits longer for somebody that has begun does without help for a time.
-constexpr std::int64_t kStarvedNs = 2'000'000, kLeftToOthersNs = 500'000'000;
-constexpr int kMostDoublings = 6;
+// Who waits longer for somebody that has begun, beside twice what a piece costs, does without help
+// for a time: longer each time, until so much has gone well.
+constexpr std::int64_t kStarvedNs = 300'000, kLeftToOthersNs = 500'000'000;
+constexpr int kMostDoublings = 6, kWellInARow = 100;
 constexpr int kNiceness = -10;  // where that is permitted
 
 std::int64_t HostNs() {
@@ -140,20 +141,21 @@ void Team::ForEach(std::size_t count, PieceCost* cost, const Each& each) {
   if (!asks) return;
   for (const auto& helper : helpers_) {
     if (helper->TakeBack()) continue;
-    Await(*helper);
+    Await(*helper, static_cast<std::int64_t>(2 * cost->ns()) + kStarvedNs);
     helped_ += static_cast<std::int64_t>(helper->done());
   }
 }
 
 // It does not sleep: whoever sleeps here lets others take this processor for idle.
-void Team::Await(Helper& helper) {
+void Team::Await(Helper& helper, std::int64_t most_ns) {
   const std::int64_t since_ns = HostNs();
   while (!helper.IsDone()) Pause();
   const std::int64_t waited_ns = HostNs() - since_ns;
-  if (waited_ns < kStarvedNs) {
-    left_to_others_ = 0;
+  if (waited_ns <= most_ns) {
+    if (++well_ >= kWellInARow) left_to_others_ = 0;
     return;
   }
+  well_ = 0;
   not_before_ns_ =
       since_ns + waited_ns + (kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings));
 }

@@ -50,7 +50,7 @@ class Team {
  private:
   class Helper;
   std::size_t Work(std::size_t worker);
-  void Await(Helper& helper);
+  void Await(Helper& helper, std::int64_t most_ns);
 
   std::vector<std::unique_ptr<Helper>> helpers_;
   // Of the work in hand.
@@ -60,6 +60,7 @@ class Team {
 
   std::int64_t& helped_;
   bool always_asks_ = false;
+  int well_ = 0;                    // waits in a row that were as short as they should be
   int left_to_others_ = 0;          // in a row
   std::int64_t not_before_ns_ = 0;  // others need the processors
 };
