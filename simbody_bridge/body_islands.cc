@@ -3,12 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 
 #include "simbody_bridge/require.h"
 #include "simbody_bridge/take_steps.h"
 #include "simbody_bridge/world_check.h"
 
 namespace tcs {
+namespace {
+
+// As many as an engine evaluates side by side.
+constexpr std::size_t kStepsAtOnce = 32;
+
+}  // namespace
 
 BodyIslands::BodyIslands(const WorldSpec& world, Dynamics::Work& work)
     : members_(IslandsOf(world)), places_(world.bodies.size()) {
@@ -20,6 +27,15 @@ BodyIslands::BodyIslands(const WorldSpec& world, Dynamics::Work& work)
     for (int place = 0; place < bodies; ++place) {
       places_[static_cast<std::size_t>(members_[i][static_cast<std::size_t>(place)])] = {i, place};
     }
+  }
+}
+
+void BodyIslands::UseTeam(const WorldSpec& world, Team& team) {
+  if (engine_ == nullptr || !engine_->may_be_doubled() || team.workers() == 1) return;
+  team_ = &team;
+  further_engines_.clear();
+  while (further_engines_.size() + 1 < team.workers()) {
+    further_engines_.push_back(MakeEngine(world, members_));
   }
 }
 
@@ -69,11 +85,34 @@ void BodyIslands::Reach(VirtualTime t, VirtualTime now) {
     }
     moving_.resize(left);
     if (steps_.empty()) return;
-    TakeSteps(*engine_, steps_, [this](const IslandStep& step) { return WhoDiverged(step); });
+    TakeAll();
     for (const std::size_t island : moving_) {
       islands_[island].Took();
       islands_[island].Settle(now);
     }
+  }
+}
+
+void BodyIslands::TakeAll() {
+  const auto who = [this](const IslandStep& step) { return WhoDiverged(step); };
+  const std::span<IslandStep* const> all = steps_;
+  if (team_ == nullptr || all.size() <= kStepsAtOnce) {
+    TakeSteps(*engine_, all, who);
+    return;
+  }
+  const std::size_t pieces = (all.size() + kStepsAtOnce - 1) / kStepsAtOnce;
+  std::vector<std::exception_ptr> failures(pieces);
+  team_->ForEach(pieces, &cost_, [&](std::size_t piece, std::size_t worker) {
+    const std::size_t first = piece * kStepsAtOnce;
+    BodyEngine& engine = worker == 0 ? *engine_ : *further_engines_[worker - 1];
+    try {
+      TakeSteps(engine, all.subspan(first, std::min(kStepsAtOnce, all.size() - first)), who);
+    } catch (...) {
+      failures[piece] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure != nullptr) std::rethrow_exception(failure);
   }
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "simbody_bridge/island.h"
+#include "simbody_bridge/team.h"
 
 namespace tcs {
 
@@ -17,6 +19,9 @@ class BodyIslands {
  public:
   // `work` outlives this.
   BodyIslands(const WorldSpec& world, Dynamics::Work& work);
+
+  // Those whom steps are shared out to; outlives this.
+  void UseTeam(const WorldSpec& world, Team& team);
 
   int count() const { return static_cast<int>(islands_.size()); }
   // As of Dynamics. Nothing before `now` matters any more.
@@ -35,10 +40,14 @@ class BodyIslands {
   };
   const Place& PlaceOf(int body) const;
   void Reach(VirtualTime t, VirtualTime now);
+  void TakeAll();
   std::string WhoDiverged(const IslandStep& step) const;
 
   const std::vector<std::vector<int>> members_;  // bodies of each island
   std::unique_ptr<BodyEngine> engine_;           // none where there is no body
+  Team* team_ = nullptr;                         // where it has an engine for each:
+  std::vector<std::unique_ptr<BodyEngine>> further_engines_;
+  PieceCost cost_;
   std::vector<std::string> names_;
   std::vector<Place> places_;
   std::vector<Island> islands_;

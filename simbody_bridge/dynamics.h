@@ -201,9 +201,14 @@ class Dynamics {
     std::int64_t changes = 0;     // steps that began with other wrenches than the one before ended
     std::int64_t taken_back = 0;  // commands that changed what had been integrated already
     std::int64_t regrouped = 0;   // times that it was looked anew which models are near each other
+    std::int64_t helped = 0;      // pieces of work that were done on other processors
   };
 
   virtual ~Dynamics() = default;
+
+  // Islands may be integrated on these processors of the host, too, beside the caller's: threads of
+  // this process help where it is worth waking them. It changes no state, to the bit.
+  virtual void UseProcessors(std::span<const int> cpus) = 0;
 
   // How many systems bodies and models are divided into; where models come near each other and
   // part, as late as they have been integrated.

@@ -1,6 +1,7 @@
 #include "simbody_bridge/island.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "simbody_bridge/require.h"
@@ -12,6 +13,11 @@ namespace {
 // and what lies beyond would be thrown away.
 constexpr std::int64_t kIntervalsAhead = 2;
 constexpr VirtualDuration kLeastAhead = VirtualDuration::Milliseconds(1);
+
+// Islands are integrated side by side.
+void Count(std::int64_t& what) {
+  std::atomic_ref<std::int64_t>(what).fetch_add(1, std::memory_order_relaxed);
+}
 
 bool IsEarlier(VirtualTime t, const Island::Command& command) { return t < command.at; }
 
@@ -65,7 +71,7 @@ void Island::Apply(int place, const Wrench& wrench, VirtualTime t) {
 }
 
 void Island::TakeBackTo(VirtualTime t) {
-  ++work_.taken_back;
+  Count(work_.taken_back);
   while (used_ > 0 && legs_[used_ - 1].start.at >= t) {
     --used_;
     std::swap(frontier_, legs_[used_].start);
@@ -125,7 +131,7 @@ void Island::Depart(Leg* leg, VirtualDuration most) {
     }
   }
   if (step.wrenches != start.wrenches) {
-    ++work_.changes;
+    Count(work_.changes);
     leg->changed_at = start.at;
     LetLag(start, &step);
     LimitAfterChange(start, &step);
@@ -168,7 +174,7 @@ void Island::Took() {
   Require(length > VirtualDuration{}, "a step leads on");
   leg.to = leg.start.at + length;
   ++used_;
-  ++work_.steps;
+  Count(work_.steps);
   FindFrontier();
 }
 

@@ -2,6 +2,9 @@
 // acts. The engine keeps no time, knows no commands, and relies on nothing that it remembers from
 // an earlier step: equal steps lead to equal states, bitwise, whatever was computed in between.
 // That is what islands can be taken back by, and integrated in any order.
+//
+// One thread at a time calls an engine of free bodies. Of an engine of models several may, each
+// about an island of its own, but for StartOf, AddIsland and CopyModel.
 #pragma once
 
 #include <memory>
@@ -67,6 +70,9 @@ class IslandEngine {
 // Of free bodies: each place is a body.
 class BodyEngine : public IslandEngine {
  public:
+  // Whether two such engines may be called at the same time, and it does not matter for their speed
+  // which of them takes an island's next step.
+  virtual bool may_be_doubled() const { return false; }
   // How a body is in a state of its island.
   virtual BodyState Read(int island, int place, std::span<const double> state) const = 0;
 };

@@ -5,6 +5,7 @@
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/model_islands.h"
 #include "simbody_bridge/require.h"
+#include "simbody_bridge/team.h"
 #include "simbody_bridge/world_check.h"
 
 namespace tcs {
@@ -19,7 +20,14 @@ struct IslandsCheckpoint : Dynamics::Checkpoint {
 
 class Islands : public Dynamics {
  public:
-  explicit Islands(const WorldSpec& world) : bodies_(world, work_), models_(world, work_) {}
+  explicit Islands(const WorldSpec& world)
+      : world_(world), bodies_(world, work_), models_(world, work_) {}
+
+  void UseProcessors(std::span<const int> cpus) override {
+    team_.Set(cpus);
+    bodies_.UseTeam(world_, team_);
+    models_.UseTeam(team_);
+  }
 
   int island_count() const override { return bodies_.count() + models_.count(); }
   VirtualTime Now() const override { return now_; }
@@ -39,13 +47,13 @@ class Islands : public Dynamics {
   }
 
   std::optional<int> FindLink(std::string_view model, std::string_view link) const override {
-    return models_.FindLink(model, link);
+    return models_.parts().FindLink(model, link);
   }
   std::optional<int> FindJoint(std::string_view model, std::string_view joint) const override {
-    return models_.FindJoint(model, joint);
+    return models_.parts().FindJoint(model, joint);
   }
   std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const override {
-    return models_.FindRotor(model, rotor);
+    return models_.parts().FindRotor(model, rotor);
   }
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t) override {
     RequirePresent(t);
@@ -83,8 +91,10 @@ class Islands : public Dynamics {
     Require(t >= now_ && !t.IsNever(), "a command cannot act before the dynamics' present");
   }
 
+  const WorldSpec world_;
   Work work_;
   VirtualTime now_;
+  Team team_{work_.helped};
   BodyIslands bodies_;
   ModelIslands models_;
 };

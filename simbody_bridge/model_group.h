@@ -1,6 +1,7 @@
 // Models that are one island: how their links, joints, rotors and places are counted there.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -19,6 +20,7 @@ class ModelGroup {
   int island() const { return island_; }
   const std::vector<int>& models() const { return models_; }
   int places() const { return PlaceOfRotor(links_, joints_, rotors_); }
+  bool Has(int model) const { return std::binary_search(models_.begin(), models_.end(), model); }
   // Which of the models it is.
   std::size_t MemberOf(int model) const;
 
@@ -28,12 +30,14 @@ class ModelGroup {
   int PlaceIn(std::size_t member, int place) const;
   std::pair<std::size_t, int> Locate(int place) const;
 
-  // The balls of a member's shapes in a state of the island, into memory of this.
+  // Finds the balls that shapes are in, in a state of the island.
+  void FindBalls(ModelEngine& engine, std::span<const double> state);
+  // Those of a member's shapes; of one that has none those of all, whom it goes with.
   std::span<const MovingBall> BallsOf(std::size_t member) const {
     const Part& part = parts_[member];
+    if (part.shapes == 0) return balls_;
     return std::span(balls_).subspan(part.first_shape, part.shapes);
   }
-  void FindBalls(ModelEngine& engine, std::span<const double> state);
 
  private:
   struct Part {

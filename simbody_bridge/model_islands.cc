@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "simbody_bridge/body_islands.h"
+#include "simbody_bridge/go_on.h"
 #include "simbody_bridge/model/finite.h"
 #include "simbody_bridge/require.h"
 #include "simbody_bridge/take_steps.h"
@@ -22,21 +23,8 @@ constexpr std::int64_t kStepsInZone = 5;
 // Islands that can meet go on in windows as long as this: what they are taken beyond the time at
 // which they meet is taken for nothing.
 constexpr VirtualDuration kWindow = VirtualDuration::Milliseconds(20);
-
-template <class Part>
-std::optional<int> Find(const std::vector<RobotModel>& models,
-                        const std::vector<std::size_t>& firsts,
-                        std::vector<Part> RobotModel::*parts, std::string_view model,
-                        std::string_view name) {
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (models[i].name != model) continue;
-    const std::vector<Part>& all = models[i].*parts;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].name == name) return static_cast<int>(firsts[i] + k);
-    }
-  }
-  return {};
-}
+// Of a step that has a zone's edge before it.
+constexpr VirtualDuration kLongestWay = VirtualDuration::Seconds(1000);
 
 VirtualDuration BriefestStep(const ModelEngine& engine) {
   return engine.has_set_steps() ? engine.LongestStep(0) : kBrief;
@@ -45,31 +33,22 @@ VirtualDuration BriefestStep(const ModelEngine& engine) {
 }  // namespace
 
 ModelIslands::ModelIslands(const WorldSpec& world, Dynamics::Work& work)
-    : models_(world.models), work_(work), unit_of_(models_.size()), of_model_(models_.size()) {
+    : models_(world.models),
+      parts_(models_),
+      work_(work),
+      unit_of_(models_.size()),
+      of_model_(models_.size()) {
   const std::vector<std::vector<int>> units = ModelUnitsOf(world);
   if (units.empty()) return;
-  FindParts();
   engine_ = MakeModelEngine(world, units);
   brief_ = BriefestStep(*engine_);
   std::vector<GroupIsland*> meeting;
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    const int index = static_cast<int>(i);
-    auto group = std::make_unique<ModelGroup>(models_, units[i], index);
-    IslandStart start = engine_->StartOf(index);
-    Island::Node node;
-    node.state = std::move(start.state);
-    node.try_s = start.try_s;
-    node.wrenches.resize(static_cast<std::size_t>(group->places()));
-    group_of_island_.push_back(group.get());
-    AddIsland(std::make_unique<GroupIsland>(
-        GroupIsland{group.get(), {}, Island(index, std::move(node), {}, *engine_, work_)}));
-    groups_.emplace(units[i], std::move(group));
-    for (const int model : units[i]) unit_of_[static_cast<std::size_t>(model)] = index;
-    if (std::any_of(units[i].begin(), units[i].end(), [this](int model) {
-          return CanMeet(models_[static_cast<std::size_t>(model)]);
-        })) {
-      meeting.push_back(islands_.back().get());
-    }
+  for (const std::vector<int>& unit : units) {
+    AddUnit(unit);
+    const auto can_meet = [this](int model) {
+      return CanMeet(models_[static_cast<std::size_t>(model)]);
+    };
+    if (std::ranges::any_of(unit, can_meet)) meeting.push_back(islands_.back().get());
   }
   if (meeting.size() < 2) return;
   rules_.emplace((brief_ * kStepsInZone).seconds());
@@ -78,22 +57,20 @@ ModelIslands::ModelIslands(const WorldSpec& world, Dynamics::Work& work)
   regroupings_.clear();
 }
 
-void ModelIslands::FindParts() {
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    const int model = static_cast<int>(i);
-    first_link_.push_back(links_.size());
-    first_joint_.push_back(joints_.size());
-    first_rotor_.push_back(rotors_.size());
-    for (std::size_t k = 0; k < models_[i].links.size(); ++k) {
-      links_.push_back({model, static_cast<int>(k)});
-    }
-    for (std::size_t k = 0; k < models_[i].joints.size(); ++k) {
-      joints_.push_back({model, static_cast<int>(k)});
-    }
-    for (std::size_t k = 0; k < models_[i].rotors.size(); ++k) {
-      rotors_.push_back({model, static_cast<int>(k)});
-    }
-  }
+// The engine has been made with them, in this order.
+void ModelIslands::AddUnit(const std::vector<int>& models) {
+  const int index = static_cast<int>(group_of_island_.size());
+  auto group = std::make_unique<ModelGroup>(models_, models, index);
+  IslandStart start = engine_->StartOf(index);
+  Island::Node node;
+  node.state = std::move(start.state);
+  node.try_s = start.try_s;
+  node.wrenches.resize(static_cast<std::size_t>(group->places()));
+  group_of_island_.push_back(group.get());
+  AddIsland(std::make_unique<GroupIsland>(
+      GroupIsland{group.get(), {}, Island(index, std::move(node), {}, *engine_, work_)}));
+  for (const int model : models) unit_of_[static_cast<std::size_t>(model)] = index;
+  groups_.emplace(models, std::move(group));
 }
 
 void ModelIslands::AddIsland(Owned island) {
@@ -103,31 +80,9 @@ void ModelIslands::AddIsland(Owned island) {
   islands_.push_back(std::move(island));
 }
 
-std::optional<int> ModelIslands::FindLink(std::string_view model, std::string_view link) const {
-  return Find(models_, first_link_, &RobotModel::links, model, link);
-}
-
-std::optional<int> ModelIslands::FindJoint(std::string_view model, std::string_view joint) const {
-  return Find(models_, first_joint_, &RobotModel::joints, model, joint);
-}
-
-std::optional<int> ModelIslands::FindRotor(std::string_view model, std::string_view rotor) const {
-  return Find(models_, first_rotor_, &RobotModel::rotors, model, rotor);
-}
-
-namespace {
-
-template <class Part>
-const Part& PartAt(const std::vector<Part>& parts, int index) {
-  Require(index >= 0 && index < static_cast<int>(parts.size()), "no such link, joint or rotor");
-  return parts[static_cast<std::size_t>(index)];
-}
-
-}  // namespace
-
 void ModelIslands::ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
                                VirtualTime now) {
-  const Part& part = PartAt(links_, link);
+  const ModelPart& part = parts_.LinkAt(link);
   if (!AllFinite(wrench.force_n) || !AllFinite(wrench.torque_nm)) {
     const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
     throw DynamicsError(fmt::format("link '{}': a commanded wrench must be finite",
@@ -140,7 +95,7 @@ void ModelIslands::ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench
 }
 
 void ModelIslands::Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now) {
-  const Part& part = PartAt(joints_, joint);
+  const ModelPart& part = parts_.JointAt(joint);
   const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
   const Joint& driven = model.joints[static_cast<std::size_t>(part.index)];
   Require(CoordinatesOf(driven.kind) == 1 && !driven.mimic.has_value(),
@@ -155,7 +110,7 @@ void ModelIslands::Drive(int joint, const JointDrive& drive, VirtualTime t, Virt
 }
 
 void ModelIslands::Spin(int rotor, double speed_radps, VirtualTime t, VirtualTime now) {
-  const Part& part = PartAt(rotors_, rotor);
+  const ModelPart& part = parts_.RotorAt(rotor);
   const RobotModel& model = models_[static_cast<std::size_t>(part.model)];
   const Rotor& spun = model.rotors[static_cast<std::size_t>(part.index)];
   if (!(speed_radps >= 0 && speed_radps <= spun.most_radps) || !std::isfinite(speed_radps)) {
@@ -181,8 +136,7 @@ void ModelIslands::Command(int model, int place, const Wrench& wrench, VirtualTi
   };
   for (const Regrouping& regrouping : regroupings_) {
     for (const Owned& of : regrouping.before) {
-      const std::vector<int>& models = of->group->models();
-      if (std::binary_search(models.begin(), models.end(), model)) apply(*of);
+      if (of->group->Has(model)) apply(*of);
     }
   }
   GroupIsland& of = IslandOf(model);
@@ -196,22 +150,22 @@ ModelIslands::GroupIsland& ModelIslands::HoldingAt(int model, VirtualTime t) con
   for (auto regrouping = regroupings_.rbegin();
        regrouping != regroupings_.rend() && regrouping->at >= t; ++regrouping) {
     for (const Owned& of : regrouping->before) {
-      const std::vector<int>& models = of->group->models();
-      if (std::binary_search(models.begin(), models.end(), model)) holding = of.get();
+      if (of->group->Has(model)) holding = of.get();
     }
   }
   return *holding;
 }
 
 template <class NumberIn, class ReadStretch>
-void ModelIslands::ForEachIsland(VirtualTime t, std::span<const Part> all,
-                                 std::span<const int> indices, const NumberIn& number_in,
-                                 const ReadStretch& read) {
-  for (std::size_t first = 0; first < indices.size(); first += local_.size()) {
-    GroupIsland& of = HoldingAt(all[static_cast<std::size_t>(indices[first])].model, t);
+void ModelIslands::ReadParts(VirtualTime t, VirtualTime now, std::span<const ModelPart> parts,
+                             const NumberIn& number_in, const ReadStretch& read) {
+  asked_.clear();
+  for (const ModelPart& part : parts) asked_.push_back(&IslandOf(part.model));
+  Reach(t, now);
+  for (std::size_t first = 0; first < parts.size(); first += local_.size()) {
+    GroupIsland& of = HoldingAt(parts[first].model, t);
     local_.clear();
-    for (const int index : indices.subspan(first)) {
-      const Part& part = all[static_cast<std::size_t>(index)];
+    for (const ModelPart& part : parts.subspan(first)) {
       if (&HoldingAt(part.model, t) != &of) break;
       local_.push_back(number_in(*of.group, of.group->MemberOf(part.model), part.index));
     }
@@ -220,21 +174,12 @@ void ModelIslands::ForEachIsland(VirtualTime t, std::span<const Part> all,
   }
 }
 
-void ModelIslands::ReachAll(VirtualTime t, VirtualTime now, std::span<const Part> all,
-                            std::span<const int> indices) {
-  asked_.clear();
-  for (const int index : indices) {
-    Require(index >= 0 && index < static_cast<int>(all.size()), "no such link or joint");
-    asked_.push_back(&IslandOf(all[static_cast<std::size_t>(index)].model));
-  }
-  Reach(t, now);
-}
-
 void ModelIslands::ReadLinks(VirtualTime t, VirtualTime now, std::span<const int> links,
                              std::span<LinkState> states) {
-  ReachAll(t, now, links_, links);
-  ForEachIsland(
-      t, links_, links,
+  read_.clear();
+  for (const int link : links) read_.push_back(parts_.LinkAt(link));
+  ReadParts(
+      t, now, read_,
       [](const ModelGroup& group, std::size_t member, int link) {
         return group.LinkOf(member, link);
       },
@@ -245,9 +190,10 @@ void ModelIslands::ReadLinks(VirtualTime t, VirtualTime now, std::span<const int
 
 void ModelIslands::ReadJoints(VirtualTime t, VirtualTime now, std::span<const int> joints,
                               std::span<JointState> states) {
-  ReachAll(t, now, joints_, joints);
-  ForEachIsland(
-      t, joints_, joints,
+  read_.clear();
+  for (const int joint : joints) read_.push_back(parts_.JointAt(joint));
+  ReadParts(
+      t, now, read_,
       [](const ModelGroup& group, std::size_t member, int joint) {
         return group.JointOf(member, joint);
       },
@@ -274,24 +220,12 @@ void ModelIslands::Reach(VirtualTime t, VirtualTime now) {
 }
 
 void ModelIslands::ReachAlone(VirtualTime t, VirtualTime now) {
+  std::sort(asked_.begin(), asked_.end(),
+            [](const auto* a, const auto* b) { return a->group->island() < b->group->island(); });
+  asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
   for (GroupIsland* of : asked_) of->island.Settle(now);
-  while (!asked_.empty()) {
-    steps_.clear();
-    stepping_.clear();
-    std::sort(asked_.begin(), asked_.end(),
-              [](const auto* a, const auto* b) { return a->group->island() < b->group->island(); });
-    asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
-    for (GroupIsland* of : asked_) {
-      IslandStep* step = of->island.NextStepTo(t);
-      if (step == nullptr) continue;
-      steps_.push_back(step);
-      stepping_.push_back(of);
-    }
-    asked_ = stepping_;
-    if (asked_.empty()) return;
-    TakeAll();
-    for (GroupIsland* of : asked_) of->island.Settle(now);
-  }
+  AdvanceAll(asked_, t);
+  for (GroupIsland* of : asked_) of->island.Settle(now);
 }
 
 void ModelIslands::SettleMeeting(VirtualTime t) {
@@ -305,61 +239,85 @@ void ModelIslands::SettleMeeting(VirtualTime t) {
 // then is it known that nobody has met anybody before.
 void ModelIslands::ReachTogether(VirtualTime t) {
   for (;;) {
-    GroupIsland* leaving = nullptr;
-    std::vector<std::pair<GroupIsland*, double>> going;
+    going_.clear();
     for (const Owned& of : islands_) {
-      const VirtualTime at = of->island.frontier().at;
-      if (!Meets(*of) || at >= t) continue;
-      const double stays_s = TimeToLeave(*of, of->island.frontier().state);
-      if (stays_s >= brief_.seconds()) {
-        going.emplace_back(of.get(), stays_s);
-        continue;
-      }
-      const auto order = [](const GroupIsland& one) {
-        return std::pair(one.island.frontier().at, one.group->models().front());
-      };
-      if (leaving == nullptr || order(*of) < order(*leaving)) leaving = of.get();
+      if (Meets(*of) && of->island.frontier().at < t) going_.push_back(of.get());
     }
-    const VirtualTime until = leaving == nullptr ? t : leaving->island.frontier().at;
-    steps_.clear();
-    stepping_.clear();
-    for (const auto& [of, stays_s] : going) {
-      const auto most_ns = static_cast<std::int64_t>(std::min(stays_s, 1e3) * 1e9);
-      IslandStep* step = of->island.NextStepTo(until, VirtualDuration::Nanoseconds(most_ns));
-      if (step == nullptr) continue;
-      steps_.push_back(step);
-      stepping_.push_back(of);
+    AdvanceAll(going_, t);
+    GroupIsland* leaving = nullptr;
+    const auto order = [](const GroupIsland& of) {
+      return std::pair(of.island.frontier().at, of.group->models().front());
+    };
+    for (GroupIsland* of : going_) {
+      if (of->is_leaving && (leaving == nullptr || order(*of) < order(*leaving))) leaving = of;
     }
-    if (!steps_.empty()) {
-      TakeAll();
-    } else if (leaving != nullptr) {
-      Regroup(InTheWayOf(*leaving, until), until);
-    } else {
-      return;
-    }
+    if (leaving == nullptr) return;
+    const VirtualTime at = leaving->island.frontier().at;
+    Regroup(InTheWayOf(*leaving, at), at);
   }
 }
 
-void ModelIslands::TakeAll() {
-  const auto who = [this](const IslandStep& step) { return WhoDiverged(step); };
-  TakeSteps(*engine_, steps_, who);
-  for (std::size_t i = 0; i < steps_.size(); ++i) {
-    IslandStep& step = *steps_[i];
-    // It was pushed harder than is trusted.
-    while (!engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(*stepping_[i], step)) {
-      step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
-      TakeSteps(*engine_, {&steps_[i], 1}, who);
+// Side by side. The failure is that of the island that came least far, whoever was first to fail.
+void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t) {
+  const auto advance = [&](std::size_t i, std::size_t /*worker*/) {
+    try {
+      Advance(*islands[i], t);
+    } catch (...) {
+      islands[i]->failure = std::current_exception();
     }
-    stepping_[i]->island.Took();
+  };
+  if (team_ != nullptr) {
+    team_->ForEach(islands.size(), &cost_, advance);
+  } else {
+    for (std::size_t i = 0; i < islands.size(); ++i) advance(i, 0);
   }
+  GroupIsland* failed = nullptr;
+  for (GroupIsland* of : islands) {
+    if (of->failure == nullptr) continue;
+    if (failed == nullptr || of->island.frontier().at < failed->island.frontier().at) failed = of;
+  }
+  if (failed == nullptr) return;
+  const std::exception_ptr failure = failed->failure;
+  for (GroupIsland* of : islands) of->failure = nullptr;
+  std::rethrow_exception(failure);
+}
+
+// To `t`, or to where one of the models is about to leave its zone.
+void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
+  of.is_leaving = false;
+  while (of.island.frontier().at < t) {
+    VirtualDuration most = kAnyLength;
+    if (Meets(of)) {
+      const double stays_s = TimeToLeave(of, of.island.frontier().state);
+      if (stays_s < brief_.seconds()) {
+        of.is_leaving = true;
+        return;
+      }
+      most = VirtualDuration::Nanoseconds(
+          static_cast<std::int64_t>(std::min(stays_s, kLongestWay.seconds()) * 1e9));
+    }
+    Take(of, *of.island.NextStepTo(t, most));
+  }
+}
+
+void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
+  const auto who = [this](const IslandStep& one) { return WhoDiverged(one); };
+  IslandStep* steps[] = {&step};
+  TakeSteps(*engine_, steps, who);
+  // It was pushed harder than is trusted.
+  while (Meets(of) && !engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(of, step)) {
+    step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
+    TakeSteps(*engine_, steps, who);
+  }
+  of.island.Took();
 }
 
 // At the end of the step, or half way there.
 bool ModelIslands::HasLeft(GroupIsland& of, const IslandStep& step) {
-  if (!Meets(of)) return false;
   if (TimeToLeave(of, step.to) == 0) return true;
-  engine_->Within(step, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2), &state_);
-  return TimeToLeave(of, state_) == 0;
+  std::vector<double> state;
+  engine_->Within(step, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2), &state);
+  return TimeToLeave(of, state) == 0;
 }
 
 double ModelIslands::TimeToLeave(GroupIsland& of, std::span<const double> state) {
@@ -416,8 +374,10 @@ void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTi
     others.insert(others.end(), of->zones.begin(), of->zones.end());
   }
   const Grouping grouping = rules_->Group(movers_, others);
-  std::vector<std::pair<GroupIsland*, Island::Node>> from;
-  for (GroupIsland* of : concerned) from.emplace_back(of, of->island.NodeAt(at));
+  std::vector<GroupPast> from;
+  for (GroupIsland* of : concerned) {
+    from.push_back({of->group, of->island.NodeAt(at), of->island.commands()});
+  }
   std::vector<Owned> joined;
   for (const std::vector<std::size_t>& group : grouping.groups) {
     std::vector<std::pair<int, Ball>> members;
@@ -430,7 +390,12 @@ void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTi
       models.push_back(model);
       zones.push_back(zone);
     }
-    joined.push_back(Join(models, zones, from, at));
+    ModelGroup& of = GroupOf(models);
+    GroupFuture future = GoOn(*engine_, of, from);
+    joined.push_back(std::make_unique<GroupIsland>(
+        GroupIsland{&of, zones,
+                    Island(of.island(), std::move(future.start), std::move(future.commands),
+                           *engine_, work_)}));
   }
   Regrouping regrouping{at, {}, {}};
   for (Owned& of : islands_) {
@@ -458,57 +423,6 @@ ModelGroup& ModelIslands::GroupOf(const std::vector<int>& models) {
     group_of_island_.push_back(group.get());
   }
   return *group;
-}
-
-ModelIslands::Owned ModelIslands::Join(
-    const std::vector<int>& models, const std::vector<Ball>& zones,
-    const std::vector<std::pair<GroupIsland*, Island::Node>>& from, VirtualTime at) {
-  ModelGroup& group = GroupOf(models);
-  const int island = group.island();
-  Island::Node node;
-  node.at = at;
-  node.state.resize(engine_->StartOf(island).state.size());
-  node.wrenches.resize(static_cast<std::size_t>(group.places()));
-  node.try_s = std::numeric_limits<double>::infinity();
-  std::vector<Island::Command> commands;
-  // The member of this group that a place of another one is about, if any is, and its place here.
-  const auto place_here = [&](const ModelGroup& other, int place) -> std::optional<int> {
-    const auto [member, own] = other.Locate(place);
-    const int model = other.models()[member];
-    if (!std::binary_search(models.begin(), models.end(), model)) return {};
-    return group.PlaceIn(group.MemberOf(model), own);
-  };
-  for (const auto& [of, part] : from) {
-    const ModelGroup& other = *of->group;
-    bool has_any = false;
-    for (std::size_t member = 0; member < other.models().size(); ++member) {
-      const int model = other.models()[member];
-      if (!std::binary_search(models.begin(), models.end(), model)) continue;
-      has_any = true;
-      engine_->CopyModel({other.island(), static_cast<int>(member)}, part.state,
-                         {island, static_cast<int>(group.MemberOf(model))}, node.state);
-    }
-    if (!has_any) continue;
-    node.try_s = std::min(node.try_s, part.try_s);
-    node.changed_at = std::max(node.changed_at, part.changed_at);
-    if (!part.remainders.empty()) node.remainders.resize(node.wrenches.size());
-    for (std::size_t place = 0; place < part.wrenches.size(); ++place) {
-      const std::optional<int> here = place_here(other, static_cast<int>(place));
-      if (!here) continue;
-      node.wrenches[static_cast<std::size_t>(*here)] = part.wrenches[place];
-      if (part.remainders.empty()) continue;
-      node.remainders[static_cast<std::size_t>(*here)] = part.remainders[place];
-    }
-    for (const Island::Command& command : of->island.commands()) {
-      if (command.at < at) continue;
-      const std::optional<int> here = place_here(other, command.place);
-      if (here) commands.push_back({command.at, *here, command.wrench});
-    }
-  }
-  std::stable_sort(commands.begin(), commands.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
-  return std::make_unique<GroupIsland>(GroupIsland{
-      &group, zones, Island(island, std::move(node), std::move(commands), *engine_, work_)});
 }
 
 // Whoever met after `t` goes on from there as if that had not been.

@@ -6,17 +6,19 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "simbody_bridge/island.h"
 #include "simbody_bridge/model/zones.h"
 #include "simbody_bridge/model_group.h"
+#include "simbody_bridge/model_parts.h"
+#include "simbody_bridge/team.h"
 
 namespace tcs {
 
@@ -25,12 +27,13 @@ class ModelIslands {
   // `work` outlives this.
   ModelIslands(const WorldSpec& world, Dynamics::Work& work);
 
+  // Those whom islands are shared out to; outlives this.
+  void UseTeam(Team& team) { team_ = &team; }
+
   int count() const { return static_cast<int>(islands_.size()); }
+  const ModelParts& parts() const { return parts_; }
 
   // As of Dynamics. Nothing before `now` matters any more.
-  std::optional<int> FindLink(std::string_view model, std::string_view link) const;
-  std::optional<int> FindJoint(std::string_view model, std::string_view joint) const;
-  std::optional<int> FindRotor(std::string_view model, std::string_view rotor) const;
   void ApplyToLink(int link, WrenchFrame frame, const Wrench& wrench, VirtualTime t,
                    VirtualTime now);
   void Drive(int joint, const JointDrive& drive, VirtualTime t, VirtualTime now);
@@ -51,14 +54,12 @@ class ModelIslands {
   void Restore(const Saved& saved);
 
  private:
-  // A link, a joint or a rotor of a model.
-  struct Part {
-    int model, index;
-  };
   struct GroupIsland {
     ModelGroup* group;
     std::vector<Ball> zones;  // of each of the models; none where none meets another
     Island island;
+    bool is_leaving = false;  // one of them its zone, at the island's frontier
+    std::exception_ptr failure = nullptr;
   };
   using Owned = std::unique_ptr<GroupIsland>;
   // When models were grouped anew.
@@ -68,8 +69,8 @@ class ModelIslands {
     std::vector<GroupIsland*> after;
   };
 
-  void FindParts();
   ModelGroup& GroupOf(const std::vector<int>& models);
+  void AddUnit(const std::vector<int>& models);
   void AddIsland(Owned island);
   bool Meets(const GroupIsland& of) const { return !of.zones.empty(); }
   GroupIsland& IslandOf(int model) { return *of_model_[static_cast<std::size_t>(model)]; }
@@ -81,7 +82,9 @@ class ModelIslands {
   void Reach(VirtualTime t, VirtualTime now);
   void ReachAlone(VirtualTime t, VirtualTime now);
   void ReachTogether(VirtualTime t);
-  void TakeAll();
+  void AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualTime t);
+  void Advance(GroupIsland& of, VirtualTime t);
+  void Take(GroupIsland& of, IslandStep& step);
   bool HasLeft(GroupIsland& of, const IslandStep& step);
   double TimeToLeave(GroupIsland& of, std::span<const double> state);
   void SettleMeeting(VirtualTime t);
@@ -89,26 +92,21 @@ class ModelIslands {
   std::vector<GroupIsland*> InTheWayOf(GroupIsland& leaving, VirtualTime at);
   void AddMovers(GroupIsland& of, VirtualTime at);
   void Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at);
-  Owned Join(const std::vector<int>& models, const std::vector<Ball>& zones,
-             const std::vector<std::pair<GroupIsland*, Island::Node>>& from, VirtualTime at);
   void TakeBackMeetings(VirtualTime t);
   std::string WhoDiverged(const IslandStep& step) const;
 
   // Calls `read` for each stretch of parts that are in one island, with their numbers there.
   template <class NumberIn, class ReadStretch>
-  void ForEachIsland(VirtualTime t, std::span<const Part> all, std::span<const int> indices,
-                     const NumberIn& number_in, const ReadStretch& read);
-  void ReachAll(VirtualTime t, VirtualTime now, std::span<const Part> all,
-                std::span<const int> indices);
+  void ReadParts(VirtualTime t, VirtualTime now, std::span<const ModelPart> parts,
+                 const NumberIn& number_in, const ReadStretch& read);
 
   const std::vector<RobotModel> models_;
+  const ModelParts parts_;
   Dynamics::Work& work_;
-  std::unique_ptr<ModelEngine> engine_;                              // none where there is no model
-  std::vector<std::size_t> first_link_, first_joint_, first_rotor_;  // of each model
-  std::vector<Part> links_, joints_, rotors_;
-  std::vector<int> unit_of_;    // of each model
-  VirtualDuration brief_;       // no step is worth less
-  std::optional<Zones> rules_;  // none where no model can meet another one
+  std::unique_ptr<ModelEngine> engine_;  // none where there is no model
+  std::vector<int> unit_of_;             // of each model
+  VirtualDuration brief_;                // no step is worth less
+  std::optional<Zones> rules_;           // none where no model can meet another one
 
   std::map<std::vector<int>, std::unique_ptr<ModelGroup>> groups_;
   std::vector<ModelGroup*> group_of_island_;  // by the engine's index
@@ -118,11 +116,13 @@ class ModelIslands {
   // All islands that can meet are known until here, and so is who meets before.
   VirtualTime met_until_;
 
+  Team* team_ = nullptr;
+  PieceCost cost_;  // of an island, to where all are to go
   // Memory of the functions above.
-  std::vector<GroupIsland*> asked_, stepping_;
-  std::vector<IslandStep*> steps_;
+  std::vector<GroupIsland*> asked_, going_;
   std::vector<Mover> movers_;
   std::vector<int> mover_models_, local_;
+  std::vector<ModelPart> read_;
   std::vector<double> state_;
 };
 

@@ -49,6 +49,7 @@ std::string Engine::Prepare() {
   if (!taken.empty()) return taken;
   ClientsRunOn(claim_.cpu);
   const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
+  const std::vector<int> beside = World::ProcessorsBeside(claim_.cpu, run_.options.host_cpus);
   if (!BindTo(0, claim_.cpu)) return "cannot bind to CPU " + std::to_string(claim_.cpu);
   if (run_.gates_only) {
     IgnoreRealTimeLimits();
@@ -65,6 +66,7 @@ std::string Engine::Prepare() {
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   ahead_.Open(claim_.cpu, further);
+  world_.UseProcessors(beside);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;

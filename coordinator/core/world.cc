@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/cpu_places.h"
 #include "coordinator/os/file_errors.h"
 #include "coordinator/os/host.h"
 #include "coordinator/world/csv_row.h"
@@ -92,6 +94,17 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   }
   FindNextStop();
   return {};
+}
+
+std::vector<int> World::ProcessorsBeside(int home, int host_cpus) {
+  if (host_cpus == 1) return {};
+  std::vector<int> cpus = FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(host_cpus) - 1);
+  std::erase_if(cpus, IsClaimed);
+  return cpus;
+}
+
+void World::UseProcessors(const std::vector<int>& cpus) {
+  if (present()) dynamics_->UseProcessors(cpus);
 }
 
 void World::Begin(std::int64_t realtime_offset_ns) {

@@ -24,6 +24,11 @@ class World {
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
   // are for those on DDS; they outlive this.
   std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends);
+  // Other processors that a run with its turns on `home` may use, of which other runs have none; to
+  // be asked before this process is bound to one.
+  static std::vector<int> ProcessorsBeside(int home, int host_cpus);
+  // The dynamics do (Dynamics::UseProcessors).
+  void UseProcessors(const std::vector<int>& cpus);
   // The run begins; virtual CLOCK_REALTIME is so far ahead of virtual time.
   void Begin(std::int64_t realtime_offset_ns);
 

@@ -46,6 +46,7 @@ class MujocoBodies : public SetStepEngine<BodyEngine> {
     }
   }
 
+  bool may_be_doubled() const override { return true; }
   IslandStart StartOf(int island) override { return {At(island).start, 0}; }
 
   // A free joint's own numbers: the position and the quaternion w x y z; the velocity, and the

@@ -22,6 +22,7 @@ class LanesEngine : public BodyEngine {
   IslandStart StartOf(int island) override { return {At(island).start, kFirstTryS}; }
   VirtualDuration LongestStep(int island) const override { return At(island).longest_step; }
   bool has_set_steps() const override { return false; }
+  bool may_be_doubled() const override { return rates_.has_one_kind(); }
 
   void Take(IslandStep& step) override {
     IslandStep* one = &step;

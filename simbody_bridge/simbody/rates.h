@@ -18,6 +18,9 @@ class SimbodyRates {
  public:
   SimbodyRates(const WorldSpec& world, const std::vector<std::vector<int>>& islands);
 
+  // Whether all islands are of equal bodies.
+  bool has_one_kind() const { return kinds_.size() == 1; }
+
   // An island to evaluate, `after_s` from the beginning of its step on: its coordinates and speeds
   // then, and where their derivatives go, which are NaN where Simbody cannot tell.
   struct Lane {

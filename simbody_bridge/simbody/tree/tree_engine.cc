@@ -15,44 +15,53 @@ constexpr double kFirstTryS = 1e-3;
 // Where something touches, or is about to.
 constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 
-class TreeEngine : public ForestEngine<SimbodyTree> {
+// With the memory of its steps: islands are integrated side by side.
+struct SteppedTree : SimbodyTree {
+  using SimbodyTree::SimbodyTree;
+
+  TreeSteps steps;
+  ContactStep contact_step;
+  IslandStep shortened;
+};
+
+class TreeEngine : public ForestEngine<SteppedTree> {
  public:
   TreeEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : ForestEngine(world, islands),
         has_set_steps_(world.integrator.fixed_step > VirtualDuration{}),
         longest_step_(world.integrator.StepOr(kLongestStep)),
-        steps_(world.integrator.accuracy) {}
+        accuracy_(world.integrator.accuracy) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), kFirstTryS}; }
   VirtualDuration LongestStep(int /*island*/) const override { return longest_step_; }
   bool has_set_steps() const override { return has_set_steps_; }
 
   void Take(IslandStep& step) override {
-    SimbodyTree& tree = At(step.island);
+    SteppedTree& tree = At(step.island);
     ModelLoads& loads = LoadsOn(step.island);
     const double limit_s = step.limit.seconds();
     const double free_s = tree.TimeToTouch(step.from);
     if (has_set_steps_) {
       if (free_s < limit_s) {
-        contact_step_.Take(tree, loads, step, limit_s);
+        tree.contact_step.Take(tree, loads, step, limit_s);
       } else {
-        steps_.TakeWhole(tree, loads, step);
+        tree.steps.TakeWhole(tree, loads, step);
       }
     } else if (free_s < std::min(kContactStep, step.limit).seconds()) {
-      contact_step_.Take(tree, loads, step, std::min(kContactStep, step.limit).seconds());
+      tree.contact_step.Take(tree, loads, step, std::min(kContactStep, step.limit).seconds());
     } else {
-      steps_.TakeControlled(tree, loads, step, std::min(limit_s, free_s));
+      tree.steps.TakeControlled(tree, loads, step, accuracy_, std::min(limit_s, free_s));
       // It was pushed harder than is trusted.
       while (step.length_s > kContactStep.seconds() &&
              tree.MayHaveTouched(step.to, step.length_s)) {
-        steps_.TakeControlled(tree, loads, step, step.length_s / 2);
+        tree.steps.TakeControlled(tree, loads, step, accuracy_, step.length_s / 2);
       }
     }
   }
 
   void Within(const IslandStep& step, VirtualDuration after, std::vector<double>* state) override {
     if (has_set_steps_) {
-      TakeShortened(*this, step, after, &shortened_, state);
+      TakeShortened(*this, step, after, &At(step.island).shortened, state);
       return;
     }
     InterpolateNumbers(step, after.seconds(), state);
@@ -62,9 +71,7 @@ class TreeEngine : public ForestEngine<SimbodyTree> {
  private:
   const bool has_set_steps_;
   const VirtualDuration longest_step_;
-  TreeSteps steps_;
-  ContactStep contact_step_;
-  IslandStep shortened_;  // memory of Within
+  const double accuracy_;
 };
 
 }  // namespace

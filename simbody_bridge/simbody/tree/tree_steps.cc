@@ -41,14 +41,14 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
 }
 
 void TreeSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
-                               double limit_s) {
+                               double accuracy, double limit_s) {
   Begin(tree, loads, step);
   StepLength length(step,
                     std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
   if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
   for (;;) {
     Try(tree, loads, step, length.seconds());
-    if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy_, &step)) break;
+    if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy, &step)) break;
     length.Set(WholeNanoseconds(length.seconds()));
   }
   tree.Project(step.to);

@@ -11,12 +11,11 @@ namespace tcs {
 
 class TreeSteps {
  public:
-  // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds.
-  explicit TreeSteps(double accuracy) : accuracy_(accuracy) {}
-
   // As long as error control lets it be, and no longer than `limit_s`, which is within the step's.
-  // Throws std::runtime_error where no step is short enough for the accuracy.
-  void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double limit_s);
+  // `accuracy` as of RungeKutta3, over a joint's coordinates or speeds. Throws std::runtime_error
+  // where no step is short enough for it.
+  void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
+                      double limit_s);
   // As long as its limit.
   void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
 
@@ -25,7 +24,6 @@ class TreeSteps {
   void Try(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
   double ErrorOf(const SimbodyTree& tree, const IslandStep& step, double length_s) const;
 
-  const double accuracy_;
   std::vector<double> state_, middle_rate_, end_rate_;
 };
 
