@@ -5,15 +5,12 @@
 
 #include "simbody_bridge/frames.h"
 #include "simbody_bridge/link_motion.h"
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // What is constant along axes that turn by `turn_rad`, given its mean along the axes as they were
 // before that: the inverse of the left Jacobian of the rotation.

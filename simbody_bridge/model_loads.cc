@@ -4,16 +4,13 @@
 #include <cstddef>
 
 #include "simbody_bridge/lag.h"
+#include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/model_engine.h"
 
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 // The drag of what turns counter-clockwise turns its link clockwise.
 Load LoadOfSquare(const Rotor& rotor) {

@@ -5,13 +5,12 @@
 #include <cstddef>
 
 #include "simbody_bridge/model/convex_hull.h"
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-double Dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // The stretch of a ray that is inside something convex; nothing where it ends before it begins.
 struct Stretch {

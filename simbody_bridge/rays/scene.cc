@@ -3,13 +3,12 @@
 #include <cmath>
 
 #include "simbody_bridge/model/rigid_tree.h"
+#include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
 namespace {
 
 using Vector = std::array<double, 3>;
-
-double Dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "simbody_bridge/model/vectors.h"
+
 namespace tcs {
 namespace {
 
@@ -10,11 +12,6 @@ using Vector = std::array<double, 3>;
 
 constexpr int kMostRounds = 64;
 
-double Dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector Minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vector Cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Vector Scaled(const Vector& v, double by) { return {v[0] * by, v[1] * by, v[2] * by}; }
 bool IsZero(const Vector& v) { return Dot(v, v) < 1e-30; }
 
