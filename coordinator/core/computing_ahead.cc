@@ -27,9 +27,7 @@ constexpr std::int64_t kLookNs = 3'000, kStateLookNs = 200'000;
 
 std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
   const bool helps = !run.IsFixed() && !run.IsCallback() && !run.gates_only;
-  const int most = run.options.host_cpus;
-  if (!helps || most == 1) return {};
-  return FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(most) - 1);
+  return helps ? CpusBesideHome(home, run.options.host_cpus) : std::vector<int>{};
 }
 
 void ComputingAhead::Open(int home, const std::vector<int>& further) {

@@ -97,8 +97,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
 }
 
 std::vector<int> World::ProcessorsBeside(int home, int host_cpus) {
-  if (host_cpus == 1) return {};
-  std::vector<int> cpus = FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(host_cpus) - 1);
+  std::vector<int> cpus = CpusBesideHome(home, host_cpus);
   std::erase_if(cpus, IsClaimed);
   return cpus;
 }

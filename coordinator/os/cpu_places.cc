@@ -75,4 +75,10 @@ std::vector<int> FurtherCpusOf(const std::vector<CpuPlace>& cpus, int cpu, std::
   return further;
 }
 
+std::vector<int> CpusBesideHome(int home, int most) {
+  if (most == 1) return {};
+  // None told: as many as there are.
+  return FurtherCpusOf(CpuPlaces(), home, static_cast<std::size_t>(most) - 1);
+}
+
 }  // namespace tcs

@@ -30,4 +30,8 @@ cpu_set_t PlaceOfRun(const std::vector<CpuPlace>& cpus, bool whole_cores, int ru
 // CPUs of other cores than `cpu`'s, one of each, highest first; at most so many.
 std::vector<int> FurtherCpusOf(const std::vector<CpuPlace>& cpus, int cpu, std::size_t most);
 
+// Of this process's own, for a run whose turns are on `home` and that may have `most` in all; 0: as
+// many as there are. To be asked before this process is bound to one.
+std::vector<int> CpusBesideHome(int home, int most);
+
 }  // namespace tcs

@@ -53,7 +53,7 @@ def main():
 
     figure("speed", "robots.rover.cpu.speed", SPEEDS, "A rover among people", "speed of its computer")
     figure("eater", "robots.rover.clients.eater.command.1", PERCENT,
-           "The same, and a process beside its planner", "percent of the time that the other process eats",
+           "A process beside the planner", "percent of the time that the other process eats",
            ["--set", f"robots.rover.cpu.speed={SHARED_SPEED}"])
 
 
