@@ -22,6 +22,7 @@ namespace {
 pid_t Guard(int (*coordinate)(), GuardLimits limits) {
   const pid_t pid = fork();
   if (pid != 0) return pid;
+  setpgid(0, 0);  // a group that is left with somebody who was stopped is sent SIGHUP
   close(STDERR_FILENO);
   _exit(RunGuarded(coordinate, limits));
 }
