@@ -37,6 +37,14 @@ class Socket {
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
+  // The oldest datagram that is here. None if none is.
+  std::optional<Json> Receive() {
+    std::array<char, 65536> buffer;
+    const ssize_t size = ::recv(fd_, buffer.data(), buffer.size(), 0);
+    if (size < 0) return std::nullopt;
+    return Json::parse(buffer.data(), buffer.data() + size);
+  }
+
   // The newest datagram that is here; older ones are dropped. None if none came since the last
   // call.
   std::optional<Json> ReceiveNewest() {
