@@ -1,9 +1,10 @@
-// Not the arm's: the belt that parts come along on, the camera that sees them come, and the judge of
-// what becomes of them. A part is taken when the cup is at it, moves with it and is turned as it is;
-// one at a time, until the arm has let go of it over the bin.
+// Not the arm's: the belt that parts come along on, the camera that sees them come, and the judge
+// of what becomes of them. A part is taken when the cup is at it, moves with it and is turned as it
+// is; one at a time, until the arm has let go of it over the bin.
 //
 //   belt SEED PARTS
-//   in   line/tool      {"position": [...], "orientation": [...], "linear_velocity": [...]} of the cup
+//   in   line/tool      {"position": [...], "orientation": [...], "linear_velocity": [...]} of the
+//   cup
 //        line/given_up  {"part": NUMBER, "why": TEXT}, by the arm's planner
 //   out  arm/parts      {"part": NUMBER, "x": m, "y": m, "yaw": rad, "time": s, "belt": m/s}
 //                       once each, when the camera sees it; time: of CLOCK_MONOTONIC
@@ -34,6 +35,7 @@ namespace {
 constexpr double kBeltMps = 0.2;
 constexpr double kNearM = 0.006, kSlowMps = 0.03, kTurnRad = 0.05;  // where a part is sucked on
 constexpr double kBinM = 0.05;
+constexpr double kAfterS = 5;  // for the last part's way to the bin, or why it was missed
 
 struct Tool {
   Vector3d at_m, velocity_mps;
@@ -54,9 +56,7 @@ struct OnBelt {
   double x, yaw_rad, seen_s;
   double nearest_m = 1e9;  // that the cup came
 
-  Vector3d At(double now_s) const {
-    return {x, kCameraY + kBeltMps * (now_s - seen_s), kPartTop};
-  }
+  Vector3d At(double now_s) const { return {x, kCameraY + kBeltMps * (now_s - seen_s), kPartTop}; }
 };
 
 class Line {
@@ -100,7 +100,7 @@ class Line {
     --left_;
     const OnBelt part{++offered_, kBeltX + Draw(-0.05, 0.05), Draw(-1, 1), Seconds()};
     belt_.push_back(part);
-    next_s_ += Draw(2.8, 4.6);
+    next_s_ += Draw(3.6, 5);
     const Vector3d at = part.At(part.seen_s);
     tool_.Send("arm/parts", {{"part", part.number},
                              {"x", at.x()},
@@ -128,6 +128,7 @@ class Line {
       std::printf("%.3f s: part %d is taken, %.1f mm, %.1f mm/s and %.2f rad off\n", Seconds(),
                   part->number, 1e3 * far_m, 1e3 * slip_mps, turned_rad);
       holds_ = part->number;
+      over_s_ = Seconds() + kAfterS;
       ++taken_;
       belt_.erase(part);
       return;
@@ -139,14 +140,14 @@ class Line {
     std::printf("%.3f s: part %d is missed; the tool came as near as %.0f mm\n", Seconds(),
                 part.number, 1e3 * part.nearest_m);
     missed_.emplace_back(part.number, part.nearest_m);
-    over_s_ = Seconds() + 3;
+    over_s_ = Seconds() + kAfterS;
     belt_.pop_front();
   }
 
   Socket tool_{"line/tool"}, given_up_{"line/given_up"};
   std::mt19937 random_;
   int left_;
-  double next_s_, over_s_ = 0;  // over: when the planner has said why it missed the last one
+  double next_s_, over_s_ = 0;
   std::list<OnBelt> belt_;
   int offered_ = 0, taken_ = 0, binned_ = 0, holds_ = 0;
   std::vector<std::pair<int, double>> missed_;
@@ -158,7 +159,7 @@ class Line {
 
 int main(int argc, char** argv) {
   arm::Line line(argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 1,
-                 argc > 2 ? std::atoi(argv[2]) : 14);
+                 argc > 2 ? std::atoi(argv[2]) : 12);
   examples::Ticks ticks(500);
   while (!line.IsOver()) {
     ticks.WaitForNext();

@@ -16,12 +16,12 @@ inline Box BoxAt(const Vector3d& middle, const Vector3d& edges) {
 }
 
 inline const std::array<Box, 6> kObstacles = {{
-    BoxAt({0, 0, 0.25}, {0.22, 0.22, 0.5}),        // the pedestal
-    BoxAt({0.5, 0, 0.25}, {0.24, 4, 0.5}),         // the belt
-    BoxAt({0.5, -0.62, 1.0}, {0.5, 0.1, 0.1}),     // the bridge with the camera
-    BoxAt({0.3, 0.45, 0.6}, {0.08, 0.08, 1.2}),    // a post
-    BoxAt({0.0, 0.62, 0.25}, {0.3, 0.3, 0.5}),     // the bin
-    BoxAt({0.0, 0.2, -0.05}, {4, 6, 0.1}),         // the floor
+    BoxAt({0, 0, 0.25}, {0.22, 0.22, 0.5}),      // the pedestal
+    BoxAt({0.5, 0, 0.25}, {0.24, 4, 0.5}),       // the belt
+    BoxAt({0.5, -0.62, 1.0}, {0.5, 0.1, 0.1}),   // the bridge with the camera
+    BoxAt({0.3, 0.45, 0.6}, {0.08, 0.08, 1.2}),  // a post
+    BoxAt({0.0, 0.62, 0.25}, {0.3, 0.3, 0.5}),   // the bin
+    BoxAt({0.0, 0.2, -0.05}, {4, 6, 0.1}),       // the floor
 }};
 
 // The belt runs along y. A part's place is the middle of its top.

@@ -9,9 +9,9 @@
 
 namespace arm {
 
-// The tool's place in the world, and the way its x axis points. None where the arm does not reach. Of
-// the ways to stand: with the elbow above, the tool outside of the wrist, and the last joint near an
-// angle (a part has no front: half a turn more does as well).
+// The tool's place in the world, and the way its x axis points. None where the arm does not reach.
+// Of the ways to stand: with the elbow above, the tool outside of the wrist, and the last joint
+// near an angle (a part has no front: half a turn more does as well).
 inline std::optional<Joints> ToolDownAt(const Vector3d& tool_m, double yaw_rad, double near_rad) {
   const double aside = kArm[1].at_m.y() + kArm[2].at_m.y() + kArm[4].at_m.y();
   const double upper = kArm[2].at_m.z(), fore = kArm[3].at_m.z();
@@ -21,14 +21,14 @@ inline std::optional<Joints> ToolDownAt(const Vector3d& tool_m, double yaw_rad, 
   // Of the first wrist joint from the shoulder, in the plane of the arm.
   const double ahead = std::sqrt(far_squared) - kArm[5].at_m.z();
   const double above = at.z() - kArm[0].at_m.z() + kToolM.y();
-  const double cosine = (ahead * ahead + above * above - upper * upper - fore * fore) /
-                        (2 * upper * fore);
+  const double cosine =
+      (ahead * ahead + above * above - upper * upper - fore * fore) / (2 * upper * fore);
   if (std::abs(cosine) > 1) return std::nullopt;
   Joints q;
   q[0] = std::atan2(at.y(), at.x()) - std::atan2(aside, std::sqrt(far_squared));
   q[2] = std::acos(cosine);
-  q[1] = std::atan2(ahead, above) -
-         std::atan2(fore * std::sin(q[2]), upper + fore * std::cos(q[2]));
+  q[1] =
+      std::atan2(ahead, above) - std::atan2(fore * std::sin(q[2]), upper + fore * std::cos(q[2]));
   q[3] = M_PI / 2 - q[1] - q[2];
   q[4] = -M_PI / 2;
   const double last = q[0] - M_PI / 2 - yaw_rad;

@@ -21,6 +21,7 @@ namespace {
 
 using State = ob::RealVectorStateSpace::StateType;
 
+constexpr unsigned kShortenings = 3, kStands = 40;
 constexpr double kStepRad = 0.06;  // between two stands that are looked at
 
 Joints JointsOf(const ob::State* state) { return Joints(state->as<State>()->values); }
@@ -61,8 +62,11 @@ std::optional<std::vector<Joints>> OneWay(og::SimpleSetup& setup, const Joints& 
   setup.setGoal(there);
   const auto left_s = [&] { return std::max(until_s - examples::Seconds(), 0.0); };
   if (setup.solve(left_s()) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
-  setup.simplifySolution(left_s());
   og::PathGeometric path = setup.getSolutionPath();
+  for (unsigned i = 0; i < kShortenings; ++i) {
+    path.interpolate(kStands);
+    setup.getPathSimplifier()->reduceVertices(path, kStands, kStands / 2);
+  }
   setup.getPathSimplifier()->smoothBSpline(path, 5);
   std::vector<Joints> way;
   for (const ob::State* at : path.getStates()) way.push_back(JointsOf(at));

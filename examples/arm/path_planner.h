@@ -1,6 +1,6 @@
 // Plans in the space of the arm's joints with OMPL, in as many threads as the computer has
-// processors: each plans and shortens one way after the other (RRT-Connect), and the quickest of all
-// is taken.
+// processors: each plans and shortens one way after the other (RRT-Connect), and the quickest of
+// all is taken.
 #pragma once
 
 #include <ompl/geometric/SimpleSetup.h>

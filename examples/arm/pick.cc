@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kAlongS = 0.16, kUpS = 0.5, kAboveM = 0.1;
 
-// From 0 at rest to a steady speed of 1, without a jump of the acceleration, in the time 1: the half
-// of it far.
+// From 0 at rest to a steady speed of 1, without a jump of the acceleration, in the time 1: the
+// half of it far.
 double Faster(double share) { return share * share * share * (1 - share / 2); }
 
 // Of the tool, `t` after the beginning.
@@ -36,7 +36,9 @@ Vector3d ToolAt(const Part& part, double at_s, double t) {
 std::optional<Points> Pick(const Part& part, double at_s, double near_rad) {
   const double whole_s = kDownS + kAlongS + kUpS;
   const auto count = static_cast<int>(std::ceil(whole_s / kPointS));
-  const auto stand = [&](double t) { return ToolDownAt(ToolAt(part, at_s, t), part.yaw_rad, near_rad); };
+  const auto stand = [&](double t) {
+    return ToolDownAt(ToolAt(part, at_s, t), part.yaw_rad, near_rad);
+  };
   Points points;
   for (int i = 0; i <= count; ++i) {
     const double t = whole_s * i / count;
@@ -46,7 +48,8 @@ std::optional<Points> Pick(const Part& part, double at_s, double near_rad) {
     const auto after = stand(std::min(t + kStepS, whole_s));
     if (!before || !here || !after || !IsFree(*here)) return std::nullopt;
     const bool is_end = i == 0 || i == count;
-    points.push_back({t, *here, is_end ? Joints::Zero() : Joints((*after - *before) / (2 * kStepS))});
+    points.push_back(
+        {t, *here, is_end ? Joints::Zero() : Joints((*after - *before) / (2 * kStepS))});
     near_rad = (*here)[5];
   }
   return points;

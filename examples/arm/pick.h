@@ -1,5 +1,5 @@
-// How the tool takes a part off the running belt: down to it, along with it while it is sucked on, and
-// up again.
+// How the tool takes a part off the running belt: down to it, along with it while it is sucked on,
+// and up again.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct Part {
 
 inline constexpr double kDownS = 0.6;  // from the beginning until the tool is at the part
 
-// The motion that has the tool at the part at the time `at_s`; from rest to rest. None where the arm
-// does not reach, or would meet something. The last joint begins near that angle.
+// The motion that has the tool at the part at the time `at_s`; from rest to rest. None where the
+// arm does not reach, or would meet something. The last joint begins near that angle.
 std::optional<Points> Pick(const Part& part, double at_s, double near_rad);
 
 }  // namespace arm

@@ -1,7 +1,7 @@
-// Plans how the arm takes parts off the belt and puts them into the bin. The belt does not wait: for
-// each part the planner guesses how long planning and moving will take, plans to where the part will
-// be then, and gives the part up when it has become too late for it. While the arm goes to a part,
-// its way to the bin is planned; while it goes to the bin, its way to the next part.
+// Plans how the arm takes parts off the belt and puts them into the bin. The belt does not wait:
+// for each part the planner guesses how long planning and moving will take, plans to where the part
+// will be then, and gives the part up when it has become too late for it. While the arm goes to a
+// part, its way to the bin is planned; while it goes to the bin, its way to the next part.
 //
 //   planner SEED
 //   in   arm/planner_joints  {"joints": {NAME: {"position": rad}, ...}}
@@ -35,10 +35,10 @@ using examples::Ticks;
 
 namespace {
 
-constexpr unsigned kTries = 24;  // ways for each plan
-constexpr double kDetour = 1.5;  // by which a way takes longer than the straight one
+constexpr unsigned kTries = 16;  // ways for each plan
+constexpr double kDetour = 1.4;  // by which a way takes longer than the straight one
 constexpr double kLookS = 0.1;   // between two places where a part could be taken
-constexpr double kSpareS = 0.02;
+constexpr double kSpareS = 0.02, kFirstS = 0.5;
 constexpr std::array<double, 2> kNearRad = {-1, 1};  // how the last joint can be turned
 
 // A way to take a part: where the tool is over it, and what it does from there.
@@ -72,8 +72,7 @@ Points Joined(Points points, const Points& more) {
 
 class Picker {
  public:
-  Picker()
-      : paths_(std::max(1u, std::thread::hardware_concurrency()), kTries) {
+  Picker() : paths_(std::max(1u, std::thread::hardware_concurrency()), kTries) {
     for (const double near_rad : kNearRad) {
       const auto over_bin = ToolDownAt(kOverBin, 0, near_rad);
       if (over_bin && IsFree(*over_bin)) over_bin_.push_back(*over_bin);
@@ -111,8 +110,8 @@ class Picker {
                       message.at("time"), message.at("belt")});
   }
 
-  // Where the part can be taken first, if planning ends at the time `planned_s` and the way takes so
-  // much longer than the straight one.
+  // Where the part can be taken first, if planning ends at the time `planned_s` and the way takes
+  // so much longer than the straight one.
   std::optional<Chance> FirstChance(const Part& part, double planned_s, double detour) const {
     for (double at_s = std::max(part.TimeAt(kFirstY), planned_s + kDownS);
          at_s < part.TimeAt(kLastY); at_s += kLookS) {
@@ -139,11 +138,13 @@ class Picker {
       const double start_s = Seconds();
       const auto chance = FirstChance(part, start_s + takes_s_ + kSpareS, detour);
       if (!chance) {
+        if (tries == 0) takes_s_ *= 0.8;  // it may take less than was thought
         GiveUp(part, tries == 0 ? "passed while it was busy" : "plan too late");
         return false;
       }
       const double quickest_s = chance->QuickestFrom(rest_);
-      const auto plan = paths_.Find(rest_, chance->Goals(), chance->begin_s() - quickest_s);
+      const double leave_by_s = chance->begin_s() - detour * quickest_s;
+      const auto plan = paths_.Find(rest_, chance->Goals(), leave_by_s - kSpareS);
       const double took_s = Seconds() - start_s;
       takes_s_ = 1.2 * std::max(took_s, 0.6 * takes_s_);
       if (!plan) {
@@ -151,9 +152,9 @@ class Picker {
         continue;
       }
       const double leave_s = chance->begin_s() - plan->points.back().at_s;
-      const double late_s = std::max(Seconds() + kSpareS, free_s_) - leave_s;
-      Say(part, late_s > 0 ? "too late" : "in time", took_s, -late_s);
-      if (late_s <= 0) {
+      const double left_s = leave_s - std::max(Seconds(), free_s_);
+      Say(part, left_s < 0 ? "too late" : "in time", took_s, left_s);
+      if (left_s >= 0) {
         Send(leave_s, Joined(plan->points, chance->picks[plan->goal]));
         return true;
       }
@@ -162,14 +163,15 @@ class Picker {
   }
 
   void PutAway() {
-    for (;;) {
-      const double start_s = Seconds();
-      if (const auto plan = paths_.Find(rest_, over_bin_, start_s + 30)) {
-        std::printf("%.3f s: to the bin, planned in %.0f ms\n", start_s, 1e3 * (Seconds() - start_s));
-        std::fflush(stdout);
-        return Send(std::max(Seconds() + kSpareS, free_s_), plan->points);
-      }
+    std::optional<PathPlanner::Plan> plan;
+    const double start_s = Seconds();
+    // What is found while the arm takes the part; else what is found first.
+    for (double until_s = free_s_; !plan; until_s = Seconds() + kFirstS) {
+      plan = paths_.Find(rest_, over_bin_, until_s);
     }
+    std::printf("%.3f s: to the bin, planned in %.0f ms\n", start_s, 1e3 * (Seconds() - start_s));
+    std::fflush(stdout);
+    Send(std::max(Seconds() + kSpareS, free_s_), plan->points);
   }
 
   void Send(double start_s, const Points& points) {
