@@ -10,6 +10,7 @@
 //                       once each, when the camera sees it; time: of CLOCK_MONOTONIC
 //   prints what becomes of each part, and a line that sums it up
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -76,7 +77,7 @@ class Line {
 
   void SumUp() const {
     std::map<std::string, int> reasons;
-    for (const auto& [number, nearest_m] : missed_) {
+    for (const int number : missed_) {
       const auto why = why_.find(number);
       ++reasons[why == why_.end() ? "the tool was not with it" : why->second];
     }
@@ -139,7 +140,7 @@ class Line {
     const OnBelt& part = belt_.front();
     std::printf("%.3f s: part %d is missed; the tool came as near as %.0f mm\n", Seconds(),
                 part.number, 1e3 * part.nearest_m);
-    missed_.emplace_back(part.number, part.nearest_m);
+    missed_.push_back(part.number);
     over_s_ = Seconds() + kAfterS;
     belt_.pop_front();
   }
@@ -150,7 +151,7 @@ class Line {
   double next_s_, over_s_ = 0;
   std::list<OnBelt> belt_;
   int offered_ = 0, taken_ = 0, binned_ = 0, holds_ = 0;
-  std::vector<std::pair<int, double>> missed_;
+  std::vector<int> missed_;
   std::map<int, std::string> why_;
 };
 

@@ -3,7 +3,7 @@
 //
 //   controller
 //   in   arm/joints      {"joints": {NAME: {"position": rad, "velocity": rad/s}, ...}}
-//        arm/trajectory  {"joints": [NAME, ...], "start": s, "points": [{"positions": [...],
+//        arm/trajectory  {"joints": [all, in order], "start": s, "points": [{"positions": [...],
 //                        "velocities": [...], "time_from_start": s}, ...]}
 //                        start: of CLOCK_MONOTONIC; until then the one before it goes on
 //   out  arm/efforts     {NAME: N m, ...}

@@ -1,7 +1,7 @@
 #include "examples/arm/pick.h"
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "examples/arm/cell.h"
 #include "examples/arm/collisions.h"

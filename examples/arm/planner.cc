@@ -12,11 +12,14 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "examples/arm/cell.h"
 #include "examples/arm/collisions.h"
@@ -35,10 +38,11 @@ using examples::Ticks;
 
 namespace {
 
-constexpr unsigned kTries = 16;  // ways for each plan
-constexpr double kDetour = 1.4;  // by which a way takes longer than the straight one
-constexpr double kLookS = 0.1;   // between two places where a part could be taken
-constexpr double kSpareS = 0.02, kFirstS = 0.5;
+constexpr unsigned kTries = 16;   // ways for each plan
+constexpr double kDetour = 1.4;   // by which a way takes longer than the straight one
+constexpr double kLookS = 0.1;    // between two places where a part could be taken
+constexpr double kSpareS = 0.02;  // for the trajectory's way to the controller
+constexpr double kMoreS = 0.5;    // to plan for where there is no hurry and nothing was found
 constexpr std::array<double, 2> kNearRad = {-1, 1};  // how the last joint can be turned
 
 // A way to take a part: where the tool is over it, and what it does from there.
@@ -144,7 +148,7 @@ class Picker {
       }
       const double quickest_s = chance->QuickestFrom(rest_);
       const double leave_by_s = chance->begin_s() - detour * quickest_s;
-      const auto plan = paths_.Find(rest_, chance->Goals(), leave_by_s - kSpareS);
+      const auto plan = paths_.Find(rest_, chance->Goals(), leave_by_s);
       const double took_s = Seconds() - start_s;
       takes_s_ = 1.2 * std::max(took_s, 0.6 * takes_s_);
       if (!plan) {
@@ -152,7 +156,7 @@ class Picker {
         continue;
       }
       const double leave_s = chance->begin_s() - plan->points.back().at_s;
-      const double left_s = leave_s - std::max(Seconds(), free_s_);
+      const double left_s = leave_s - std::max(Seconds() + kSpareS, free_s_);
       Say(part, left_s < 0 ? "too late" : "in time", took_s, left_s);
       if (left_s >= 0) {
         Send(leave_s, Joined(plan->points, chance->picks[plan->goal]));
@@ -166,7 +170,7 @@ class Picker {
     std::optional<PathPlanner::Plan> plan;
     const double start_s = Seconds();
     // What is found while the arm takes the part; else what is found first.
-    for (double until_s = free_s_; !plan; until_s = Seconds() + kFirstS) {
+    for (double until_s = free_s_; !plan; until_s = Seconds() + kMoreS) {
       plan = paths_.Find(rest_, over_bin_, until_s);
     }
     std::printf("%.3f s: to the bin, planned in %.0f ms\n", start_s, 1e3 * (Seconds() - start_s));
