@@ -38,11 +38,11 @@ using examples::Ticks;
 
 namespace {
 
-constexpr unsigned kTries = 16;   // ways for each plan
-constexpr double kDetour = 1.4;   // by which a way takes longer than the straight one
-constexpr double kLookS = 0.1;    // between two places where a part could be taken
-constexpr double kSpareS = 0.02;  // for the trajectory's way to the controller
-constexpr double kMoreS = 0.5;    // to plan for where there is no hurry and nothing was found
+constexpr unsigned kTries = 16;  // ways for each plan
+constexpr double kDetour = 1.4;  // by which a way takes longer than the straight one
+constexpr double kLookS = 0.1;   // between two places where a part could be taken
+constexpr double kSpareS = 0.02;
+constexpr double kMoreS = 0.5;  // to plan for where there is no hurry and nothing was found
 constexpr std::array<double, 2> kNearRad = {-1, 1};  // how the last joint can be turned
 
 // A way to take a part: where the tool is over it, and what it does from there.
@@ -140,7 +140,7 @@ class Picker {
     double detour = kDetour;
     for (int tries = 0;; ++tries) {
       const double start_s = Seconds();
-      const auto chance = FirstChance(part, start_s + takes_s_ + kSpareS, detour);
+      const auto chance = FirstChance(part, start_s + takes_s_ + spare_s_, detour);
       if (!chance) {
         if (tries == 0) takes_s_ *= 0.8;  // it may take less than was thought
         GiveUp(part, tries == 0 ? "passed while it was busy" : "plan too late");
@@ -156,7 +156,7 @@ class Picker {
         continue;
       }
       const double leave_s = chance->begin_s() - plan->points.back().at_s;
-      const double left_s = leave_s - std::max(Seconds() + kSpareS, free_s_);
+      const double left_s = leave_s - std::max(Seconds() + spare_s_, free_s_);
       Say(part, left_s < 0 ? "too late" : "in time", took_s, left_s);
       if (left_s >= 0) {
         Send(leave_s, Joined(plan->points, chance->picks[plan->goal]));
@@ -175,12 +175,14 @@ class Picker {
     }
     std::printf("%.3f s: to the bin, planned in %.0f ms\n", start_s, 1e3 * (Seconds() - start_s));
     std::fflush(stdout);
-    Send(std::max(Seconds() + kSpareS, free_s_), plan->points);
+    Send(std::max(Seconds() + spare_s_, free_s_), plan->points);
   }
 
   void Send(double start_s, const Points& points) {
     const Trajectory trajectory(start_s, points);
+    const double before_s = Seconds();
     joints_.Send("arm/trajectory", trajectory.ToJson());
+    spare_s_ = kSpareS + 3 * (Seconds() - before_s);
     free_s_ = trajectory.end_s();
     rest_ = points.back().position;
   }
@@ -203,7 +205,8 @@ class Picker {
   std::deque<Part> parts_;
   Joints rest_;            // where the arm is once it has done what it was sent,
   double free_s_ = 0;      // and when
-  double takes_s_ = 0.05;  // what planning is expected to take
+  double takes_s_ = 0.05;  // what planning is expected to take,
+  double spare_s_ = 0.1;   // and the trajectory's way to the controller
 };
 
 }  // namespace
