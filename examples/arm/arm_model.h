@@ -27,7 +27,7 @@ inline const std::array<Joint, kJoints> kArm = {{{"shoulder_pan", {0, 0, 0.09}, 
                                                  {"elbow", {0, -0.12, 0.425}, Axis::kY, 2.7, 1.5},
                                                  {"wrist_1", {0, 0, 0.392}, Axis::kY, 3.1, 0.3},
                                                  {"wrist_2", {0, 0.093, 0}, Axis::kZ, 3.1, 0.3},
-                                                 {"wrist_3", {0, 0, 0.095}, Axis::kY, 6.2, 0.2}}};
+                                                 {"wrist_3", {0, 0, 0.095}, Axis::kY, 6.2, 0.02}}};
 // Where the arm stands in the world, and its tool in the frame of the last link.
 inline const Vector3d kBaseM{0, 0, 0.5}, kToolM{0, 0.202, 0};
 

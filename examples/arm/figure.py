@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parent.parent))
 import sweep
 
-SPEEDS = [0.02, 0.03, 0.05, 0.08, 0.12, 0.2]
+SPEEDS = [0.02, 0.03, 0.05, 0.08, 0.12]
 CORES = [1, 2, 4]
 
 

@@ -12,7 +12,7 @@ namespace arm {
 inline constexpr double kPointS = 0.04;  // between the points of a trajectory
 
 inline const Joints kMostVelocity{2.6, 2.6, 2.6, 2.8, 2.8, 2.8};  // rad/s
-inline const Joints kMostAcceleration{9, 9, 10, 16, 16, 16};      // rad/s^2
+inline const Joints kMostAcceleration{8, 8, 10, 16, 16, 16};      // rad/s^2
 
 // The share of the way that is done after a share of the time.
 inline double Eased(double share) {
