@@ -2,6 +2,7 @@
 """How many parts the arm misses, on computers of different speeds with one, two and four cores: runs it
 and draws the figure. `./dev figure arm` calls it."""
 import re
+import statistics
 import sys
 from pathlib import Path
 
@@ -37,7 +38,8 @@ def main():
             (speed, [percent_missed(trial) for trial in trials])
             for speed, trials in sweep.folders(folder, SPEEDS)]
     sweep.print_table(("cpu.speed", "parts missed [%]"), found)
-    sweep.draw(out / "missed.svg", "An arm at a running belt", "speed of its computer", "parts missed [%]", found)
+    sweep.draw(out / "missed.svg", "An arm at a running belt", "speed of its computer", "parts missed [%]", found,
+               middle=statistics.mean)
 
 
 if __name__ == "__main__":

@@ -63,8 +63,8 @@ std::optional<std::vector<Joints>> OneWay(og::SimpleSetup& setup, const Joints& 
     there->addState(state);
   }
   setup.setGoal(there);
-  const auto left_s = [&] { return std::max(until_s - examples::Seconds(), 0.0); };
-  if (setup.solve(left_s()) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
+  const double left_s = std::max(until_s - examples::Seconds(), 0.0);
+  if (setup.solve(left_s) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
   og::PathGeometric path = setup.getSolutionPath();
   for (unsigned i = 0; i < kShortenings; ++i) {
     path.interpolate(kStands);
