@@ -178,8 +178,8 @@ bool MujocoSystem::IsSmooth(std::span<const Wrench> acting, double seconds) cons
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
     if (joint_actuators_[i] < 0) continue;
     const JointDrive drive = DriveOf(acting, i);
-    const double slowness = seconds * model_->dof_invweight0[speeds_[i]];
-    if (slowness * std::max(drive.damping, seconds * drive.stiffness) > 1) return false;
+    const double by_inertia = seconds * model_->dof_invweight0[speeds_[i]];
+    if (by_inertia * std::max(drive.damping, seconds * drive.stiffness) > 1) return false;
   }
   return true;
 }
@@ -200,9 +200,8 @@ void MujocoSystem::StepSmoothly() {
 // which MuJoCo solves for everything else. A servo that would give more than it can is held to its
 // limit, and all is solved again.
 void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds) {
-  constexpr int kRounds = 4;
   at_limit_.assign(joint_actuators_.size(), 0);
-  for (int round = 0; round < kRounds; ++round) {
+  do {
     for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
       if (joint_actuators_[i] < 0) continue;
       JointDrive drive = DriveOf(acting, i);
@@ -214,13 +213,12 @@ void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds
       model_->dof_armature[speeds_[i]] = seconds * drive.damping;
     }
     mj_forward(model_.get(), data_.get());
-    if (!ReachLimits(acting, seconds)) break;
-  }
+  } while (ReachLimits(acting, seconds));
   mj_checkAcc(model_.get(), data_.get());
   mj_Euler(model_.get(), data_.get());
 }
 
-// Whether a servo would give more than it can at the end of the step.
+// Whether one more servo would give more than it can at the end of the step.
 bool MujocoSystem::ReachLimits(std::span<const Wrench> acting, double seconds) {
   bool is_new = false;
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {

@@ -67,8 +67,7 @@ class MujocoSystem {
   std::vector<int> link_actuators_, joint_actuators_;  // of each link and joint; -1: none
   std::vector<int> positions_, speeds_;                // where those of each joint are; -1: fixed
   std::vector<double> start_;
-  std::vector<double>
-      at_limit_;  // memory of StepImplicitly: of each joint, what it is held to, or 0
+  std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
 };
 
 }  // namespace tcs
