@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simbody_bridge/model/forest.h"
+#include "simbody_bridge/model/moving_ball.h"
 #include "simbody_bridge/model_engine.h"
 #include "simbody_bridge/model_loads.h"
 
@@ -21,11 +22,13 @@ class ForestEngine : public ModelEngine {
  public:
   ForestEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : models_(world.models), fixtures_(world.fixtures), gravity_mps2_(world.gravity_mps2) {
-    for (const std::vector<int>& models : islands) AddIsland(models);
+    for (const RobotModel& model : models_) bases_.push_back(StaticShapesOf(model));
+    for (const std::vector<int>& models : islands) AddIsland(models, {});
   }
 
-  int AddIsland(const std::vector<int>& models) final {
+  int AddIsland(const std::vector<int>& models, const std::vector<int>& bases) final {
     Forest& forest = forests_.emplace_back(MakeForest(models_, models, fixtures_));
+    for (const int base : bases) AddFixtures(bases_[static_cast<std::size_t>(base)], &forest);
     try {
       systems_.emplace_back(forest, gravity_mps2_);
     } catch (...) {
@@ -73,6 +76,7 @@ class ForestEngine : public ModelEngine {
 
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
+  std::vector<std::vector<Shape>> bases_;  // the static shapes of each model
   const std::array<double, 3> gravity_mps2_;
   std::deque<Forest> forests_;
   std::deque<System> systems_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "simbody_bridge/model/moving_ball.h"
 #include "simbody_bridge/model_engine.h"
 
 namespace tcs {
@@ -44,8 +45,7 @@ std::vector<std::vector<int>> ModelUnitsOf(const WorldSpec& world) {
 }
 
 bool CanMeet(const RobotModel& model) {
-  return model.touches_models && std::any_of(model.links.begin(), model.links.end(),
-                                             [](const Link& link) { return !link.shapes.empty(); });
+  return model.touches_models && !MovingShapesOf(model).empty();
 }
 
 }  // namespace tcs

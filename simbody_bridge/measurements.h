@@ -3,6 +3,9 @@
 // SI units. Frames are named as the scenario names them; a mounted sensor looks along the x axis of
 // its frame, with z up, as REP-103 has bodies. A distance that is farther than what a sensor
 // reaches is infinity, and one that is nearer minus infinity (REP-117).
+//
+// A variance is that of each axis, none of which depends on another one, in the unit squared; 0
+// where nothing is known to be wrong. What is wrong with an orientation is a turn about its axes.
 #pragma once
 
 #include <array>
@@ -22,6 +25,7 @@ struct ImuMeasurement {
   std::string frame;
   std::array<double, 4> orientation_xyzw{0, 0, 0, 1};  // in the world
   InertialReading felt;                                // along the axes of the frame
+  double orientation_variance = 0, rate_variance = 0, acceleration_variance = 0;
 };
 
 // Where `child_frame` is in `frame`, and how it moves there, along its own axes.
@@ -29,6 +33,8 @@ struct OdometryMeasurement {
   std::string frame, child_frame;
   Pose pose;
   std::array<double, 3> linear_mps{}, angular_radps{};
+  double position_variance = 0, orientation_variance = 0;
+  double linear_variance = 0, angular_variance = 0;
 };
 
 struct TransformsMeasurement {
@@ -70,6 +76,7 @@ struct RangeMeasurement {
   double field_of_view_rad = 0;
   double least_m = 0, most_m = 0;
   double range_m = 0;
+  double range_variance = 0;
 };
 
 // How far ahead it is, along x, to what each pixel sees; rows from above, from the left.
@@ -83,17 +90,20 @@ struct GnssMeasurement {
   std::string frame;
   Geodetic origin;                // of the world
   std::array<double, 3> enu_m{};  // from there, along the world's axes
+  double position_variance = 0;
   Geodetic position() const { return ToGeodetic(origin, enu_m); }
 };
 
 struct MagneticMeasurement {
   std::string frame;
   std::array<double, 3> field_t{};  // along the axes of the frame
+  double field_variance = 0;
 };
 
 struct PressureMeasurement {
   std::string frame;
   double pressure_pa = 0;
+  double pressure_variance = 0;
 };
 
 struct ContactMeasurement {

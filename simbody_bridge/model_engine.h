@@ -70,9 +70,10 @@ struct ModelPlace {
 class ModelEngine : public IslandEngine {
  public:
   // One more island, of these models, in addition to those that the engine was made with: its
-  // index. A model may be in many islands, each of which is one way to group it. Throws what the
-  // engine throws if it refuses it.
-  virtual int AddIsland(const std::vector<int>& models) = 0;
+  // index. A model may be in many islands, each of which is one way to group it. They touch the
+  // static shapes of the models `bases`, too, as if these were the world's. Throws what the engine
+  // throws if it refuses it.
+  virtual int AddIsland(const std::vector<int>& models, const std::vector<int>& bases) = 0;
   // How the model is in the state of one island, as it would be in that of another one.
   virtual void CopyModel(const ModelPlace& from, std::span<const double> state,
                          const ModelPlace& to, std::span<double> into) const = 0;
@@ -88,7 +89,7 @@ class ModelEngine : public IslandEngine {
 // The models of each island at least: those of world.models_together, and the others alone. Throws
 // DynamicsError where a model is named twice, or is none.
 std::vector<std::vector<int>> ModelUnitsOf(const WorldSpec& world);
-// Whether a model can touch others.
+// Whether a model can run into others.
 bool CanMeet(const RobotModel& model);
 
 // The engine that world.integrator names. `world` has passed CheckWorld. Throws DynamicsError if

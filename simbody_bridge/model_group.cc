@@ -12,7 +12,7 @@ ModelGroup::ModelGroup(const std::vector<RobotModel>& all, std::vector<int> mode
               joints_,        static_cast<int>(model.joints.size()),
               rotors_,        static_cast<int>(model.rotors.size()),
               shapes_.size(), 0};
-    for (ShapeOnLink shape : ShapesOf(model)) {
+    for (ShapeOnLink shape : MovingShapesOf(model)) {
       const int link = links_ + shape.link;
       if (shape_links_.empty() || shape_links_.back() != link) shape_links_.push_back(link);
       shape.link = static_cast<int>(shape_links_.size()) - 1;

@@ -30,9 +30,9 @@ class ModelGroup {
   int PlaceIn(std::size_t member, int place) const;
   std::pair<std::size_t, int> Locate(int place) const;
 
-  // Finds the balls that shapes are in, in a state of the island.
+  // Finds the balls that moving shapes are in, in a state of the island.
   void FindBalls(ModelEngine& engine, std::span<const double> state);
-  // Those of a member's shapes; of one that has none those of all, whom it goes with.
+  // Those of a member's shapes that move; of one that has none those of all, whom it goes with.
   std::span<const MovingBall> BallsOf(std::size_t member) const {
     const Part& part = parts_[member];
     if (part.shapes == 0) return balls_;
@@ -49,7 +49,7 @@ class ModelGroup {
   const int island_;
   int links_ = 0, joints_ = 0, rotors_ = 0;
   std::vector<Part> parts_;
-  std::vector<int> shape_links_;     // links with shapes, by the island's count
+  std::vector<int> shape_links_;     // links with moving shapes, by the island's count
   std::vector<ShapeOnLink> shapes_;  // whose links count those
   std::vector<LinkState> states_;    // memory of FindBalls
   std::vector<MovingBall> balls_;

@@ -50,11 +50,30 @@ ModelIslands::ModelIslands(const WorldSpec& world, Dynamics::Work& work)
     };
     if (std::ranges::any_of(unit, can_meet)) meeting.push_back(islands_.back().get());
   }
-  if (meeting.size() < 2) return;
+  AddStatics();
+  if (!CanAnyMeet(meeting)) return;
   rules_.emplace((brief_ * kStepsInZone).seconds());
   for (GroupIsland* of : meeting) AddMovers(*of, VirtualTime{});
   Regroup(meeting, VirtualTime{});
   regroupings_.clear();
+}
+
+void ModelIslands::AddStatics() {
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!models_[i].touches_models) continue;
+    for (const Shape& shape : StaticShapesOf(models_[i])) {
+      statics_.push_back({BallOf(shape), static_cast<int>(i)});
+    }
+  }
+}
+
+// Another one that moves, or what of another one does not.
+bool ModelIslands::CanAnyMeet(const std::vector<GroupIsland*>& meeting) const {
+  const auto is_of_another = [&](const StaticBall& one) {
+    return !meeting[0]->group->Has(one.model);
+  };
+  return meeting.size() > 1 ||
+         (meeting.size() == 1 && std::ranges::any_of(statics_, is_of_another));
 }
 
 // The engine has been made with them, in this order.
@@ -70,7 +89,7 @@ void ModelIslands::AddUnit(const std::vector<int>& models) {
   AddIsland(std::make_unique<GroupIsland>(
       GroupIsland{group.get(), {}, Island(index, std::move(node), {}, *engine_, work_)}));
   for (const int model : models) unit_of_[static_cast<std::size_t>(model)] = index;
-  groups_.emplace(models, std::move(group));
+  groups_.emplace(std::pair(models, std::vector<int>{}), std::move(group));
 }
 
 void ModelIslands::AddIsland(Owned island) {
@@ -337,7 +356,7 @@ void ModelIslands::AddMovers(GroupIsland& of, VirtualTime at) {
   for (std::size_t member = 0; member < of.group->models().size(); ++member) {
     const int model = of.group->models()[member];
     movers_.push_back({Around(of.group->BallsOf(member)), unit_of_[static_cast<std::size_t>(model)],
-                       of.group->island()});
+                       of.group->island(), model});
     mover_models_.push_back(model);
   }
 }
@@ -373,13 +392,14 @@ void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTi
     if (std::find(concerned.begin(), concerned.end(), of.get()) != concerned.end()) continue;
     others.insert(others.end(), of->zones.begin(), of->zones.end());
   }
-  const Grouping grouping = rules_->Group(movers_, others);
+  const Grouping grouping = rules_->Group(movers_, others, statics_);
   std::vector<GroupPast> from;
   for (GroupIsland* of : concerned) {
     from.push_back({of->group, of->island.NodeAt(at), of->island.commands()});
   }
   std::vector<Owned> joined;
-  for (const std::vector<std::size_t>& group : grouping.groups) {
+  for (std::size_t number = 0; number < grouping.groups.size(); ++number) {
+    const std::vector<std::size_t>& group = grouping.groups[number];
     std::vector<std::pair<int, Ball>> members;
     for (const std::size_t i : group) members.emplace_back(mover_models_[i], grouping.zones[i]);
     std::sort(members.begin(), members.end(),
@@ -390,7 +410,7 @@ void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTi
       models.push_back(model);
       zones.push_back(zone);
     }
-    ModelGroup& of = GroupOf(models);
+    ModelGroup& of = GroupOf(models, grouping.bases[number]);
     GroupFuture future = GoOn(*engine_, of, from);
     joined.push_back(std::make_unique<GroupIsland>(
         GroupIsland{&of, zones,
@@ -410,13 +430,14 @@ void ModelIslands::Regroup(const std::vector<GroupIsland*>& concerned, VirtualTi
   regroupings_.push_back(std::move(regrouping));
 }
 
-ModelGroup& ModelIslands::GroupOf(const std::vector<int>& models) {
-  std::unique_ptr<ModelGroup>& group = groups_[models];
+ModelGroup& ModelIslands::GroupOf(const std::vector<int>& models, const std::vector<int>& bases) {
+  const std::pair key(models, bases);
+  std::unique_ptr<ModelGroup>& group = groups_[key];
   if (group == nullptr) {
     try {
-      group = std::make_unique<ModelGroup>(models_, models, engine_->AddIsland(models));
+      group = std::make_unique<ModelGroup>(models_, models, engine_->AddIsland(models, bases));
     } catch (const std::exception& e) {
-      groups_.erase(models);
+      groups_.erase(key);
       throw DynamicsError(fmt::format("model '{}' and those near it cannot be one system: {}",
                                       models_[static_cast<std::size_t>(models[0])].name, e.what()));
     }

@@ -1,8 +1,10 @@
 // The islands of models. A model that others can touch is an island by itself as long as none of
 // them is near: as long as it stays in its zone (model/zones.h). When it is about to leave that, it
 // is looked anew who is near whom: those who are go on as one island from that instant, and those
-// who have parted as several. When that is follows from the models' motion alone; so their motion
-// remains a function of the commands, and what is taken back takes back the meetings, too.
+// who have parted as several. What of a model is fixed to the world is like the world's own: it is
+// in the island of whoever is near, and joins nobody. When that is follows from the models' motion
+// alone; so their motion remains a function of the commands, and what is taken back takes back the
+// meetings, too.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simbody_bridge/island.h"
@@ -69,10 +72,12 @@ class ModelIslands {
     std::vector<GroupIsland*> after;
   };
 
-  ModelGroup& GroupOf(const std::vector<int>& models);
+  ModelGroup& GroupOf(const std::vector<int>& models, const std::vector<int>& bases);
   void AddUnit(const std::vector<int>& models);
+  void AddStatics();
   void AddIsland(Owned island);
   bool Meets(const GroupIsland& of) const { return !of.zones.empty(); }
+  bool CanAnyMeet(const std::vector<GroupIsland*>& meeting) const;
   GroupIsland& IslandOf(int model) { return *of_model_[static_cast<std::size_t>(model)]; }
   // The island in which the model comes to `t`.
   GroupIsland& HoldingAt(int model, VirtualTime t) const;
@@ -108,7 +113,9 @@ class ModelIslands {
   VirtualDuration brief_;                // no step is worth less
   std::optional<Zones> rules_;           // none where no model can meet another one
 
-  std::map<std::vector<int>, std::unique_ptr<ModelGroup>> groups_;
+  std::vector<StaticBall> statics_;  // of models that touch others
+  // By their models, and by those whose static shapes these touch.
+  std::map<std::pair<std::vector<int>, std::vector<int>>, std::unique_ptr<ModelGroup>> groups_;
   std::vector<ModelGroup*> group_of_island_;  // by the engine's index
   std::vector<Owned> islands_;
   std::vector<GroupIsland*> of_model_;

@@ -19,7 +19,7 @@ std::string DdsRecords::Open() {
     hub_.Observe(&topic_log_);
   }
   if (!run_.options.record) return {};
-  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns);
+  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros);
   topic_log_.Tell(&*recording_);
   std::string error = recording_->Open(directory + "/bag");
   if (!error.empty()) {

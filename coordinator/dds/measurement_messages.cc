@@ -14,8 +14,11 @@ Owned<ImuMessage> ToMessage(std::int64_t stamp_ns, const ImuMeasurement& measure
   SetHeader(&imu->header, stamp_ns, measured.frame);
   imu->orientation = ToQuaternion(measured.orientation_xyzw);
   imu->angular_velocity = ToVector3(measured.felt.angular_rate_radps);
+  SetDiagonal(imu->orientation_covariance, measured.orientation_variance);
+  SetDiagonal(imu->angular_velocity_covariance, measured.rate_variance);
   if (measured.felt.proper_acceleration_mps2.has_value()) {
     imu->linear_acceleration = ToVector3(*measured.felt.proper_acceleration_mps2);
+    SetDiagonal(imu->linear_acceleration_covariance, measured.acceleration_variance);
   } else {
     imu->linear_acceleration_covariance[0] = -1;
   }
@@ -29,6 +32,8 @@ Owned<OdometryMessage> ToMessage(std::int64_t stamp_ns, const OdometryMeasuremen
   const auto& [x, y, z] = measured.pose.position_m;
   odometry->pose.pose = {{x, y, z}, ToQuaternion(measured.pose.orientation_xyzw)};
   odometry->twist.twist = {ToVector3(measured.linear_mps), ToVector3(measured.angular_radps)};
+  SetDiagonal(odometry->pose.covariance, measured.position_variance, measured.orientation_variance);
+  SetDiagonal(odometry->twist.covariance, measured.linear_variance, measured.angular_variance);
   return odometry;
 }
 
@@ -128,6 +133,7 @@ Owned<RangeMessage> ToMessage(std::int64_t stamp_ns, const RangeMeasurement& mea
   range->min_range = static_cast<float>(measured.least_m);
   range->max_range = static_cast<float>(measured.most_m);
   range->range = static_cast<float>(measured.range_m);
+  range->variance = static_cast<float>(measured.range_variance);
   return range;
 }
 
@@ -152,6 +158,9 @@ Owned<NavSatFixMessage> ToMessage(std::int64_t stamp_ns, const GnssMeasurement& 
   fix->latitude = position.latitude_deg;
   fix->longitude = position.longitude_deg;
   fix->altitude = position.altitude_m;
+  constexpr std::uint8_t kUnknown = 0, kDiagonalKnown = 2;
+  SetDiagonal(fix->position_covariance, measured.position_variance);
+  fix->position_covariance_type = measured.position_variance > 0 ? kDiagonalKnown : kUnknown;
   return fix;
 }
 
@@ -159,6 +168,7 @@ Owned<MagneticFieldMessage> ToMessage(std::int64_t stamp_ns, const MagneticMeasu
   Owned<MagneticFieldMessage> magnetic;
   SetHeader(&magnetic->header, stamp_ns, measured.frame);
   magnetic->magnetic_field = ToVector3(measured.field_t);
+  SetDiagonal(magnetic->magnetic_field_covariance, measured.field_variance);
   return magnetic;
 }
 
@@ -166,6 +176,7 @@ Owned<FluidPressureMessage> ToMessage(std::int64_t stamp_ns, const PressureMeasu
   Owned<FluidPressureMessage> pressure;
   SetHeader(&pressure->header, stamp_ns, measured.frame);
   pressure->fluid_pressure = measured.pressure_pa;
+  pressure->variance = measured.pressure_variance;
   return pressure;
 }
 

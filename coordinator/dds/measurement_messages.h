@@ -1,6 +1,7 @@
 // What sensors of robots measure, as ROS 2 messages.
 //
-// Stamps and units as in ros_messages.h. Covariances are zero.
+// Stamps and units as in ros_messages.h. Covariances are diagonal; where nothing is wrong with a
+// value they are zero, which ROS 2 takes for unknown.
 #pragma once
 
 #include <cstddef>

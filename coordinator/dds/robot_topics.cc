@@ -4,8 +4,9 @@
 
 namespace tcs::dds {
 
-SensorEncoder::SensorEncoder(SensorMessage message, std::vector<std::string> bodies)
-    : message_(message), bodies_(std::move(bodies)) {
+SensorEncoder::SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
+                             const BodyVariances& variances)
+    : message_(message), bodies_(std::move(bodies)), variances_(variances) {
   TCS_CHECK(bodies_.size() == 1 || message_ == SensorMessage::kJointState);
 }
 
@@ -15,9 +16,9 @@ std::vector<std::byte> SensorEncoder::Encode(std::int64_t stamp_ns,
   TCS_CHECK(states.size() == bodies_.size());
   switch (message_) {
     case SensorMessage::kOdometry:
-      return ToCdr(ToOdometry(stamp_ns, bodies_[0], states[0]));
+      return ToCdr(ToOdometry(stamp_ns, bodies_[0], states[0], variances_));
     case SensorMessage::kImu:
-      return ToCdr(ToImu(stamp_ns, bodies_[0], states[0], felt));
+      return ToCdr(ToImu(stamp_ns, bodies_[0], states[0], felt, variances_));
     case SensorMessage::kJointState:
       return ToCdr(ToJointState(stamp_ns, bodies_, states));
     case SensorMessage::kTwist:

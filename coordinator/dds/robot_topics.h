@@ -19,7 +19,8 @@ namespace tcs::dds {
 class SensorEncoder {
  public:
   // All messages but JointState tell of one body.
-  SensorEncoder(SensorMessage message, std::vector<std::string> bodies);
+  SensorEncoder(SensorMessage message, std::vector<std::string> bodies,
+                const BodyVariances& variances = {});
 
   // The sample in virtual CLOCK_REALTIME `stamp_ns`. `states` are those of the bodies, in their
   // order, `felt` is what the first of them feels.
@@ -30,6 +31,7 @@ class SensorEncoder {
  private:
   SensorMessage message_;
   std::vector<std::string> bodies_;
+  BodyVariances variances_;
 };
 
 // The JointState of a robot's joints; `joints` and `states` go together.

@@ -21,6 +21,14 @@ inline QuaternionMessage ToQuaternion(const std::array<double, 4>& q) {
   return {q[0], q[1], q[2], q[3]};
 }
 
+// A covariance of three numbers, or of six, the last three of which are of turns; all independent.
+inline void SetDiagonal(double (&covariance)[9], double variance) {
+  for (int i = 0; i < 3; ++i) covariance[4 * i] = variance;
+}
+inline void SetDiagonal(double (&covariance)[36], double variance, double of_turns) {
+  for (int i = 0; i < 6; ++i) covariance[7 * i] = i < 3 ? variance : of_turns;
+}
+
 inline void SetHeader(HeaderMessage* header, std::int64_t stamp_ns, std::string_view frame) {
   header->stamp = ToTime(stamp_ns);
   SetText(&header->frame_id, frame);

@@ -49,13 +49,15 @@ Angles ToAngles(const BodyState& state) {
 }  // namespace
 
 Owned<OdometryMessage> ToOdometry(std::int64_t stamp_ns, std::string_view body,
-                                  const BodyState& state) {
+                                  const BodyState& state, const BodyVariances& variances) {
   Owned<OdometryMessage> odometry;
   SetHeader(&odometry->header, stamp_ns, kWorldFrame);
   SetText(&odometry->child_frame_id, body);
   const auto& [x, y, z] = state.position_m;
   odometry->pose.pose = {{x, y, z}, ToQuaternion(state.orientation_xyzw)};
   odometry->twist.twist = TwistInBody(state);
+  SetDiagonal(odometry->pose.covariance, variances.position, variances.orientation);
+  SetDiagonal(odometry->twist.covariance, variances.linear_velocity, variances.angular_velocity);
   return odometry;
 }
 
@@ -115,13 +117,16 @@ Owned<ClockMessage> ToClock(std::int64_t stamp_ns) {
 }
 
 Owned<ImuMessage> ToImu(std::int64_t stamp_ns, std::string_view body, const BodyState& state,
-                        const InertialReading& felt) {
+                        const InertialReading& felt, const BodyVariances& variances) {
   Owned<ImuMessage> imu;
   SetHeader(&imu->header, stamp_ns, body);
   imu->orientation = ToQuaternion(state.orientation_xyzw);
   imu->angular_velocity = ToVector3(felt.angular_rate_radps);
+  SetDiagonal(imu->orientation_covariance, variances.orientation);
+  SetDiagonal(imu->angular_velocity_covariance, variances.angular_rate);
   if (felt.proper_acceleration_mps2.has_value()) {
     imu->linear_acceleration = ToVector3(*felt.proper_acceleration_mps2);
+    SetDiagonal(imu->linear_acceleration_covariance, variances.proper_acceleration);
   } else {
     imu->linear_acceleration_covariance[0] = -1;
   }

@@ -27,10 +27,17 @@ struct MessageError {
   std::string message;  // what is wrong with a sample, as the rest of a sentence about it
 };
 
-// The pose in the world's frame, the twist in the body's, as Odometry has it. What the simulation
-// says is exact: the covariances are zero.
+// Of what is said of a body, on each axis, none of which depends on another one; in the unit
+// squared. 0: nothing is known to be wrong, which ROS 2 takes for unknown.
+struct BodyVariances {
+  double position = 0, orientation = 0, linear_velocity = 0, angular_velocity = 0;
+  double angular_rate = 0, proper_acceleration = 0;
+};
+
+// The pose in the world's frame, the twist in the body's, as Odometry has it.
 [[nodiscard]] Owned<OdometryMessage> ToOdometry(std::int64_t stamp_ns, std::string_view body,
-                                                const BodyState& state);
+                                                const BodyState& state,
+                                                const BodyVariances& variances = {});
 
 // The velocities in the body's frame.
 [[nodiscard]] Owned<TwistMessage> ToTwist(const BodyState& state);
@@ -54,7 +61,8 @@ struct MessageError {
 // What a body feels, its frame called after it. Where there is no acceleration yet it says so as
 // Imu does: by a covariance that begins with -1.
 [[nodiscard]] Owned<ImuMessage> ToImu(std::int64_t stamp_ns, std::string_view body,
-                                      const BodyState& state, const InertialReading& felt);
+                                      const BodyState& state, const InertialReading& felt,
+                                      const BodyVariances& variances = {});
 
 // Force and torque in the world's frame, the force at the centre of mass, as with UDP. Refused
 // where they are not finite.

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "coordinator/record/message_definitions.h"
 #include "shm/check.h"
 
 namespace tcs::record {
@@ -21,16 +22,20 @@ constexpr std::size_t kLargestBatch = 4 << 20;
 // What SQLite adds to a message, about: the row, and its line in the index.
 constexpr std::size_t kRowBytes = 32;
 
+// The hashes of types (REP 2011) stay empty, as those of Humble's types are.
 constexpr const char* kTables = R"(
 CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
 CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL,
                       metadata TEXT NOT NULL);
 CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
-                    serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);
+                    serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL,
+                    type_description_hash TEXT NOT NULL);
+CREATE TABLE message_definitions(id INTEGER PRIMARY KEY, topic_type TEXT NOT NULL,
+                                 encoding TEXT NOT NULL, encoded_message_definition TEXT NOT NULL,
+                                 type_description_hash TEXT NOT NULL);
 CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,
                       timestamp INTEGER NOT NULL, data BLOB NOT NULL);
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
-INSERT INTO schema(schema_version, ros_distro) VALUES (3, 'humble');
 )";
 
 // In the words of the kernel, which the other messages of a full disk have.
@@ -57,7 +62,7 @@ void BindText(sqlite3_stmt* statement, int index, const std::string& text) {
 
 void Bag::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
-Bag::Bag() = default;
+Bag::Bag(dds::RosRelease release) : release_(release) {}
 
 Bag::~Bag() {
   if (is_open()) (void)Close();
@@ -71,6 +76,7 @@ std::string Bag::Open(const std::string& folder) {
   metadata_.file = NameOf(folder) + "_0.db3";
   topics_.clear();
   names_.clear();
+  defined_.clear();
   other_offers_.clear();
   in_batches_ = metadata_;
   path_ = folder + "/" + metadata_.file;
@@ -90,17 +96,25 @@ std::string Bag::Open(const std::string& folder) {
       (sqlite3_open_v2(path_.c_str(), &database_, kFlags, nullptr) == SQLITE_OK ||
        Fail(Why(database_))) &&
       Run("PRAGMA journal_mode = WAL") && Run("PRAGMA synchronous = NORMAL") && Run("BEGIN") &&
-      Run(kTables) && Run("COMMIT") &&
+      Run(kTables) &&
+      Run(release_ == dds::RosRelease::kHumble ? "INSERT INTO schema VALUES (4, 'humble')"
+                                               : "INSERT INTO schema VALUES (4, 'iron')") &&
+      Run("COMMIT") &&
       Prepare(
-          "INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, id) "
-          "VALUES (?, ?, 'cdr', '', ?)",
+          "INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, "
+          "type_description_hash, id) VALUES (?, ?, 'cdr', '', '', ?)",
           &insert_topic_) &&
+      Prepare(
+          "INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, "
+          "type_description_hash) VALUES (?, ?, ?, '')",
+          &insert_definition_) &&
       Prepare("UPDATE topics SET offered_qos_profiles = ? WHERE id = ?", &update_topic_) &&
       Prepare("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)",
               &insert_message_) &&
       WriteMetadata(Withstands::kCrash);
   if (done) return {};
   insert_topic_.reset();
+  insert_definition_.reset();
   update_topic_.reset();
   insert_message_.reset();
   sqlite3_close(database_);
@@ -131,8 +145,19 @@ int Bag::AddTopic(std::string_view name, std::string_view type) {
     BindText(insert_topic_.get(), 2, metadata_.topics.back().type);
     sqlite3_bind_int64(insert_topic_.get(), 3, IdOf(next));
     Step(insert_topic_.get());
+    WriteDefinition(metadata_.topics.back().type);
   }
   return next;
+}
+
+// Of one that tcs does not know too, as rosbag2 does it where it finds no definition.
+void Bag::WriteDefinition(const std::string& type) {
+  if (!failure_.empty() || !defined_.insert(type).second) return;
+  const std::string definition = DefinitionOf(type, release_);
+  BindText(insert_definition_.get(), 1, type);
+  BindText(insert_definition_.get(), 2, definition.empty() ? "unknown" : "ros2msg");
+  BindText(insert_definition_.get(), 3, definition);
+  Step(insert_definition_.get());
 }
 
 void Bag::AddOffer(int topic, const dds::Qos& qos) {
@@ -177,6 +202,7 @@ std::string Bag::Close() {
     }
   }
   insert_topic_.reset();
+  insert_definition_.reset();
   update_topic_.reset();
   insert_message_.reset();
   // One file, as readers that may not write beside it want it.

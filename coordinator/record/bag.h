@@ -1,5 +1,6 @@
 // A recording as ROS 2 keeps it: a rosbag2 bag with SQLite storage, that is a folder with
-// metadata.yaml and NAME_0.db3, in the form of ROS 2 Humble (schema 3), which later ones read.
+// metadata.yaml and NAME_0.db3, in the form of ROS 2 Iron (schema 4): it has the definitions of the
+// messages that tcs knows, and Humble's readers, which want none, read it as well.
 //
 // Samples are written in batches of a virtual second at the most. Whatever ends the process, what
 // was written before the last batch can be opened: SQLite's write-ahead log keeps the database
@@ -20,6 +21,7 @@
 #include <utility>
 
 #include "coordinator/dds/qos.h"
+#include "coordinator/dds/ros_names.h"
 #include "coordinator/os/files.h"
 #include "coordinator/record/bag_metadata.h"
 
@@ -30,7 +32,8 @@ namespace tcs::record {
 
 class Bag {
  public:
-  Bag();
+  // The messages are as that release has them.
+  explicit Bag(dds::RosRelease release = dds::RosRelease::kIron);
   // Closes without a word if nobody has.
   ~Bag();
   Bag(const Bag&) = delete;
@@ -69,15 +72,18 @@ class Bag {
   bool Begin();
   bool EndBatch();
   std::string UniqueName(const std::string& name);
+  void WriteDefinition(const std::string& type);
   bool WriteMetadata(Withstands what);
   bool Fail(const std::string& why);
 
+  const dds::RosRelease release_;
   std::string folder_, path_;
   sqlite3* database_ = nullptr;
-  Statement insert_topic_, update_topic_, insert_message_;
+  Statement insert_topic_, update_topic_, insert_definition_, insert_message_;
   BagMetadata metadata_;
   std::map<std::pair<std::string, std::string>, int> topics_;  // as they were asked for, with types
   std::map<std::string, int> names_;  // that are taken, and how many topics wanted them
+  std::set<std::string> defined_;     // types
   std::set<int> other_offers_;        // topics whose offers have changed in this batch
   BagMetadata in_batches_;            // the same as of the last batch that was written whole
   bool is_in_batch_ = false;

@@ -17,8 +17,9 @@ namespace tcs::record {
 class Recording : public dds::TopicLog::Listener {
  public:
   // The log and the endpoints outlive this.
-  Recording(const dds::TopicLog& log, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns)
-      : log_(log), ends_(ends), realtime_offset_ns_(realtime_offset_ns) {}
+  Recording(const dds::TopicLog& log, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns,
+            dds::RosRelease release)
+      : log_(log), ends_(ends), realtime_offset_ns_(realtime_offset_ns), bag_(release) {}
 
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& folder) { return bag_.Open(folder); }

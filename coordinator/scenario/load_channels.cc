@@ -66,7 +66,7 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
   if (of_instrument) {
     keys = InstrumentKeys(map);
   } else if (of_joints) {
-    keys.insert(keys.begin(), {"model", "joints"});
+    keys.insert(keys.begin(), {"model", "joints", "noise", "bias"});
   } else {
     keys.insert(keys.begin(), {"bodies", "noise", "bias"});
     if (type != ChannelType::kDds) keys.push_back("fields");
@@ -83,6 +83,7 @@ SensorChannelSpec LoadSensors(const YamlMap::Entry& entry, const YamlValue& valu
     if (type != ChannelType::kDds) CheckFitsDatagram(map, *channel.instrument);
   } else if (of_joints) {
     channel.joints = LoadJointGroup(map, scenario);
+    LoadJointErrors(map, &channel.errors);
   } else {
     channel.bodies = FindBodies(map.Require("bodies", "bodies: [predator]"), scenario);
     LoadBodyErrors(map, &channel.errors);

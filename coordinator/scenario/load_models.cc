@@ -344,6 +344,12 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
   if (map.entries().empty()) value.Fail("is empty; describe at least one model");
   Models models(variables, scenario);
   for (const YamlMap::Entry& entry : map.entries()) models.Add(entry);
+  // What is static needs no steps.
+  if (engine.has_integrators && !scenario->world->models.empty() &&
+      scenario->world->integrator.kind != IntegratorKind::kRungeKutta3) {
+    value.Fail("move by the integrator runge_kutta3 only on " + std::string(engine.name) +
+               "; leave dynamics.integrator out, or set dynamics.engine to mujoco");
+  }
 }
 
 }  // namespace tcs

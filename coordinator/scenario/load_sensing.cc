@@ -125,6 +125,14 @@ void LoadBodyErrors(const YamlMap& map, SensorErrors* errors) {
   LoadFieldErrors(map, fields);
 }
 
+void LoadJointErrors(const YamlMap& map, SensorErrors* errors) {
+  std::vector<NamedError> fields;
+  for (std::size_t i = 0; i < kJointQuantities.size(); ++i) {
+    fields.push_back({std::string(kJointQuantities[i]), &errors->joints[i], true});
+  }
+  LoadFieldErrors(map, fields);
+}
+
 void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command) {
   if (const YamlValue* v = map.Find("latency")) command->latency = v->AsDuration();
   if (const YamlValue* v = map.Find("axes")) command->in_body_frame = LoadIsInOwnFrame(*v, own);

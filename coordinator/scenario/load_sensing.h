@@ -16,8 +16,9 @@ std::vector<SensorField> LoadSensorFields(const YamlValue& value);
 // The seed of the sensor of that name, `dropout` and `jitter`.
 SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::uint64_t seed);
 
-// `noise` and `bias`, of bodies and of anything else that has named fields.
+// `noise` and `bias`, of bodies, of joints, and of anything else that has named fields.
 void LoadBodyErrors(const YamlMap& map, SensorErrors* errors);
+void LoadJointErrors(const YamlMap& map, SensorErrors* errors);
 struct NamedError {
   std::string name;
   FieldError* error;

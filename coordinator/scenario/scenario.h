@@ -161,6 +161,7 @@ struct FieldError {
 };
 struct SensorErrors {
   std::array<FieldError, kSensorFields> fields{};
+  std::array<FieldError, kJointQuantities.size()> joints{};  // of each joint, by JointQuantity
   double dropout = 0;        // the share of the samples that never arrive
   VirtualDuration jitter{};  // the most that a reading comes later than its latency says
   std::uint64_t seed = 0;    // of this sensor

@@ -30,12 +30,19 @@ class MeasurementNoise::Draws {
     if (imu.felt.proper_acceleration_mps2.has_value()) {
       Add(MeasuredField::kProperAcceleration, &*imu.felt.proper_acceleration_mps2);
     }
+    imu.orientation_variance = VarianceOf(MeasuredField::kOrientation);
+    imu.rate_variance = VarianceOf(MeasuredField::kAngularRate);
+    imu.acceleration_variance = VarianceOf(MeasuredField::kProperAcceleration);
   }
   void operator()(OdometryMeasurement& odometry) const {
     Add(MeasuredField::kPosition, &odometry.pose.position_m);
     Turn(MeasuredField::kOrientation, &odometry.pose.orientation_xyzw);
     Add(MeasuredField::kLinearVelocity, &odometry.linear_mps);
     Add(MeasuredField::kAngularVelocity, &odometry.angular_radps);
+    odometry.position_variance = VarianceOf(MeasuredField::kPosition);
+    odometry.orientation_variance = VarianceOf(MeasuredField::kOrientation);
+    odometry.linear_variance = VarianceOf(MeasuredField::kLinearVelocity);
+    odometry.angular_variance = VarianceOf(MeasuredField::kAngularVelocity);
   }
   void operator()(TransformsMeasurement&) const {}
   void operator()(DescriptionMeasurement&) const {}
@@ -47,17 +54,27 @@ class MeasurementNoise::Draws {
   }
   void operator()(RangeMeasurement& range) const {
     Add(MeasuredField::kRange, std::span(&range.range_m, 1));
+    range.range_variance = VarianceOf(MeasuredField::kRange);
   }
   void operator()(DepthMeasurement& depth) const { Add(MeasuredField::kRange, depth.depths_m); }
-  void operator()(GnssMeasurement& gnss) const { Add(MeasuredField::kPosition, &gnss.enu_m); }
+  void operator()(GnssMeasurement& gnss) const {
+    Add(MeasuredField::kPosition, &gnss.enu_m);
+    gnss.position_variance = VarianceOf(MeasuredField::kPosition);
+  }
   void operator()(MagneticMeasurement& magnetic) const {
     Add(MeasuredField::kMagneticField, &magnetic.field_t);
+    magnetic.field_variance = VarianceOf(MeasuredField::kMagneticField);
   }
   void operator()(PressureMeasurement& pressure) const {
     Add(MeasuredField::kPressure, std::span(&pressure.pressure_pa, 1));
+    pressure.pressure_variance = VarianceOf(MeasuredField::kPressure);
   }
 
  private:
+  double VarianceOf(MeasuredField field) const {
+    const FieldError& error = noise_.errors_[static_cast<std::size_t>(field)];
+    return error.noise * error.noise + error.bias_deviation * error.bias_deviation;
+  }
   std::array<double, 3> ErrorOf(MeasuredField field) const {
     const auto index = static_cast<std::size_t>(field);
     RandomStream random = StreamOf(noise_.seed_, RandomPurpose::kNoise, index, sample_);

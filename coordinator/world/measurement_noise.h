@@ -16,7 +16,8 @@ class MeasurementNoise {
   MeasurementNoise() = default;
   MeasurementNoise(const MeasurementErrors& errors, std::uint64_t seed);
 
-  // Adds what is wrong with the sample of that number; of the same number always the same.
+  // Adds what is wrong with the sample of that number, of the same number always the same, and says
+  // how much that may be. A bias that is known does not count there.
   void Disturb(std::uint64_t sample, Measurement* measurement) const;
 
  private:

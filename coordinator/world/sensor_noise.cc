@@ -1,21 +1,12 @@
 #include "coordinator/world/sensor_noise.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "coordinator/world/random_stream.h"
+#include "simbody_bridge/link_motion.h"
 
 namespace tcs {
 namespace {
-
-// The orientation turned by `turn`, a rotation about the body's axes.
-std::array<double, 4> Turned(const std::array<double, 4>& q, const std::array<double, 3>& turn) {
-  const double angle = std::hypot(turn[0], turn[1], turn[2]);
-  if (angle == 0) return q;
-  const double s = std::sin(angle / 2) / angle, w = std::cos(angle / 2);
-  const double x = turn[0] * s, y = turn[1] * s, z = turn[2] * s;
-  return {q[3] * x + q[0] * w + q[1] * z - q[2] * y, q[3] * y - q[0] * z + q[1] * w + q[2] * x,
-          q[3] * z + q[0] * y - q[1] * x + q[2] * w, q[3] * w - q[0] * x - q[1] * y - q[2] * z};
-}
 
 std::array<double, 3>* VectorOf(BodyReading* body, SensorField field) {
   switch (field) {
@@ -37,13 +28,28 @@ std::array<double, 3>* VectorOf(BodyReading* body, SensorField field) {
   return nullptr;
 }
 
+double* NumberOf(JointState* joint, JointQuantity quantity) {
+  switch (quantity) {
+    case JointQuantity::kPosition:
+      return &joint->position;
+    case JointQuantity::kVelocity:
+      return &joint->velocity;
+    case JointQuantity::kEffort:
+      break;
+  }
+  return &joint->effort;
+}
+
+bool IsExact(const FieldError& field) {
+  return field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
+}
+
 }  // namespace
 
-SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies)
-    : errors_(errors), is_exact_(true) {
-  for (const FieldError& field : errors_.fields) {
-    is_exact_ &= field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
-  }
+SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies, std::size_t joints)
+    : errors_(errors),
+      is_exact_(std::ranges::all_of(errors.fields, IsExact) &&
+                std::ranges::all_of(errors.joints, IsExact)) {
   for (std::size_t body = 0; body < bodies; ++body) {
     RandomStream random(errors_.seed, RandomPurpose::kBias, body);
     Biases& biases = biases_.emplace_back();
@@ -52,6 +58,14 @@ SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies)
       for (std::size_t axis = 0; axis < 3; ++axis) {
         biases[i][axis] = field.bias[axis] + field.bias_deviation * random.Normal();
       }
+    }
+  }
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    RandomStream random(errors_.seed, RandomPurpose::kBias, joint);
+    JointBiases& biases = joint_biases_.emplace_back();
+    for (std::size_t i = 0; i < biases.size(); ++i) {
+      const FieldError& field = errors_.joints[i];
+      biases[i] = field.bias[0] + field.bias_deviation * random.Normal();
     }
   }
 }
@@ -64,10 +78,15 @@ SensorNoise::Fate SensorNoise::FateOf(std::uint64_t sample) const {
   return {is_lost, VirtualDuration::Nanoseconds(static_cast<std::int64_t>(late_ns))};
 }
 
-// Every value has its place in the stream, whether it has noise or not: a noise that is added to
-// one field leaves the others as they were.
 void SensorNoise::Disturb(std::uint64_t sample, Reading* reading) const {
   if (is_exact_) return;
+  DisturbBodies(sample, reading);
+  DisturbJoints(sample, reading);
+}
+
+// Every value has its place in the stream, whether it has noise or not: a noise that is added to
+// one field leaves the others as they were.
+void SensorNoise::DisturbBodies(std::uint64_t sample, Reading* reading) const {
   RandomStream random(errors_.seed, RandomPurpose::kNoise, sample);
   for (std::size_t body = 0; body < reading->bodies.size(); ++body) {
     BodyReading& of = reading->bodies[body];
@@ -80,6 +99,16 @@ void SensorNoise::Disturb(std::uint64_t sample, Reading* reading) const {
       } else if (std::array<double, 3>* vector = VectorOf(&of, field); vector != nullptr) {
         for (std::size_t axis = 0; axis < 3; ++axis) (*vector)[axis] += error[axis];
       }
+    }
+  }
+}
+
+void SensorNoise::DisturbJoints(std::uint64_t sample, Reading* reading) const {
+  RandomStream random(errors_.seed, RandomPurpose::kNoise, sample);
+  for (std::size_t joint = 0; joint < reading->joints.size(); ++joint) {
+    for (std::size_t i = 0; i < kJointQuantities.size(); ++i) {
+      *NumberOf(&reading->joints[joint].state, static_cast<JointQuantity>(i)) +=
+          joint_biases_[joint][i] + errors_.joints[i].noise * random.Normal();
     }
   }
 }

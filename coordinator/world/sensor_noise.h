@@ -15,7 +15,7 @@ namespace tcs {
 
 class SensorNoise {
  public:
-  SensorNoise(const SensorErrors& errors, std::size_t bodies);
+  SensorNoise(const SensorErrors& errors, std::size_t bodies, std::size_t joints = 0);
 
   struct Fate {
     bool is_lost = false;
@@ -28,10 +28,14 @@ class SensorNoise {
 
  private:
   using Biases = std::array<std::array<double, 3>, kSensorFields>;
+  using JointBiases = std::array<double, kJointQuantities.size()>;
+  void DisturbBodies(std::uint64_t sample, Reading* reading) const;
+  void DisturbJoints(std::uint64_t sample, Reading* reading) const;
 
   SensorErrors errors_;
   bool is_exact_;               // its values are
   std::vector<Biases> biases_;  // of each body
+  std::vector<JointBiases> joint_biases_;
 };
 
 }  // namespace tcs

@@ -18,6 +18,7 @@ void Sensors::AddJoints(const JointGroup& joints, SensorTiming timing, const Sen
   Add(std::vector<Body>(), timing, errors, outlet);
   sensors_.back().joints = joints;
   sensors_.back().joint_states.resize(joints.joints.size());
+  sensors_.back().noise = SensorNoise(errors, 0, joints.joints.size());
 }
 
 void Sensors::AddInstrument(std::unique_ptr<Instrument> instrument, SensorTiming timing,

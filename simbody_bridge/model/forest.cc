@@ -45,10 +45,14 @@ Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indic
   for (std::size_t i = 0; i < indices.size(); ++i) {
     Plant(models[static_cast<std::size_t>(indices[i])], static_cast<int>(i), &forest);
   }
-  for (const Shape& fixture : fixtures) {
-    forest.shapes.push_back({&fixture, kWorldBody, Times(Pose{}, fixture.pose), -1});
-  }
+  AddFixtures(fixtures, &forest);
   return forest;
+}
+
+void AddFixtures(std::span<const Shape> fixtures, Forest* forest) {
+  for (const Shape& fixture : fixtures) {
+    forest->shapes.push_back({&fixture, kWorldBody, Times(Pose{}, fixture.pose), -1});
+  }
 }
 
 bool MayTouch(const Forest& forest, const ForestShape& a, const ForestShape& b) {

@@ -36,6 +36,9 @@ struct Forest {
 Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indices,
                   std::span<const Shape> fixtures);
 
+// More of these, in the world's frame; they outlive the forest.
+void AddFixtures(std::span<const Shape> fixtures, Forest* forest);
+
 // Whether two shapes can ever be in contact: they are of different bodies, one of which moves, that
 // no joint joins; and if they are of one model, it collides with itself.
 bool MayTouch(const Forest& forest, const ForestShape& a, const ForestShape& b);

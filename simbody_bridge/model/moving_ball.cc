@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simbody_bridge/model/rigid_tree.h"
 #include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
@@ -40,14 +41,33 @@ double WayWithin(double seconds, double speed_mps) {
   return speed_mps * seconds + kTrustedAccelerationMps2 / 2 * seconds * seconds;
 }
 
-std::vector<ShapeOnLink> ShapesOf(const RobotModel& model) {
+std::vector<ShapeOnLink> MovingShapesOf(const RobotModel& model) {
+  const RigidTree tree = MakeTree(model);
   std::vector<ShapeOnLink> shapes;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (tree.links[i].body == kWorldBody) continue;
     for (const Shape& shape : model.links[i].shapes) {
       shapes.push_back({static_cast<int>(i), shape.pose.position_m, ReachOf(shape.geometry)});
     }
   }
   return shapes;
+}
+
+std::vector<Shape> StaticShapesOf(const RobotModel& model) {
+  const RigidTree tree = MakeTree(model);
+  std::vector<Shape> shapes;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (tree.links[i].body != kWorldBody) continue;
+    for (const Shape& shape : model.links[i].shapes) {
+      shapes.push_back(shape);
+      shapes.back().pose = Times(tree.links[i].pose, shape.pose);
+    }
+  }
+  return shapes;
+}
+
+Ball BallOf(const Shape& in_world) {
+  return {in_world.pose.position_m, ReachOf(in_world.geometry)};
 }
 
 MovingBall BallOf(const ShapeOnLink& shape, const LinkState& link) {

@@ -37,7 +37,12 @@ struct ShapeOnLink {
   std::array<double, 3> center_m{};
   double reach_m = 0;
 };
-std::vector<ShapeOnLink> ShapesOf(const RobotModel& model);
+// Those that move: links that are fixed to the world have others.
+std::vector<ShapeOnLink> MovingShapesOf(const RobotModel& model);
+// Those that never do, in the world's frame.
+std::vector<Shape> StaticShapesOf(const RobotModel& model);
+// The ball that such a shape is in.
+Ball BallOf(const Shape& in_world);
 MovingBall BallOf(const ShapeOnLink& shape, const LinkState& link);
 
 // A ball around all of them; there is at least one.

@@ -34,7 +34,28 @@ bool Zones::IsInTheWay(const Ball& other, const Mover& mover) const {
   return GapBetween(other, mover.around.ball) - kMarginM < RoomFor(mover);
 }
 
-Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> others) const {
+// Those that are near; whoever is in the group brings its own.
+std::vector<int> Zones::BasesOf(const std::vector<std::size_t>& group,
+                                std::span<const Mover> movers,
+                                std::span<const StaticBall> statics) const {
+  std::vector<int> bases;
+  for (const StaticBall& one : statics) {
+    const auto is_it = [&](std::size_t i) { return movers[i].model == one.model; };
+    const auto has_it_near = [&](std::size_t i) {
+      const double gap_m = GapBetween(one.ball, movers[i].around.ball);
+      return gap_m - kMarginM < RoomFor(movers[i]) + kRoomInGroupM;
+    };
+    if (std::ranges::none_of(group, is_it) && std::ranges::any_of(group, has_it_near)) {
+      bases.push_back(one.model);
+    }
+  }
+  std::ranges::sort(bases);
+  bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
+  return bases;
+}
+
+Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> others,
+                      std::span<const StaticBall> statics) const {
   const std::size_t count = movers.size();
   std::vector<std::size_t> parents(count);
   std::iota(parents.begin(), parents.end(), 0);
@@ -59,6 +80,9 @@ Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> other
     grouping.groups[group].push_back(i);
     group_of[i] = group;
   }
+  for (const std::vector<std::size_t>& group : grouping.groups) {
+    grouping.bases.push_back(BasesOf(group, movers, statics));
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const Ball& ball = movers[i].around.ball;
     const double own = RoomFor(movers[i]);
@@ -70,6 +94,15 @@ Grouping Zones::Group(std::span<const Mover> movers, std::span<const Ball> other
       room = std::min(room, own + left / 2);
     }
     for (const Ball& other : others) room = std::min(room, GapBetween(ball, other) - kMarginM);
+    const std::vector<std::size_t>& group = grouping.groups[group_of[i]];
+    const std::vector<int>& bases = grouping.bases[group_of[i]];
+    for (const StaticBall& one : statics) {
+      const auto is_it = [&](std::size_t k) { return movers[k].model == one.model; };
+      if (std::ranges::binary_search(bases, one.model) || std::ranges::any_of(group, is_it)) {
+        continue;
+      }
+      room = std::min(room, GapBetween(ball, one.ball) - kMarginM);
+    }
     grouping.zones.push_back({ball.center_m, ball.radius_m + room - kMarginM});
   }
   return grouping;

@@ -15,14 +15,23 @@ namespace tcs {
 // Those that move in a group have zones of little room, and so it is looked again soon whether they
 // have parted; whoever is alone has all the room that there is.
 struct Mover {
-  MovingBall around;  // all shapes of a model
+  MovingBall around;  // all shapes of a model that move
   int unit = 0;       // models of one unit are always one group
   int group_before = 0;
+  int model = 0;
+};
+
+// A shape of a model that never moves.
+struct StaticBall {
+  Ball ball;
+  int model = 0;
 };
 
 struct Grouping {
   std::vector<std::vector<std::size_t>> groups;  // each mover is in one
   std::vector<Ball> zones;                       // of each mover
+  // Of each group, the models that are not in it and have static shapes in its zones, in order.
+  std::vector<std::vector<int>> bases;
 };
 
 class Zones {
@@ -33,11 +42,15 @@ class Zones {
   // Whether there is too little room for a zone beside `other`, the zone of a model that stays what
   // it is.
   bool IsInTheWay(const Ball& other, const Mover& mover) const;
-  // `others` are zones that stay, and are in nobody's way.
-  Grouping Group(std::span<const Mover> movers, std::span<const Ball> others) const;
+  // `others` are zones that stay, and are in nobody's way. What is static joins nobody: it is in a
+  // group's zones, or out of them.
+  Grouping Group(std::span<const Mover> movers, std::span<const Ball> others,
+                 std::span<const StaticBall> statics) const;
 
  private:
   double RoomFor(const Mover& mover) const;
+  std::vector<int> BasesOf(const std::vector<std::size_t>& group, std::span<const Mover> movers,
+                           std::span<const StaticBall> statics) const;
 
   const double horizon_s_;
 };

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "simbody_bridge/model/vectors.h"
 #include "simbody_bridge/mujoco/mjcf.h"
@@ -120,25 +121,27 @@ void MujocoSystem::Load(std::span<const double> state) {
   std::copy_n(state.data() + positions + speeds, speeds, data_->qacc_warmstart);
 }
 
-void MujocoSystem::SetActing(std::span<const Wrench> acting) {
-  const std::size_t links = forest_.links.size();
+void MujocoSystem::ActOnLinks(std::span<const Wrench> acting) {
   std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
   mj_kinematics(model_.get(), data_.get());
-  for (std::size_t i = 0; i < links; ++i) {
+  for (std::size_t i = 0; i < forest_.links.size(); ++i) {
     ActOnLink(i, WrenchOnLink(acting, i, WrenchFrame::kWorld),
               WrenchOnLink(acting, i, WrenchFrame::kLink));
   }
-  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
-    const int actuator = joint_actuators_[i];
-    if (actuator < 0) continue;
-    const JointDrive drive = DriveOfJoint(acting, links, i);
-    const bool is_free = forest_.joints[i].joint->limits.effort > 0;
-    data_->ctrl[actuator] =
-        is_free ? drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity
-                : 0;
-    model_->actuator_biasprm[mjNBIAS * actuator + 1] = is_free ? -drive.stiffness : 0;
-    model_->actuator_biasprm[mjNBIAS * actuator + 2] = is_free ? -drive.damping : 0;
-  }
+}
+
+// A joint that takes no effort is not driven.
+JointDrive MujocoSystem::DriveOf(std::span<const Wrench> acting, std::size_t joint) const {
+  if (!(forest_.joints[joint].joint->limits.effort > 0)) return {};
+  return DriveOfJoint(acting, forest_.links.size(), joint);
+}
+
+void MujocoSystem::SetDrive(std::size_t joint, const JointDrive& drive) {
+  const int actuator = joint_actuators_[joint];
+  data_->ctrl[actuator] =
+      drive.effort + drive.stiffness * drive.position + drive.damping * drive.velocity;
+  model_->actuator_biasprm[mjNBIAS * actuator + 1] = -drive.stiffness;
+  model_->actuator_biasprm[mjNBIAS * actuator + 2] = -drive.damping;
 }
 
 // What is along the link's axes is an actuator of its site, which turns with it.
@@ -169,13 +172,89 @@ bool MujocoSystem::HasFailed() const {
          data_->warning[mjWARN_BADQACC].number > 0;
 }
 
+// Whether Runge-Kutta 4 bears it: nothing touches, and no servo is as quick as the step.
+bool MujocoSystem::IsSmooth(std::span<const Wrench> acting, double seconds) const {
+  if (data_->ncon > 0) return false;
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    if (joint_actuators_[i] < 0) continue;
+    const JointDrive drive = DriveOf(acting, i);
+    const double by_inertia = seconds * model_->dof_invweight0[speeds_[i]];
+    if (by_inertia * std::max(drive.damping, seconds * drive.stiffness) > 1) return false;
+  }
+  return true;
+}
+
+// The rest of what mj_step does.
+void MujocoSystem::StepSmoothly() {
+  mj_fwdVelocity(model_.get(), data_.get());
+  mj_fwdActuation(model_.get(), data_.get());
+  mj_fwdAcceleration(model_.get(), data_.get());
+  mj_fwdConstraint(model_.get(), data_.get());
+  mj_checkAcc(model_.get(), data_.get());
+  mj_RungeKutta(model_.get(), data_.get(), 4);
+}
+
+// A servo with the stiffness k and the damping d gives what it gives at the end of the step, where
+// the joint is at q + h u' with the speed u'. That is what a damping d + h k gives at the
+// beginning, less (d + h k) (u' - u): as if the joint had an inertia of h (d + h k) more, with
+// which MuJoCo solves for everything else. A servo that would give more than it can is held to its
+// limit, and all is solved again.
+void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds) {
+  at_limit_.assign(joint_actuators_.size(), 0);
+  do {
+    for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+      if (joint_actuators_[i] < 0) continue;
+      JointDrive drive = DriveOf(acting, i);
+      drive.effort += drive.damping * std::exchange(drive.velocity, 0);
+      drive.damping += seconds * drive.stiffness;
+      if (at_limit_[i] != 0) drive = {.effort = at_limit_[i]};
+      SetDrive(i, drive);
+      model_->actuator_forcelimited[joint_actuators_[i]] = 0;
+      model_->dof_armature[speeds_[i]] = seconds * drive.damping;
+    }
+    mj_forward(model_.get(), data_.get());
+  } while (ReachLimits(acting, seconds));
+  mj_checkAcc(model_.get(), data_.get());
+  mj_Euler(model_.get(), data_.get());
+}
+
+// Whether one more servo would give more than it can at the end of the step.
+bool MujocoSystem::ReachLimits(std::span<const Wrench> acting, double seconds) {
+  bool is_new = false;
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    if (joint_actuators_[i] < 0 || at_limit_[i] != 0) continue;
+    const JointDrive drive = DriveOf(acting, i);
+    const double limit = forest_.joints[i].joint->limits.effort;
+    const double u = data_->qvel[speeds_[i]] + seconds * data_->qacc[speeds_[i]];
+    const double q = data_->qpos[positions_[i]] + seconds * u;
+    if (EffortOf(drive, kNoLimit, q, u) == EffortOf(drive, limit, q, u)) continue;
+    at_limit_[i] = EffortOf(drive, limit, q, u);
+    is_new = true;
+  }
+  return is_new;
+}
+
 void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
                         double seconds, std::vector<double>* to) {
   for (mjWarningStat& warning : data_->warning) warning.number = 0;
   Load(from);
-  SetActing(acting);
+  ActOnLinks(acting);
+  for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
+    if (joint_actuators_[i] < 0) continue;
+    SetDrive(i, DriveOf(acting, i));
+    const bool is_limited = forest_.joints[i].joint->limits.effort != kNoLimit;
+    model_->actuator_forcelimited[joint_actuators_[i]] = is_limited ? 1 : 0;
+    model_->dof_armature[speeds_[i]] = 0;
+  }
   model_->opt.timestep = seconds;
-  mj_step(model_.get(), data_.get());
+  mj_checkPos(model_.get(), data_.get());
+  mj_checkVel(model_.get(), data_.get());
+  mj_fwdPosition(model_.get(), data_.get());
+  if (IsSmooth(acting, seconds)) {
+    StepSmoothly();
+  } else {
+    StepImplicitly(acting, seconds);
+  }
   if (HasFailed()) {
     to->assign(from.size(), std::numeric_limits<double>::quiet_NaN());
     return;

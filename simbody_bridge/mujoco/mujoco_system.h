@@ -1,6 +1,10 @@
 // A forest as MuJoCo knows it, as a function: from a state and what acts to the state one step
 // later. What MuJoCo itself remembers from step to step is written into it before each step: the
 // guess that its solver begins with is part of the state.
+//
+// A smooth step is Runge-Kutta 4's. Where something touches, and where a servo is too stiff for
+// that, it is of first order and implicit in the servos, as on Simbody
+// (simbody/tree/contact_step.h): explicit servos of wheels make these chatter, and slip.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -46,8 +50,14 @@ class MujocoSystem {
   void SetStart();
   void SetPose(std::size_t body);
   void Load(std::span<const double> state);
-  void SetActing(std::span<const Wrench> acting);
+  void ActOnLinks(std::span<const Wrench> acting);
   void ActOnLink(std::size_t link, const Wrench& in_world, const Wrench& in_link);
+  JointDrive DriveOf(std::span<const Wrench> acting, std::size_t joint) const;
+  void SetDrive(std::size_t joint, const JointDrive& drive);
+  bool IsSmooth(std::span<const Wrench> acting, double seconds) const;
+  void StepSmoothly();
+  void StepImplicitly(std::span<const Wrench> acting, double seconds);
+  bool ReachLimits(std::span<const Wrench> acting, double seconds);
   bool HasFailed() const;
 
   const Forest& forest_;
@@ -57,6 +67,7 @@ class MujocoSystem {
   std::vector<int> link_actuators_, joint_actuators_;  // of each link and joint; -1: none
   std::vector<int> positions_, speeds_;                // where those of each joint are; -1: fixed
   std::vector<double> start_;
+  std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
 };
 
 }  // namespace tcs

@@ -14,8 +14,10 @@ channels:
   efforts: {type: dds, commands: {model: pendulum, message: std_msgs/msg/Float64MultiArray, topic: /efforts}}
 YAML
 for run in first second; do
-  "$tcsim" run "$out/s.yaml" --accounting fixed --out "$out/$run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  "$tcsim" run "$out/s.yaml" --accounting fixed --record --out "$out/$run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 done
 cmp "$out/first/bodies.csv" "$out/second/bodies.csv" || fail "a second run moves otherwise"
 angle=$(tail -n 1 "$out/first/bodies.csv" | awk -F, '{ printf "%.9f", 2 * atan2($7, $9) }')
+python3 "$source_root/tests/scenario/recording.py" topics "$out/first" \
+  /joint_states:sensor_msgs/msg/JointState /efforts:std_msgs/msg/Float64MultiArray || fail "the bag is not whole"
 awk -v a="$angle" 'BEGIN { exit !(a > 0.4999 && a < 0.5001) }' || fail "the pendulum is held at $angle rad"

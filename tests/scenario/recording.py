@@ -5,31 +5,29 @@
     recording.py witness DIR LOG  the same, and its samples are those that bag_witness read and wrote
     recording.py same DIR DIR     two bags have the same rows
     recording.py cut-off DIR      a bag whose run was killed
+    recording.py topics DIR TOPIC:TYPE...
+                                  the bag agrees with itself and with topics.json, has messages of just these topics, and
+                                  all of them can be read by the definitions that it has
 
-DIR is a result folder. Messages are read here by themselves, by OMG's CDR and ROS 2's definitions.
+DIR is a result folder. Messages are read here by themselves, by OMG's CDR and the definitions in the bag.
 """
 import csv
 import json
 import math
+import re
 import sqlite3
 import struct
 import sys
 
 import yaml
 
-TIME = ["i", "I"]
-HEADER = TIME + ["s"]
-VECTOR = ["d"] * 3
-TWIST = VECTOR * 2
-WRENCH = VECTOR * 2
-POSE = VECTOR + ["d"] * 4
-BODY_STATE = POSE + TWIST
-FIELDS = {
-    "rosgraph_msgs/msg/Clock": TIME,
-    "nav_msgs/msg/Odometry": HEADER + ["s"] + POSE + ["d"] * 36 + TWIST + ["d"] * 36,
-    "geometry_msgs/msg/Twist": TWIST,
-    "geometry_msgs/msg/Wrench": WRENCH,
-    "sensor_msgs/msg/JointState": HEADER + [["s"], ["d"], ["d"], ["d"]],
+# As struct has them; strings are "s".
+PLAIN = {"bool": "?", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I", "int64": "q",
+         "uint64": "Q", "float32": "f", "float64": "d", "string": "s"}
+# Types of the example's own, which a bag cannot define.
+WRENCH = ["d"] * 6
+BODY_STATE = ["d"] * 13
+OWN_FIELDS = {
     "predator_prey_msgs/msg/PlanRequest": ["Q"] + BODY_STATE * 2,
     "predator_prey_msgs/msg/Plan": ["Q", "d", "Q", "?", "d", ["d"] + WRENCH + BODY_STATE],
 }
@@ -79,11 +77,31 @@ class Cdr:
         return 0 <= len(self.data) - self.at < 4
 
 
-def decode(kind, data):
-    cdr = Cdr(data)
-    fields = cdr.fields(FIELDS[kind])
-    check(cdr.is_at_end(), kind, "has", len(cdr.data), "bytes, of which", cdr.at, "are read")
-    return fields
+class Definition:
+    """A type as a bag defines it: a message's text, and those of its parts below lines of '='."""
+
+    def __init__(self, kind, text):
+        package, _, name = kind.split("/")
+        texts = re.split("^" + "=" * 80 + "\nMSG: (.*)\n", text, flags=re.MULTILINE)
+        self.texts = dict(zip([f"{package}/{name}", *texts[1::2]], texts[::2]))
+        check(len(self.texts) == 1 + len(texts) // 2, kind, "has a part twice")
+        self.used = set()
+        self.kinds = self.kinds_of(f"{package}/{name}")
+        check(self.used == set(self.texts), kind, "defines what it has not", set(self.texts) - self.used)
+
+    def kinds_of(self, name):
+        """Of the fields, as Cdr.fields wants them: a list in the list is a sequence."""
+        self.used.add(name)
+        kinds = []
+        for line in self.texts[name].splitlines():
+            if not line or "=" in line:
+                continue
+            field = re.fullmatch(r"([\w/]+)(\[(\d*)\])? (\w+)", line)
+            check(field, name, "has the line", repr(line))
+            part, has_many, count, _ = field.groups()
+            one = [PLAIN[part]] if part in PLAIN else self.kinds_of(part if "/" in part else f"{name.split('/')[0]}/{part}")
+            kinds += one * int(count) if count else [one] if has_many else one
+        return kinds
 
 
 class Bag:
@@ -94,14 +112,26 @@ class Bag:
         with open(folder + "/bag/metadata.yaml") as file:
             self.text = file.read()
         self.metadata = yaml.safe_load(self.text)["rosbag2_bagfile_information"]
+        self.kinds = dict(OWN_FIELDS)
+        for kind, encoding, text in self.rows("SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"):
+            check(encoding == ("unknown" if kind in OWN_FIELDS else "ros2msg"), kind, "is", encoding)
+            if encoding == "ros2msg":
+                check(kind not in self.kinds, kind, "is defined twice")
+                self.kinds[kind] = Definition(kind, text).kinds
         # Of each topic, in the order of writing: the time stamp, and the message's fields.
         self.samples = {}
         for name, kind, topic in self.rows("SELECT name, type, id FROM topics"):
-            self.samples[name] = [(stamp, decode(kind, data)) for stamp, data in self.rows(
+            self.samples[name] = [(stamp, self.decode(kind, data)) for stamp, data in self.rows(
                 f"SELECT timestamp, data FROM messages WHERE topic_id = {topic} ORDER BY id")]
 
     def rows(self, sql):
         return self.database.execute(sql).fetchall()
+
+    def decode(self, kind, data):
+        cdr = Cdr(data)
+        fields = cdr.fields(self.kinds[kind])
+        check(cdr.is_at_end(), kind, "has", len(cdr.data), "bytes, of which", cdr.at, "are read")
+        return fields
 
 
 def check_span(counted, stamps):
@@ -140,7 +170,7 @@ def read_bag(folder):
     bag = Bag(folder)
     metadata = bag.metadata
     check((metadata["version"], metadata["storage_identifier"]) == (5, "sqlite3"), metadata)
-    check(bag.rows("SELECT schema_version, ros_distro FROM schema") == [(3, "humble")], "the schema")
+    check(bag.rows("SELECT schema_version, ros_distro FROM schema") == [(4, "iron")], "the schema")
     check(metadata["relative_file_paths"] == ["bag_0.db3"], metadata)
     stamps = [stamp for stamp, in bag.rows("SELECT timestamp FROM messages")]
     check(stamps, "there are no messages")
@@ -254,6 +284,12 @@ def cut_off(folder):
     check(0 < bag.metadata["message_count"] <= count, bag.metadata["message_count"], count)
 
 
+def topics(folder, *meant):
+    bag = read_bag(folder)
+    found = {f"{name}:{kind}" for name, kind in bag.rows("SELECT name, type FROM topics") if bag.samples[name]}
+    check(found == set(meant), "the bag has", sorted(found), "and not", sorted(meant))
+
+
 if __name__ == "__main__":
-    {"example": example, "witness": witness, "same": same,
-     "cut-off": cut_off}[sys.argv[1]](*sys.argv[2:])
+    {"example": example, "witness": witness, "same": same, "cut-off": cut_off,
+     "topics": topics}[sys.argv[1]](*sys.argv[2:])

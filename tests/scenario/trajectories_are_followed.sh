@@ -17,12 +17,14 @@ channels:
     commands: {model: pendulum, drive: trajectory, stiffness: 4000, damping: 200, rate: 200, message: trajectory_msgs/msg/JointTrajectory, topic: /arm_controller/joint_trajectory}
 YAML
   for run in first second; do
-    "$tcsim" run "$out/$engine.yaml" --accounting fixed --out "$out/$engine-$run" >"$out/said" 2>&1 || {
+    "$tcsim" run "$out/$engine.yaml" --accounting fixed --record --out "$out/$engine-$run" >"$out/said" 2>&1 || {
       grep -q 'built without MuJoCo' "$out/said" && exit 0
       fail "$(cat "$out/said")"
     }
   done
   cmp "$out/$engine-first/bodies.csv" "$out/$engine-second/bodies.csv" || fail "a second run on $engine moves otherwise"
+  python3 "$source_root/tests/scenario/recording.py" topics "$out/$engine-first" /joint_states:sensor_msgs/msg/JointState \
+    /arm_controller/joint_trajectory:trajectory_msgs/msg/JointTrajectory || fail "the bag is not whole"
   python3 - "$out/$engine-first/r-c.out.log" <<'PY' || fail "on $engine the pendulum goes elsewhere"
 import json, sys
 states = [json.loads(line) for line in open(sys.argv[1])]

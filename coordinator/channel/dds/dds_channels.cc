@@ -13,6 +13,24 @@
 
 namespace tcs {
 
+namespace {
+
+// A bias that is drawn once is as unknown as the noise.
+dds::BodyVariances VariancesOf(const SensorErrors& errors) {
+  const auto of = [&errors](SensorField field) {
+    const FieldError& error = errors.fields[static_cast<std::size_t>(field)];
+    return error.noise * error.noise + error.bias_deviation * error.bias_deviation;
+  };
+  return {.position = of(SensorField::kPosition),
+          .orientation = of(SensorField::kOrientation),
+          .linear_velocity = of(SensorField::kLinearVelocity),
+          .angular_velocity = of(SensorField::kAngularVelocity),
+          .angular_rate = of(SensorField::kAngularRate),
+          .proper_acceleration = of(SensorField::kProperAcceleration)};
+}
+
+}  // namespace
+
 // Nothing stays here: the hub has it.
 class DdsChannels::SensorOutlet final : public Outlet {
  public:
@@ -143,7 +161,8 @@ std::unique_ptr<Outlet> DdsChannels::OutletOf(const SensorChannelSpec& spec) {
   }
   std::optional<dds::SensorEncoder> encoder;
   if (!bodies.empty()) {
-    encoder.emplace(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies));
+    encoder.emplace(std::get<DdsSensorEnd>(spec.to).message, std::move(bodies),
+                    VariancesOf(spec.errors));
   }
   auto outlet = std::make_unique<SensorOutlet>(*this, spec, std::move(encoder));
   sensors_.push_back(outlet.get());

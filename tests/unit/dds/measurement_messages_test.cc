@@ -46,6 +46,36 @@ TEST(PointCloud, HasAPointAfterTheOther) {
   EXPECT_EQ(message->data._buffer[18 + 16], 1);
 }
 
+TEST(Covariances, AreDiagonalAndInTheirOwnPlaces) {
+  const auto imu = ToMessage(kStamp, ImuMeasurement{.felt = {{}, std::array<double, 3>{}},
+                                                    .orientation_variance = 1,
+                                                    .rate_variance = 2,
+                                                    .acceleration_variance = 3});
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(imu->orientation_covariance[i], i % 4 == 0 ? 1 : 0) << i;
+    EXPECT_EQ(imu->angular_velocity_covariance[i], i % 4 == 0 ? 2 : 0) << i;
+    EXPECT_EQ(imu->linear_acceleration_covariance[i], i % 4 == 0 ? 3 : 0) << i;
+  }
+  const auto odometry = ToMessage(kStamp, OdometryMeasurement{.position_variance = 1,
+                                                              .orientation_variance = 2,
+                                                              .linear_variance = 3,
+                                                              .angular_variance = 4});
+  for (int i = 0; i < 36; ++i) {
+    EXPECT_EQ(odometry->pose.covariance[i], i % 7 != 0 ? 0 : i < 21 ? 1 : 2) << i;
+    EXPECT_EQ(odometry->twist.covariance[i], i % 7 != 0 ? 0 : i < 21 ? 3 : 4) << i;
+  }
+  const auto fix = ToMessage(kStamp, GnssMeasurement{.position_variance = 4});
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(fix->position_covariance[i], i % 4 == 0 ? 4 : 0) << i;
+  EXPECT_EQ(fix->position_covariance_type, 2) << "its diagonal is known";
+  EXPECT_EQ(ToMessage(kStamp, GnssMeasurement{})->position_covariance_type, 0) << "unknown";
+}
+
+// What nobody knows yet stays so, whatever noise there will be.
+TEST(Covariances, OfAnAccelerationThatIsNotKnownSayThat) {
+  const auto imu = ToMessage(kStamp, ImuMeasurement{.acceleration_variance = 3});
+  EXPECT_EQ(imu->linear_acceleration_covariance[0], -1);
+}
+
 // As of Iron a Range ends with its variance.
 TEST(Range, HasTheFormOfTheRelease) {
   const RangeMeasurement range{.frame = "sonar", .range_m = 1};

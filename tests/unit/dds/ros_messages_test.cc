@@ -51,6 +51,21 @@ TEST(Odometry, HasThePoseInTheWorldAndTheTwistInTheBody) {
   for (const double c : odometry->pose.covariance) EXPECT_EQ(c, 0);
 }
 
+TEST(Odometry, AndImuSayHowUncertainTheyAre) {
+  const BodyVariances variances{1, 2, 3, 4, 5, 6};
+  const auto odometry = ToOdometry(kStamp, "hunter", TurnedLeft(), variances);
+  const auto imu = ToImu(kStamp, "hunter", TurnedLeft(), {{}, std::array<double, 3>{}}, variances);
+  for (int i = 0; i < 36; ++i) {
+    EXPECT_EQ(odometry->pose.covariance[i], i % 7 != 0 ? 0 : i < 21 ? 1 : 2) << i;
+    EXPECT_EQ(odometry->twist.covariance[i], i % 7 != 0 ? 0 : i < 21 ? 3 : 4) << i;
+  }
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_EQ(imu->orientation_covariance[i], i % 4 == 0 ? 2 : 0) << i;
+    EXPECT_EQ(imu->angular_velocity_covariance[i], i % 4 == 0 ? 5 : 0) << i;
+    EXPECT_EQ(imu->linear_acceleration_covariance[i], i % 4 == 0 ? 6 : 0) << i;
+  }
+}
+
 TEST(Twist, IsThatOfTheOdometry) {
   const auto twist = ToTwist(TurnedLeft());
   EXPECT_THAT(twist->linear.x, DoubleNear(5, kTight));

@@ -143,13 +143,17 @@ TEST_P(ModelsThatMeet, PartAgainWhereTheMeetingIsTakenBack) {
 
 // Four that are driven back and forth between each other, on a floor: read ahead of the commands,
 // taken back, saved and restored.
-TEST_P(ModelsThatMeet, AreTakenBackToTheByte) {
-  WorldSpec world = WorldOf({}, GetParam());
+WorldSpec FourOnAFloor(const IntegratorSpec& spec) {
+  WorldSpec world = WorldOf({}, spec);
   world.fixtures = {ShapeOf(PlaneShape{})};
   for (int i = 0; i < 4; ++i) {
     world.models.push_back(
         Loose("m" + std::to_string(i), i % 2 == 0 ? kBall : kBox, {0.8 * i, 0.1 * i, 0.1}));
   }
+  return world;
+}
+
+void ExpectToBeTakenBackToTheByte(const WorldSpec& world) {
   auto known = MakeDynamics(world);
   auto leading = MakeDynamics(world);
   std::mt19937_64 random(7);
@@ -175,7 +179,7 @@ TEST_P(ModelsThatMeet, AreTakenBackToTheByte) {
   };
   for (const Timed& command : commands) apply(*known, command);
   std::unique_ptr<Dynamics::Checkpoint> checkpoint;
-  int most = 0, least = 9;
+  int most = 0, least = 99;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const std::int64_t now_ns = commands[i].at_ns;
     known->AdvanceTo(At(now_ns));
@@ -196,11 +200,31 @@ TEST_P(ModelsThatMeet, AreTakenBackToTheByte) {
       for (std::size_t k = first; k <= i; ++k) apply(*leading, commands[k]);
     }
   }
-  EXPECT_EQ(most, 4);
-  EXPECT_LE(least, 2) << "they met";
+  const int alone = static_cast<int>(world.models.size()) - 4;
+  EXPECT_EQ(most, 4 + alone);
+  EXPECT_LE(least, 2 + alone) << "they met";
   EXPECT_GT(known->work().regrouped, 10);
   EXPECT_GT(leading->work().regrouped, known->work().regrouped) << "meetings were taken back";
   EXPECT_GT(leading->work().taken_back, 100);
+}
+
+TEST_P(ModelsThatMeet, AreTakenBackToTheByte) {
+  ExpectToBeTakenBackToTheByte(FourOnAFloor(GetParam()));
+}
+
+// A model that is one shape and does not move.
+RobotModel Standing(const std::string& name, const Geometry& geometry,
+                    const std::array<double, 3>& at_m) {
+  RobotModel model = Loose(name, geometry, at_m);
+  model.has_fixed_base = true;
+  return model;
+}
+
+TEST_P(ModelsThatMeet, AreTakenBackToTheByteAmongWhatStands) {
+  WorldSpec world = FourOnAFloor(GetParam());
+  world.models.push_back(Standing("north", kBox, {1.2, 0.7, 0.1}));
+  world.models.push_back(Standing("south", kBox, {1.2, -0.4, 0.1}));
+  ExpectToBeTakenBackToTheByte(world);
 }
 
 // From a standstill through 3 m in 0.17 s: much harder than zones trust.
@@ -241,6 +265,65 @@ TEST_P(ModelsThatMeet, AFloorJoinsNobody) {
   const std::int64_t one = stand(1);
   // Zones may shorten a step of those that fall.
   EXPECT_LE(stand(30), 30 * (one + 5));
+}
+
+// What stands on it moves as on the world's own, each by itself.
+TEST_P(ModelsThatMeet, ATableJoinsNobody) {
+  const Geometry plate = BoxShape{{3, 1, 0.1}};
+  WorldSpec world =
+      WorldOf({Standing("table", plate, {0, 0, 0.45}), Loose("left", kBox, {-1, 0, 0.61}),
+               Loose("right", kBox, {1, 0, 0.61}, {2, 0, 0})},
+              GetParam());
+  world.fixtures = {ShapeOf(PlaneShape{})};
+  WorldSpec as_fixture = world;
+  as_fixture.models.erase(as_fixture.models.begin());
+  as_fixture.fixtures.push_back(ShapeOf(plate));
+  as_fixture.fixtures.back().pose.position_m = {0, 0, 0.45};
+  auto dynamics = MakeDynamics(world);
+  auto known = MakeDynamics(as_fixture);
+  for (const int ms : {200, 1000, 3000}) {
+    const auto states = ReadAllLinks(*dynamics, 3, AtMs(ms));
+    const auto expected = ReadAllLinks(*known, 2, AtMs(ms));
+    EXPECT_EQ(dynamics->island_count(), 3) << ms;
+    EXPECT_EQ(states[0].pose.position_m[2], 0.45);
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(states[i + 1].pose.position_m[axis], expected[i].pose.position_m[axis], 0.01)
+            << "model " << i << " at " << ms << " ms";
+      }
+    }
+  }
+  const auto end = ReadAllLinks(*dynamics, 3, AtMs(3000));
+  EXPECT_NEAR(end[1].pose.position_m[2], 0.6, 1e-3) << "it stands on the table";
+  EXPECT_GT(end[2].pose.position_m[0], 1.2) << "it has slid";
+}
+
+// What moves on a fixed base does join whom it comes near; the base does not.
+TEST_P(ModelsThatMeet, AnArmJoinsWhomItReachesAndItsBaseNobody) {
+  RobotModel arm = Pendulum(1, 0.5, 1, 0.02);
+  arm.name = "arm";
+  arm.at.position_m = {0, 0, 1};
+  arm.links[0].shapes.push_back(ShapeOf(BoxShape{{0.4, 0.4, 0.1}}));
+  arm.links[1].shapes.push_back(ShapeOf(SphereShape{0.05}));
+  arm.links[1].shapes[0].pose.position_m = {0, 0, -0.5};
+  arm.joints[0].initial_position = {1.5};  // beside the base, from where it swings down
+  WorldSpec world = WorldOf({arm, Loose("on_top", SphereShape{0.05}, {0.05, 0.05, 1.1}),
+                             Loose("below", kBall, {0, 0, 0.42})},
+                            GetParam());
+  world.fixtures = {ShapeOf(PlaneShape{})};
+  world.fixtures[0].pose.position_m = {0, 0, 0.32};
+  auto dynamics = MakeDynamics(world);
+  (void)ReadAllLinks(*dynamics, 4, AtMs(20));
+  EXPECT_EQ(dynamics->island_count(), 3) << "its ball is far from both";
+  int least = 3;
+  for (int ms = 20; ms <= 800; ms += 10) {
+    (void)ReadAllLinks(*dynamics, 4, AtMs(ms));
+    least = std::min(least, dynamics->island_count());
+  }
+  EXPECT_EQ(least, 2) << "it strikes the one below";
+  const auto end = ReadAllLinks(*dynamics, 4, AtMs(800));
+  EXPECT_NEAR(end[2].pose.position_m[2], 1.1, 2e-3) << "it lies on the base";
+  EXPECT_GT(std::abs(end[3].pose.position_m[0]), 0.02);
 }
 
 TEST_P(ModelsThatMeet, SayWhoCannotBeOneSystemTwice) {

@@ -19,7 +19,7 @@ Mover At(double x, double speed_mps = 0, int group_before = -1, double radius_m 
 using Groups = std::vector<std::vector<std::size_t>>;
 
 Groups GroupsOf(const std::vector<Mover>& movers) {
-  return Zones(kHorizonS).Group(movers, {}).groups;
+  return Zones(kHorizonS).Group(movers, {}, {}).groups;
 }
 
 TEST(Zones, GroupWhoIsNear) {
@@ -45,11 +45,30 @@ TEST(Zones, KeepUnitsTogether) {
 }
 
 TEST(Zones, GiveWhoIsAloneAllTheRoomAndWhoIsNotLittle) {
-  const Grouping grouping = Zones(kHorizonS).Group(std::vector{At(0), At(1.05), At(100)}, {});
+  const Grouping grouping = Zones(kHorizonS).Group(std::vector{At(0), At(1.05), At(100)}, {}, {});
   EXPECT_LT(grouping.zones[0].radius_m, 1);
   EXPECT_GT(grouping.zones[2].radius_m, 40);
-  const Grouping alone = Zones(kHorizonS).Group(std::vector{At(0)}, {});
+  const Grouping alone = Zones(kHorizonS).Group(std::vector{At(0)}, {}, {});
   EXPECT_GT(alone.zones[0].radius_m, 1000);
+}
+
+// What is static is in the zones of all that are near it, and joins none of them; out of those of
+// the others; and whoever brings it along has it anyway.
+TEST(Zones, HaveWhatIsStaticInThemOrKeepClearOfIt) {
+  std::vector<Mover> movers = {At(-0.1), At(2.5), At(9)};
+  for (int i = 0; i < 3; ++i) movers[static_cast<std::size_t>(i)].model = i;
+  const std::vector<StaticBall> statics = {{{{1.2, 0, 0}, 0.5}, 7}, {{{9, 0.9, 0}, 0.5}, 2}};
+  const Grouping far = Zones(kHorizonS).Group(movers, {}, statics);
+  EXPECT_EQ(far.groups, (Groups{{0}, {1}, {2}}));
+  EXPECT_EQ(far.bases, (std::vector<std::vector<int>>{{}, {}, {}}));
+  EXPECT_LT(far.zones[0].radius_m, 0.75) << "0.3 m are between them";
+  EXPECT_GT(far.zones[2].radius_m, 1);
+  movers[0].around.ball.center_m[0] = 0.1;
+  movers[1].around.ball.center_m[0] = 2.3;
+  const Grouping near = Zones(kHorizonS).Group(movers, {}, statics);
+  EXPECT_EQ(near.groups.size(), 3u);
+  EXPECT_EQ(near.bases, (std::vector<std::vector<int>>{{7}, {7}, {}}));
+  EXPECT_GT(near.zones[0].radius_m, 0.8);
 }
 
 TEST(Zones, AreNotInTheWayOfWhoIsFar) {
@@ -81,7 +100,7 @@ TEST(Zones, HaveRoomForEachAndDoNotOverlap) {
         others.push_back(other);
       }
     }
-    const Grouping grouping = zones.Group(movers, others);
+    const Grouping grouping = zones.Group(movers, others, {});
     std::vector<std::size_t> group_of(movers.size());
     for (std::size_t g = 0; g < grouping.groups.size(); ++g) {
       (grouping.groups[g].size() > 1 ? several : alone) += 1;

@@ -23,6 +23,10 @@ Tally FuzzScenarios(int count, std::uint64_t seed);
 // Result folders: made into a page. A refusal names the folder.
 Tally FuzzResults(int count, std::uint64_t seed);
 
+// Robots' files, and their meshes: loaded, and moved on each engine that takes them. A refusal
+// names the file.
+Tally FuzzModels(int count, std::uint64_t seed);
+
 // Says on stderr what went wrong, and keeps the input as a file that it names.
 void SayWrong(const std::string& what, int number, const std::string& wrong,
               const std::string& input);

@@ -1,8 +1,9 @@
-// tcs_fuzz scenarios|results COUNT SEED: 0 if all damaged inputs were taken or refused in order.
+// tcs_fuzz scenarios|results|models COUNT SEED: 0 if all damaged inputs were taken or refused in
+// order.
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include "tests/unit/fuzz/attempt.h"
@@ -40,15 +41,18 @@ void SayWrong(const std::string& what, int number, const std::string& wrong,
 
 int main(int argc, char** argv) {
   using tcs::fuzz::Tally;
-  const bool scenarios = argc > 1 && strcmp(argv[1], "scenarios") == 0;
-  if (!scenarios && (argc < 2 || strcmp(argv[1], "results") != 0)) {
-    std::fprintf(stderr, "usage: tcs_fuzz scenarios|results COUNT SEED\n");
+  const std::map<std::string, Tally (*)(int, std::uint64_t)> kinds = {
+      {"scenarios", &tcs::fuzz::FuzzScenarios},
+      {"results", &tcs::fuzz::FuzzResults},
+      {"models", &tcs::fuzz::FuzzModels}};
+  const auto kind = kinds.find(argc > 1 ? argv[1] : "");
+  if (kind == kinds.end()) {
+    std::fprintf(stderr, "usage: tcs_fuzz scenarios|results|models COUNT SEED\n");
     return 2;
   }
   const int count = argc > 2 ? atoi(argv[2]) : 300;
   const std::uint64_t seed = argc > 3 ? strtoull(argv[3], nullptr, 10) : 1;
-  const Tally tally =
-      scenarios ? tcs::fuzz::FuzzScenarios(count, seed) : tcs::fuzz::FuzzResults(count, seed);
+  const Tally tally = kind->second(count, seed);
   std::printf("%d taken, %d refused, %d wrong\n", tally.taken, tally.refused, tally.wrong);
   // Damage that never, or always, is noticed would show that this does not do what it says.
   return tally.wrong == 0 && tally.taken > 0 && tally.refused > 0 ? 0 : 1;

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "coordinator/dds/robot_topics.h"
+#include "coordinator/record/message_definitions.h"
 
 namespace tcs::record {
 namespace {
@@ -120,8 +121,7 @@ TEST_F(BagTest, HasTheTablesOfRosbag2) {
   Record(3);
   const Reader reader(Database());
   EXPECT_THAT(reader.Rows("PRAGMA integrity_check"), ElementsAre("ok"));
-  EXPECT_THAT(reader.Rows("SELECT schema_version, ros_distro FROM schema"),
-              ElementsAre("3|humble"));
+  EXPECT_THAT(reader.Rows("SELECT schema_version, ros_distro FROM schema"), ElementsAre("4|iron"));
   // Name, type, and whether NULL is refused, of each column.
   const char* const kColumns = "SELECT name, type, \"notnull\", pk FROM pragma_table_info(";
   const auto columns = [&](const std::string& table) {
@@ -129,7 +129,11 @@ TEST_F(BagTest, HasTheTablesOfRosbag2) {
   };
   EXPECT_THAT(columns("topics"),
               ElementsAre("id|INTEGER|0|1", "name|TEXT|1|0", "type|TEXT|1|0",
-                          "serialization_format|TEXT|1|0", "offered_qos_profiles|TEXT|1|0"));
+                          "serialization_format|TEXT|1|0", "offered_qos_profiles|TEXT|1|0",
+                          "type_description_hash|TEXT|1|0"));
+  EXPECT_THAT(columns("message_definitions"),
+              ElementsAre("id|INTEGER|0|1", "topic_type|TEXT|1|0", "encoding|TEXT|1|0",
+                          "encoded_message_definition|TEXT|1|0", "type_description_hash|TEXT|1|0"));
   EXPECT_THAT(columns("messages"), ElementsAre("id|INTEGER|0|1", "topic_id|INTEGER|1|0",
                                                "timestamp|INTEGER|1|0", "data|BLOB|1|0"));
   EXPECT_THAT(columns("metadata"),
@@ -191,6 +195,23 @@ TEST_F(BagTest, KeepsEachOfferOnce) {
   EXPECT_EQ(Metadata()["topics_with_message_count"][0]["topic_metadata"]["offered_qos_profiles"]
                 .as<std::string>(),
             expected);
+}
+
+TEST_F(BagTest, DefinesEachTypeOnce) {
+  Bag bag(dds::RosRelease::kHumble);
+  ASSERT_EQ(bag.Open(Folder()), "");
+  for (const char* topic : {"/one", "/other"}) bag.AddTopic(topic, "sensor_msgs/msg/Range");
+  bag.AddTopic("/own", "my_robot/msg/State");
+  EXPECT_EQ(bag.Close(), "");
+  const Reader reader(Database());
+  EXPECT_THAT(reader.Rows("SELECT schema_version, ros_distro FROM schema"),
+              ElementsAre("4|humble"));
+  const std::string range = DefinitionOf("sensor_msgs/msg/Range", dds::RosRelease::kHumble);
+  EXPECT_THAT(range, testing::Not(HasSubstr("variance")));
+  EXPECT_THAT(
+      reader.Rows("SELECT topic_type, encoding, encoded_message_definition, "
+                  "type_description_hash FROM message_definitions ORDER BY id"),
+      ElementsAre("sensor_msgs/msg/Range|ros2msg|" + range + "|", "my_robot/msg/State|unknown||"));
 }
 
 TEST_F(BagTest, NamesOneTopicOfTwoTypesTwice) {

@@ -142,7 +142,7 @@ class HostileMessagesTest : public testing::Test {
   Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog log_{[](Hub::Number number) { return dds::Speaker{std::to_string(number), "r"}; }};
-  Recording recording_{log_, ends_, 0};
+  Recording recording_{log_, ends_, 0, dds::RosRelease::kIron};
 };
 
 TEST_F(HostileMessagesTest, WhatIsAcceptedIsWellFormed) {

@@ -76,7 +76,7 @@ class RecordingTest : public testing::Test {
   dds::Hub hub_;
   dds::OwnEndpoints ends_{hub_};
   dds::TopicLog log_{[](dds::Hub::Number) { return dds::Speaker{}; }};
-  Recording recording_{log_, ends_, kEpoch};
+  Recording recording_{log_, ends_, kEpoch, dds::RosRelease::kIron};
 };
 
 TEST_F(RecordingTest, ReadsEachTopicOnceInAWayThatSuitsAllItsWriters) {

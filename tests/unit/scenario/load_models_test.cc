@@ -210,6 +210,11 @@ const Mistake kMistakes[] = {
      "{engine: ode}",
      "s.yaml:3",
      {"models need an engine that knows joints", "ode", "simbody"}},
+    {"IntegratorWithoutJoints",
+     "{gravity: [0, 0, -9.81]}",
+     "{integrator: verlet}",
+     "s.yaml:3",
+     {"models move by the integrator runge_kutta3 only", "leave dynamics.integrator out"}},
     {"SaysNotWhatItIs",
      "sphere: 0.5, ",
      "",
@@ -480,7 +485,7 @@ constexpr std::string_view kChannels = R"(channels:
       topic: /commands
   joint_states:
     type: dds
-    sensors: {model: arm, joints: [elbow], message: sensor_msgs/msg/JointState, topic: /joint_states}
+    sensors: {model: arm, joints: [elbow], noise: {position: 0.01, effort: 2}, bias: {velocity: [0.5], effort: 3}, message: sensor_msgs/msg/JointState, topic: /joint_states}
 )";
 
 // A model with two joints comes before the arm.
@@ -500,6 +505,11 @@ TEST(LoadJoints, ChannelsAreAboutJointsOfAModel) {
   EXPECT_THAT(states.names, ElementsAre("shoulder", "elbow"));
   EXPECT_THAT(states.joints, ElementsAre(3, 4));  // after the three of the other one
   EXPECT_THAT(scenario.sensors[1].joints.value().joints, ElementsAre(4));
+  const auto& errors = scenario.sensors[1].errors.joints;
+  EXPECT_EQ(errors[static_cast<std::size_t>(JointQuantity::kPosition)].noise, 0.01);
+  EXPECT_EQ(errors[static_cast<std::size_t>(JointQuantity::kVelocity)].bias[0], 0.5);
+  EXPECT_EQ(errors[static_cast<std::size_t>(JointQuantity::kEffort)].noise, 2);
+  EXPECT_EQ(errors[static_cast<std::size_t>(JointQuantity::kEffort)].bias_deviation, 3);
   ASSERT_EQ(scenario.commands.size(), 2u);
   const JointDriveSpec& efforts = scenario.commands[0].joints.value();
   EXPECT_THAT(efforts.group.joints, ElementsAre(4, 3));

@@ -47,6 +47,22 @@ TEST(MeasurementNoise, HasTheDeviationThatWasAskedFor) {
   EXPECT_NEAR(std::sqrt(squares / kSamples - 0.04), 0.5, 0.01);
 }
 
+// A bias that is known is not part of it; one that is drawn is.
+TEST(MeasurementNoise, SaysItsVariance) {
+  MeasurementErrors errors =
+      With(MeasuredField::kAngularRate, {.noise = 0.3, .bias_deviation = 0.4});
+  errors[static_cast<std::size_t>(MeasuredField::kOrientation)] = {.bias = {1, 1, 1}};
+  Measurement measured = ImuMeasurement{};
+  MeasurementNoise(errors, 7).Disturb(5, &measured);
+  const auto& imu = std::get<ImuMeasurement>(measured);
+  EXPECT_DOUBLE_EQ(imu.rate_variance, 0.25);
+  EXPECT_EQ(imu.orientation_variance, 0);
+  EXPECT_EQ(imu.acceleration_variance, 0);
+  Measurement fix = GnssMeasurement{};
+  MeasurementNoise(With(MeasuredField::kPosition, {.noise = 2}), 7).Disturb(5, &fix);
+  EXPECT_EQ(std::get<GnssMeasurement>(fix).position_variance, 4);
+}
+
 TEST(MeasurementNoise, OfOneFieldLeavesTheOthersAsTheyWere) {
   const auto imu = [](const MeasurementErrors& errors) {
     Measurement measured = ImuMeasurement{};

@@ -94,6 +94,32 @@ TEST(SensorNoise, OrientationsStayUnitQuaternions) {
   }
 }
 
+TEST(SensorNoise, OfJointsIsOfEachQuantityAndJoint) {
+  SensorErrors errors;
+  errors.seed = 7;
+  errors.joints[static_cast<std::size_t>(JointQuantity::kPosition)] = {.noise = 0.5};
+  errors.joints[static_cast<std::size_t>(JointQuantity::kVelocity)] = {.bias = {0.25, 0, 0}};
+  errors.joints[static_cast<std::size_t>(JointQuantity::kEffort)] = {.bias_deviation = 1};
+  const SensorNoise noise(errors, 0, 2);
+  const auto read = [&noise](std::uint64_t sample) {
+    Reading reading;
+    reading.joints = {{"elbow", {1, 2, 3}}, {"wrist", {1, 2, 3}}};
+    noise.Disturb(sample, &reading);
+    return reading.joints;
+  };
+  double squares = 0;
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    const auto joints = read(i);
+    squares += (joints[1].state.position - 1) * (joints[1].state.position - 1);
+    EXPECT_NE(joints[0].state.position, joints[1].state.position);
+    EXPECT_EQ(joints[0].state.velocity, 2.25);
+    EXPECT_EQ(joints[0].state.effort, read(0)[0].state.effort) << "it is drawn once";
+  }
+  EXPECT_NEAR(std::sqrt(squares / kSamples), 0.5, 0.01);
+  EXPECT_NE(read(0)[0].state.effort, read(0)[1].state.effort);
+  EXPECT_EQ(read(5)[0].state.position, read(5)[0].state.position);
+}
+
 TEST(SensorNoise, LosesAndDelaysTheShareThatWasAskedFor) {
   SensorErrors errors;
   errors.dropout = 0.25;
