@@ -41,13 +41,12 @@ bool IsPossible(const Trajectory& trajectory, double start_s) {
 }
 
 std::optional<Trajectory> Plan(const Motion& from, const Vector3d& goal_m, double start_s) {
-  std::optional<Trajectory> quickest;
-  for (int i = kTrajectories; i-- > 0;) {
+  for (int i = 0; i < kTrajectories; ++i) {
     const double length_s = kShortestS + (kLongestS - kShortestS) * i / kTrajectories;
     const Trajectory trajectory(from, goal_m, start_s, length_s);
-    if (IsPossible(trajectory, start_s)) quickest = trajectory;
+    if (IsPossible(trajectory, start_s)) return trajectory;
   }
-  return quickest;
+  return std::nullopt;
 }
 
 void Run(const std::string& name, const Vector3d& goal_m) {
