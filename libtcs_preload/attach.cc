@@ -13,6 +13,7 @@
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
+#include "shm/own_receivers.h"
 
 namespace tcs::preload {
 
@@ -75,7 +76,7 @@ Received Exchange(int socket, shm::AttachWants wants) {
 }
 
 void MapRun(int fd) {
-  const long at = RawSyscall(SYS_mmap, 0, sizeof(shm::RunMemory), PROT_READ, MAP_SHARED, fd, 0);
+  const long at = RawSyscall(SYS_mmap, 0, sizeof(shm::PublishedRun), PROT_READ, MAP_SHARED, fd, 0);
   if (at < 0 && at > -4096) DieWithoutCoordinator("the shared memory cannot be mapped");
   g_run = reinterpret_cast<const shm::RunMemory*>(at);
   g_header = &g_run->header;

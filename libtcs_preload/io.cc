@@ -16,6 +16,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/own_receivers.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/stamps.h"
@@ -56,6 +57,7 @@ void BeginTaking(GuestThread& t, int fd, bool socket) {
 
 struct Reads {
   bool dont_wait = false, socket = false, takes = true;
+  bool may_be_datagram = false;
 };
 
 // A terminal that is set to give up at the deadline, and then reads nothing.
@@ -69,11 +71,47 @@ ssize_t ReadTerminal(GuestThread& t, int fd, std::int64_t deadline, Take take) {
   return result;
 }
 
+// Of a datagram socket: what is there is taken at once, for nothing that still comes is before it;
+// and where nothing is there, and the call does not wait, that is so once nothing can come any
+// more. False where the call has to wait, or it is another kind of descriptor.
+template <class AtOnce>
+bool ReadDatagram(GuestThread& t, int fd, Reads reads, AtOnce at_once, ssize_t* result) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  if (RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_TYPE, Arg(&type), Arg(&size)) != 0 ||
+      type != SOCK_DGRAM) {
+    return false;
+  }
+  const std::int64_t now = NowNs(t);
+  BeginTaking(t, fd, true);
+  long got = at_once();
+  if (got == -EAGAIN) {
+    if (!reads.dont_wait && !IsNonBlocking(fd)) return false;
+    if (now > t.slot->clock.read_safe_ns) {
+      HoldForRead(t);
+      BeginTaking(t, fd, true);
+      got = at_once();
+    }
+  }
+  if (got > 0 && reads.takes) NoteReceived(t);
+  *result = ToErrno(got);
+  if (t.passes_on && !reads.dont_wait && !IsNonBlocking(fd)) {
+    const int error = errno;
+    PassOn(t);
+    errno = error;
+  }
+  return true;
+}
+
 // `at_once` returns what the kernel answers without waiting, or -EAGAIN.
 template <class AtOnce, class Call>
 ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
   const Entered t;
   pthread_testcancel();
+  ssize_t got = 0;
+  if (t != nullptr && reads.may_be_datagram && ReadDatagram(*t, fd, reads, at_once, &got)) {
+    return got;
+  }
   bool any_socket = false;
   if (t == nullptr || !CanWait(fd, &any_socket)) return ToErrno(call());
   auto take = [&] {
@@ -155,11 +193,17 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   return ToErrno(result);
 }
 
+// What only the coordinator receives waits for nobody: it keeps it until its virtual time.
+void HoldToSend(GuestThread& t, int fd, const msghdr& message) {
+  if (BeginWrite(t) || IsForCoordinator(fd, message.msg_name, message.msg_namelen)) return;
+  Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+}
+
 // Control data travels with the first part.
 template <class Whole>
 ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
   if (t == nullptr) return ToErrno(whole());
-  HoldForWrite(*t);
+  HoldToSend(*t, fd, message);
   if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
     return ToErrno(whole());
   }
@@ -257,7 +301,7 @@ TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, s
     return ReceiveAll(fd, &message, flags, whole);
   }
   return ReadLike(
-      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags)},
+      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags), true},
       [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 
@@ -285,7 +329,7 @@ TCS_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
   auto whole = [&] { return call(flags); };
   if (WaitsForAll(fd, flags)) return ReceiveAll(fd, message, flags, whole);
   return ReadLike(
-      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags)},
+      fd, {ReceivesAtOnce(fd, flags), true, Takes(flags), true},
       [&] { return call(flags | MSG_DONTWAIT); }, whole);
 }
 

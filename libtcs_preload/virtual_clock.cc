@@ -101,13 +101,15 @@ void HoldForRead(GuestThread& thread) {
   }
 }
 
-void HoldForWrite(GuestThread& thread) {
+bool BeginWrite(GuestThread& thread) {
   NoteSent(thread);
   const std::int64_t now = NowNs(thread);
   BeginChange(thread);
-  if (now <= thread.slot->clock.write_safe_ns) return;
-  if (g_header->sync != shm::Sync::kConsistent) return;
-  Exchange(thread, Request{.kind = NotificationKind::kWrite});
+  return now <= thread.slot->clock.write_safe_ns || g_header->sync != shm::Sync::kConsistent;
+}
+
+void HoldForWrite(GuestThread& thread) {
+  if (!BeginWrite(thread)) Exchange(thread, Request{.kind = NotificationKind::kWrite});
 }
 
 }  // namespace tcs::preload

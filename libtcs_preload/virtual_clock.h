@@ -70,6 +70,9 @@ void HoldForRead(GuestThread& thread);
 
 // Returns once nobody can read any more what is from before the thread's time.
 void HoldForWrite(GuestThread& thread);
+// The thread writes now. False if somebody may still read what is from before, so that the write
+// has to hold unless it is kept from all of them.
+bool BeginWrite(GuestThread& thread);
 
 using shm::AddSaturated;
 using shm::IsValid;

@@ -64,6 +64,8 @@ void BodyIslands::Read(VirtualTime t, VirtualTime now, std::span<const int> bodi
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Place& place = PlaceOf(bodies[i]);
     islands_[place.island].StateAt(t, &state_);
+    CheckState(static_cast<int>(place.island), state_, t,
+               [this](int island, auto state) { return NameOf(island, state); });
     states[i] = engine_->Read(static_cast<int>(place.island), place.place, state_);
   }
 }
@@ -94,7 +96,7 @@ void BodyIslands::Reach(VirtualTime t, VirtualTime now) {
 }
 
 void BodyIslands::TakeAll() {
-  const auto who = [this](const IslandStep& step) { return WhoDiverged(step); };
+  const WhoDiverged who = [this](int island, auto state) { return NameOf(island, state); };
   const std::span<IslandStep* const> all = steps_;
   if (team_ == nullptr || all.size() <= kStepsAtOnce) {
     TakeSteps(*engine_, all, who);
@@ -116,11 +118,11 @@ void BodyIslands::TakeAll() {
   }
 }
 
-std::string BodyIslands::WhoDiverged(const IslandStep& step) const {
-  const std::vector<int>& members = members_[static_cast<std::size_t>(step.island)];
+std::string BodyIslands::NameOf(int island, std::span<const double> diverged) const {
+  const std::vector<int>& members = members_[static_cast<std::size_t>(island)];
   std::size_t place = 0;
   while (place + 1 < members.size() &&
-         AllFinite(engine_->Read(step.island, static_cast<int>(place), step.to))) {
+         AllFinite(engine_->Read(island, static_cast<int>(place), diverged))) {
     ++place;
   }
   return fmt::format("body '{}'", names_[static_cast<std::size_t>(members[place])]);

@@ -41,7 +41,8 @@ class BodyIslands {
   const Place& PlaceOf(int body) const;
   void Reach(VirtualTime t, VirtualTime now);
   void TakeAll();
-  std::string WhoDiverged(const IslandStep& step) const;
+  // Of the first body of the island that is not where numbers are.
+  std::string NameOf(int island, std::span<const double> diverged) const;
 
   const std::vector<std::vector<int>> members_;  // bodies of each island
   std::unique_ptr<BodyEngine> engine_;           // none where there is no body

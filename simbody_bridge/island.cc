@@ -75,6 +75,7 @@ void Island::TakeBackTo(VirtualTime t) {
   while (used_ > 0 && legs_[used_ - 1].start.at >= t) {
     --used_;
     std::swap(frontier_, legs_[used_].start);
+    knows_frontier_ = true;
   }
   if (used_ > 0) FindFrontier();
 }
@@ -86,6 +87,7 @@ void Island::Settle(VirtualTime t) {
   };
   while (past < used_ && end_of(past) < t) ++past;
   if (past == 0) return;
+  if (past == used_) StateAtFrontier();  // while there is a leg that knows it
   const auto at = [this](std::size_t leg) {
     return legs_.begin() + static_cast<std::ptrdiff_t>(leg);
   };
@@ -105,8 +107,10 @@ std::size_t Island::CommandsUntil(VirtualTime t) const {
 IslandStep* Island::NextStepTo(VirtualTime t, VirtualDuration most) {
   if (t <= frontier_.at) return nullptr;
   if (used_ == legs_.size()) legs_.emplace_back();
+  StateAtFrontier();
   Leg& leg = legs_[used_];
   leg.start = frontier_;
+  leg.within_at = VirtualTime::Never();
   Depart(&leg, most);
   return &leg.step;
 }
@@ -196,11 +200,18 @@ VirtualTime Island::ChangeWithin(const Leg& leg) {
 void Island::FindFrontier() {
   const Leg& leg = legs_[used_ - 1];
   GoTo(leg, std::min(leg.to, ChangeWithin(leg)), &frontier_);
+  knows_frontier_ = false;
 }
 
-void Island::GoTo(const Leg& leg, VirtualTime t, Node* node) {
+const std::vector<double>& Island::StateAtFrontier() {
+  if (!knows_frontier_) frontier_.state = StateOf(legs_[used_ - 1], frontier_.at);
+  knows_frontier_ = true;
+  return frontier_.state;
+}
+
+// All but the state.
+void Island::GoTo(const Leg& leg, VirtualTime t, Node* node) const {
   node->at = t;
-  StateOf(leg, t, &node->state);
   node->wrenches = leg.step.wrenches;
   node->remainders = leg.step.remainders;
   node->try_s = leg.step.next_try_s;
@@ -209,35 +220,45 @@ void Island::GoTo(const Leg& leg, VirtualTime t, Node* node) {
 
 Island::Node Island::NodeAt(VirtualTime t) {
   Require(t >= Origin().at && t <= frontier_.at, "an island goes on from where it is known");
-  if (t == frontier_.at) return frontier_;
+  if (t == frontier_.at) {
+    StateAtFrontier();
+    return frontier_;
+  }
   std::size_t leg = used_ - 1;
   while (legs_[leg].start.at > t) --leg;
   if (legs_[leg].start.at == t) return legs_[leg].start;
   Node node;
   GoTo(legs_[leg], t, &node);
+  node.state = StateOf(legs_[leg], t);
   return node;
 }
 
-void Island::StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state) {
+// Valid until the leg is another one, or another state within it is asked for.
+const std::vector<double>& Island::StateOf(Leg& leg, VirtualTime t) {
+  IslandStep& step = leg.step;
   const VirtualDuration after = t - leg.start.at;
-  if (after == VirtualDuration{}) {
-    *state = leg.step.from;
-  } else if (after.seconds() == leg.step.length_s) {
-    *state = leg.step.to;
-  } else {
-    engine_.Within(leg.step, after, state);
+  if (after == VirtualDuration{}) return step.from;
+  if (after.seconds() == step.length_s) {
+    if (step.to.empty()) engine_.Within(step, after, &step.to);
+    return step.to;
   }
+  if (leg.within_at != t) {
+    leg.within_at = VirtualTime::Never();
+    engine_.Within(step, after, &leg.within);
+    leg.within_at = t;
+  }
+  return leg.within;
 }
 
 void Island::StateAt(VirtualTime t, std::vector<double>* state) {
   Require(t >= Origin().at && t <= frontier_.at, "a state is read where it is known");
   if (t == frontier_.at) {
-    *state = frontier_.state;
+    *state = StateAtFrontier();
     return;
   }
   std::size_t leg = used_ - 1;
   while (legs_[leg].start.at > t) --leg;
-  StateOf(legs_[leg], t, state);
+  *state = StateOf(legs_[leg], t);
 }
 
 Acting Island::ActingUntil(VirtualTime t) const {
@@ -258,6 +279,7 @@ void Island::Save(Saved* saved) const {
 void Island::Restore(const Saved& saved) {
   used_ = 0;
   frontier_ = saved.origin;
+  knows_frontier_ = true;
   commands_ = saved.commands;
 }
 

@@ -6,6 +6,9 @@
 // a step that went past it is cut where the change is, and what came after it is forgotten. So the
 // island's motion is a function of its changes alone, and to take something back costs nothing but
 // the steps that have to be taken anew.
+//
+// States are computed when somebody needs them: of an engine with steps of a set length that is all
+// there is to compute, and a change that comes before a step's end spares that end.
 #pragma once
 
 #include <cstddef>
@@ -59,8 +62,9 @@ class Island {
   // the next call, and no longer than `most` unless steps are set. Once it has been taken, Took.
   IslandStep* NextStepTo(VirtualTime t, VirtualDuration most = kAnyLength);
   void Took();
-  // Where the next step begins.
-  const Node& frontier() const { return frontier_; }
+  // When the next step begins, and how the island is then.
+  VirtualTime known_until() const { return frontier_.at; }
+  const std::vector<double>& StateAtFrontier();
 
   // Of a time since the one settled last, up to which no step is left to take.
   void StateAt(VirtualTime t, std::vector<double>* state);
@@ -84,6 +88,9 @@ class Island {
     IslandStep step;
     VirtualTime to;          // the step's end, in whole nanoseconds
     VirtualTime changed_at;  // the last change up to its start
+    // The state within the step that was asked for last, and when that is.
+    VirtualTime within_at = VirtualTime::Never();
+    std::vector<double> within;
   };
 
   const Node& Origin() const { return used_ > 0 ? legs_.front().start : frontier_; }
@@ -94,8 +101,8 @@ class Island {
   void LimitAfterChange(const Node& start, IslandStep* step) const;
   VirtualTime ChangeWithin(const Leg& leg);
   void FindFrontier();
-  void GoTo(const Leg& leg, VirtualTime t, Node* node);
-  void StateOf(const Leg& leg, VirtualTime t, std::vector<double>* state);
+  void GoTo(const Leg& leg, VirtualTime t, Node* node) const;
+  const std::vector<double>& StateOf(Leg& leg, VirtualTime t);
 
   const int index_;
   IslandEngine& engine_;
@@ -105,6 +112,7 @@ class Island {
   std::vector<Leg> legs_;  // those that count are the first `used_`; the others are memory to use
   std::size_t used_ = 0;
   Node frontier_;                // where the next leg begins; Origin() where there is no leg
+  bool knows_frontier_ = true;   // its state, which is that of the last leg then
   std::vector<Wrench> scratch_;  // of ChangeWithin
 };
 

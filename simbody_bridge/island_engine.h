@@ -27,7 +27,7 @@ struct IslandStep {
   VirtualDuration limit;              // the step is no longer than this, and more than 0
   double try_s = 0;                   // the length that the engine tries first, within the limit
 
-  std::vector<double> to;
+  std::vector<double> to;                  // empty: it has set steps, and Within says where
   double length_s = 0;                     // exactly limit.seconds() if it is as long as that
   double next_try_s = 0;                   // for the next step
   std::vector<double> from_rate, to_rate;  // derivatives, of an engine that interpolates
@@ -62,7 +62,7 @@ class IslandEngine {
   virtual void TakeAll(std::span<IslandStep* const> steps) {
     for (IslandStep* step : steps) Take(*step);
   }
-  // The state `after` the beginning of a step that was taken, before its end.
+  // The state `after` the beginning of a step that was taken, up to its end.
   virtual void Within(const IslandStep& step, VirtualDuration after,
                       std::vector<double>* state) = 0;
 };

@@ -161,7 +161,7 @@ void ModelIslands::Command(int model, int place, const Wrench& wrench, VirtualTi
   GroupIsland& of = IslandOf(model);
   of.island.Settle(Meets(of) ? SettledAt(now) : now);
   apply(of);
-  if (Meets(of)) met_until_ = std::min(met_until_, of.island.frontier().at);
+  if (Meets(of)) met_until_ = std::min(met_until_, of.island.known_until());
 }
 
 ModelIslands::GroupIsland& ModelIslands::HoldingAt(int model, VirtualTime t) const {
@@ -189,6 +189,7 @@ void ModelIslands::ReadParts(VirtualTime t, VirtualTime now, std::span<const Mod
       local_.push_back(number_in(*of.group, of.group->MemberOf(part.model), part.index));
     }
     of.island.StateAt(t, &state_);
+    CheckState(of.group->island(), state_, t, [this](int island, auto) { return NameOf(island); });
     read(of, first, local_.size());
   }
 }
@@ -260,18 +261,18 @@ void ModelIslands::ReachTogether(VirtualTime t) {
   for (;;) {
     going_.clear();
     for (const Owned& of : islands_) {
-      if (Meets(*of) && of->island.frontier().at < t) going_.push_back(of.get());
+      if (Meets(*of) && of->island.known_until() < t) going_.push_back(of.get());
     }
     AdvanceAll(going_, t);
     GroupIsland* leaving = nullptr;
     const auto order = [](const GroupIsland& of) {
-      return std::pair(of.island.frontier().at, of.group->models().front());
+      return std::pair(of.island.known_until(), of.group->models().front());
     };
     for (GroupIsland* of : going_) {
       if (of->is_leaving && (leaving == nullptr || order(*of) < order(*leaving))) leaving = of;
     }
     if (leaving == nullptr) return;
-    const VirtualTime at = leaving->island.frontier().at;
+    const VirtualTime at = leaving->island.known_until();
     Regroup(InTheWayOf(*leaving, at), at);
   }
 }
@@ -293,7 +294,7 @@ void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualT
   GroupIsland* failed = nullptr;
   for (GroupIsland* of : islands) {
     if (of->failure == nullptr) continue;
-    if (failed == nullptr || of->island.frontier().at < failed->island.frontier().at) failed = of;
+    if (failed == nullptr || of->island.known_until() < failed->island.known_until()) failed = of;
   }
   if (failed == nullptr) return;
   const std::exception_ptr failure = failed->failure;
@@ -304,10 +305,10 @@ void ModelIslands::AdvanceAll(const std::vector<GroupIsland*>& islands, VirtualT
 // To `t`, or to where one of the models is about to leave its zone.
 void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
   of.is_leaving = false;
-  while (of.island.frontier().at < t) {
+  while (of.island.known_until() < t) {
     VirtualDuration most = kAnyLength;
     if (Meets(of)) {
-      const double stays_s = TimeToLeave(of, of.island.frontier().state);
+      const double stays_s = TimeToLeave(of, of.island.StateAtFrontier());
       if (stays_s < brief_.seconds()) {
         of.is_leaving = true;
         return;
@@ -320,11 +321,19 @@ void ModelIslands::Advance(GroupIsland& of, VirtualTime t) {
 }
 
 void ModelIslands::Take(GroupIsland& of, IslandStep& step) {
-  const auto who = [this](const IslandStep& one) { return WhoDiverged(one); };
+  const WhoDiverged who = [this](int island, auto) { return NameOf(island); };
+  if (engine_->has_set_steps()) {
+    // Where it leads is computed when somebody needs it: a command may come before.
+    CheckState(step.island, step.from, step.at, who);
+    step.length_s = step.limit.seconds();
+    step.to.clear();
+    of.island.Took();
+    return;
+  }
   IslandStep* steps[] = {&step};
   TakeSteps(*engine_, steps, who);
   // It was pushed harder than is trusted.
-  while (Meets(of) && !engine_->has_set_steps() && LengthOf(step) > kBrief && HasLeft(of, step)) {
+  while (Meets(of) && LengthOf(step) > kBrief && HasLeft(of, step)) {
     step.limit = std::max(kBrief, VirtualDuration::Nanoseconds(LengthOf(step).ns() / 2));
     TakeSteps(*engine_, steps, who);
   }
@@ -459,9 +468,8 @@ void ModelIslands::TakeBackMeetings(VirtualTime t) {
   }
 }
 
-std::string ModelIslands::WhoDiverged(const IslandStep& step) const {
-  const std::vector<int>& models =
-      group_of_island_[static_cast<std::size_t>(step.island)]->models();
+std::string ModelIslands::NameOf(int island) const {
+  const std::vector<int>& models = group_of_island_[static_cast<std::size_t>(island)]->models();
   std::string text = "model '" + models_[static_cast<std::size_t>(models[0])].name + "'";
   if (models.size() > 1) text += fmt::format(" or one of {} near it", models.size() - 1);
   return text;

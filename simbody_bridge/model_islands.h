@@ -98,7 +98,7 @@ class ModelIslands {
   void AddMovers(GroupIsland& of, VirtualTime at);
   void Regroup(const std::vector<GroupIsland*>& concerned, VirtualTime at);
   void TakeBackMeetings(VirtualTime t);
-  std::string WhoDiverged(const IslandStep& step) const;
+  std::string NameOf(int island) const;
 
   // Calls `read` for each stretch of parts that are in one island, with their numbers there.
   template <class NumberIn, class ReadStretch>

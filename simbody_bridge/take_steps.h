@@ -10,8 +10,12 @@
 
 namespace tcs {
 
-// Throws DynamicsError. `who` says whose motion has diverged in a step.
-void TakeSteps(IslandEngine& engine, std::span<IslandStep* const> steps,
-               const std::function<std::string(const IslandStep&)>& who);
+// Says whose motion it is that has diverged in a state of the island.
+using WhoDiverged = std::function<std::string(int island, std::span<const double> state)>;
+
+// Throws DynamicsError.
+void TakeSteps(IslandEngine& engine, std::span<IslandStep* const> steps, const WhoDiverged& who);
+// Throws DynamicsError unless the island's state at `t` is one to go on from.
+void CheckState(int island, std::span<const double> state, VirtualTime t, const WhoDiverged& who);
 
 }  // namespace tcs

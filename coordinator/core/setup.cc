@@ -83,11 +83,13 @@ std::string Engine::Prepare() {
 }
 
 std::string Engine::PrepareMemory() {
-  SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::RunMemory));
+  SharedMemory memory = MakePublishedMemory("tcs-run", sizeof(shm::PublishedRun));
   if (!memory.fd) return fmt::format("the shared memory cannot be made: {}", strerror(errno));
   memfd_ = std::move(memory.fd);
   registration_.ShareMemory(memfd_.get());
-  memory_ = new (memory.at) shm::RunMemory{};
+  auto* published = new (memory.at) shm::PublishedRun{};
+  world_.NameReceivers(published->own_receivers);
+  memory_ = &published->run;
   run_.header = &memory_->header;
   run_.header->magic = shm::kMagic;
   run_.header->version = shm::kVersion;

@@ -1,5 +1,6 @@
 #include "coordinator/core/world.h"
 
+#include <sys/socket.h>
 #include <time.h>
 
 #include <algorithm>
@@ -176,7 +177,9 @@ void World::ReadDue() {
 bool World::Advance(std::int64_t limit_ns) {
   const Spent spent(&host_ns_);
   progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
-  commands_.ActUntil(VirtualTime::FromNanoseconds(std::min(progress_ns_, limit_ns)));
+  const std::int64_t sent_until_ns = std::min(progress_ns_, limit_ns);
+  PassOnSentUntil(sent_until_ns);
+  commands_.ActUntil(VirtualTime::FromNanoseconds(sent_until_ns));
   // A command that came while the dynamics led may have made firmware act before their progress.
   if (limit_ns < progress_ns_) {
     FindNextStop();
@@ -204,8 +207,15 @@ bool World::Advance(std::int64_t limit_ns) {
 // The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
 // still be woken earlier than `now_ns`, but no further back than the drift bound.
 void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
+  if (PassOnSentUntil(now_ns - scenario_.drift_bound.ns())) FindNextStop();
   Settle(std::min(now_ns - scenario_.drift_bound.ns(), commands_.NextStop().ns()));
   progress_ns_ = std::max(progress_ns_, to_ns);
+}
+
+// Firmware acts until each of them. True if there were any.
+bool World::PassOnSentUntil(std::int64_t ns) {
+  return queue_.PassOn(VirtualTime::FromNanoseconds(ns),
+                       [this](VirtualTime at) { commands_.ActUntil(at); });
 }
 
 void World::Settle(std::int64_t ns) {
@@ -224,8 +234,25 @@ std::vector<int> World::command_fds() const {
 
 void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
   const Spent spent(&host_ns_);
-  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
-  FindNextStop();
+  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), queue_);
+  // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
+  if (now_ns < progress_ns_) next_stop_ns_ = std::min(next_stop_ns_, now_ns);
+}
+
+void World::NameReceivers(shm::OwnReceivers& receivers) const {
+  for (const int fd : command_fds()) {
+    sockaddr_storage address;
+    socklen_t size = sizeof address;
+    int type = 0;
+    socklen_t type_size = sizeof type;
+    if (fd < 0 || getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &type_size) != 0 ||
+        type != SOCK_DGRAM || getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+      continue;
+    }
+    if (receivers.count == shm::OwnReceivers::kMost) break;
+    receivers.addresses[receivers.count++] = shm::AddressOf(&address, size);
+  }
+  std::sort(receivers.addresses, receivers.addresses + receivers.count, shm::IsBefore);
 }
 
 std::string World::WhomMoves(const CommandChannelSpec& spec) const {
@@ -275,6 +302,7 @@ std::string World::AliasesOf(const std::string& robot) const {
 void World::ReceiveFromTerminals(std::int64_t now_ns) {
   if (terminals_.empty()) return;
   const Spent spent(&host_ns_);
+  PassOnSentUntil(now_ns);
   for (Inlet* terminal : terminals_) {
     terminal->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
   }
@@ -283,6 +311,7 @@ void World::ReceiveFromTerminals(std::int64_t now_ns) {
 
 void World::ReceiveUntold(std::int64_t now_ns) {
   const Spent spent(&host_ns_);
+  PassOnSentUntil(now_ns);
   for (const auto& inlet : channels_.inlets) {
     if (inlet->fd() < 0) inlet->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
   }

@@ -10,9 +10,11 @@
 
 #include "coordinator/channel/channels.h"
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/world/command_queue.h"
 #include "coordinator/world/commands.h"
 #include "coordinator/world/link_lines.h"
 #include "coordinator/world/sensors.h"
+#include "shm/own_receivers.h"
 
 namespace tcs {
 
@@ -53,7 +55,9 @@ class World {
 
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
-  // Applies what has arrived there at virtual time `now_ns`.
+  // The addresses of those to which programs send datagrams.
+  void NameReceivers(shm::OwnReceivers& receivers) const;
+  // Takes what has arrived there at virtual time `now_ns`; others may still send for times before.
   void ReceiveCommands(std::size_t index, std::int64_t now_ns);
   // Applies what has been sent by `now_ns` to where no descriptor tells of it.
   void ReceiveUntold(std::int64_t now_ns);
@@ -78,6 +82,7 @@ class World {
   void WriteCsv();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
+  bool PassOnSentUntil(std::int64_t ns);
   // Commands for earlier times do not come any more.
   void Settle(std::int64_t ns);
   std::int64_t settled_ns() const { return dynamics_->Now().ns(); }
@@ -93,6 +98,7 @@ class World {
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
   Commands commands_;
+  CommandQueue queue_{commands_};
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;

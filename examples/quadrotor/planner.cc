@@ -2,7 +2,7 @@
 // trajectories, quick ones and slow ones, the quickest one that rotors and floor allow. It takes
 // what time it takes.
 //
-//   planner NAME X Y Z
+//   planner NAME X Y Z [HZ]
 //   in   NAME/planner_pose  as the position loop's
 //   out  NAME/trajectory    (trajectory.h)
 #include <cstdio>
@@ -50,9 +50,9 @@ std::optional<Trajectory> Plan(const Motion& from, const Vector3d& goal_m, doubl
   return quickest;
 }
 
-void Run(const std::string& name, const Vector3d& goal_m) {
+void Run(const std::string& name, const Vector3d& goal_m, double hz) {
   Socket pose(name + "/planner_pose");
-  Ticks ticks(50);
+  Ticks ticks(hz);
   for (;;) {
     ticks.WaitForNext();
     const auto reading = pose.ReceiveNewest();
@@ -76,5 +76,6 @@ int main(int argc, char** argv) {
   const auto number = [&](int i, double otherwise) {
     return argc > i ? std::atof(argv[i]) : otherwise;
   };
-  quadrotor::Run(argc > 1 ? argv[1] : "drone", {number(2, 0), number(3, 0), number(4, 2)});
+  quadrotor::Run(argc > 1 ? argv[1] : "drone", {number(2, 0), number(3, 0), number(4, 2)},
+                 number(5, 50));
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints scenario.yaml with N quadrotors in the place of the one, a metre apart and without the push:
+"""Prints scenario.yaml with N quadrotors in the place of the one, a metre apart, without the push, and with planners
+that plan five times a second:
 
     ./swarm.py 10 >swarm.yaml              rate loops of 1 kHz
     ./swarm.py 30 --hz 250 >swarm.yaml
@@ -8,6 +9,8 @@ Whatever is called drone there is called drone0, drone1 … here."""
 import argparse
 import re
 from pathlib import Path
+
+PLANS_HZ = 5  # of one quadrotor's planner, which plans as often as it can, and takes a tenth of this computer
 
 
 def parts(text):
@@ -18,7 +21,7 @@ def parts(text):
 def one_of_many(entry, number, hz):
     x, y = number % 6, number // 6
     entry = entry.replace("position: [0, 0,", f"position: [{x}, {y},")
-    entry = entry.replace('"0", "0", "2"', f'"{x}", "{y}", "2"')
+    entry = entry.replace('"0", "0", "2"', f'"{x}", "{y}", "2", "{PLANS_HZ}"')
     entry = entry.replace("[./rate_loop, drone]", f'[./rate_loop, drone, "{hz}"]')
     entry = entry.replace("rate: 1000,", f"rate: {hz},")
     return entry.replace("drone", f"drone{number}")

@@ -98,12 +98,8 @@ class Writer {
         "<inertial pos='{}' mass='{:.17g}' fullinertia='{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} "
         "{:.17g}'/>",
         Text(body.center_m), body.mass_kg, i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]);
-    const int own = static_cast<int>(index);
-    WriteShapes(own, forest_.model_of_body[index]);
-    for (std::size_t link = 0; link < forest_.links.size(); ++link) {
-      if (forest_.links[link].body != own) continue;
-      text_ += fmt::format("<site name='l{}' {}/>", link, PlaceText(forest_.links[link].pose));
-    }
+    WriteShapes(static_cast<int>(index), forest_.model_of_body[index]);
+    text_ += fmt::format("<site name='b{}'/>", index);
     for (const std::size_t child : children_[index + 1]) WriteBody(child);
     text_ += "</body>";
   }
@@ -201,9 +197,8 @@ class Writer {
 
   void WriteActuators() {
     text_ += "<actuator>";
-    for (std::size_t i = 0; i < forest_.links.size(); ++i) {
-      if (forest_.links[i].body == kWorldBody) continue;
-      text_ += fmt::format("<general name='l{0}' site='l{0}' gear='0 0 0 0 0 0'/>", i);
+    for (std::size_t i = 0; i < forest_.bodies.size(); ++i) {
+      text_ += fmt::format("<general name='b{0}' site='b{0}' gear='0 0 0 0 0 0'/>", i);
     }
     for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
       if (!IsDriven(forest_, i)) continue;

@@ -62,10 +62,9 @@ int MujocoSystem::IdOf(int type, char prefix, std::size_t index) const {
 void MujocoSystem::FindIds() {
   for (std::size_t i = 0; i < forest_.bodies.size(); ++i) {
     bodies_.push_back(IdOf(mjOBJ_BODY, 'b', i));
+    body_actuators_.push_back(IdOf(mjOBJ_ACTUATOR, 'b', i));
   }
-  for (std::size_t i = 0; i < forest_.links.size(); ++i) {
-    link_actuators_.push_back(IdOf(mjOBJ_ACTUATOR, 'l', i));
-  }
+  along_body_.resize(forest_.bodies.size());
   for (std::size_t i = 0; i < forest_.joints.size(); ++i) {
     joint_actuators_.push_back(IdOf(mjOBJ_ACTUATOR, 'j', i));
     const int body = forest_.joints[i].body;
@@ -112,22 +111,13 @@ void MujocoSystem::SetPose(std::size_t index) {
   std::copy_n(turning.begin(), 3, u);
 }
 
-void MujocoSystem::Load(std::span<const double> state) {
+void MujocoSystem::SetState(std::span<const double> state) {
   const auto positions = static_cast<std::size_t>(model_->nq);
   const auto speeds = static_cast<std::size_t>(model_->nv);
   data_->time = 0;
   std::copy_n(state.data(), positions, data_->qpos);
   std::copy_n(state.data() + positions, speeds, data_->qvel);
   std::copy_n(state.data() + positions + speeds, speeds, data_->qacc_warmstart);
-}
-
-void MujocoSystem::ActOnLinks(std::span<const Wrench> acting) {
-  std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
-  mj_kinematics(model_.get(), data_.get());
-  for (std::size_t i = 0; i < forest_.links.size(); ++i) {
-    ActOnLink(i, WrenchOnLink(acting, i, WrenchFrame::kWorld),
-              WrenchOnLink(acting, i, WrenchFrame::kLink));
-  }
 }
 
 // A joint that takes no effort is not driven.
@@ -144,25 +134,50 @@ void MujocoSystem::SetDrive(std::size_t joint, const JointDrive& drive) {
   model_->actuator_biasprm[mjNBIAS * actuator + 2] = -drive.damping;
 }
 
-// What is along the link's axes is an actuator of its site, which turns with it.
-void MujocoSystem::ActOnLink(std::size_t link, const Wrench& in_world, const Wrench& in_link) {
-  const int actuator = link_actuators_[link];
-  if (actuator < 0) return;
-  double* gear = model_->actuator_gear + 6 * actuator;
-  std::copy_n(in_link.force_n.begin(), 3, gear);
-  std::copy_n(in_link.torque_nm.begin(), 3, gear + 3);
-  data_->ctrl[actuator] = 1;
-  if (in_world == Wrench{}) return;
-  const int body = bodies_[static_cast<std::size_t>(forest_.links[link].body)];
-  const int site = model_->actuator_trnid[2 * actuator];
-  const double* origin = data_->site_xpos + 3 * site;
+// All that is along the axes of a body's links is one actuator of the body's, which turns with it:
+// each one costs as much as a joint.
+void MujocoSystem::ActOnLinks(std::span<const Wrench> acting) {
+  std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
+  std::fill(along_body_.begin(), along_body_.end(), Load{});
+  bool knows_places = false;
+  for (std::size_t i = 0; i < forest_.links.size(); ++i) {
+    const TreeLink& link = forest_.links[i];
+    if (link.body == kWorldBody) continue;
+    const Load in_link = LoadOf(WrenchOnLink(acting, i, WrenchFrame::kLink));
+    const Load in_world = LoadOf(WrenchOnLink(acting, i, WrenchFrame::kWorld));
+    if (in_link != Load{}) {
+      const Vector force = Rotate(link.pose.orientation_xyzw, in_link.force_n);
+      Load& along = along_body_[static_cast<std::size_t>(link.body)];
+      AddTo(&along, {force, Cross(link.pose.position_m, force)}, 1);
+      AddTo(&along, {{}, Rotate(link.pose.orientation_xyzw, in_link.torque_nm)}, 1);
+    }
+    if (in_world != Load{}) {
+      if (!std::exchange(knows_places, true)) mj_kinematics(model_.get(), data_.get());
+      ActInWorld(link, in_world);
+    }
+  }
+  for (std::size_t i = 0; i < along_body_.size(); ++i) {
+    double* gear = model_->actuator_gear + 6 * body_actuators_[i];
+    std::copy_n(along_body_[i].force_n.begin(), 3, gear);
+    std::copy_n(along_body_[i].torque_nm.begin(), 3, gear + 3);
+    data_->ctrl[body_actuators_[i]] = 1;
+  }
+}
+
+// At the link's origin, of a body that is where it is.
+void MujocoSystem::ActInWorld(const TreeLink& link, const Load& load) {
+  const int body = bodies_[static_cast<std::size_t>(link.body)];
+  const double* p = data_->xpos + 3 * body;
+  const double* q = data_->xquat + 4 * body;
   const double* center = data_->xipos + 3 * body;
-  const Vector turn = Cross({origin[0] - center[0], origin[1] - center[1], origin[2] - center[2]},
-                            in_world.force_n);
+  const Vector arm = Rotate({q[1], q[2], q[3], q[0]}, link.pose.position_m);
+  const Vector turn =
+      Cross({p[0] + arm[0] - center[0], p[1] + arm[1] - center[1], p[2] + arm[2] - center[2]},
+            load.force_n);
   double* applied = data_->xfrc_applied + 6 * body;
   for (std::size_t i = 0; i < 3; ++i) {
-    applied[i] += in_world.force_n[i];
-    applied[i + 3] += in_world.torque_nm[i] + turn[i];
+    applied[i] += load.force_n[i];
+    applied[i + 3] += load.torque_nm[i] + turn[i];
   }
 }
 
@@ -237,7 +252,7 @@ bool MujocoSystem::ReachLimits(std::span<const Wrench> acting, double seconds) {
 void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
                         double seconds, std::vector<double>* to) {
   for (mjWarningStat& warning : data_->warning) warning.number = 0;
-  Load(from);
+  SetState(from);
   ActOnLinks(acting);
   for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
     if (joint_actuators_[i] < 0) continue;
@@ -292,7 +307,7 @@ void MujocoSystem::CopyBody(std::size_t body, std::span<const double> state, con
 
 void MujocoSystem::ReadLinks(std::span<const double> state, std::span<const int> links,
                              std::span<LinkState> read) {
-  Load(state);
+  SetState(state);
   mj_kinematics(model_.get(), data_.get());
   mj_comPos(model_.get(), data_.get());
   mj_comVel(model_.get(), data_.get());

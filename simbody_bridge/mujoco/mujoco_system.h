@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "simbody_bridge/load.h"
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
 
@@ -49,9 +50,9 @@ class MujocoSystem {
   void FindIds();
   void SetStart();
   void SetPose(std::size_t body);
-  void Load(std::span<const double> state);
+  void SetState(std::span<const double> state);
   void ActOnLinks(std::span<const Wrench> acting);
-  void ActOnLink(std::size_t link, const Wrench& in_world, const Wrench& in_link);
+  void ActInWorld(const TreeLink& link, const Load& load);
   JointDrive DriveOf(std::span<const Wrench> acting, std::size_t joint) const;
   void SetDrive(std::size_t joint, const JointDrive& drive);
   bool IsSmooth(std::span<const Wrench> acting, double seconds) const;
@@ -63,11 +64,12 @@ class MujocoSystem {
   const Forest& forest_;
   std::unique_ptr<mjModel, DeleteModel> model_;
   std::unique_ptr<mjData, DeleteData> data_;
-  std::vector<int> bodies_;                            // MuJoCo's, of each of the forest's
-  std::vector<int> link_actuators_, joint_actuators_;  // of each link and joint; -1: none
-  std::vector<int> positions_, speeds_;                // where those of each joint are; -1: fixed
+  std::vector<int> bodies_, body_actuators_;  // MuJoCo's, of each of the forest's bodies
+  std::vector<int> joint_actuators_;          // of each joint; -1: none
+  std::vector<int> positions_, speeds_;       // where those of each joint are; -1: fixed
   std::vector<double> start_;
   std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
+  std::vector<Load> along_body_;  // memory of ActOnLinks
 };
 
 }  // namespace tcs

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The dynamics lead while a program computes on and on. What it commands meanwhile acts from the very
-# moment of the send all the same: the push between two commands is as long as the time between them.
+# moment of the send all the same: the push between two commands is as long as the time between them. Another
+# robot never rests, so that the program sends at times that others have not come to.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'
@@ -17,6 +18,10 @@ for i in range(10):
     print(before, time.monotonic(), flush=True)
 time.sleep(10)
 PY
+cat >"$out/restless.py" <<'PY'
+import time
+while True: time.sleep(0.0003)
+PY
 cat >"$out/scenario.yaml" <<'YAML'
 duration: 1.2s
 drift: 20ms
@@ -27,6 +32,9 @@ robots:
   robot:
     clients:
       client: {command: [python3, client.py, "27391"], body: body, fixed_call_cost: 100us, fixed_allocation_cost: 0s}
+  other:
+    clients:
+      restless: {command: [python3, restless.py], fixed_call_cost: 20us, fixed_allocation_cost: 0s}
 channels:
   commands:
     type: udp_json

@@ -175,6 +175,7 @@ std::string TakeGoal(const Json& value, JointQuantity quantity, JointGoal* goal)
 
 std::variant<std::vector<JointGoal>, DecodeError> DecodeJointCommand(
     std::string_view text, std::span<const std::string> joints, JointQuantity quantity) {
+  if (auto goals = ReadPlainGoals(text, joints, quantity)) return std::move(*goals);
   const auto parsed = ParseObject(text, kJointExample);
   if (const auto* error = std::get_if<DecodeError>(&parsed)) return *error;
   std::vector<JointGoal> goals;

@@ -1,8 +1,10 @@
 #include "coordinator/channel/json/plain_command.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <functional>
 #include <system_error>
 
 namespace tcs {
@@ -18,9 +20,31 @@ class Reader {
     text_.remove_prefix(what.size());
     return true;
   }
+  // Of a key or a text without escapes.
+  std::optional<std::string_view> TakeText() {
+    if (!Take("\"")) return std::nullopt;
+    const std::size_t end = text_.find_first_of("\"\\");
+    if (end == std::string_view::npos || text_[end] != '"') return std::nullopt;
+    const std::string_view text = text_.substr(0, end);
+    text_.remove_prefix(end + 1);
+    return text;
+  }
   bool IsAtEnd() {
     SkipBlanks();
     return text_.empty();
+  }
+
+  bool TakeNumber(double* value) {
+    SkipBlanks();
+    bool is_whole = false;
+    const std::size_t length = NumberLength(&is_whole);
+    if (length == 0) return false;
+    const char* end = text_.data() + length;
+    const auto result = std::from_chars(text_.data(), end, *value);
+    if (result.ec != std::errc() || result.ptr != end) return false;
+    if (is_whole) *value += 0.0;  // -0 is an integer, and so 0
+    text_.remove_prefix(length);
+    return true;
   }
 
   bool TakeVector(std::array<double, 3>* vector) {
@@ -68,19 +92,6 @@ class Reader {
     return at;
   }
 
-  bool TakeNumber(double* value) {
-    SkipBlanks();
-    bool is_whole = false;
-    const std::size_t length = NumberLength(&is_whole);
-    if (length == 0) return false;
-    const char* end = text_.data() + length;
-    const auto result = std::from_chars(text_.data(), end, *value);
-    if (result.ec != std::errc() || result.ptr != end) return false;
-    if (is_whole) *value += 0.0;  // -0 is an integer, and so 0
-    text_.remove_prefix(length);
-    return true;
-  }
-
   std::string_view text_;
 };
 
@@ -101,6 +112,35 @@ std::optional<Wrench> ReadPlainCommand(std::string_view text) {
   }
   if (!reader.IsAtEnd()) return std::nullopt;
   return wrench;
+}
+
+std::optional<std::vector<JointGoal>> ReadPlainGoals(std::string_view text,
+                                                     std::span<const std::string> joints,
+                                                     JointQuantity quantity) {
+  Reader reader(text);
+  std::vector<JointGoal> goals;
+  if (!reader.Take("{")) return std::nullopt;
+  if (!reader.Take("}")) {
+    do {
+      const auto name = reader.TakeText();
+      if (!name || !reader.Take(":")) return std::nullopt;
+      const auto joint = std::find(joints.begin(), joints.end(), *name);
+      if (joint == joints.end()) return std::nullopt;
+      JointGoal goal{static_cast<std::size_t>(joint - joints.begin())};
+      if (!reader.TakeNumber(&goal.Of(quantity).emplace())) return std::nullopt;
+      goals.push_back(goal);
+    } while (reader.Take(","));
+    if (!reader.Take("}")) return std::nullopt;
+  }
+  if (!reader.IsAtEnd()) return std::nullopt;
+  // In the order of their names, as in a tree of values.
+  const auto name_of = [&joints](const JointGoal& goal) -> const std::string& {
+    return joints[goal.joint];
+  };
+  std::ranges::sort(goals, std::less(), name_of);
+  const auto is_same = [&](const JointGoal& a, const JointGoal& b) { return a.joint == b.joint; };
+  if (std::ranges::adjacent_find(goals, is_same) != goals.end()) return std::nullopt;
+  return goals;
 }
 
 }  // namespace tcs

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/model/joint_goal.h"
 
 namespace tcs {
 
@@ -13,5 +17,9 @@ namespace tcs {
 // order, either left out. None for all that is written otherwise, which may be a command all the
 // same: an escape in a key, a number beyond doubles.
 [[nodiscard]] std::optional<Wrench> ReadPlainCommand(std::string_view text);
+
+// The same of DecodeJointCommand and {"NAME":1.5} for any of `joints`, none of them twice.
+[[nodiscard]] std::optional<std::vector<JointGoal>> ReadPlainGoals(
+    std::string_view text, std::span<const std::string> joints, JointQuantity quantity);
 
 }  // namespace tcs

@@ -87,39 +87,48 @@ TEST(CommandDatagram, IsAWrench) {
   EXPECT_THAT(wrench.torque_nm, ElementsAre(0, 0, 4));
 }
 
+class Draws {
+ public:
+  std::uint64_t operator()(std::uint64_t below) {
+    bits_ ^= bits_ << 13;
+    bits_ ^= bits_ >> 7;
+    bits_ ^= bits_ << 17;
+    return bits_ % below;
+  }
+
+ private:
+  std::uint64_t bits_ = 88172645463325252u;
+};
+
+// Numbers as JSON has them, and what is like one.
+constexpr std::string_view kPieces[] = {"0",
+                                        "-0",
+                                        "12",
+                                        "-7",
+                                        ".5",
+                                        "1.",
+                                        "01",
+                                        "1.25",
+                                        "-0.0",
+                                        "1e3",
+                                        "2E-3",
+                                        "3e+2",
+                                        "4e",
+                                        "-",
+                                        "nan",
+                                        "+1",
+                                        "1e-400",
+                                        "9007199254740993",
+                                        "18446744073709551617",
+                                        "123456789012345678901234567890",
+                                        "0.1",
+                                        "5e-324"};
+constexpr std::string_view kBlanks[] = {"", " ", "\t\n", "\r  "};
+
 // Plain commands are read in another way than all others; a blank key makes one of the others of it
 // by an escape, which means the same.
 TEST(CommandDatagram, IsTheSameHoweverItIsWritten) {
-  std::uint64_t bits = 88172645463325252u;
-  const auto draw = [&bits](std::uint64_t below) {
-    bits ^= bits << 13;
-    bits ^= bits >> 7;
-    bits ^= bits << 17;
-    return bits % below;
-  };
-  constexpr std::string_view kPieces[] = {"0",
-                                          "-0",
-                                          "12",
-                                          "-7",
-                                          ".5",
-                                          "1.",
-                                          "01",
-                                          "1.25",
-                                          "-0.0",
-                                          "1e3",
-                                          "2E-3",
-                                          "3e+2",
-                                          "4e",
-                                          "-",
-                                          "nan",
-                                          "+1",
-                                          "1e-400",
-                                          "9007199254740993",
-                                          "18446744073709551617",
-                                          "123456789012345678901234567890",
-                                          "0.1",
-                                          "5e-324"};
-  constexpr std::string_view kBlanks[] = {"", " ", "\t\n", "\r  "};
+  Draws draw;
   int commands = 0;
   for (int i = 0; i < 20'000; ++i) {
     std::string plain, escaped;
@@ -230,6 +239,40 @@ TEST(JointCommandDatagram, IsForAnyOfTheJoints) {
                   R"({"elbow":{"effort":-3,"position":1,"velocity":2},"wrist":0.5})")),
               ElementsAre(elbow, wrist));
   EXPECT_TRUE(std::get<0>(DecodedJoints("{}")).empty());
+}
+
+// As of wrenches: an escape makes one of the others of a plain command.
+TEST(JointCommandDatagram, IsTheSameHoweverItIsWritten) {
+  Draws draw;
+  int commands = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::string plain, escaped;
+    const auto add = [&](std::string_view text, std::string_view other) {
+      const std::string_view blank = kBlanks[draw(std::size(kBlanks))];
+      plain.append(blank).append(text);
+      escaped.append(blank).append(other);
+    };
+    add("{", "{");
+    for (std::uint64_t n = 0, count = draw(4); n < count; ++n) {
+      if (n > 0) add(",", ",");
+      const bool is_elbow = draw(2) == 0;
+      add(is_elbow ? "\"elbow\"" : "\"wrist\"", is_elbow ? "\"\\u0065lbow\"" : "\"\\u0077rist\"");
+      add(":", ":");
+      const std::string_view number = kPieces[draw(std::size(kPieces))];
+      add(number, number);
+    }
+    add("}", "}");
+    const auto a = DecodedJoints(plain), b = DecodedJoints(escaped);
+    ASSERT_EQ(a.index(), b.index()) << plain;
+    const auto *x = std::get_if<0>(&a), *y = std::get_if<0>(&b);
+    if (x == nullptr) continue;
+    ++commands;
+    ASSERT_EQ(*x, *y) << plain;
+    for (std::size_t n = 0; n < x->size(); ++n) {
+      ASSERT_EQ(std::signbit(*(*x)[n].velocity), std::signbit(*(*y)[n].velocity)) << plain;
+    }
+  }
+  EXPECT_GT(commands, 5000);
 }
 
 TEST(JointCommandDatagram, ThatIsNoneIsSaid) {

@@ -1,0 +1,62 @@
+// Commands that have been sent for times before which others may still be sent: kept until that is
+// not so any more, and then given on in the order of their times.
+//
+// Programs do not wait with what they send here (shm/own_receivers.h), so that it comes in the
+// order in which they were dispatched. Commands for one instant stay in the order in which they
+// came.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/channel/channel.h"
+
+namespace tcs {
+
+class CommandQueue final : public CommandSink {
+ public:
+  // `to` outlives this.
+  explicit CommandQueue(CommandSink& to) : to_(to) {}
+
+  void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override {
+    Add(channel, sent, wrench);
+  }
+  void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override {
+    Add(channel, sent, std::vector<JointGoal>(goals.begin(), goals.end()));
+  }
+  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override {
+    Add(channel, sent, speed);
+  }
+  void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) override {
+    Add(channel, sent, trajectory);
+  }
+  std::optional<GoalNames> GoalsOf(std::size_t channel) const override {
+    return to_.GoalsOf(channel);
+  }
+  // These act at no time.
+  void Refuse(std::size_t channel, const std::string& why) override { to_.Refuse(channel, why); }
+  void Note(const std::string& sentence) override { to_.Note(sentence); }
+
+  // Gives on what was sent by `until`; `before` is told of each one's time first. False if there
+  // was nothing.
+  bool PassOn(VirtualTime until, const std::function<void(VirtualTime)>& before);
+
+ private:
+  using What = std::variant<Wrench, std::vector<JointGoal>, PlanarSpeed, JointTrajectory>;
+  struct Sent {
+    VirtualTime at;
+    std::size_t channel;
+    What what;
+  };
+  void Add(std::size_t channel, VirtualTime sent, What what);
+
+  CommandSink& to_;
+  std::vector<Sent> kept_;  // in the order of their times
+};
+
+}  // namespace tcs

@@ -1,0 +1,83 @@
+// The addresses of datagram sockets at which the coordinator itself receives, and nobody else: the
+// commands that robots' programs send there. No program sees such a datagram, so whoever sends one
+// does not wait until nobody can look at an earlier time; the coordinator keeps it until then.
+//
+// Written by the coordinator before anyone attaches, read by all clients; behind the rest of the
+// run's memory (layout.h).
+#pragma once
+
+#include <netinet/in.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "shm/layout.h"
+
+namespace tcs::shm {
+
+// What tells an address from others of its kind, and zeros behind it; of no bytes where nobody
+// receives by it, or in a way that is not known here.
+struct ReceiverAddress {
+  std::uint16_t size;
+  unsigned char bytes[110];
+};
+static_assert(sizeof(ReceiverAddress) == 112);
+static_assert(sizeof(sockaddr_un) <= sizeof(ReceiverAddress::bytes));
+
+struct OwnReceivers {
+  static constexpr std::uint32_t kMost = 1024;  // of others writes are held
+  std::uint32_t count;
+  std::uint32_t reserved;
+  ReceiverAddress addresses[kMost];  // in order
+};
+static_assert(sizeof(OwnReceivers) == 114696);
+
+// `address` has as many bytes.
+inline ReceiverAddress AddressOf(const void* address, std::size_t size) {
+  ReceiverAddress of{};
+  sa_family_t family = AF_UNSPEC;
+  if (size >= sizeof family) memcpy(&family, address, sizeof family);
+  if (family == AF_INET && size >= sizeof(sockaddr_in)) {
+    size = offsetof(sockaddr_in, sin_zero);
+  } else if (family == AF_UNIX && size > offsetof(sockaddr_un, sun_path) &&
+             size <= sizeof(sockaddr_un)) {
+    const char* path = static_cast<const char*>(address) + offsetof(sockaddr_un, sun_path);
+    // An abstract name is as long as it is said to be; a path ends with its first zero.
+    if (path[0] != 0) {
+      size =
+          offsetof(sockaddr_un, sun_path) + strnlen(path, size - offsetof(sockaddr_un, sun_path));
+    }
+  } else {
+    return of;
+  }
+  of.size = static_cast<std::uint16_t>(size);
+  memcpy(of.bytes, address, size);
+  return of;
+}
+
+inline bool IsBefore(const ReceiverAddress& a, const ReceiverAddress& b) {
+  return memcmp(&a, &b, sizeof a) < 0;
+}
+
+inline bool IsAmong(const OwnReceivers& receivers, const ReceiverAddress& address) {
+  if (address.size == 0) return false;
+  const ReceiverAddress* end = receivers.addresses + std::min(receivers.count, OwnReceivers::kMost);
+  return std::binary_search(receivers.addresses, end, address, IsBefore);
+}
+
+// All that is in the run's memory.
+struct PublishedRun {
+  RunMemory run;
+  OwnReceivers own_receivers;
+};
+static_assert(offsetof(PublishedRun, own_receivers) == 131200);
+
+inline const OwnReceivers& OwnReceiversOf(const RunMemory& run) {
+  return reinterpret_cast<const PublishedRun&>(run).own_receivers;
+}
+
+}  // namespace tcs::shm
