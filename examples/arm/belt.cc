@@ -35,7 +35,7 @@ namespace {
 
 constexpr double kBeltMps = 0.2;
 constexpr double kNearM = 0.006, kSlowMps = 0.03, kTurnRad = 0.05;  // where a part is sucked on
-constexpr double kBinM = 0.05;
+constexpr double kBinM = 0.05, kCameM = 0.1;
 constexpr double kAfterS = 5;  // for the last part's way to the bin, or why it was missed
 
 struct Tool {
@@ -77,9 +77,11 @@ class Line {
 
   void SumUp() const {
     std::map<std::string, int> reasons;
-    for (const int number : missed_) {
-      const auto why = why_.find(number);
-      ++reasons[why == why_.end() ? "the tool was not with it" : why->second];
+    for (const OnBelt& part : missed_) {
+      const auto why = why_.find(part.number);
+      ++reasons[why != why_.end()         ? why->second
+                : part.nearest_m < kCameM ? "the tool was not with it"
+                                          : "still being planned"];
     }
     std::printf("parts offered %d, taken %d, in the bin %d, missed %zu", offered_, taken_, binned_,
                 missed_.size());
@@ -140,7 +142,7 @@ class Line {
     const OnBelt& part = belt_.front();
     std::printf("%.3f s: part %d is missed; the tool came as near as %.0f mm\n", Seconds(),
                 part.number, 1e3 * part.nearest_m);
-    missed_.push_back(part.number);
+    missed_.push_back(part);
     over_s_ = Seconds() + kAfterS;
     belt_.pop_front();
   }
@@ -151,7 +153,7 @@ class Line {
   double next_s_, over_s_ = 0;
   std::list<OnBelt> belt_;
   int offered_ = 0, taken_ = 0, binned_ = 0, holds_ = 0;
-  std::vector<int> missed_;
+  std::vector<OnBelt> missed_;
   std::map<int, std::string> why_;
 };
 
