@@ -5,6 +5,7 @@
 #include "coordinator/models/urdf_skeleton.h"
 #include "coordinator/models/urdf_values.h"
 #include "coordinator/models/urdf_xml.h"
+#include "coordinator/os/visible.h"
 
 namespace tcs {
 namespace {
@@ -39,7 +40,7 @@ LoadResult<RobotModel> LoadUrdf(const std::string& path, const UrdfUse& use,
   try {
     return Load(path, use, packages, meshes, warnings);
   } catch (const ModelMistake& mistake) {
-    return LoadError{mistake.message};
+    return LoadError{Visible(mistake.message)};  // names of files are whatever they are
   }
 }
 

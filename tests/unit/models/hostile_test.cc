@@ -119,6 +119,13 @@ const Attack kAttacks[] = {
     {"LongUnknownElement",
      [] { return "<robot name='r'><" + std::string(3'000'000, 'x') + "/></robot>"; },
      "has no <link>"},
+    {"NewlineInTheNameOfAMesh",
+     [] {
+       return std::string(
+           "<robot name='r'><link name='a'><collision><geometry><mesh filename='a&#10;b.obj'/>"
+           "</geometry></collision></link></robot>");
+     },
+     "a\\nb.obj: cannot be read"},
     {"LongRing",
      [] {
        return "<robot name='r'>" +
