@@ -1,8 +1,8 @@
 // The shared memory: the contract between the coordinator and the shim inside each client.
 //
-//   of the run:            +-----------+----------+
-//   the coordinator's      | RunHeader | IpcTimes |
-//                          +-----------+----------+
+//   of the run:            +-----------+----------+--------------+
+//   the coordinator's      | RunHeader | IpcTimes | OwnReceivers |  (own_receivers.h)
+//                          +-----------+----------+--------------+
 //   of each process:       +---------------+---------------+-----
 //   its and the            | ThreadSlot[0] | ThreadSlot[1] | ...
 //   coordinator's          +---------------+---------------+-----
@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 15;
+inline constexpr std::uint32_t kVersion = 16;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19

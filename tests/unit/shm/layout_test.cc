@@ -6,11 +6,13 @@
 
 #include <type_traits>
 
+#include "shm/own_receivers.h"
+
 namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 15u);
+  EXPECT_EQ(kVersion, 16u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1152u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -31,9 +33,11 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
 }
 
-TEST(Layout, TheRunsMemoryIsTheHeaderAndTheTimesOfSystemVObjects) {
+TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsAndReceivers) {
   EXPECT_EQ(offsetof(RunMemory, ipc_times), 128u);
   EXPECT_EQ(sizeof(RunMemory), 128u + 4096u * 32u);
+  EXPECT_EQ(offsetof(PublishedRun, own_receivers), 128u + 4096u * 32u);
+  EXPECT_EQ(sizeof(OwnReceivers), 8u + 1024u * 112u);
   EXPECT_EQ(kProcessMemorySize, 4096u * 1152u);
 }
 
