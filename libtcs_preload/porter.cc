@@ -1,14 +1,12 @@
 #include "libtcs_preload/porter.h"
 
 #include <errno.h>
-#include <linux/futex.h>
 #include <sched.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <time.h>
 
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
@@ -102,17 +100,22 @@ bool Answer(shm::PorterAnswer answer, int fd) {
   End(porter > 0 ? 0 : 1);
 }
 
-// It has told the coordinator who it is.
+// These wait without sleeping: a dispatched thread that sleeps in a call which nobody knows is
+// taken to be held by the kernel, and time would go on without it.
+
+// Of a child that is about to end, or has.
+int Reap(long child) {
+  int status = 1;
+  while (RawSyscall(SYS_wait4, child, Arg(&status), WNOHANG | __WALL) == 0) {
+    RawSyscall(SYS_sched_yield);
+  }
+  return status;
+}
+
+// Until it has told the coordinator who it is.
 void AwaitPorter() {
-  constexpr int kYields = 200;
-  constexpr timespec kTurn{0, 200'000};
-  const std::atomic<std::uint32_t>& state = g_process->porter_state;
-  for (int turn = 0; state.load() == kNotYet && g_process->porter.load() != 0; ++turn) {
-    if (turn < kYields) {
-      RawSyscall(SYS_sched_yield);
-    } else {
-      RawSyscall(SYS_futex, Arg(&state), FUTEX_WAIT, kNotYet, Arg(&kTurn));
-    }
+  while (g_process->porter_state.load() == kNotYet && g_process->porter.load() != 0) {
+    RawSyscall(SYS_sched_yield);
   }
 }
 
@@ -127,9 +130,7 @@ void MakePorter() {
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&all), Arg(&before), kSetSize);
   g_process->porter_state.store(kNotYet);
   const long parent = Clone(kShares | CLONE_VFORK, g_parents_stack, MakeOrphan, nullptr);
-  int status = 1;
-  if (parent > 0) RawSyscall(SYS_wait4, parent, Arg(&status), __WALL);
-  if (status != 0) {
+  if (parent < 0 || Reap(parent) != 0) {
     DieWithoutCoordinator(
         "no process can be made that hands it the program's descriptors (too many "
         "processes?)");
