@@ -25,8 +25,8 @@ using shm::WakeReason;
 // timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
 constexpr std::int64_t kMostGateNs = 10'000;
-constexpr std::int64_t kMostExchangeNs = 50'000;   // of the thread's own, both ways
-constexpr std::int64_t kMostAttachNs = 2'000'000;  // where a porter is made on the way
+constexpr std::int64_t kMostExchangeNs = 50'000;    // of the thread's own, both ways
+constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a porter is made on the way
 // More than a short system call takes, or one of its two ways.
 constexpr std::int64_t kMostCallNs = 1'000;
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it

@@ -1,12 +1,14 @@
 #include "libtcs_preload/porter.h"
 
 #include <errno.h>
+#include <linux/futex.h>
 #include <sched.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
@@ -94,9 +96,15 @@ bool Answer(shm::PorterAnswer answer, int fd) {
   End(0);
 }
 
-// Its end makes the porter an orphan.
+// Its end makes the porter an orphan. It waits until the porter has told the coordinator who it is:
+// meanwhile the thread that makes them stands in vfork.
 [[noreturn]] void MakeOrphan() {
+  constexpr timespec kTurn{0, 200'000};
+  const std::atomic<std::uint32_t>& state = g_process->porter_state;
   const long porter = Clone(kShares, g_porters_stack, HandOver, &g_process->porter);
+  while (porter > 0 && state.load() == kNotYet && g_process->porter.load() != 0) {
+    RawSyscall(SYS_futex, Arg(&state), FUTEX_WAIT, kNotYet, Arg(&kTurn));
+  }
   End(porter > 0 ? 0 : 1);
 }
 
@@ -110,13 +118,6 @@ int Reap(long child) {
     RawSyscall(SYS_sched_yield);
   }
   return status;
-}
-
-// Until it has told the coordinator who it is.
-void AwaitPorter() {
-  while (g_process->porter_state.load() == kNotYet && g_process->porter.load() != 0) {
-    RawSyscall(SYS_sched_yield);
-  }
 }
 
 }  // namespace
@@ -135,7 +136,6 @@ void MakePorter() {
         "no process can be made that hands it the program's descriptors (too many "
         "processes?)");
   }
-  AwaitPorter();
   RawSyscall(SYS_rt_sigprocmask, SIG_SETMASK, Arg(&before), 0, kSetSize);
   g_process->makes_porter.store(0);
 }
