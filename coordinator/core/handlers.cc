@@ -49,12 +49,6 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   Process& ended = run_.table.ProcessAt(process.index);
-  if (ended.porter != nullptr) {
-    // It has kept the descriptors open. That they are closed belongs to this moment, and those who
-    // learn of it learn of it together with the end.
-    ended.porter.reset();
-    return {.looks_again = true};
-  }
   const bool runs = run_.turn.IsIn(ended);
   moment.ns = std::max(moment.ns, ahead_.EndOfDebtNs(ended));
   const auto end = [this, process](Moment at) {
