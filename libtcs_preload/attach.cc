@@ -10,6 +10,7 @@
 
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/porter.h"
 #include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "shm/attach_protocol.h"
@@ -21,7 +22,7 @@ namespace {
 
 shm::ThreadSlot* g_slots = nullptr;
 
-constexpr int kWantedNotifyFd = 960;  // out of the way of programs that count descriptors from 0
+constexpr int kWantedFd = 960;  // out of the way of programs that count descriptors from 0
 
 int Connect() {
   sockaddr_un address{};
@@ -40,7 +41,7 @@ int Connect() {
 
 struct Received {
   shm::AttachReply reply{};
-  int fds[shm::kMostAttachFds] = {-1, -1, -1};
+  int fds[shm::kMostAttachFds] = {-1, -1, -1, -1};
 };
 
 Received Exchange(int socket, shm::AttachWants wants) {
@@ -101,9 +102,10 @@ void MapSlots(int fd) {
   g_slots = reinterpret_cast<shm::ThreadSlot*>(at);
 }
 
-void KeepNotifyFd(int fd) {
-  if (g_notify_fd >= 0) {  // the parent's
-    if (RawSyscall(SYS_dup3, fd, g_notify_fd, O_CLOEXEC) == g_notify_fd) {
+// Out of the way, as `kept`, which is the parent's before.
+void Keep(int fd, int& kept) {
+  if (kept >= 0) {
+    if (RawSyscall(SYS_dup3, fd, kept, O_CLOEXEC) == kept) {
       RawSyscall(SYS_close, fd);
       return;
     }
@@ -112,12 +114,12 @@ void KeepNotifyFd(int fd) {
   RawSyscall(SYS_prlimit64, 0, RLIMIT_NOFILE, 0, Arg(&limit));
   const long room = static_cast<long>(limit.rlim_cur) - 8;
   const long moved =
-      RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, room < kWantedNotifyFd ? room : kWantedNotifyFd);
+      RawSyscall(SYS_fcntl, fd, F_DUPFD_CLOEXEC, room < kWantedFd ? room : kWantedFd);
   if (moved >= 0) {
     RawSyscall(SYS_close, fd);
     fd = static_cast<int>(moved);
   }
-  g_notify_fd = fd;
+  kept = fd;
 }
 
 }  // namespace
@@ -134,7 +136,8 @@ void Attach(GuestThread& thread) {
   if (is_first) {
     if (g_header == nullptr) MapRun(received.fds[0]);
     MapSlots(received.fds[1]);
-    KeepNotifyFd(received.fds[2]);
+    Keep(received.fds[2], g_notify_fd);
+    if (received.fds[3] >= 0) Keep(received.fds[3], g_porter_fd);
     RawSyscall(SYS_close, received.fds[0]);
     RawSyscall(SYS_close, received.fds[1]);
   }
@@ -142,6 +145,7 @@ void Attach(GuestThread& thread) {
   thread.slot = g_slots + received.reply.slot;
   thread.index = received.reply.slot;
   AllowPreemption();
+  if (is_first && g_header->has_porters != 0) MakePorter();
   AwaitFirstDispatch(thread);
 }
 

@@ -48,17 +48,20 @@ long CloseRange(unsigned first, unsigned last, unsigned flags) {
   if ((flags & CLOSE_RANGE_CLOEXEC) == 0) {
     for (unsigned fd = first; fd <= last && fd < 1024; ++fd) ForgetTimer(static_cast<int>(fd));
   }
-  const long own = g_notify_fd;
-  if (own < 0 || own < static_cast<long>(first) || own > static_cast<long>(last)) {
-    return RawSyscall(SYS_close_range, first, last, static_cast<int>(flags));
+  // Around the shim's own.
+  const bool in_order = g_notify_fd < g_porter_fd;
+  const long own[] = {in_order ? g_notify_fd : g_porter_fd, in_order ? g_porter_fd : g_notify_fd};
+  long from = first, result = 0;
+  bool skips = false;
+  for (const long fd : own) {
+    if (fd < from || fd > static_cast<long>(last)) continue;
+    skips = true;
+    if (from < fd) result = RawSyscall(SYS_close_range, from, fd - 1, static_cast<int>(flags));
+    if (result != 0) return result;
+    from = fd + 1;
   }
-  long result = 0;
-  if (static_cast<long>(first) < own)
-    result = RawSyscall(SYS_close_range, first, own - 1, static_cast<int>(flags));
-  if (result == 0 && own < static_cast<long>(last)) {
-    result = RawSyscall(SYS_close_range, own + 1, last, static_cast<int>(flags));
-  }
-  return result;
+  if (skips && from > static_cast<long>(last)) return 0;
+  return RawSyscall(SYS_close_range, from, last, static_cast<int>(flags));
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ using shm::WakeReason;
 // timeout the kernel also never restarts the wait behind our back after a signal handler.
 constexpr timespec kGateTurn{1, 0};
 constexpr std::int64_t kMostGateNs = 10'000;
-constexpr std::int64_t kMostExchangeNs = 50'000;  // of the thread's own, both ways
+constexpr std::int64_t kMostExchangeNs = 50'000;    // of the thread's own, both ways
+constexpr std::int64_t kMostAttachNs = 20'000'000;  // where a porter is made on the way
 // More than a short system call takes, or one of its two ways.
 constexpr std::int64_t kMostCallNs = 1'000;
 constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's begins with it
@@ -146,23 +147,24 @@ void Notify(const GuestThread& thread) {
 }
 
 // What the way to the gate and out of it has taken, and the time that others had meanwhile.
-void TakeOutWait(shm::ClockPage& page, const Charged& at_notification) {
+void TakeOutWait(shm::ClockPage& page, const Charged& at_notification, std::int64_t most_ns) {
   const OwnCpu own = ReadOwnCpu(page);
   const shm::ClockReading now = shm::ReadClock(page);
   const bool goes_on = shm::DispatchNumber(now.executed_word) == at_notification.dispatch;
   shm::LeaveGate(page, now, goes_on ? at_notification.cpu_ns : page.base_cpu_ns,
-                 own.ns + own.way_ns, kMostExchangeNs);
+                 own.ns + own.way_ns, most_ns);
 }
 
 // False if a signal handler has run and the gate is still shut.
-bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charged) {
+bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charged,
+                std::int64_t most_ns = kMostExchangeNs) {
   for (;;) {
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
     if (gate == shm::kGateOpen || IsShutDown()) {
       if (slot.wake_reason.load(std::memory_order_relaxed) == WakeReason::kCutOff) {
         DieWithoutCoordinator("it has closed the connection to it");
       }
-      if (OnlyCpuClockTells(slot.clock)) TakeOutWait(slot.clock, charged);
+      if (OnlyCpuClockTells(slot.clock)) TakeOutWait(slot.clock, charged, most_ns);
       return true;
     }
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
@@ -296,6 +298,8 @@ bool IsAtGate(const GuestThread& thread) {
   return thread.depth > 0 && thread.slot->gate.load(std::memory_order_acquire) != shm::kGateOpen;
 }
 
-void AwaitFirstDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false, {}); }
+void AwaitFirstDispatch(GuestThread& thread) {
+  WaitAtGate(*thread.slot, false, {}, g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
+}
 
 }  // namespace tcs::preload

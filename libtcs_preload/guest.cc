@@ -8,6 +8,7 @@
 #include "libtcs_preload/attach.h"
 #include "libtcs_preload/environment.h"
 #include "libtcs_preload/exchange.h"
+#include "libtcs_preload/porter.h"
 #include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/vdso.h"
@@ -18,7 +19,7 @@ namespace tcs::preload {
 namespace {
 
 // Stands in until the constructor has run, and where the page cannot be had.
-ProcessState g_unprotected_state{ProcessState::kFresh, false};
+ProcessState g_unprotected_state{};
 
 void ProtectProcessState() {
   const long page =
@@ -42,6 +43,7 @@ __thread GuestThread t_thread __attribute__((tls_model("initial-exec")));
 const shm::RunMemory* g_run = nullptr;
 const shm::RunHeader* g_header = nullptr;
 int g_notify_fd = -1;
+int g_porter_fd = -1;
 
 GuestThread* CurrentSlow() {
   if (g_process->mode == ProcessState::kPassThrough || t_thread.attaching) return nullptr;
@@ -80,6 +82,7 @@ bool BeganInUnseenCall(GuestThread& thread) {
 
 void CountCall(GuestThread& thread) {
   if (g_header->gates_only != 0) {
+    KeepPorter();
     const bool is_fixed = g_header->accounting == shm::Accounting::kFixed;
     if (is_fixed || thread.in_call || IsAtGate(thread) || BeganInUnseenCall(thread)) {
       AwaitTurn(thread);

@@ -18,7 +18,8 @@ inline constexpr char kAliasesVariable[] = "TCS_ALIASES";
 enum class AttachWants : std::uint32_t {
   kSlot = 0,  // of a further thread
   // A slot, and three descriptors: the run's memory, which cannot be written; the process's; and
-  // the write end of the pipe for its notifications.
+  // the write end of the pipe for its notifications. Where processes have porters a fourth: the
+  // socket that its porter answers at.
   kAll = 1,
   kDdsArea = 2,  // one descriptor (dds_exchange.h), of a process that has joined
 };
@@ -34,7 +35,7 @@ struct AttachHello {
 };
 static_assert(sizeof(AttachHello) == 32);
 
-inline constexpr int kMostAttachFds = 3;
+inline constexpr int kMostAttachFds = 4;
 
 struct AttachReply {
   std::uint64_t magic;
@@ -50,5 +51,22 @@ struct PipeMessage {
   std::uint32_t slot;
 };
 static_assert(sizeof(PipeMessage) == 4);
+
+// Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters)
+// each process has a porter: a process beside it that shares its table of descriptors, and sends
+// the coordinator copies of those that it asks for. One answer for each request, over a
+// SOCK_SEQPACKET socket, the copy beside it. The porter's first message is an answer with the
+// serial 0: who sent it is the porter, as the kernel says.
+struct PorterRequest {
+  std::int32_t number;
+  std::uint32_t serial;  // never 0
+};
+static_assert(sizeof(PorterRequest) == 8);
+
+struct PorterAnswer {
+  std::int32_t error;  // an errno; 0: the copy has come with it
+  std::uint32_t serial;
+};
+static_assert(sizeof(PorterAnswer) == 8);
 
 }  // namespace tcs::shm

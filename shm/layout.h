@@ -308,8 +308,10 @@ struct alignas(64) RunHeader {
   // 1: only their gates keep threads that are not dispatched from running on: each call that the
   // shim sees begins with kCall.
   std::uint32_t gates_only;
-  std::uint32_t preempts;  // 1: the coordinator sends kPreemptionSignal
-  std::uint64_t reserved[6];
+  std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
+  std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
+  std::uint32_t reserved_too;
+  std::uint64_t reserved[5];
 };
 static_assert(sizeof(RunHeader) == 128);
 static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
+#include "coordinator/tasks/borrowed.h"
 
 namespace tcs {
 
@@ -14,7 +14,7 @@ awaited::Descriptors DescriptorWaits::Watch(const Task& task, const shm::WaitFd*
   awaited::Descriptors watched{.number = ++wait_counter_, .order = task.fds_order};
   const Subject subject = SubjectOf(task, watched);
   for (std::size_t i = 0; i < count; ++i) {
-    UniqueFd fd(DuplicateFd(task.process->pidfd.get(), fds[i].fd));
+    UniqueFd fd = CopyOfDescriptor(*task.process, fds[i].fd);
     if (!fd) continue;
     const std::uint32_t events = fds[i].events | EPOLLONESHOT;
     if (!reactor_.Modify(fd.get(), events, subject)) {

@@ -21,25 +21,18 @@ namespace tcs {
 
 namespace {
 
-// The process that a descriptor of ours stands for: a pidfd, or its folder in /proc; 0: none.
-pid_t ProcessOfFd(int fd) {
-  std::ifstream info("/proc/self/fdinfo/" + std::to_string(fd));
+// The process that a thread's descriptor stands for: a pidfd, or its folder in /proc; 0: none.
+pid_t ProcessOfFd(pid_t tid, int number) {
+  const std::string thread = "/proc/" + std::to_string(tid), fd = std::to_string(number);
+  std::ifstream info(thread + "/fdinfo/" + fd);
   for (std::string line; std::getline(info, line);) {
     if (line.rfind("Pid:", 0) == 0) return atoi(line.c_str() + 4);
   }
   char path[64];
-  const ssize_t n =
-      readlink(("/proc/self/fd/" + std::to_string(fd)).c_str(), path, sizeof path - 1);
+  const ssize_t n = readlink((thread + "/fd/" + fd).c_str(), path, sizeof path - 1);
   constexpr char kProc[] = "/proc/";
   path[std::max<ssize_t>(n, 0)] = '\0';
   return strncmp(path, kProc, sizeof kProc - 1) == 0 ? atoi(path + sizeof kProc - 1) : 0;
-}
-
-// The same of a client's.
-pid_t ProcessOfFd(pid_t client, int number) {
-  const UniqueFd pidfd(OpenPidfd(client));
-  const UniqueFd fd(pidfd ? DuplicateFd(pidfd.get(), number) : -1);
-  return fd ? ProcessOfFd(fd.get()) : 0;
 }
 
 bool MaySignal(const Credentials& sender, pid_t receiver) {
@@ -81,7 +74,7 @@ std::int64_t GuardedCalls::SignalOurs(pid_t caller, pid_t receiver, int signal) 
   const pid_t group = receiver == 0 ? getpgid(caller) : -receiver;
   bool found = false, sent = false;
   for (const pid_t pid : DescendantsOf(getpid())) {
-    if (IsGuarded(pid)) continue;
+    if (IsGuarded(pid) || is_beside_(pid)) continue;
     if (receiver == -1 ? pid == caller : getpgid(pid) != group) continue;
     found = true;
     sent |= MaySignal(sender, pid) && (signal == 0 || SendAs(caller, sender, pid, signal));
@@ -105,7 +98,7 @@ std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& cal
     case SYS_pidfd_send_signal:
     case SYS_pidfd_getfd:
     case SYS_process_madvise:
-      return refused_if(IsGuarded(ProcessOfFd(ProcessOfThread(call.tid), first)));
+      return refused_if(IsGuarded(ProcessOfFd(call.tid, first)));
     case SYS_ptrace:  // its parent would be told of each signal, and does not ask
       return refused_if(call.args[0] == PTRACE_TRACEME &&
                         IsGuarded(ParentOf(ProcessOfThread(call.tid))));

@@ -8,6 +8,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,8 +20,12 @@ namespace tcs {
 
 class GuardedCalls {
  public:
-  // tcsim's own processes.
-  void Guard(std::vector<pid_t> own) { guarded_ = std::move(own); }
+  // tcsim's own processes; and who says of others that they are beside programs, as porters: no
+  // signal is meant for those.
+  void Guard(std::vector<pid_t> own, std::function<bool(pid_t)> is_beside) {
+    guarded_ = std::move(own);
+    is_beside_ = std::move(is_beside);
+  }
   const std::vector<pid_t>& guarded() const { return guarded_; }
 
   // The kernel carries the call out, unless it is about one of them.
@@ -35,6 +40,7 @@ class GuardedCalls {
   std::optional<std::int64_t> InsteadOfKernel(const TrappedCall& call) const;
 
   std::vector<pid_t> guarded_;
+  std::function<bool(pid_t)> is_beside_;
 };
 
 }  // namespace tcs

@@ -10,6 +10,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/timer_descriptor.h"
 #include "coordinator/processes/usage_book.h"
+#include "coordinator/tasks/borrowed.h"
 
 namespace tcs {
 
@@ -35,7 +36,7 @@ bool IsAwaited(const Process& process) {
 }  // namespace
 
 UniqueFd TimerCalls::DescriptorOf(const Process& process, int number) {
-  UniqueFd fd(DuplicateFd(process.pidfd.get(), number));
+  UniqueFd fd = CopyOfDescriptor(process, number);
   return fd && IsTimerDescriptor(fd.get()) ? std::move(fd) : UniqueFd();
 }
 

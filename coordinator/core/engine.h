@@ -84,6 +84,7 @@ class Engine {
  private:
   // Set-up (setup.cc). Empty on success, else one sentence.
   std::string Prepare();
+  void TellOfMissingRights(bool may_have_levels) const;
   std::string PrepareMemory();
   std::string PrepareSignals();
   std::string PrepareHostCpu();

@@ -40,8 +40,10 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 std::string Engine::Prepare() {
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
+  const std::string no_real_time = WhyNoRealTime();
   if (run_.gates_only && !TrapsHoldSignals()) {
-    return WhyNoRealTime() + ", and to run without it takes Linux 5.19 or newer";
+    return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
+           ", and to run without it takes Linux 5.19 or newer";
   }
   if (std::string error = world_.Open(run_.scenario, dds_.ends()); !error.empty()) return error;
   std::string taken;
@@ -54,11 +56,8 @@ std::string Engine::Prepare() {
   if (run_.gates_only) {
     IgnoreRealTimeLimits();
     BeWokenInTime();
-    if (run_.options.on_notice) {
-      run_.options.on_notice(
-          "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
-          "longer (`tcsim doctor` says more)");
-    }
+    UseNoLevels();
+    TellOfMissingRights(no_real_time.empty());
   } else {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
@@ -80,6 +79,28 @@ std::string Engine::Prepare() {
     ++inlet;
   }
   return PrepareHostCpu();
+}
+
+void Engine::TellOfMissingRights(bool may_have_levels) const {
+  if (!run_.options.on_notice) return;
+  if (!may_have_levels) {
+    run_.options.on_notice(
+        "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
+        "longer (`tcsim doctor` says more)");
+  }
+  if (run_.has_porters) {
+    run_.options.on_notice(
+        std::string("pidfd_getfd is refused here, so that a process beside each program hands over "
+                    "its descriptors: the run takes longer") +
+        (may_have_levels ? ", without SCHED_FIFO, which is permitted" : "") +
+        " (`tcsim doctor` says more)");
+  }
+  if (run_.IsFixed() && WhyNoFixedLayout() != 0) {
+    run_.options.on_notice(
+        "addresses are others in each run here, for personality is refused: programs that go by "
+        "them "
+        "do not repeat to the byte (`tcsim doctor` says more)");
+  }
 }
 
 std::string Engine::PrepareMemory() {
@@ -104,6 +125,7 @@ std::string Engine::PrepareMemory() {
   run_.header->coordinator_pid = getpid();
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.Preempts() ? 1 : 0;
+  run_.header->has_porters = run_.has_porters ? 1 : 0;
   return {};
 }
 
@@ -148,19 +170,17 @@ std::string Engine::PrepareHostCpu() {
   }
   if (std::string error = host_cpu_.Open(std::move(meter)); !error.empty()) return error;
   // As with any other process of ours.
-  const UniqueFd pidfd(OpenPidfd(host_cpu_.detector().pid()));
-  const UniqueFd fd(DuplicateFd(pidfd.get(), host_cpu_.detector().fired_fd()));
-  if (!fd && (errno == EPERM || errno == ENOSYS)) {
+  if (const int error = WhyNoLooksInto(host_cpu_.detector().pid()); error != 0) {
     return fmt::format(
-        "pidfd_getfd is refused here ({}), so that tcsim could not see when what programs wait for "
-        "is ready; `tcsim doctor` says how to allow it",
-        strerror(errno));
+        "tcsim may not look into processes of its own here ({}), so that it could not see what "
+        "programs wait for; `tcsim doctor` says how to allow it",
+        strerror(error));
   }
   reactor_.Add(host_cpu_.detector().fired_fd(), EPOLLIN, {Tag::kDetector});
   reactor_.Add(host_cpu_.detector().end_fd(), EPOLLIN, {Tag::kDetectorEnd});
   std::vector<pid_t> own = GuardsOf(getpid());
   own.insert(own.end(), {getpid(), host_cpu_.detector().pid()});
-  guard_.Guard(std::move(own));
+  guard_.Guard(std::move(own), [this](pid_t pid) { return run_.table.IsPorter(pid); });
   return {};
 }
 

@@ -44,19 +44,19 @@ int TryRealTime() {
   return WIFEXITED(status) ? WEXITSTATUS(status) : EPERM;
 }
 
-int TryDescriptors() {
+Finding TryDescriptors() {
   const pid_t child = fork();
-  if (child < 0) return errno;
+  if (child < 0) return JudgeDescriptors(errno, errno, TrapsHoldSignals());
   if (child == 0) {
     alarm(5);
     for (;;) pause();
   }
   const UniqueFd pidfd(OpenPidfd(child));
   const UniqueFd fd(pidfd ? DuplicateFd(pidfd.get(), 0) : -1);
-  const int error = fd ? 0 : errno;
+  const int descriptor_error = fd ? 0 : errno, memory_error = WhyNoLooksInto(child);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  return error;
+  return JudgeDescriptors(descriptor_error, memory_error, TrapsHoldSignals());
 }
 
 Finding TryShim(const std::string& path) {
@@ -132,7 +132,8 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       JudgeTsc(ReadFile("/proc/cpuinfo"),
                ReadFile("/sys/devices/system/clocksource/clocksource0/current_clocksource")),
       LookAtCpu(),
-      JudgeDescriptors(TryDescriptors()),
+      TryDescriptors(),
+      JudgeLayout(WhyNoFixedLayout()),
       JudgeLibc(gnu_get_libc_version()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),

@@ -121,14 +121,45 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated) {
           "give it a second processor, so that your terminal goes on"};
 }
 
-Finding JudgeDescriptors(int error) {
-  if (error == 0) return {"descriptors of clients", Verdict::kOk, "pidfd_getfd works", ""};
-  return {"descriptors of clients", Verdict::kMissing,
-          fmt::format("pidfd_getfd is refused: {}", strerror(error)),
-          error == ENOSYS
-              ? "use Linux 5.6 or later"
-              : "allow ptrace of own children: kernel.yama.ptrace_scope below 3, and no "
-                "seccomp profile in the way (docker: --cap-add SYS_PTRACE)"};
+Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates) {
+  constexpr char kName[] = "descriptors of clients";
+  if (memory_error != 0) {
+    return {kName, Verdict::kMissing,
+            fmt::format("tcsim may not look into its own children: {}", strerror(memory_error)),
+            "set kernel.yama.ptrace_scope below 3, and allow process_vm_readv where a seccomp "
+            "profile is in the way (docker: --cap-add SYS_PTRACE)"};
+  }
+  if (descriptor_error == 0) {
+    return {
+        kName, Verdict::kOk,
+        "pidfd_getfd works; without it a process beside each program would hand them over, with "
+        "the same results and more slowly",
+        ""};
+  }
+  const std::string refused =
+      fmt::format("pidfd_getfd is refused ({})", strerror(descriptor_error));
+  const std::string how = "docker: --cap-add SYS_PTRACE, or a seccomp profile that allows it";
+  if (!has_gates) {
+    return {kName, Verdict::kMissing, refused + ", and to run without it takes Linux 5.19", how};
+  }
+  return {kName, Verdict::kWarning,
+          refused +
+              ": a process beside each program hands them over, and SCHED_FIFO is not used, "
+              "with the same results",
+          "with it runs take less time: " + how};
+}
+
+Finding JudgeLayout(int error) {
+  constexpr char kName[] = "address layout";
+  if (error == 0) {
+    return {kName, Verdict::kOk, "the same in each run under `--accounting fixed`", ""};
+  }
+  return {
+      kName, Verdict::kWarning,
+      fmt::format("another one in each run: personality is refused ({})", strerror(error)),
+      "programs that go by addresses (the order of pointers, say) do not repeat to the byte under "
+      "`--accounting fixed`; allow personality(ADDR_NO_RANDOMIZE), as docker's "
+      "--security-opt seccomp=FILE can"};
 }
 
 Finding JudgeLibc(const std::string& version) {

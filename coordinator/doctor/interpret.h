@@ -21,8 +21,11 @@ Finding JudgeTrap(int error);
 Finding JudgeTsc(const std::string& cpuinfo, const std::string& clocksource);
 // `cpu`: the one that tcs takes; `isolated`: /sys/devices/system/cpu/isolated, such as "2-3,6".
 Finding JudgeCpu(int cpu, int allowed, const std::string& isolated);
-// `error`: the errno of taking a descriptor out of an own child (pidfd_getfd); 0 if it worked.
-Finding JudgeDescriptors(int error);
+// Errnos, 0 if it worked: of taking a descriptor out of an own child (pidfd_getfd), and of reading
+// its memory (process_vm_readv). `has_gates` as above.
+Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates);
+// `error`: the errno of asking for a process without address-space randomisation; 0 if it worked.
+Finding JudgeLayout(int error);
 // `version`: of the C library, such as "2.36".
 Finding JudgeLibc(const std::string& version);
 // `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -22,7 +23,7 @@
 #include <optional>
 #include <system_error>
 
-#include "coordinator/os/pipe.h"
+#include "coordinator/os/passed_fd.h"
 #include "coordinator/os/say.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
@@ -52,6 +53,8 @@ std::uint64_t CalibrateTsc() {
 
 namespace {
 
+bool uses_no_levels = false;
+
 std::string TakeCoordinatorLevel() {
   // The highest of the levels is one that clients get.
   const sched_param highest{static_cast<int>(Level::kKernelOnly)};
@@ -79,7 +82,10 @@ std::string WhyNoRealTime() {
   return why;
 }
 
+void UseNoLevels() { uses_no_levels = true; }
+
 bool SetLevel(pid_t tid, Level level) {
+  if (uses_no_levels) return false;
   const sched_param param{static_cast<int>(level)};
   return sched_setscheduler(tid, SCHED_FIFO, &param) == 0;
 }
@@ -289,6 +295,18 @@ int DuplicateFd(int pidfd, int fd) {
   return static_cast<int>(syscall(SYS_pidfd_getfd, pidfd, fd, 0));
 }
 
+int WhyNoDuplicates() {
+  const UniqueFd own(OpenPidfd(getpid()));
+  const UniqueFd copy(own ? DuplicateFd(own.get(), own.get()) : -1);
+  return copy ? 0 : errno;
+}
+
+int WhyNoLooksInto(pid_t fork) {
+  static const char there = 1;
+  char found;
+  return ReadMemory(fork, reinterpret_cast<std::uint64_t>(&there), &found, 1) ? 0 : errno;
+}
+
 std::vector<pid_t> ChildrenOf(pid_t pid) {
   std::vector<pid_t> children;
   for (const pid_t tid : ThreadsOf(pid)) {
@@ -301,55 +319,64 @@ std::vector<pid_t> ChildrenOf(pid_t pid) {
 
 namespace {
 
-// The child's half of the hand-over of its trap: says the descriptor's number, and waits until the
-// parent has taken it.
-void HandOverTrap(int to_parent, int from_parent, const std::vector<pid_t>& guarded) {
-  const UniqueFd listener(InstallTrap(guarded));
-  const int number = listener.get();
+// The child's half of the hand-over of its trap: sends the descriptor, or why there is none, and
+// waits until the parent has closed its end.
+void HandOverTrap(int to_parent, const SpawnRequest& request) {
+  const UniqueFd listener(InstallTrap(request.guarded, request.traps_ends));
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
-  if (syscall(SYS_write, to_parent, &number, sizeof number, 0, 0, own) !=
-      static_cast<long>(sizeof number)) {
-    _exit(127);
-  }
-  char taken;
-  while (syscall(SYS_read, from_parent, &taken, 1, 0, 0, own) < 0 && errno == EINTR) {
+  int error = listener ? 0 : errno;
+  PassedMessage message(&error, sizeof error, listener.get());
+  if (syscall(SYS_sendmsg, to_parent, message.get(), MSG_NOSIGNAL, 0, 0, own) < 0) _exit(127);
+  char none;
+  while (syscall(SYS_read, to_parent, &none, 1, 0, 0, own) < 0 && errno == EINTR) {
   }
 }
 
-UniqueFd TakeOverTrap(pid_t child, int from_child) {
-  int listener = -1;
-  if (read(from_child, &listener, sizeof listener) != sizeof listener || listener < 0) return {};
-  const UniqueFd pidfd(OpenPidfd(child));
-  return pidfd ? UniqueFd(DuplicateFd(pidfd.get(), listener)) : UniqueFd();
+// None: errno says why.
+UniqueFd TakeOverTrap(int from_child) {
+  int error = ECHILD;
+  Passed passed = ReceivePassed(from_child, &error, sizeof error, 0);
+  errno = error;
+  return std::move(passed.fd);
 }
 
 }  // namespace
+
+int WhyNoFixedLayout() {
+  constexpr unsigned long kTellOnly = 0xffffffff;
+  char randomizes = 0;
+  std::ifstream("/proc/sys/kernel/randomize_va_space") >> randomizes;
+  if (randomizes == '0') return 0;
+  const int own = personality(kTellOnly);
+  if (own < 0 || personality(static_cast<unsigned>(own) | ADDR_NO_RANDOMIZE) < 0) return errno;
+  personality(static_cast<unsigned>(own));
+  return 0;
+}
 
 Spawned Spawn(const SpawnRequest& request) {
   std::vector<char*> argv;
   for (const std::string& word : request.command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
-  std::optional<Pipe> up = Pipe::Make(), down = Pipe::Make();
-  if (!up.has_value() || !down.has_value()) return {};
+  std::optional<SocketPair> sockets = SocketPair::Make();
+  if (!sockets.has_value()) return {};
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid != 0) {
-    up->write_end.Reset();
+    sockets->theirs.Reset();
     Spawned spawned{pid, {}};
     if (pid > 0) {
       // The child comes this far at our own level; for the rest it waits for its dispatch. The
       // level is set here, not in the child, which next runs when it has been given another one.
-      spawned.trap = TakeOverTrap(pid, up->read_end.get());
+      spawned.trap = TakeOverTrap(sockets->ours.get());
       SetLevel(pid, Level::kWaiting);
     }
     return spawned;
   }
-  up->read_end.Reset();
-  down->write_end.Reset();
+  sockets->ours.Reset();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  HandOverTrap(up->write_end.get(), down->read_end.get(), request.guarded);
+  HandOverTrap(sockets->theirs.get(), request);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

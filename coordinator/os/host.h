@@ -40,6 +40,9 @@ std::string WhyNoRealTime();
 // False where it is not permitted.
 bool SetLevel(pid_t tid, Level level);
 
+// From now on SetLevel does nothing in this process and its forks, as where it is not permitted.
+void UseNoLevels();
+
 // The calling thread runs only when hardly anybody else on its CPU wants to. Everybody may do that.
 void RunOnlyWhenIdle();
 
@@ -116,9 +119,20 @@ bool IsThreadOf(pid_t pid, pid_t tid);
 bool DescendsFrom(pid_t pid, pid_t ancestor);
 
 int OpenPidfd(pid_t pid);
+// A copy of another process's descriptor: pidfd_getfd. -1: errno is set.
 int DuplicateFd(int pidfd, int fd);
+// The errno by which the kernel refuses pidfd_getfd to this process, whoever is asked about, as a
+// container's seccomp profile does; 0 if it does not.
+int WhyNoDuplicates();
+// The errno by which the kernel keeps this process from what is in the memory of a fork of its; 0
+// if it does not.
+int WhyNoLooksInto(pid_t fork);
 
 std::vector<pid_t> ChildrenOf(pid_t pid);
+
+// The errno by which the kernel refuses SpawnRequest::fixed_layout; 0 if it does not, or gives all
+// processes the same layout.
+int WhyNoFixedLayout();
 
 struct SpawnRequest {
   std::vector<std::string> command;
@@ -127,11 +141,13 @@ struct SpawnRequest {
   std::string log_stdout, log_stderr;  // empty: inherited
   bool fixed_layout = false;           // no address-space randomisation
   std::vector<pid_t> guarded;          // processes that it is not to touch
+  bool traps_ends = false;             // that it ends is trapped, too (trap.h)
 };
 
 struct Spawned {
   pid_t pid = -1;  // -1: errno is set
-  UniqueFd trap;   // where its futex calls arrive, and those of all that it starts; none: nowhere
+  // Where its futex calls arrive, and those of all that it starts; none: nowhere, errno says why.
+  UniqueFd trap;
 };
 
 // The new process, at Level::kWaiting on the coordinator's CPU, killed with the coordinator.

@@ -1,19 +1,67 @@
 #include "coordinator/os/open_files.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <linux/kcmp.h>
+#include <sys/epoll.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
 #include <string>
 
+#include "coordinator/os/unique_fd.h"
+
 namespace tcs {
 
-bool IsSameFile(int one, int other) {
+namespace {
+
+// Of kcmp's two arguments that are of this process: 0 if they are the same; -1: errno is set.
+long CompareOwn(int type, int one, std::uint64_t other) {
   const pid_t own = getpid();
-  return syscall(SYS_kcmp, own, own, KCMP_FILE, one, other) == 0;
+  return syscall(SYS_kcmp, own, own, type, one, other);
+}
+
+// As the seccomp profile does that Docker has for all containers.
+bool IsRefused(long compared) { return compared < 0 && (errno == EPERM || errno == ENOSYS); }
+
+// What is in an epoll set is known there by its open file and its number: a second one that is the
+// same in both is refused.
+bool IsInSet(int epoll_fd, int fd) {
+  epoll_event none{};
+  if (epoll_ctl(epoll_fd, EPOLL_CTL_ADD, fd, &none) != 0) return errno == EEXIST;
+  epoll_ctl(epoll_fd, EPOLL_CTL_DEL, fd, nullptr);
+  return false;
+}
+
+}  // namespace
+
+bool IsSameFileBySet(int one, int other) {
+  const UniqueFd set(epoll_create1(EPOLL_CLOEXEC)), number(fcntl(one, F_DUPFD_CLOEXEC, 0));
+  epoll_event none{};
+  if (epoll_ctl(set.get(), EPOLL_CTL_ADD, number.get(), &none) != 0) return false;
+  // The entry stays: its file is still open.
+  return dup3(other, number.get(), O_CLOEXEC) >= 0 && IsInSet(set.get(), number.get());
+}
+
+// In a child, whose descriptors can have any number.
+bool IsAboutBySet(int epoll_fd, const EpollEntry& entry, int fd) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const int set = fcntl(epoll_fd, F_DUPFD_CLOEXEC, entry.fd + 1);
+    const bool is_placed = set >= 0 && (fd == entry.fd || dup2(fd, entry.fd) >= 0);
+    _exit(is_placed && IsInSet(set, entry.fd) ? 0 : 1);
+  }
+  int status = 1;
+  return child > 0 && waitpid(child, &status, 0) == child && status == 0;
+}
+
+bool IsSameFile(int one, int other) {
+  const long compared = CompareOwn(KCMP_FILE, one, static_cast<std::uint64_t>(other));
+  return compared == 0 || (IsRefused(compared) && IsSameFileBySet(one, other));
 }
 
 std::vector<EpollEntry> EntriesOf(int epoll_fd) {
@@ -29,10 +77,10 @@ std::vector<EpollEntry> EntriesOf(int epoll_fd) {
 }
 
 bool IsAbout(int epoll_fd, const EpollEntry& entry, int fd) {
-  const pid_t own = getpid();
   const kcmp_epoll_slot slot{static_cast<std::uint32_t>(epoll_fd),
                              static_cast<std::uint32_t>(entry.fd), 0};
-  return syscall(SYS_kcmp, own, own, KCMP_EPOLL_TFD, fd, &slot) == 0;
+  const long compared = CompareOwn(KCMP_EPOLL_TFD, fd, reinterpret_cast<std::uint64_t>(&slot));
+  return compared == 0 || (IsRefused(compared) && IsAboutBySet(epoll_fd, entry, fd));
 }
 
 bool IsAnonymous(pid_t pid, int fd, std::string_view kind) {

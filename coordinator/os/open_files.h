@@ -11,8 +11,10 @@
 
 namespace tcs {
 
-// Descriptors of one open file, however they were copied. False where the kernel does not say.
+// Descriptors of one open file, however they were copied. Where the kernel refuses to compare them
+// (kcmp) by the second way, which knows only files that can be polled.
 bool IsSameFile(int one, int other);
+bool IsSameFileBySet(int one, int other);
 
 struct EpollEntry {
   int fd = -1;               // as it was when it was added, in the process that added it
@@ -21,8 +23,9 @@ struct EpollEntry {
 // Empty for what is no epoll set.
 std::vector<EpollEntry> EntriesOf(int epoll_fd);
 
-// Whether `fd` is the open file that the set's entry is about.
+// Whether `fd` is the open file that the set's entry is about. The second way forks.
 bool IsAbout(int epoll_fd, const EpollEntry& entry, int fd);
+bool IsAboutBySet(int epoll_fd, const EpollEntry& entry, int fd);
 
 // Whether the process's descriptor is a file without a name of that kind, for example kEpollSet. No
 // file with a name can be taken for one: those begin with a slash.

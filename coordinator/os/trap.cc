@@ -57,6 +57,7 @@ constexpr std::uint32_t kTrapped[] = {
 
 // The shim's own, too.
 constexpr std::uint32_t kExecutions[] = {SYS_execve, SYS_execveat};
+constexpr std::uint32_t kEnd = SYS_exit_group;
 
 // As a jump over the given number of instructions where the value just loaded is, or is not, `k`.
 sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
@@ -85,12 +86,12 @@ sock_filter LoadArgument(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
 }
 
-// What programs of this architecture call, after the number was loaded.
-std::vector<sock_filter> NativeProgram(bool with_executions) {
+// What programs of this architecture call, after the number was loaded. The calls in `unmarked` are
+// trapped whoever makes them.
+std::vector<sock_filter> NativeProgram(const std::vector<std::uint32_t>& unmarked) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
   std::vector<std::uint32_t> trapped(std::begin(kTrapped), std::end(kTrapped));
-  if (with_executions)
-    trapped.insert(trapped.end(), std::begin(kExecutions), std::end(kExecutions));
+  trapped.insert(trapped.end(), unmarked.begin(), unmarked.end());
   const std::size_t count = trapped.size();
   std::vector<sock_filter> program{
       JumpIfEqual(kNuma, 0, 1),
@@ -142,7 +143,8 @@ std::vector<sock_filter> NativeProgram(bool with_executions) {
   return program;
 }
 
-std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, bool with_executions) {
+std::vector<sock_filter> Program(const std::vector<pid_t>& guarded,
+                                 const std::vector<std::uint32_t>& unmarked) {
   constexpr std::uint32_t kX32 = 0x40000000;  // a third table of numbers, which nobody uses
   const std::vector<sock_filter> of_32_bits = Protection(CallTable::kOf32Bits, guarded);
   std::vector<sock_filter> program{
@@ -160,7 +162,7 @@ std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, bool with_ex
   program.push_back({BPF_JMP | BPF_JGE | BPF_K, 0, 1, kX32});
   program.push_back(Return(SECCOMP_RET_ERRNO | ENOSYS));
   append(Protection(CallTable::kNative, guarded));
-  append(NativeProgram(with_executions));
+  append(NativeProgram(unmarked));
   return program;
 }
 
@@ -175,11 +177,14 @@ bool TrapsHoldSignals() {
          errno == EFAULT;
 }
 
-int InstallTrap(const std::vector<pid_t>& guarded) {
+int InstallTrap(const std::vector<pid_t>& guarded, bool traps_ends) {
   // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
   // it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
-  std::vector<sock_filter> program = Program(guarded, !has_level);
+  std::vector<std::uint32_t> unmarked;
+  if (!has_level) unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
+  if (traps_ends) unmarked.push_back(kEnd);
+  std::vector<sock_filter> program = Program(guarded, unmarked);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {
     return static_cast<int>(
@@ -198,6 +203,8 @@ bool IsExecution(const TrappedCall& call) {
   return std::find(std::begin(kExecutions), std::end(kExecutions), call.number) !=
          std::end(kExecutions);
 }
+
+bool IsEnd(const TrappedCall& call) { return static_cast<std::uint32_t>(call.number) == kEnd; }
 
 std::optional<TrappedCall> ReceiveTrapped(int listener) {
   seccomp_notif notification{};

@@ -22,8 +22,9 @@ struct TrappedCall {
 // Installs the filter in the calling process, which must be about to exec. It traps all futex
 // calls, and what else reads time, sleeps, waits or speaks of the scheduler (trap.cc has the list),
 // unless the shim made the call (shm::kOwnCallMark); and it keeps the program from the `guarded`
-// processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
-int InstallTrap(const std::vector<pid_t>& guarded);
+// processes (protection.h). `traps_ends`: also exit_group, whoever calls it. The descriptor at
+// which the calls arrive; -1: errno is set.
+int InstallTrap(const std::vector<pid_t>& guarded, bool traps_ends = false);
 
 // A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
 bool TrapsHoldSignals();
@@ -31,6 +32,9 @@ bool TrapsHoldSignals();
 // It executes another program. Trapped only where threads may be sent a signal by the coordinator,
 // which the other program would have no handler for.
 bool IsExecution(const TrappedCall& call);
+
+// It ends its process.
+bool IsEnd(const TrappedCall& call);
 
 // The next call that waits at `listener`; none if its thread has gone meanwhile.
 std::optional<TrappedCall> ReceiveTrapped(int listener);

@@ -103,6 +103,7 @@ std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
   const ClientSpec& client = *launch.spec;
   SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
+  request.traps_ends = run_.has_porters;
   const std::string socket_name = sockets_.Open();
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;

@@ -103,6 +103,11 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   const bool wants_all = hello.wants == shm::AttachWants::kAll;
   if (process.expelled) return false;
   if (process.link == nullptr && wants_all) Connect(process);
+  UniqueFd porters_end;
+  if (wants_all && run_.has_porters && !(porters_end = GivePorter(process))) {
+    Refuse(connection, "there is no descriptor left there for its porter");
+    return true;
+  }
   if (process.link == nullptr ||
       (task.slot < 0 && (task.slot = process.link->TakeSlot(task)) < 0)) {
     Refuse(connection, "there is no room for more threads");
@@ -114,9 +119,9 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   if (hello.tid == hello.pid) starts_anew_(process, moment);
   PlaceAtGate(task, moment.ns);
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
-                                        process.link->notify_fd()};
-  Accept(connection, static_cast<std::uint32_t>(task.slot),
-         wants_all ? std::span<const int>(fds) : std::span<const int>());
+                                        process.link->notify_fd(), porters_end.get()};
+  const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
+  Accept(connection, static_cast<std::uint32_t>(task.slot), std::span(fds, count));
   return true;
 }
 
@@ -148,6 +153,17 @@ void Registration::Connect(Process& process) {
   process.link = ProcessLink::Make();
   if (process.link == nullptr) return;
   parts_.reactor.Add(process.link->incoming_fd(), EPOLLIN, {Tag::kPipe, process.index});
+}
+
+// The end of a connection for the porter that it is about to make; none: errno is set.
+UniqueFd Registration::GivePorter(Process& process) {
+  process.porter.reset();  // of the program before
+  process.porter = Porter::Make([this, name = process.name] {
+    run_.Warn(name +
+              ": the process that hands over its descriptors (tcs-porter) was killed or stopped, "
+              "so that until the program's next call what it waits for takes real time");
+  });
+  return process.porter == nullptr ? UniqueFd() : process.porter->TakeClientsEnd();
 }
 
 // Ready for its first dispatch; or for the first of another program.

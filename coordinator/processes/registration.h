@@ -72,6 +72,7 @@ class Registration {
   Task& TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment);
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);
+  UniqueFd GivePorter(Process& process);
   void PlaceAtGate(Task& task, std::int64_t at_ns);
 
   const Parts parts_;

@@ -16,7 +16,12 @@
 
 namespace tcs {
 
-Borrowed::Borrowed(const Task& task, int fd) : fd_(DuplicateFd(task.process->pidfd.get(), fd)) {}
+UniqueFd CopyOfDescriptor(const Process& process, int number) {
+  if (process.porter != nullptr) return process.porter->CopyOf(number);
+  return UniqueFd(DuplicateFd(process.pidfd.get(), number));
+}
+
+Borrowed::Borrowed(const Task& task, int fd) : fd_(CopyOfDescriptor(*task.process, fd)) {}
 
 bool Borrowed::CanWait() const {
   struct stat status;

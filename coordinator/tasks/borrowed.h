@@ -11,6 +11,10 @@
 
 namespace tcs {
 
+// A copy of the process's descriptor; none: errno is set. Where porters hand them over
+// (os/porter.h) this waits for the process's.
+UniqueFd CopyOfDescriptor(const Process& process, int number);
+
 class Borrowed {
  public:
   Borrowed(const Task& task, int fd);

@@ -4,10 +4,12 @@
 
 namespace tcs {
 
-RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates)
+RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
+                   bool with_porters)
     : scenario(its_scenario),
       options(its_options),
       gates_only(only_gates),
+      has_porters(with_porters),
       table([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       root(scenario.drift_bound.ns(), scenario.duration.ns()),
       end_ns(scenario.duration.ns()) {}

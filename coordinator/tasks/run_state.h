@@ -22,11 +22,13 @@
 namespace tcs {
 
 struct RunState {
-  RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates);
+  RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
+           bool with_porters = false);
 
   const Scenario scenario;
   const RunOptions options;
-  const bool gates_only;  // there is no right to real-time priorities
+  const bool gates_only;   // there is no right to real-time priorities, or it is not used
+  const bool has_porters;  // each process has one (os/porter.h): pidfd_getfd is refused
   RunReport report;
 
   TaskTable table;

@@ -14,6 +14,7 @@
 
 #include "coordinator/host/host_thread.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/porter.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/policy/robot_scheduler.h"
@@ -117,6 +118,7 @@ struct Process {
   const ClientSpec* spec = nullptr;   // of a client
   pid_t pid = 0, parent = 0;
   UniqueFd pidfd;
+  std::unique_ptr<Porter> porter;  // null where there are none, and before its first attach
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;

@@ -1,5 +1,7 @@
 #include "coordinator/tasks/task_table.h"
 
+#include <algorithm>
+
 namespace tcs {
 
 Task& TaskTable::AddTask(pid_t tid) {
@@ -62,6 +64,12 @@ Task* TaskTable::Living(pid_t tid) const {
 Process* TaskTable::LivingProcess(pid_t pid) const {
   const auto found = by_pid_.find(pid);
   return found == by_pid_.end() ? nullptr : found->second;
+}
+
+bool TaskTable::IsPorter(pid_t pid) const {
+  return std::any_of(processes_.begin(), processes_.end(), [pid](const Process& process) {
+    return process.porter != nullptr && process.porter->Is(pid);
+  });
 }
 
 }  // namespace tcs

@@ -43,6 +43,8 @@ class TaskTable {
   // Null if none that lives has that number.
   Task* Living(pid_t tid) const;
   Process* LivingProcess(pid_t pid) const;
+  // It is the porter of one (os/porter.h).
+  bool IsPorter(pid_t pid) const;
 
   Task& At(int order) { return tasks_[static_cast<std::size_t>(order)]; }
   Process& ProcessAt(std::uint32_t index) { return processes_[index]; }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# ddsperf.sh BUILD sockets|endpoints [without_rights]: Debian's ddsperf, on two robots: each process ends by itself
-# with status 0 after its stated virtual duration, having seen its peer and what it had to. Also as somebody
-# without any rights, from copies that everybody may read.
+# ddsperf.sh BUILD sockets|endpoints [without_rights|in_container]: Debian's ddsperf, on two robots: each process ends by
+# itself with status 0 after its stated virtual duration, having seen its peer and what it had to. Also as somebody
+# without any rights, from copies that everybody may read, and where what Docker refuses is refused.
 set -euo pipefail
 build=$1 variant=$2 rights=${3:-}
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
@@ -12,8 +12,10 @@ if [[ -n $rights ]]; then
   ((EUID == 0)) || exit 77  # to have an own network, and give it up
   chmod 777 "$work"
   source "$(dirname -- "${BASH_SOURCE[0]}")/../as_nobody.sh"
-  install_for_everybody "$build" "$work"
-  run=("$build/bin/in_own_network" "${nobody[@]}" "$work/bin/tcsim")
+  install_for_everybody "$build" "$work" in_container_profile
+  contained=()
+  [[ $rights != in_container ]] || contained=("$work/bin/in_container_profile")
+  run=("$build/bin/in_own_network" "${nobody[@]}" "${contained[@]}" "$work/bin/tcsim")
 fi
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General>
   <Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces>
@@ -42,6 +44,7 @@ for name, client in json.load(open(sys.argv[1]))["clients"].items():
     assert seconds <= ended < seconds + 0.5, f"{name} ended at {ended} s"
 END
   [[ -z $rights ]] || grep -q 'SCHED_FIFO is not permitted here' "$work/said" || fail 'it had the right'
+  [[ $rights != in_container ]] || grep -q 'pidfd_getfd is refused here' "$work/said" || fail 'it was not refused'
   first=$(cat "$work/out/left-first.out.log") second=$(cat "$work/out/right-second.out.log")
 }
 

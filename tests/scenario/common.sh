@@ -3,6 +3,10 @@ set -euo pipefail
 build=$1
 source_root=$2
 tcsim=$build/bin/tcsim
+if [[ ${3:-} == in_container ]]; then
+  export TCS_BUILD=$build
+  tcsim=$source_root/tests/scenario/contained_tcsim.sh
+fi
 # The process that coordinates the run whose tcsim has this number: tcsim > its keeper > it.
 coordinator_of() { pgrep -P "$(pgrep -P "$1")"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }

@@ -11,6 +11,7 @@ cat > "$scratch/broker.conf" << END
 listener $port 127.0.0.1
 allow_anonymous true
 persistence false
+user $(id -un)
 END
 cat > "$scratch/robot.sh" << 'END'
 port=$1 scratch=$2

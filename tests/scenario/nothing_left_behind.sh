@@ -9,7 +9,8 @@ trap 'pkill -9 -f "$mark" || true' EXIT
 tcsim_pid() { echo "$tcsim_pid"; }
 keeper_pid() { pgrep -P "$tcsim_pid"; }
 coordinator_pid() { coordinator_of "$tcsim_pid"; }
-client_pid() { pgrep -P "$(coordinator_pid)" -f "^sh -c"; }
+# Not what hands over its descriptors in a container, which has its command line.
+client_pid() { ps -o pid=,comm= --ppid "$(coordinator_pid)" | awk '$2 == "sh" {print $1}'; }
 
 for victim in tcsim_pid:KILL keeper_pid:KILL coordinator_pid:KILL client_pid:KILL tcsim_pid:TERM tcsim_pid:HUP; do
   "$tcsim" exec -- sh -c "$program" 2>/dev/null &

@@ -67,10 +67,32 @@ TEST(Doctor, AnIsolatedProcessorIsFoundInTheKernelsList) {
   EXPECT_EQ(JudgeCpu(0, 1, "\n").verdict, Verdict::kWarning);
 }
 
-TEST(Doctor, RefusedDescriptorsSayWhoRefusesThem) {
-  EXPECT_EQ(JudgeDescriptors(0).verdict, Verdict::kOk);
-  EXPECT_NE(JudgeDescriptors(EPERM).mend.find("ptrace"), std::string::npos);
-  EXPECT_NE(JudgeDescriptors(ENOSYS).mend.find("5.6"), std::string::npos);
+TEST(Doctor, WherePidfdGetfdIsRefusedAProcessBesideEachProgramHandsDescriptorsOver) {
+  const Finding permitted = JudgeDescriptors(0, 0, false);
+  EXPECT_EQ(permitted.verdict, Verdict::kOk);
+  EXPECT_NE(permitted.found.find("would hand them over"), std::string::npos);
+  const Finding refused = JudgeDescriptors(EPERM, 0, true);
+  EXPECT_EQ(refused.verdict, Verdict::kWarning);
+  EXPECT_NE(refused.found.find("SCHED_FIFO is not used"), std::string::npos);
+  EXPECT_NE(refused.mend.find("SYS_PTRACE"), std::string::npos);
+  EXPECT_TRUE(CanRun({permitted, refused}));
+}
+
+TEST(Doctor, WithoutALookIntoChildrenNothingRunsAndNeitherOnAnOldKernelWithoutPidfdGetfd) {
+  const Finding blind = JudgeDescriptors(0, EPERM, true);
+  EXPECT_EQ(blind.verdict, Verdict::kMissing);
+  EXPECT_NE(blind.mend.find("ptrace_scope"), std::string::npos);
+  const Finding old = JudgeDescriptors(ENOSYS, 0, false);
+  EXPECT_EQ(old.verdict, Verdict::kMissing);
+  EXPECT_NE(old.found.find("5.19"), std::string::npos);
+}
+
+TEST(Doctor, AnAddressLayoutThatCannotBeFixedIsAWarning) {
+  EXPECT_EQ(JudgeLayout(0).verdict, Verdict::kOk);
+  const Finding random = JudgeLayout(EPERM);
+  EXPECT_EQ(random.verdict, Verdict::kWarning);
+  EXPECT_NE(random.found.find("personality is refused"), std::string::npos);
+  EXPECT_TRUE(CanRun({random}));
 }
 
 TEST(Doctor, AnOldCLibraryIsAWarning) {

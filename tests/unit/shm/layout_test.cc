@@ -19,6 +19,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
   EXPECT_EQ(offsetof(RunHeader, sync), 52u);
+  EXPECT_EQ(offsetof(RunHeader, has_porters), 76u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);

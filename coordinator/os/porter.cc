@@ -1,0 +1,140 @@
+#include "coordinator/os/porter.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/passed_fd.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr std::int64_t kMostWaitMs = 2'000;
+constexpr int kMostUnasked = 256;  // messages at a time: whoever floods is not listened to for ever
+
+std::int64_t NowMs() { return HostClockNs(CLOCK_MONOTONIC) / 1'000'000; }
+
+// False if none is ready by then.
+template <std::size_t count>
+bool PollUntil(pollfd (&fds)[count], std::int64_t until_ms) {
+  for (;;) {
+    const auto left_ms = static_cast<int>(std::max<std::int64_t>(0, until_ms - NowMs()));
+    const int ready = poll(fds, count, left_ms);
+    if (ready >= 0 || errno != EINTR) return ready > 0;
+  }
+}
+
+}  // namespace
+
+Porter::Porter(UniqueFd ours, UniqueFd theirs, std::function<void()> is_lost)
+    : socket_(std::move(ours)), clients_end_(std::move(theirs)), is_lost_(std::move(is_lost)) {}
+
+std::unique_ptr<Porter> Porter::Make(std::function<void()> is_lost) {
+  std::optional<SocketPair> sockets = SocketPair::Make();
+  const int on = 1;
+  if (!sockets.has_value() ||
+      setsockopt(sockets->ours.get(), SOL_SOCKET, SO_PASSCRED, &on, sizeof on) != 0) {
+    return nullptr;
+  }
+  return std::unique_ptr<Porter>(
+      new Porter(std::move(sockets->ours), std::move(sockets->theirs), std::move(is_lost)));
+}
+
+// A porter has said that it is there. Whoever else sends that is taken for one, and is killed like
+// one; but not who is not of this run.
+void Porter::Adopt(pid_t sender) {
+  if (sender <= 0 || !DescendsFrom(sender, getpid())) return;
+  Kill();
+  pidfd_.Reset(OpenPidfd(sender));
+  pid_ = pidfd_ ? sender : 0;
+}
+
+// What has come unasked: the first message of a new one. Answers that nobody waits for any more are
+// dropped.
+void Porter::Hear() {
+  for (int message = 0; message < kMostUnasked; ++message) {
+    shm::PorterAnswer answer{};
+    const Passed passed = ReceivePassed(socket_.get(), &answer, sizeof answer, MSG_DONTWAIT);
+    if (passed.size <= 0) return;
+    if (passed.size == sizeof answer && answer.serial == 0) Adopt(passed.sender);
+  }
+}
+
+bool Porter::Is(pid_t pid) {
+  Hear();
+  return pid_ != 0 && pid == pid_;
+}
+
+UniqueFd Porter::Await(std::uint32_t serial) {
+  const std::int64_t until_ms = NowMs() + kMostWaitMs;
+  for (;;) {
+    pollfd fds[] = {{socket_.get(), POLLIN, 0}, {pidfd_.get(), POLLIN, 0}};
+    if (NowMs() > until_ms || !PollUntil(fds, until_ms)) {
+      errno = ETIMEDOUT;
+      return {};
+    }
+    if ((fds[0].revents & POLLIN) == 0) {
+      errno = ESRCH;
+      return {};
+    }
+    shm::PorterAnswer answer{};
+    Passed passed = ReceivePassed(socket_.get(), &answer, sizeof answer, MSG_DONTWAIT);
+    if (passed.size == sizeof answer && answer.serial == 0) Adopt(passed.sender);
+    if (passed.size == 0 || (passed.size > 0 && answer.serial == 0)) {
+      errno = ESRCH;
+      return {};
+    }
+    if (passed.size != sizeof answer || answer.serial != serial) continue;
+    errno = answer.error != 0 ? answer.error : EBADF;
+    return std::move(passed.fd);
+  }
+}
+
+UniqueFd Porter::CopyOf(int number) {
+  Hear();
+  if (!pidfd_) {
+    errno = ESRCH;
+    return {};
+  }
+  if (++serial_ == 0) ++serial_;
+  const shm::PorterRequest request{number, serial_};
+  const bool is_sent =
+      send(socket_.get(), &request, sizeof request, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof request;
+  UniqueFd copy = is_sent ? Await(serial_) : UniqueFd();
+  if (copy || (is_sent && errno != ETIMEDOUT && errno != ESRCH)) return copy;
+  const int error = errno;
+  End();
+  is_lost_();
+  errno = error;
+  return {};
+}
+
+void Porter::End() {
+  Hear();
+  Kill();
+}
+
+void Porter::Kill() {
+  pid_ = 0;
+  const UniqueFd pidfd = std::move(pidfd_);
+  if (!pidfd) return;
+  syscall(SYS_pidfd_send_signal, pidfd.get(), SIGKILL, nullptr, 0);
+  pollfd gone[] = {{pidfd.get(), POLLIN, 0}};
+  PollUntil(gone, NowMs() + kMostWaitMs);
+  siginfo_t info;
+  waitid(P_PIDFD, static_cast<id_t>(pidfd.get()), &info, WEXITED | WNOHANG | __WALL);
+}
+
+}  // namespace tcs

@@ -1,0 +1,108 @@
+#include "coordinator/os/porter.h"
+
+#include <errno.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "coordinator/os/host.h"
+#include "coordinator/os/open_files.h"
+#include "coordinator/os/passed_fd.h"
+#include "shm/attach_protocol.h"
+
+namespace tcs {
+namespace {
+
+// The other end of the connection is with a child of this process, which hands over what it has
+// inherited.
+class PorterTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_NE(porter_, nullptr); }
+  void TearDown() override {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
+
+  static bool Answer(int socket, shm::PorterAnswer answer, int fd) {
+    PassedMessage message(&answer, sizeof answer, fd);
+    return sendmsg(socket, message.get(), MSG_NOSIGNAL) == sizeof answer;
+  }
+  [[noreturn]] static void HandOver(int socket) {
+    Answer(socket, {0, 0}, -1);
+    shm::PorterRequest request;
+    while (read(socket, &request, sizeof request) == sizeof request) {
+      if (!Answer(socket, {0, request.serial}, request.number)) {
+        Answer(socket, {EBADF, request.serial}, -1);
+      }
+    }
+    _exit(0);
+  }
+  void Begin() {
+    const UniqueFd end = porter_->TakeClientsEnd();
+    child_ = fork();
+    if (child_ == 0) HandOver(end.get());
+    while (!porter_->Is(child_)) usleep(1000);
+  }
+
+  int lost_ = 0;
+  std::unique_ptr<Porter> porter_ = Porter::Make([this] { ++lost_; });
+  const UniqueFd file_{eventfd(0, 0)};
+  pid_t child_ = -1;
+};
+
+TEST_F(PorterTest, BeforeItHasComeThereIsNothingToBeHadAndNothingLost) {
+  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(errno, ESRCH);
+  porter_->End();
+  EXPECT_EQ(lost_, 0);
+}
+
+TEST_F(PorterTest, ItHandsOverWhatTheProcessHasUnderANumber) {
+  Begin();
+  for (int turn = 0; turn < 3; ++turn) {
+    const UniqueFd copy = porter_->CopyOf(file_.get());
+    ASSERT_TRUE(copy);
+    EXPECT_NE(copy.get(), file_.get());
+    EXPECT_TRUE(IsSameFileBySet(copy.get(), file_.get()));
+  }
+  EXPECT_FALSE(porter_->CopyOf(999));
+  EXPECT_EQ(errno, EBADF);
+  EXPECT_TRUE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(lost_, 0);
+}
+
+TEST_F(PorterTest, OneThatWasKilledIsMissedOnce) {
+  Begin();
+  kill(child_, SIGKILL);
+  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(errno, ESRCH);
+  EXPECT_EQ(lost_, 1);
+  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(lost_, 1);
+}
+
+TEST_F(PorterTest, OneThatIsStoppedIsNotWaitedForForEver) {
+  Begin();
+  kill(child_, SIGSTOP);
+  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(errno, ETIMEDOUT);
+  EXPECT_EQ(lost_, 1);
+  EXPECT_EQ(ThreadState(child_), 'X');
+}
+
+TEST_F(PorterTest, ItIsGoneAndReapedOnceItWasEnded) {
+  Begin();
+  porter_->End();
+  EXPECT_EQ(ThreadState(child_), 'X');
+  EXPECT_EQ(waitpid(child_, nullptr, WNOHANG), -1);
+  EXPECT_EQ(errno, ECHILD);
+  EXPECT_FALSE(porter_->Is(child_));
+  EXPECT_EQ(lost_, 0);
+  child_ = -1;
+}
+
+}  // namespace
+}  // namespace tcs
