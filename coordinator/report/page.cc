@@ -88,6 +88,7 @@ class Builder {
       auto read = ReadReplay(run.folder, system.name, static_cast<double>(run.virtual_ns) * 1e-9,
                              kMostReplayBytes / results_.systems.size(), &page_.warnings);
       if (auto* replay = std::get_if<Replay>(&read)) {
+        replay->trials = system.runs.size();
         replays.push_back(std::move(*replay));
       } else {
         page_.warnings.push_back(std::get<LoadError>(read).message +

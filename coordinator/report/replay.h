@@ -57,6 +57,7 @@ struct Replay {
   std::vector<Said> said;
   std::int64_t said_more = 0;  // lines that there was no room for
   double end_s = 0;
+  std::size_t trials = 1;  // of which it is the first
 };
 
 // From what a run left. A folder without bodies.csv has a replay without moments, tracks and

@@ -79,7 +79,12 @@ std::string WorldSection(const std::vector<Replay>& replays) {
                    "did not write where they were (bodies.csv).",
                    data);
   }
-  const std::string of = replays.size() > 1 ? Quoted(shown->name) + ": " : "";
+  std::string of;
+  if (shown->trials > 1) of = fmt::format("The first of {} trials: ", shown->trials);
+  if (replays.size() > 1) {
+    of = Quoted(shown->name) +
+         (shown->trials > 1 ? fmt::format(", the first of {} trials: ", shown->trials) : ": ");
+  }
   return Section(
       "world", "The world",
       fmt::format("{}{} of virtual time, in which {}.", of, Seconds(shown->end_s), WaysIn(*shown)),

@@ -347,6 +347,10 @@ TEST_F(ReplayTest, TheWorldIsSaidInASentence) {
   EXPECT_THAT(
       WorldSection({replay}),
       HasSubstr("500\u00a0ms of virtual time, in which a went 4.00\u00a0m and b stood still."));
+  Replay of_many = replay;
+  of_many.trials = 10;
+  EXPECT_THAT(WorldSection({of_many}), HasSubstr("The first of 10 trials: 500"));
+  EXPECT_THAT(WorldSection({of_many, replay}), HasSubstr("“run”, the first of 10 trials: 500"));
   EXPECT_THAT(WorldSection({replay}), Not(HasSubstr("“run”")));
   EXPECT_THAT(WorldSection({replay, replay}), HasSubstr("“run”: 500\u00a0ms of virtual time"));
 }
