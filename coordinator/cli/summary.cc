@@ -95,6 +95,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
           u.overruns);
   }
   Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
+  Print("to look at it: tcsim report {}\n", directory);
   for (const ClientReport& c : r.clients) {
     if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
     std::string base = c.name;

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <iterator>
 #include <numeric>
+#include <system_error>
 #include <utility>
 
 #include "coordinator/os/cpu_claim.h"
@@ -14,6 +16,7 @@
 #include "coordinator/os/file_errors.h"
 #include "coordinator/os/host.h"
 #include "coordinator/world/csv_row.h"
+#include "coordinator/world/scene_text.h"
 #include "shm/layout.h"
 
 namespace tcs {
@@ -66,8 +69,11 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   std::iota(all_bodies_.begin(), all_bodies_.end(), 0);
   states_.resize(all_bodies_.size());
   link_lines_ = LinkLines(*scenario.world);
+  joint_lines_ = JointLines(*scenario.world);
   sensors_ = Sensors(scenario_.world->gravity_mps2);
-  commands_.Open(scenario_.commands);
+  std::vector<std::string> names_of_bodies;
+  for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
+  commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
   if (channels_.clock != nullptr) {
     sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
@@ -111,30 +117,52 @@ void World::Begin(std::int64_t realtime_offset_ns) {
   channels_.Begin(VirtualDuration::Nanoseconds(realtime_offset_ns));
 }
 
-std::string World::OpenCsv(const std::string& path) {
+std::string World::OpenRecords(const std::string& folder) {
+  // Those of an earlier run would be taken for this one's.
+  std::error_code ignored;
+  for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/commands.csv"}) {
+    std::filesystem::remove(folder + file, ignored);
+  }
   if (!present()) return {};
-  csv_path_ = path;
+  errno = 0;
+  if (!(std::ofstream(folder + "/scene.json") << SceneText(scenario_) << std::flush)) {
+    return CannotBeWritten(folder + "/scene.json");
+  }
+  csv_path_ = folder + "/bodies.csv";
   errno = 0;
   csv_.rdbuf()->pubsetbuf(nullptr, 0);
-  csv_.open(path);
-  if (!csv_) return CannotBeWritten(path);
+  csv_.open(csv_path_);
+  if (!csv_) return CannotBeWritten(csv_path_);
   csv_ << kBodiesCsvHead;
   FindNextStop();
-  return {};
+  std::string error;
+  if (!joint_lines_.empty()) error = joints_csv_.Open(folder + "/joints.csv", kJointsCsvHead);
+  if (error.empty() && !scenario_.commands.empty()) {
+    error = commands_.log().Open(folder + "/commands.csv");
+  }
+  return error;
 }
 
 // Whole lines: what a run leaves that is killed has no halves.
-void World::FlushCsv() {
+void World::FlushBodies() {
   csv_ << csv_text_;
   csv_text_.clear();
 }
 
-std::string World::CloseCsv() {
+void World::FlushRecords() {
+  FlushBodies();
+  joints_csv_.Flush();
+  commands_.log().Flush();
+}
+
+std::string World::CloseRecords() {
   if (!csv_.is_open()) return {};
   errno = 0;
-  FlushCsv();
+  FlushBodies();
   csv_.close();
-  return csv_ ? "" : NotWrittenWhole(csv_path_);
+  if (!csv_) return NotWrittenWhole(csv_path_);
+  const std::string errors[] = {joints_csv_.Close(), commands_.log().Close()};
+  return errors[0].empty() ? errors[1] : errors[0];
 }
 
 void World::FindNextStop() {
@@ -143,7 +171,7 @@ void World::FindNextStop() {
                             commands_.NextStop().ns()});
 }
 
-void World::WriteCsv() {
+void World::WriteStates() {
   const std::int64_t now = progress_ns_;
   if (!csv_.is_open() || now < next_csv_ns_) return;
   next_csv_ns_ += scenario_.csv_period.ns();
@@ -154,7 +182,8 @@ void World::WriteCsv() {
                        s.angular_velocity_radps, &csv_text_);
   }
   link_lines_.Append(*dynamics_, &csv_text_);
-  if (csv_text_.size() > kCsvAtOnce) FlushCsv();
+  joint_lines_.Write(*dynamics_, &joints_csv_);
+  if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }
 
 // All that is read now at once: what many bodies need is integrated side by side.
@@ -187,7 +216,7 @@ bool World::Advance(std::int64_t limit_ns) {
   }
   Settle(progress_ns_);
   ReadDue();
-  WriteCsv();
+  WriteStates();
   const bool sent =
       sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
                    [this](int body) { return states_[static_cast<std::size_t>(body)]; },

@@ -10,8 +10,10 @@
 
 #include "coordinator/channel/channels.h"
 #include "coordinator/scenario/scenario.h"
+#include "coordinator/trace/csv_file.h"
 #include "coordinator/world/command_queue.h"
 #include "coordinator/world/commands.h"
+#include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
 #include "coordinator/world/sensors.h"
 #include "shm/own_receivers.h"
@@ -34,11 +36,12 @@ class World {
   // The run begins; virtual CLOCK_REALTIME is so far ahead of virtual time.
   void Begin(std::int64_t realtime_offset_ns);
 
-  // Where the body states are written to; none without a world. Empty on success, else one
-  // sentence.
-  std::string OpenCsv(const std::string& path);
-  void FlushCsv();
-  std::string CloseCsv();
+  // What the world looks like, how it moved and what moved it are written into this folder:
+  // scene.json, bodies.csv, joints.csv, commands.csv; nothing without a world. Empty on success,
+  // else one sentence.
+  std::string OpenRecords(const std::string& folder);
+  void FlushRecords();
+  std::string CloseRecords();
 
   bool present() const { return dynamics_ != nullptr; }
   std::int64_t progress_ns() const { return progress_ns_; }
@@ -79,7 +82,8 @@ class World {
   std::vector<std::string> LossesOfSensors() const;
 
  private:
-  void WriteCsv();
+  void WriteStates();
+  void FlushBodies();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
   bool PassOnSentUntil(std::int64_t ns);
@@ -103,6 +107,8 @@ class World {
   std::string csv_path_, csv_text_;  // whole lines, not written yet
   std::int64_t next_csv_ns_ = 0;
   LinkLines link_lines_;
+  JointLines joint_lines_;
+  CsvFile joints_csv_;
   std::vector<int> all_bodies_, due_;
   std::vector<BodyState> states_;  // of all bodies, as each was read last
   std::vector<BodyState> read_;    // memory of ReadDue

@@ -21,9 +21,13 @@ std::string RunRecords::OpenFiles() {
     std::filesystem::remove(directory + file, ignored);
   }
   std::string error = schedule_.Open(directory, !run_.IsFixed());
-  if (error.empty()) error = world_.OpenCsv(directory + "/bodies.csv");
+  if (error.empty()) error = world_.OpenRecords(directory);
   if (error.empty()) {
     error = activations_.Open(directory + "/activations.csv", run_.options.counts_work);
+  }
+  if (error.empty()) error = output_.Open(directory);
+  for (const RobotSpec& robot : run_.scenario.robots) {
+    for (const ClientSpec& client : robot.clients) output_.Add(client.name, FileNameOf(client));
   }
   return error;
 }
@@ -35,11 +39,14 @@ void RunRecords::StartAt(const RunClock& clock) {
 void RunRecords::Flush() {
   schedule_.Flush();
   activations_.Flush();
-  world_.FlushCsv();
+  world_.FlushRecords();
+  output_.Flush();
 }
 
 std::string RunRecords::Close() {
-  const std::string errors[] = {schedule_.Close(), activations_.Close(), world_.CloseCsv()};
+  output_.LookAt(run_.latest_ns);
+  const std::string errors[] = {schedule_.Close(), activations_.Close(), world_.CloseRecords(),
+                                output_.Close()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;
   }
@@ -49,6 +56,7 @@ std::string RunRecords::Close() {
 void RunRecords::Ran(const Task& task, Span shown, Span world, std::uint64_t until_tsc) {
   const std::uint64_t since_tsc = std::exchange(run_.turn.recorded_tsc, until_tsc);
   schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
+  output_.LookAt(world.end_ns);
 }
 
 }  // namespace tcs

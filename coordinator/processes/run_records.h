@@ -1,6 +1,6 @@
 // What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, when clients
-// were activated, who had the processor when, and where bodies were. Nothing is written by a run
-// without a folder for its results.
+// were activated, who had the processor when, when they said something, and what the world did.
+// Nothing is written by a run without a folder for its results.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once
@@ -12,6 +12,7 @@
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
+#include "coordinator/trace/output_log.h"
 #include "coordinator/trace/schedule_records.h"
 
 namespace tcs {
@@ -49,6 +50,7 @@ class RunRecords {
   World& world_;
   Activations& activations_;
   ScheduleRecords schedule_;
+  OutputLog output_;
   int world_row_ = 0;
 };
 

@@ -67,8 +67,8 @@ std::optional<Figure> ResponseTimes(const Results& results) {
       if (response.empty()) continue;
       const Spread spread = SpreadOf(response);
       const Spread computed = SpreadOf(All(system, name, &ActivationTimes::computed_s));
-      medians.push_back(fmt::format("{} in {} ({} of computing)", Seconds(spread.median),
-                                    system.name, Seconds(computed.median)));
+      medians.push_back(fmt::format("{}{} ({} of computing)", Seconds(spread.median),
+                                    InSystem(results, system), Seconds(computed.median)));
       longest.push_back(Seconds(spread.most));
       plot.panels.push_back({planners > 1 ? fmt::format("{}: {}", system.name, name) : system.name,
                              static_cast<int>(i), std::move(response)});
@@ -101,11 +101,12 @@ std::optional<Figure> Lateness(const Results& results) {
       group.rows.push_back({system.name, static_cast<int>(i), Quantile(late, 0.5),
                             Quantile(late, 0.99), late.back()});
       if (late.back() > 0) {
-        late_by.push_back(fmt::format("{} in {}", Seconds(late.back(), 2), system.name));
+        late_by.push_back(Seconds(late.back(), 2) + InSystem(results, system));
       }
       const double missed = MeanOver(system, name, &Client::overruns);
       if (missed > 0) {
-        overruns.push_back(fmt::format("{} of {} in {}", Plain(missed), name, system.name));
+        overruns.push_back(
+            fmt::format("{} of {}{}", Plain(missed), name, InSystem(results, system)));
       }
     }
     if (group.rows.empty()) continue;
@@ -145,7 +146,7 @@ std::optional<Section> ClientsSection(const Results& results) {
       table.Row({name, system.name, Seconds(charged), own < 0 ? "–" : Seconds(own), Seconds(stolen),
                  Plain(mean(&Client::activations)), Plain(mean(&Client::overruns))});
       const double share = charged > 0 ? stolen / charged : 0;
-      most = std::max(most, {share, fmt::format("{} in {}", name, system.name)});
+      most = std::max(most, {share, name + InSystem(results, system)});
     }
   }
   std::string sentence = "Nothing was stolen from any client.";

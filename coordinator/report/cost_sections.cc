@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "coordinator/report/over_runs.h"
 #include "coordinator/report/paper_values.h"
@@ -29,7 +30,9 @@ void AddPaper(Table* table) {
   }
 }
 
-// Of its real time, what each row ran.
+constexpr std::size_t kMostShares = 8;
+
+// Of its real time, what each row ran; of many rows those that ran most.
 std::string Shares(const Timeline& timeline) {
   std::vector<std::int64_t> ran(timeline.rows.size());
   for (const Slice& slice : timeline.slices) {
@@ -37,24 +40,34 @@ std::string Shares(const Timeline& timeline) {
         timeline.has_real_times ? slice.real_ran : slice.virtual_ran;
   }
   const std::int64_t whole = timeline.has_real_times ? timeline.real_end : timeline.virtual_end;
+  std::vector<std::size_t> rows(timeline.rows.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  const bool are_many = rows.size() > kMostShares;
+  if (are_many) {
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b) { return ran[a] > ran[b]; });
+    rows.resize(kMostShares - 1);
+  }
   std::vector<std::string> shares;
-  for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
+  for (const std::size_t row : rows) {
     const double share =
         whole > 0 ? static_cast<double>(ran[row]) / static_cast<double>(whole) : 0.0;
     shares.push_back(fmt::format("{} {}", timeline.rows[row], Percent(share)));
   }
+  if (are_many) shares.push_back(fmt::format("{} others less", timeline.rows.size() - rows.size()));
   return Listed(shares);
 }
 
-std::string AboutTimeline(const Timeline& timeline) {
+// `is_only`: there is no other one to tell it from.
+std::string AboutTimeline(const Timeline& timeline, bool is_only) {
+  const std::string of = is_only ? "" : Quoted(timeline.name) + ": ";
   const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;
   if (!timeline.has_real_times) {
-    return fmt::format("{} of virtual time of {}: {}.", Seconds(virtual_s), timeline.name,
-                       Shares(timeline));
+    return fmt::format("{}{} of virtual time: {}.", of, Seconds(virtual_s), Shares(timeline));
   }
   const double real_s = static_cast<double>(timeline.real_end) * 1e-6;
-  return fmt::format("{} of virtual time took {} {} of real time: {}.", Seconds(virtual_s),
-                     timeline.name, Seconds(real_s), Shares(timeline));
+  return fmt::format("{}{} of virtual time took {} of real time: {}.", of, Seconds(virtual_s),
+                     Seconds(real_s), Shares(timeline));
 }
 
 }  // namespace
@@ -80,7 +93,7 @@ std::optional<Section> CostsSection(const Results& results) {
                InSeconds(MeanOf(system, &Run::dynamics_ns)), Percent(OverheadOf(system))});
     const double drift = MostOf(system, &Run::drift_ns);
     const double ratio = drift / std::max(1e-9, MeanOf(system, &Run::virtual_ns));
-    std::string text = fmt::format("{} in {}", Seconds(drift), system.name);
+    std::string text = Seconds(drift) + InSystem(results, system);
     if (ratio >= 1) text += fmt::format(" ({} times its virtual time)", Significant(ratio));
     drifts.push_back(std::move(text));
   }
@@ -102,7 +115,7 @@ std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines) {
   std::vector<std::string> said;
   std::int64_t merged_us = 0;
   for (const Timeline& timeline : timelines) {
-    said.push_back(AboutTimeline(timeline));
+    said.push_back(AboutTimeline(timeline, timelines.size() == 1));
     merged_us = std::max(merged_us, timeline.merged_us);
   }
   std::string note =

@@ -44,10 +44,14 @@ std::optional<std::int64_t> ToInteger(std::string_view text) {
   return value;
 }
 
+bool IsFile(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
 std::optional<std::string> ReadFile(const std::string& path) {
   // What else has a name may never come to an end.
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return {};
+  if (!IsFile(path)) return {};
   std::ifstream file(path, std::ios::binary);
   if (!file) return {};
   std::ostringstream text;

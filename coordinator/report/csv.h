@@ -26,6 +26,8 @@ using CsvFields = std::vector<std::string_view>;
 [[nodiscard]] std::optional<double> ToReal(std::string_view text);
 [[nodiscard]] std::optional<std::int64_t> ToInteger(std::string_view text);
 
+[[nodiscard]] bool IsFile(const std::string& path);
+
 // The whole file; none if it cannot be read.
 [[nodiscard]] std::optional<std::string> ReadFile(const std::string& path);
 

@@ -66,7 +66,7 @@ Section SystemsSection(const Results& results, const std::vector<double>& marks)
     cells.push_back(Seconds(MostOf(system, &Run::drift_ns)));
     cells.push_back(Percent(OverheadOf(system)));
     table.Row(cells);
-    counts.push_back(fmt::format("{} of {} ({}{})", Count(trials, "trial"), system.name,
+    counts.push_back(fmt::format("{} of {} ({}{})", Count(trials, "trial"), Quoted(system.name),
                                  Seconds(MeanOf(system, &Run::virtual_ns)),
                                  trials > 1 ? " each" : ""));
   }
@@ -81,10 +81,9 @@ std::optional<Figure> DistanceHistogram(const Results& results, const std::vecto
   for (const TracksPanel& panel : PanelsOf(results)) {
     const std::string& name = panel.system->name;
     std::vector<double> distances = Distances(*panel.system);
-    medians.push_back(fmt::format("{} in {}", Metres(SpreadOf(distances).median), name));
-    if (!marks.empty()) {
-      below.push_back(fmt::format("{} in {}", Percent(ShareBelow(distances, marks[0])), name));
-    }
+    const std::string in = InSystem(results, *panel.system);
+    medians.push_back(Metres(SpreadOf(distances).median) + in);
+    if (!marks.empty()) below.push_back(Percent(ShareBelow(distances, marks[0])) + in);
     plot.panels.push_back({name, panel.colour, std::move(distances)});
   }
   if (plot.panels.empty()) return {};
@@ -107,13 +106,13 @@ std::optional<Figure> DistanceOverTime(const Results& results, const std::vector
     const Track median = MedianTrack(*panel.system);
     if (median.time_s.empty()) continue;
     const std::size_t middle = median.time_s.size() / 2;
-    said.push_back(fmt::format("in {}, {} at {} and {} at {}", panel.system->name,
-                               Metres(median.distance_m[middle]), Seconds(median.time_s[middle]),
-                               Metres(median.distance_m.back()), Seconds(median.time_s.back())));
+    said.push_back(fmt::format("{} at {} and {} at {}{}", Metres(median.distance_m[middle]),
+                               Seconds(median.time_s[middle]), Metres(median.distance_m.back()),
+                               Seconds(median.time_s.back()), InSystem(results, *panel.system)));
   }
   return MakeFigure(
       "distance-over-time", "Distance over time",
-      fmt::format("The median distance over the trials is, {}.", fmt::join(said, "; ")),
+      fmt::format("The median distance over the trials is {}.", fmt::join(said, "; ")),
       "A thin line per trial, their median in bold; all panels have one scale.",
       [&](int width) { return DrawTracks(panels, marks, width); });
 }

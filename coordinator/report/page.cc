@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "coordinator/report/page_files.h"
+#include "coordinator/report/replay.h"
+#include "coordinator/report/replay_sections.h"
 #include "coordinator/report/sections.h"
 #include "coordinator/report/style.h"
 #include "coordinator/report/text.h"
@@ -15,6 +17,8 @@ namespace {
 
 // Of all timelines together: about 11 bytes of the page each.
 constexpr std::size_t kMostSlices = 200'000;
+// Of all replays together, before they become text, which is a third longer.
+constexpr std::size_t kMostReplayBytes = 5'000'000;
 
 std::string Paragraph(std::string_view classes, const std::string& text) {
   if (text.empty()) return {};
@@ -29,12 +33,14 @@ class Builder {
   }
 
   Page Build() {
+    // What happened first, then why.
+    AddReplays();
+    AddTimelines();
     if (!results_.systems.empty()) AddFirst(SystemsSection(results_, options_.marks));
     AddFailures();
     Add(DistanceHistogram(results_, options_.marks));
     Add(DistanceOverTime(results_, options_.marks));
     Add(CostsSection(results_));
-    AddTimelines();
     Add(ResponseTimes(results_));
     Add(Lateness(results_));
     Add(ClientsSection(results_));
@@ -73,6 +79,28 @@ class Builder {
         InlineSvg(figure, figure.wide, "wide"), InlineSvg(figure, figure.narrow, "narrow"), more,
         figures_, Escaped(figure.note));
     page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
+  }
+
+  void AddReplays() {
+    std::vector<Replay> replays;
+    for (const System& system : results_.systems) {
+      const Run& run = system.runs.front();
+      auto read = ReadReplay(run.folder, system.name, static_cast<double>(run.virtual_ns) * 1e-9,
+                             kMostReplayBytes / results_.systems.size(), &page_.warnings);
+      if (auto* replay = std::get_if<Replay>(&read)) {
+        replay->trials = system.runs.size();
+        replays.push_back(std::move(*replay));
+      } else {
+        page_.warnings.push_back(std::get<LoadError>(read).message +
+                                 "; the world is not shown without it");
+      }
+    }
+    has_world_ = std::any_of(replays.begin(), replays.end(),
+                             [](const Replay& replay) { return !replay.time_s.empty(); });
+    body_ += WorldSection(replays);
+    if (const auto paths = PathsFigure(replays)) AddFigure(*paths, kPathsLive);
+    if (const auto motion = MotionFigure(replays)) AddFigure(*motion, kMotionControls);
+    body_ += SaidSection(replays);
   }
 
   void AddTimelines() {
@@ -127,8 +155,9 @@ class Builder {
         "'unsafe-inline'; script-src 'unsafe-inline'\">\n"
         "<title>{0}</title>\n<style>\n{1}{2}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{3}"
         "<footer>Made by tcsim report from result folders of the scenario “{4}”.</footer>\n"
-        "</main>\n<script>\n{5}</script>\n</body>\n</html>\n",
-        Escaped(title), PageStyle(), kReportCss, body_, Escaped(results_.scenario), kTimelineJs);
+        "</main>\n{5}<script>\n{6}</script>\n<script>\n{7}</script>\n</body>\n</html>\n",
+        Escaped(title), PageStyle(), kReportCss, body_, Escaped(results_.scenario),
+        has_world_ ? fmt::format("<script>\n{}</script>\n", kThreeJs) : "", kReplayDataJs, kPageJs);
   }
 
   const Results& results_;
@@ -136,6 +165,7 @@ class Builder {
   Page page_;
   std::string body_;
   int figures_ = 0;
+  bool has_world_ = false;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The page's own style and script, as text: report/page/.
+// The page's own style and script, as text: report/page/. And three.js.
 #pragma once
 
 #include <string_view>
@@ -7,6 +7,12 @@ namespace tcs::report {
 
 extern const std::string_view kReportCss;
 extern const std::string_view kTimelineControls;
-extern const std::string_view kTimelineJs;
+extern const std::string_view kReplayHtml;
+extern const std::string_view kPathsLive;
+extern const std::string_view kMotionControls;
+extern const std::string_view kThreeJs;
+extern const std::string_view kReplayDataJs;
+// All other scripts, in the order in which they run.
+extern const std::string_view kPageJs;
 
 }  // namespace tcs::report

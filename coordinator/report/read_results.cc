@@ -234,6 +234,10 @@ class Reader {
 
 }  // namespace
 
+std::string InSystem(const Results& results, const System& system) {
+  return results.systems.size() > 1 ? " in " + Quoted(system.name) : "";
+}
+
 std::vector<double> Distances(const System& system) {
   std::vector<double> all;
   for (const Run& run : system.runs) {

@@ -182,7 +182,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
   if (run == nullptr) return result;
 
   // Without dynamics there are no bodies; runs of earlier versions have no activations.
-  if (const std::string path = folder + "/bodies.csv"; ReadFile(path)) {
+  if (const std::string path = folder + "/bodies.csv"; IsFile(path)) {
     TrackBuilder track(run, bodies);
     const auto read = ReadCsv(path, {"time_s", "body", "x_m", "y_m", "z_m"},
                               [&](const CsvFields& fields) { return track.Take(fields); });
@@ -194,7 +194,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
     return LoadError{fmt::format("there is no body '{}' in {}; it has {}", body, folder,
                                  run->bodies.empty() ? "none" : Listed(run->bodies))};
   }
-  if (const std::string path = folder + "/activations.csv"; ReadFile(path)) {
+  if (const std::string path = folder + "/activations.csv"; IsFile(path)) {
     ActivationBuilder activations(run);
     const auto read = ReadCsv(
         path, {"client", "thread", "cause", "release_ns", "start_ns", "end_ns", "charged_ns"},

@@ -73,6 +73,9 @@ struct Results {
   std::vector<std::string> warnings;  // one sentence each
 };
 
+// " in “near”", as a sentence that tells systems apart needs it; nothing where there is only one.
+[[nodiscard]] std::string InSystem(const Results& results, const System& system);
+
 // Those of all runs of a system, one after the other.
 [[nodiscard]] std::vector<double> Distances(const System& system);
 

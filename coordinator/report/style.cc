@@ -18,10 +18,10 @@ constexpr Colour kColours[] = {
     {"paper", "#ffffff", "#14171a"}, {"ink", "#1b1f23", "#e4e7ea"},
     {"faint", "#59636e", "#9aa4ae"}, {"grid", "#e6e9ec", "#2a2f35"},
     {"panel", "#f6f7f8", "#1c2024"}, {"link", "#005a9c", "#6cb8ff"},
-    {"s0", "#b84e00", "#ff9d5c"},    {"s1", "#0072b2", "#5cb8f0"},
-    {"s2", "#00795a", "#3ecfa5"},    {"s3", "#a8487f", "#e39ac4"},
-    {"s4", "#8a6d00", "#e8c547"},    {"s5", "#5b4fc7", "#b0a8ff"},
-    {"s6", "#4f5862", "#b6bec6"},
+    {"stage", "#eef1f4", "#0e1114"}, {"s0", "#b84e00", "#ff9d5c"},
+    {"s1", "#0072b2", "#5cb8f0"},    {"s2", "#00795a", "#3ecfa5"},
+    {"s3", "#a8487f", "#e39ac4"},    {"s4", "#8a6d00", "#e8c547"},
+    {"s5", "#5b4fc7", "#b0a8ff"},    {"s6", "#4f5862", "#b6bec6"},
 };
 
 // {…} is a colour.
@@ -43,6 +43,13 @@ path.halo{stroke:{paper};stroke-width:5;stroke-linejoin:round}
 path.busy{fill:{ink};fill-opacity:.75}
 rect.lane{fill:{panel}}
 path.progress{stroke:{s1};stroke-width:1.5}
+path.cursor{stroke:{link};stroke-width:1.5}
+path.said{fill:{faint}}
+path.said.is-mark{fill:{s0}}
+circle.now{stroke:{paper};stroke-width:1.5;cursor:pointer}
+g.is-lit text.note{fill:{ink};font-weight:600}
+g.is-lit rect.lane{fill:{link};fill-opacity:.16}
+g.is-lit path.busy{fill:{link}}
 )";
 
 std::string WithColours(std::string_view rules, bool as_variables) {
@@ -62,7 +69,7 @@ std::string Rules(bool as_variables) {
   std::string rules(kRules);
   for (int i = 0; i < kSeriesColours; ++i) {
     rules += fmt::format(
-        ".s{0}{{stroke:{{s{0}}}}}.f{0}{{fill:{{s{0}}}}}text.t{0}{{fill:{{s{0}}}}}\n", i);
+        ".s{0}{{stroke:{{s{0}}}}}.f{0}{{fill:{{s{0}}}}}text.t{0},tspan.t{0}{{fill:{{s{0}}}}}\n", i);
   }
   return WithColours(rules, as_variables);
 }

@@ -138,6 +138,8 @@ std::string Percent(double share) {
   return WithUnit(number, "%");
 }
 
+std::string Quoted(std::string_view name) { return fmt::format("“{}”", name); }
+
 std::string Count(std::int64_t number, std::string_view of_what) {
   return fmt::format("{} {}{}", Grouped(number), of_what, number == 1 ? "" : "s");
 }

@@ -32,6 +32,9 @@ namespace tcs::report {
 // "9.1 %", "0.07 %", "100 %".
 [[nodiscard]] std::string Percent(double share);
 
+// A name that people gave, in the middle of a sentence: “out”.
+[[nodiscard]] std::string Quoted(std::string_view name);
+
 // "3 trials", "1 trial".
 [[nodiscard]] std::string Count(std::int64_t number, std::string_view of_what);
 

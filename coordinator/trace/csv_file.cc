@@ -12,7 +12,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kNotedBytes = 64 << 10;
-// From ten bytes noted to at most twenty digits and a comma.
+// From ten bytes noted to at most 24 characters and a comma.
 constexpr std::size_t kMostGrowth = 3;
 
 }  // namespace
@@ -50,6 +50,10 @@ void CsvFile::WriteNoted() {
     }
     if (mark == kNumber) {
       std::int64_t number;
+      take(&number);
+      to = std::to_chars(to, text.data() + text.size(), number).ptr;
+    } else if (mark == kReal) {
+      double number;
       take(&number);
       to = std::to_chars(to, text.data() + text.size(), number).ptr;
     } else {

@@ -1,6 +1,6 @@
-// A file of comma-separated numbers. A line is only noted, as it is, and made into text with
-// hundreds of others: between two dispatches next to nothing of the coordinator is in the CPU's
-// caches, and code that formats, and what it needs, would be fetched anew for each line.
+// A file of comma-separated texts and numbers. A line is only noted, as it is, and made into text
+// with hundreds of others: between two dispatches next to nothing of the coordinator is in the
+// CPU's caches, and code that formats, and what it needs, would be fetched anew for each line.
 //
 // Texts are written as they are: names of clients need no quoting (docs/SCENARIO.md). Not
 // thread-safe. What could not be written is reported by Close().
@@ -28,7 +28,7 @@ class CsvFile {
   [[nodiscard]] std::string Open(const std::string& path, std::string_view header);
   bool is_open() const { return file_ != nullptr; }
 
-  // One line; texts and whole numbers.
+  // One line; texts, whole numbers, and others with as many digits as tell them apart.
   template <class... Fields>
   void Line(const Fields&... fields) {
     if (file_ == nullptr) return;
@@ -47,9 +47,10 @@ class CsvFile {
   // More than any line takes when noted, texts (of kLongestText at most) included.
   static constexpr std::size_t kLongestLine = 1024, kLongestText = 256;
 
-  // Before a field's bytes: a text's length, or that it is a number. And after a line's last field.
+  // Before a field's bytes: a text's length, or that it is a number, whole or not. And after a
+  // line's last field.
   using Mark = std::uint16_t;
-  static constexpr Mark kNumber = 0xffff, kLineEnd = 0xfffe;
+  static constexpr Mark kNumber = 0xffff, kLineEnd = 0xfffe, kReal = 0xfffd;
 
   template <class Bytes>
   void Append(const Bytes& bytes) {
@@ -59,6 +60,10 @@ class CsvFile {
   void Note(std::integral auto number) {
     Append(kNumber);
     Append(static_cast<std::int64_t>(number));
+  }
+  void Note(double number) {
+    Append(kReal);
+    Append(number);
   }
   void Note(std::string_view text) {
     text = text.substr(0, kLongestText);

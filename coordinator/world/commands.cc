@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 namespace tcs {
@@ -31,7 +33,7 @@ std::optional<Beyond> Cut(const JointLimits& limits, JointGoal* goal) {
 
 }  // namespace
 
-void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
+void Commands::Open(const std::vector<CommandChannelSpec>& specs, std::vector<std::string> bodies) {
   for (const CommandChannelSpec& spec : specs) {
     Channel& channel = channels_.emplace_back(Channel{.spec = spec});
     const auto add = [&](const std::string& kind, const std::vector<std::string>& names,
@@ -39,6 +41,7 @@ void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
       for (const std::string& name : names) {
         channel.accounts.push_back(
             account_.Add(fmt::format("{} '{}' of {}", kind, name, model), spec.name));
+        channel.targets.push_back(model + "/" + name);
       }
     };
     if (spec.joints) add("joint", spec.joints->group.names, spec.joints->group.model);
@@ -46,6 +49,9 @@ void Commands::Open(const std::vector<CommandChannelSpec>& specs) {
     if (spec.joints && spec.joints->setpoint_period) {
       channel.follower.emplace(spec.joints->group, *spec.joints->setpoint_period);
     }
+    if (spec.link) channel.targets = {spec.link->name};
+    const auto body = static_cast<std::size_t>(spec.body);
+    if (!spec.IsOfModel() && body < bodies.size()) channel.targets = {bodies[body]};
   }
 }
 
@@ -59,6 +65,7 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
     limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);
     limited.torque_nm[i] = std::clamp(wrench.torque_nm[i], -torque, torque);
   }
+  Log(on, sent, limited);
   if (on.spec.link) {
     const auto frame = on.spec.in_body_frame ? WrenchFrame::kLink : WrenchFrame::kWorld;
     push_(sent, on.spec.latency, on.spec.link->link, frame, limited);
@@ -67,6 +74,19 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
   limited.in_body_frame = on.spec.in_body_frame;
   limited.lag = on.spec.lag;
   act_(sent, on.spec.latency, on.spec.body, limited);
+}
+
+void Commands::Log(const Channel& on, VirtualTime sent, const Wrench& wrench) {
+  static constexpr std::array<std::string_view, 3> kForce = {"force_x", "force_y", "force_z"},
+                                                   kTorque = {"torque_x", "torque_y", "torque_z"};
+  if (on.targets.empty()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    log_.Write({sent, on.spec.latency}, on.spec.name, on.targets[0], kForce[i], wrench.force_n[i]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    log_.Write({sent, on.spec.latency}, on.spec.name, on.targets[0], kTorque[i],
+               wrench.torque_nm[i]);
+  }
 }
 
 void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) {
@@ -97,6 +117,12 @@ void Commands::DriveJoint(const Channel& on, VirtualTime sent, JointGoal goal) {
     account_.TakeBeyond(on.accounts[goal.joint], sent + on.spec.latency, beyond->asked,
                         beyond->given);
   }
+  for (std::size_t i = 0; i < kJointQuantities.size(); ++i) {
+    const std::optional<double>& value = goal.Of(static_cast<JointQuantity>(i));
+    if (!value) continue;
+    log_.Write({sent, on.spec.latency}, on.spec.name, on.targets[goal.joint], kJointQuantities[i],
+               *value);
+  }
   drive_(sent, on.spec.latency, joints.group.joints[goal.joint],
          ToDrive(goal, joints.gains[goal.joint]));
 }
@@ -110,8 +136,9 @@ void Commands::SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& g
     account_.TakeBeyond(on.accounts[goal.joint], sent + on.spec.latency,
                         fmt::format("the speed {:.6g}", asked), fmt::format("{:.6g}", given));
   }
-  spin_(sent, on.spec.latency, rotors.rotors[goal.joint],
-        rotors.is_normalised ? given * most_radps : given);
+  const double speed_radps = rotors.is_normalised ? given * most_radps : given;
+  log_.Write({sent, on.spec.latency}, on.spec.name, on.targets[goal.joint], "speed", speed_radps);
+  spin_(sent, on.spec.latency, rotors.rotors[goal.joint], speed_radps);
 }
 
 void Commands::Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) {
@@ -136,6 +163,9 @@ void Commands::Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed&
   const JointDriveSpec& joints = *channel.spec.joints;
   const WheelDriveSpec& wheels = *joints.wheels;
   const WheelSpeeds speeds = Limited(WheelSpeedsOf(wheels.base, speed), wheels.most_radps);
+  const CommandLog::Moment moment{sent, channel.spec.latency};
+  log_.Write(moment, channel.spec.name, joints.group.model, "forward", speed.forward_mps);
+  log_.Write(moment, channel.spec.name, joints.group.model, "turn", speed.turn_radps);
   for (std::size_t i = 0; i < joints.group.joints.size(); ++i) {
     JointGoal goal{i};
     goal.velocity = i < wheels.left ? speeds.left_radps : speeds.right_radps;

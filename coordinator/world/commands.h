@@ -13,6 +13,7 @@
 #include "coordinator/channel/channel.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/world/actuator_account.h"
+#include "coordinator/world/command_log.h"
 #include "coordinator/world/trajectory_follower.h"
 
 namespace tcs {
@@ -42,8 +43,11 @@ class Commands final : public CommandSink {
         push_(std::move(push)),
         read_(std::move(read)) {}
 
-  // The scenario's channels; before anything comes in.
-  void Open(const std::vector<CommandChannelSpec>& specs);
+  // The scenario's channels; before anything comes in. `bodies` are what the bodies of the world
+  // are called.
+  void Open(const std::vector<CommandChannelSpec>& specs, std::vector<std::string> bodies = {});
+  // What is given to the physics is written there, too.
+  CommandLog& log() { return log_; }
 
   void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
   void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
@@ -73,6 +77,7 @@ class Commands final : public CommandSink {
   struct Channel {
     CommandChannelSpec spec;
     std::vector<std::size_t> accounts{};  // of each joint or rotor
+    std::vector<std::string> targets{};   // likewise, or of what is pushed
     std::int64_t taken = 0, refused = 0;
     VirtualTime halts = VirtualTime::Never();  // unless a command comes before
     std::optional<TrajectoryFollower> follower{};
@@ -81,6 +86,8 @@ class Commands final : public CommandSink {
   void SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& goal);
   void Halt(Channel* channel);
   void Turn(const Channel& channel, VirtualTime sent, const PlanarSpeed& speed);
+  void Log(const Channel& on, VirtualTime sent, const Wrench& wrench);
+
   std::function<void(const std::string&)> warn_;
   Act act_;
   Drive drive_;
@@ -88,6 +95,7 @@ class Commands final : public CommandSink {
   Push push_;
   TrajectoryFollower::ReadJoints read_;
   ActuatorAccount account_;
+  CommandLog log_;
   std::vector<Channel> channels_;  // as in the scenario
   std::int64_t taken_ = 0;
 };

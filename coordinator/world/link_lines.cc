@@ -6,12 +6,17 @@
 
 namespace tcs {
 
-LinkLines::LinkLines(const WorldSpec& world) {
+std::vector<std::string> NamesOfLinks(const WorldSpec& world) {
+  std::vector<std::string> names;
   for (const RobotModel& model : world.models) {
     for (const Link& link : model.links) {
-      names_.push_back(model.links.size() == 1 ? model.name : model.name + "/" + link.name);
+      names.push_back(model.links.size() == 1 ? model.name : model.name + "/" + link.name);
     }
   }
+  return names;
+}
+
+LinkLines::LinkLines(const WorldSpec& world) : names_(NamesOfLinks(world)) {
   links_.resize(names_.size());
   std::iota(links_.begin(), links_.end(), 0);
   states_.resize(names_.size());

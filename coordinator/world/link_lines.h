@@ -8,10 +8,14 @@
 
 namespace tcs {
 
+// What the links of the world's models are called there, as Dynamics numbers them: MODEL/LINK, or
+// MODEL where it has only the one.
+std::vector<std::string> NamesOfLinks(const WorldSpec& world);
+
 class LinkLines {
  public:
   LinkLines() = default;
-  // Of all links of the world's models: MODEL/LINK, or MODEL where it has only the one.
+  // Of all links of the world's models.
   explicit LinkLines(const WorldSpec& world);
 
   // A line for each, as they are at dynamics.Now(): the link's frame, in the world.

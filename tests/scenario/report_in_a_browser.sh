@@ -43,10 +43,10 @@ PY
 
 "$tcsim" report "$out/callback" "$out/tcs" "$out/sweep" --mark 5 --out "$out/page.html" --figures png \
   >"$out/said" || fail "$(cat "$out/said")"
-for figure in distances distance-over-time timeline response-times lateness sweep-duration; do
+for figure in paths motion timeline distances distance-over-time response-times lateness sweep-duration; do
   [[ $(head -c 4 "$out/page-$figure.png") == $'\x89PNG' ]] || fail "there is no picture $figure"
 done
-(($(stat -c %s "$out/page.html") < 1000000)) || fail "the page of three seconds is large"
+(($(stat -c %s "$out/page.html") < 2000000)) || fail "the page of three seconds is large"
 
 # The page tells what happened in it.
 python3 - "$out" <<'PY'
@@ -119,8 +119,8 @@ for page in whole, part:
     assert page["width"] <= page["window"] == 400, (page["width"], page["window"])
     assert page["unnamed"] == 0
     ids = [figure["id"] for figure in page["figures"]]
-    assert ids == ["distances", "distance-over-time", "timeline", "response-times", "lateness",
-                   "sweep-duration"], ids
+    assert ids == ["paths", "motion", "timeline", "distances", "distance-over-time", "response-times",
+                   "lateness", "sweep-duration"], ids
     assert all(figure["pictures"] == 1 for figure in page["figures"]), page["figures"]
 assert whole["view"].startswith("0.000 s to ") and "of real time" in whole["view"], whole["view"]
 assert part["view"].startswith("0.400 s to 0.500 s of virtual time"), part["view"]

@@ -164,6 +164,105 @@
   }
 
   let plot = {x: 0, width: 1};  // where the view is in pixels
+  let places = [], rowsOf = [], cursors = [];
+
+  // --- The moment that the page shows --------------------------------------------------------------
+
+  // The replay of the same run, or none.
+  const replayOf = run => tcs.runs.find(replay => replay.name === run.name);
+
+  // A time of the run in the other time.
+  function translated(run, time, before, after) {
+    // The dynamics go on in both.
+    run.steps = run.steps || Uint32Array.from({length: run.count}, (_, i) => i).filter(i => run.dynamics < 0 || run.row[i] === run.dynamics);
+    const {steps} = run, {start, end} = run[before];
+    let low = 0, high = steps.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (end[steps[middle]] < time) low = middle + 1; else high = middle;
+    }
+    if (low === steps.length) return run[after].last;
+    const i = steps[low], length = end[i] - start[i];
+    const share = length > 0 ? Math.min(1, Math.max(0, (time - start[i]) / length)) : 1;
+    return run[after].start[i] + share * (run[after].end[i] - run[after].start[i]);
+  }
+
+  // What the row's program wrote: a tick for each line, one a pixel.
+  function said(run, name, x, y, scale) {
+    const replay = replayOf(run);
+    if (!replay) return '';
+    let content = '', last = -1;
+    for (const line of replay.said) {
+      if (line.client !== name) continue;
+      const time = view.axis === 'virtual' ? line.time * 1e6 : translated(run, line.time * 1e6, 'virtual', 'real');
+      if (time < view.from || time > view.to) continue;
+      const px = Math.round(x + (time - view.from) * scale);
+      if (px === last && !line.isMark) continue;
+      last = px;
+      content += `<path class="said${line.isMark ? ' is-mark' : ''}" d="M${px} ${y + 1}l3 -4h-6z"><title>${escaped(line.text)}</title></path>`;
+    }
+    return content;
+  }
+
+  // Rows that ran since the last picture or step are lit: a controller is done in less than one.
+  let lastMoment = 0;
+  function showMoment() {
+    if (!tcs.run) return;
+    const now = tcs.time * 1e6;
+    const since = lastMoment < now && now - lastMoment <= 2e5 ? lastMoment : now - 1;
+    lastMoment = now;
+    let row = 0;
+    runs.forEach((run, i) => {
+      const replay = replayOf(run), isShown = replay === tcs.run;
+      const ran = isShown ? ranBetween(run, since, now) : new Set();
+      run.rows.forEach((name, number) => {
+        const element = rowsOf[row++];
+        if (element) element.classList.toggle('is-lit', ran.has(number));
+      });
+      if (isShown && computing) {
+        const who = run.rows.filter((name, number) => ran.has(number) && number !== run.dynamics);
+        computing.textContent = who.length ? `computing: ${who.join(', ')}` : 'computing: nobody';
+      }
+      if (!cursors[i]) return;
+      const time = view.axis === 'virtual' ? now : translated(run, now, 'virtual', 'real');
+      const isInView = isShown && time >= view.from && time <= view.to;
+      cursors[i].style.display = isInView ? '' : 'none';
+      cursors[i].setAttribute('transform', `translate(${(plot.x + (time - view.from) / (view.to - view.from) * plot.width).toFixed(1)} 0)`);
+    });
+  }
+  const computing = document.querySelector('#replay .computing');
+
+  function ranBetween(run, from, to) {
+    const rows = new Set(), {start, end} = run.virtual;
+    if (!run.longest) {
+      run.longest = 0;
+      for (let i = 0; i < run.count; ++i) run.longest = Math.max(run.longest, end[i] - start[i]);
+      run.order = Uint32Array.from({length: run.count}, (_, i) => i).sort((a, b) => start[a] - start[b]);
+    }
+    let low = 0, high = run.count;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (start[run.order[middle]] < from - run.longest) low = middle + 1; else high = middle;
+    }
+    for (; low < run.count && start[run.order[low]] <= to; ++low) {
+      const i = run.order[low];
+      if (end[i] >= from && (end[i] > start[i] || start[i] > from)) rows.add(run.row[i]);
+    }
+    return rows;
+  }
+
+  // The run that was clicked, and the moment.
+  function seekTo(event) {
+    const y = event.clientY - live.getBoundingClientRect().top;
+    const {run} = places.find(place => y < place.bottom) || places[places.length - 1];
+    const replay = replayOf(run);
+    if (!replay) return;
+    const time = Math.min(view.to, Math.max(view.from, timeAt(event.clientX)));
+    tcs.pause();
+    tcs.chooseRun(tcs.runs.indexOf(replay));
+    tcs.seek((view.axis === 'virtual' ? time : translated(run, time, 'real', 'virtual')) / 1e6);
+  }
+  tcs.on(showMoment);
 
   function draw() {
     const width = Math.max(280, Math.floor(live.clientWidth));
@@ -179,24 +278,32 @@
       if (!narrow) return text(x - 6, row + 13, 'note', name, 'end');
       return text(x, row - 4, 'note', name);
     };
+    places = [];
     for (const run of runs) {
+      const top = y;
       y += TITLE;
       content += text(8, y - 8, 'name', run.name);
       const ran = busy(run, columns);
       slices += ran.slices;
       run.rows.forEach((name, row) => {
         if (narrow) y += NAME_ABOVE;
-        content += label(name, y) + `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${ROW}"/>` +
+        content += `<g class="row">` + label(name, y) + `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${ROW}"/>` +
             bars(ran.share, row * columns, columns, x, y) +
-            text(x + columns + 4, y + 13, 'tick', percent(ran.whole[row]));
+            text(x + columns + 4, y + 13, 'tick', percent(ran.whole[row])) + said(run, name, x, y, scale) + '</g>';
         y += ROW + BETWEEN;
       });
-      if (!run.real) continue;
+      places.push({run, top, bottom: y});
+      if (!run.real) {
+        content += `<path class="cursor" d="M0 ${top + TITLE - 4}V${y}"/>`;
+        continue;
+      }
       if (narrow) y += NAME_ABOVE;
       content += label(other, y) +
           `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${PROGRESS}"/>` +
           progress(run, x, y, scale);
       y += PROGRESS + BETWEEN;
+      places[places.length - 1].bottom = y;
+      content += `<path class="cursor" d="M0 ${top + TITLE - 4}V${y}"/>`;
     }
     content += `<path class="axis" d="M${x} ${y}H${x + columns}"/>`;
     for (const [at, name] of ticks(view.from, view.to, narrow ? 3 : 7)) {
@@ -205,10 +312,13 @@
     }
     content += text(x + columns, y + 33, 'tick', `${view.axis} time [s]`, 'end');
     const seconds = time => (time / 1e6).toFixed(view.to - view.from < 1e4 ? 6 : 3);
-    const said = `${seconds(view.from)} s to ${seconds(view.to)} s of ${view.axis} time, ${slices} slices`;
+    const shown = `${seconds(view.from)} s to ${seconds(view.to)} s of ${view.axis} time, ${slices} slices`;
     live.innerHTML = `<svg viewBox="0 0 ${width} ${y + 40}" width="${width}" height="${y + 40}" role="img">` +
-        `<title>${escaped(said)}</title>${content}</svg>`;
-    output.textContent = said;
+        `<title>${escaped(shown)}</title>${content}</svg>`;
+    rowsOf = [...live.querySelectorAll('g.row')];
+    cursors = [...live.querySelectorAll('path.cursor')];
+    showMoment();
+    output.textContent = shown;
     axisButton.textContent = view.axis === 'real' ? 'show over virtual time' : 'show over real time';
   }
 
@@ -265,14 +375,8 @@
     const [run, before] = [runs[0], view.axis];
     const after = before === 'real' ? 'virtual' : 'real';
     const whole = view.from <= 0 && view.to >= last(before);
-    const translated = time => {
-      for (let i = 0; i < run.count; ++i) {
-        if (run.dynamics >= 0 && run.row[i] !== run.dynamics) continue;
-        if (run[before].end[i] >= time) return run[after].end[i];
-      }
-      return run[after].last;
-    };
-    const [from, to] = whole ? [0, last(after)] : [translated(view.from), translated(view.to)];
+    const [from, to] = whole ? [0, last(after)]
+        : [translated(run, view.from, before, after), translated(run, view.to, before, after)];
     view.axis = after;
     show(from, to);
   }
@@ -300,10 +404,12 @@
   live.addEventListener('dblclick', event => zoom(0.4, timeAt(event.clientX)));
 
   const fingers = new Map();
+  let pressed = null;  // where, until the finger moves
   live.addEventListener('pointerdown', event => {
     if (event.button !== 0) return;
     fingers.set(event.pointerId, event.clientX);
     live.setPointerCapture(event.pointerId);
+    pressed = fingers.size === 1 ? event.clientX : null;
   });
   live.addEventListener('pointermove', event => {
     if (!fingers.has(event.pointerId)) return;
@@ -311,6 +417,7 @@
     fingers.set(event.pointerId, event.clientX);
     const after = [...fingers.values()];
     const perPixel = (view.to - view.from) / plot.width;
+    if (pressed !== null && Math.abs(event.clientX - pressed) >= 4) pressed = null;
     if (fingers.size === 1) {
       show(view.from - (after[0] - before[0]) * perPixel, view.to - (after[0] - before[0]) * perPixel);
     } else if (fingers.size === 2 && Math.abs(after[0] - after[1]) > 8) {
@@ -319,7 +426,11 @@
     }
   });
   for (const over of ['pointerup', 'pointercancel']) {
-    live.addEventListener(over, event => fingers.delete(event.pointerId));
+    live.addEventListener(over, event => {
+      fingers.delete(event.pointerId);
+      if (over === 'pointerup' && pressed !== null && Math.abs(event.clientX - pressed) < 4) seekTo(event);
+      pressed = null;
+    });
   }
 
   figure.classList.add('is-live');
@@ -328,5 +439,5 @@
   draw();
   followAddress();
   addEventListener('hashchange', followAddress);
-  new ResizeObserver(() => draw()).observe(live);
+  tcs.onWidth(live, draw);
 })();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "coordinator/report/page_files.h"
 #include "coordinator/report/read_results.h"
 #include "coordinator/report/write.h"
 #include "tests/unit/report/result_folder.h"
@@ -19,8 +20,14 @@ class PageTest : public ResultFolderTest {
     EXPECT_EQ(error, nullptr) << error->message;
     return error == nullptr ? MakePage(std::get<Results>(read), options) : Page{};
   }
+  // But for its scripts, which are the same in all pages.
   static bool Has(const Page& page, const std::string& text) {
-    return page.html.find(text) != std::string::npos;
+    std::string html = page.html;
+    for (const std::string_view script : {kThreeJs, kReplayDataJs, kPageJs}) {
+      const std::size_t at = html.find(script);
+      if (at != std::string::npos) html.erase(at, script.size());
+    }
+    return html.find(text) != std::string::npos;
   }
   static bool HasFigure(const Page& page, const std::string& name) {
     return std::any_of(page.svgs.begin(), page.svgs.end(),
@@ -32,12 +39,13 @@ TEST_F(PageTest, SaysWhatItsDataSay) {
   WriteRun("near", 4, 4);
   WriteRun("far", 6, 4);
   const Page page = Make({"near", "far"});
-  EXPECT_TRUE(Has(page, "The median distance is 4.00\u00a0m in near and 6.00\u00a0m in far."));
+  EXPECT_TRUE(Has(page, "The median distance is 4.00\u00a0m in “near” and 6.00\u00a0m in “far”."));
   EXPECT_TRUE(Has(
-      page, "The share of the samples below 5\u00a0m is 100\u00a0% in near and 0\u00a0% in far."));
+      page,
+      "The share of the samples below 5\u00a0m is 100\u00a0% in “near” and 0\u00a0% in “far”."));
   EXPECT_TRUE(Has(page,
-                  "The median activation of r/planner takes 1.00\u00a0ms in near (700\u00a0µs of "
-                  "computing) and 1.00\u00a0ms in far"));
+                  "The median activation of r/planner takes 1.00\u00a0ms in “near” (700\u00a0µs of "
+                  "computing) and 1.00\u00a0ms in “far”"));
   for (const char* name :
        {"distances", "distance-over-time", "timeline", "response-times", "lateness"}) {
     EXPECT_TRUE(HasFigure(page, name)) << name;
@@ -73,12 +81,39 @@ TEST_F(PageTest, NeedsNothingButItself) {
   for (const char* outside : {"http://", "https://", "src=", "href=", "@import", "url("}) {
     EXPECT_FALSE(Has(page, outside)) << outside;
   }
+  EXPECT_NE(page.html.find(kThreeJs), std::string::npos);
+}
+
+TEST_F(PageTest, BeginsWithWhatHappened) {
+  WriteRun("one", 5, 4);
+  const Page page = Make({"one"});
+  const char* const order[] = {"<h2>The world</h2>",
+                               "<h2>Where the robots went</h2>",
+                               "<h2>What a robot did over time</h2>",
+                               "<h2>What programs said</h2>",
+                               "<h2>Who ran when</h2>",
+                               "<h2>The systems</h2>"};
+  std::size_t last = 0;
+  for (const char* heading : order) {
+    const std::size_t at = page.html.find(heading);
+    ASSERT_NE(at, std::string::npos) << heading;
+    EXPECT_GT(at, last) << heading;
+    last = at;
+  }
+}
+
+TEST_F(PageTest, WithoutAWorldItSaysWhyAndDoesNotCarryThreeJs) {
+  WriteRun("one");
+  std::filesystem::remove(Path("one") + "/bodies.csv");
+  const Page page = Make({"one"});
+  EXPECT_TRUE(Has(page, "There is none to show"));
+  EXPECT_EQ(page.html.find(kThreeJs), std::string::npos);
 }
 
 TEST_F(PageTest, OneSampleIsEnough) {
   WriteRun("one", 5, 1);
   const Page page = Make({"one"});
-  EXPECT_TRUE(Has(page, "The median distance is 5.00\u00a0m in one."));
+  EXPECT_TRUE(Has(page, "The median distance is 5.00\u00a0m."));
   EXPECT_FALSE(Has(page, "nan"));
   EXPECT_FALSE(Has(page, "inf"));
 }
@@ -89,7 +124,7 @@ TEST_F(PageTest, ARunWithoutBodiesActivationsAndDispatchesStillHasItsCosts) {
     std::filesystem::remove(Path("one") + "/" + name);
   }
   const Page page = Make({"one"});
-  EXPECT_TRUE(Has(page, "Progress came apart by up to 1.00\u00a0ms in one."));
+  EXPECT_TRUE(Has(page, "Progress came apart by up to 1.00\u00a0ms."));
   EXPECT_TRUE(page.svgs.empty());
   ASSERT_EQ(page.warnings.size(), 1u);
   EXPECT_NE(page.warnings[0].find("the timeline goes without it"), std::string::npos);

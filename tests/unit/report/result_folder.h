@@ -42,10 +42,11 @@ class ResultFolderTest : public ::testing::Test {
 
   // Two bodies that keep `distance_m` for `samples`.
   static std::string Bodies(double distance_m, int samples) {
-    std::string text = "time_s,body,x_m,y_m,z_m,qx\n";
+    std::string text =
+        "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
     for (int i = 0; i < samples; ++i) {
-      text += fmt::format("{0:.2f},a,0,0,0,0\n{0:.2f},b,0,{1},0,0\n{0:.2f},c,1,0,0,0\n", i * 0.01,
-                          distance_m);
+      text += fmt::format("{0:.2f},a,0,0,0,{2}\n{0:.2f},b,0,{1},0,{2}\n{0:.2f},c,1,0,0,{2}\n",
+                          i * 0.01, distance_m, "0,0,0,1,0,0,0,0,0,0");
     }
     return text;
   }

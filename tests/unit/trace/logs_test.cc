@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "coordinator/trace/activation_log.h"
 #include "coordinator/trace/dispatch_log.h"
+#include "coordinator/trace/output_log.h"
 
 namespace tcs {
 namespace {
@@ -85,6 +87,65 @@ TEST_F(LogsTest, ManyLinesArriveWhole) {
   }
   ASSERT_EQ(file.Close(), "");
   EXPECT_EQ(Written(), wanted);
+}
+
+TEST_F(LogsTest, NumbersHaveTheDigitsThatTellThemApart) {
+  CsvFile file;
+  ASSERT_EQ(file.Open(path_, "number"), "");
+  for (const double number : {0.1, -0.0, 1e300, -2.2250738585072014e-308, 1.0 / 3}) {
+    file.Line(number);
+  }
+  ASSERT_EQ(file.Close(), "");
+  EXPECT_EQ(Written(), "number\n0.1\n-0\n1e+300\n-2.2250738585072014e-308\n0.3333333333333333\n");
+}
+
+class OutputLogTest : public ::testing::Test {
+ protected:
+  OutputLogTest() { std::filesystem::create_directory(folder_); }
+  ~OutputLogTest() override { std::filesystem::remove_all(folder_); }
+  void Append(const std::string& file, const std::string& text) const {
+    std::ofstream(folder_ + "/" + file, std::ios::app) << text;
+  }
+  std::string Written() const {
+    std::stringstream text;
+    text << std::ifstream(folder_ + "/output.csv").rdbuf();
+    return text.str();
+  }
+  const std::string folder_ = ::testing::TempDir() + "output_log_test";
+};
+
+TEST_F(OutputLogTest, HasALineForEachPieceThatAClientWrote) {
+  OutputLog log;
+  ASSERT_EQ(log.Open(folder_), "");
+  log.Add("r/planner", "r-planner");
+  log.LookAt(1);
+  Append("r-planner.out.log", "hello\n");
+  log.LookAt(2);
+  log.LookAt(3);
+  Append("r-planner.out.log", "a");
+  Append("r-planner.out.log", "b");
+  Append("r-planner.err.log", "oh");
+  Append("others.log", "what nobody asked for");
+  log.LookAt(4);
+  ASSERT_EQ(log.Close(), "");
+  EXPECT_EQ(Written(),
+            "time_ns,client,stream,begin,end\n"
+            "2,r/planner,out,0,6\n"
+            "4,r/planner,out,6,8\n"
+            "4,r/planner,err,0,2\n");
+}
+
+TEST_F(OutputLogTest, WhatAnEarlierRunLeftIsNotIts) {
+  Append("r-planner.out.log", "of an earlier run\n");
+  OutputLog log;
+  ASSERT_EQ(log.Open(folder_), "");
+  log.Add("r/planner", "r-planner");
+  { std::ofstream truncated(folder_ + "/r-planner.out.log"); }
+  log.LookAt(1);
+  Append("r-planner.out.log", "new");
+  log.LookAt(2);
+  ASSERT_EQ(log.Close(), "");
+  EXPECT_EQ(Written(), "time_ns,client,stream,begin,end\n2,r/planner,out,0,3\n");
 }
 
 TEST_F(LogsTest, AFullDiskIsSaid) {

@@ -1,0 +1,31 @@
+// What the links of a URDF file look like: its <visual> elements and their colours.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "simbody_bridge/model/shape.h"
+
+namespace tcs {
+
+// A mesh that is shown and never collides: it is named here, not read.
+struct MeshFile {
+  std::string name;  // as the file has it
+  std::array<double, 3> scale{1, 1, 1};
+};
+
+struct Visual {
+  std::variant<BoxShape, SphereShape, CylinderShape, MeshFile> geometry;
+  Pose pose;                                           // in the link's frame
+  std::optional<std::array<double, 4>> colour_rgba{};  // 0 … 1
+};
+
+// Of each link of the file, by name. Neither the physics nor any program depends on how a robot
+// looks: what cannot be understood here, the file as a whole included, is left out without a word.
+[[nodiscard]] std::map<std::string, std::vector<Visual>> ReadVisuals(const std::string& path);
+
+}  // namespace tcs

@@ -1,0 +1,292 @@
+// What the robots did: their ways from above and from the side, and what is known of the robot that is
+// looked at, over time. It replaces the static pictures.
+(() => {
+  'use strict';
+  if (!tcs.run || !tcs.run.count) return;
+  const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
+  const text = (x, y, classes, content, anchor = 'start') =>
+      `<text class="${classes}" x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor}">${escaped(content)}</text>`;
+
+  function ticks(from, to, most) {
+    const power = Math.pow(10, Math.floor(Math.log10((to - from) / most)));
+    const step = [1, 2, 5, 10].map(f => f * power).find(s => (to - from) / s <= most);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const all = [];
+    for (let i = Math.ceil(from / step - 1e-9); i * step <= to + step * 1e-9; ++i) {
+      all.push([i * step, (Math.abs(i * step) < step / 2 ? 0 : i * step).toFixed(decimals)]);
+    }
+    return all;
+  }
+
+  function goLive(figure) {
+    figure.classList.add('is-live');
+    figure.querySelectorAll('.live, .hint, .controls').forEach(element => { element.hidden = false; });
+    return figure.querySelector('.live');
+  }
+
+  // --- From above and from the side ----------------------------------------------------------------
+
+  const paths = document.getElementById('paths');
+  const pathsLive = paths && goLive(paths);
+  let dots = [];
+
+  // The part of the world that the robots were in, and a little more.
+  function spanOf(run, axis) {
+    let least = Infinity, most = -Infinity;
+    for (const robot of run.robots) {
+      for (const path of robot.paths) {
+        const {count, poses} = run.tracks[path];
+        for (let i = 0; i < count; ++i) {
+          least = Math.min(least, poses[7 * i + axis]);
+          most = Math.max(most, poses[7 * i + axis]);
+        }
+      }
+    }
+    return [least, most];
+  }
+
+  function drawView(run, [across, up], title, x, y, width, height, scale) {
+    const spans = [spanOf(run, across), spanOf(run, up)];
+    const middles = spans.map(([least, most]) => (least + most) / 2);
+    const at = pose => [x + width / 2 + (pose[across] - middles[0]) * scale, y + height / 2 - (pose[up] - middles[1]) * scale];
+    let content = `<rect class="lane" x="${x}" y="${y}" width="${width}" height="${height}"/>`;
+    const from = middles.map((middle, i) => middle - (i ? height : width) / 2 / scale);
+    const to = middles.map((middle, i) => middle + (i ? height : width) / 2 / scale);
+    for (const [value, label] of ticks(from[0], to[0], Math.max(2, width / 90))) {
+      const px = x + (value - from[0]) * scale;
+      content += `<path class="grid" d="M${px.toFixed(1)} ${y}v${height}"/>` + text(px, y + height + 14, 'tick', label, 'middle');
+    }
+    for (const [value, label] of ticks(from[1], to[1], Math.max(2, height / 50))) {
+      const py = y + height - (value - from[1]) * scale;
+      content += `<path class="grid" d="M${x} ${py.toFixed(1)}h${width}"/>` + text(x - 5, py + 4, 'tick', label, 'end');
+    }
+    content += text(x, y - 7, 'name', title);
+    const markers = [];
+    run.robots.forEach((robot, i) => {
+      for (const path of robot.paths) {
+        const {count, poses} = run.tracks[path], stride = Math.max(1, Math.floor(count / 500));
+        const points = [];
+        for (let k = 0; k < count; k += stride) points.push(at(poses.subarray(7 * k, 7 * k + 7)).map(p => p.toFixed(1)).join(' '));
+        content += `<path class="${i === tcs.robot || run.robots.length === 1 ? 'line' : 'thin'} ${tcs.colourOf(i)}" d="M${points.join('L')}"/>`;
+        markers.push({path, robot: i, at});
+      }
+    });
+    for (const {robot} of markers) {
+      content += `<circle class="now f${robot % 7}" r="${run.robots.length > 8 ? 3.5 : 5}"><title>${escaped(run.robots[robot].name)}</title></circle>`;
+    }
+    return {content, markers};
+  }
+
+  function drawPaths() {
+    if (!pathsLive) return;
+    const {run} = tcs, width = Math.max(280, Math.floor(pathsLive.clientWidth)), narrow = width < 560;
+    const left = 40, right = 8, top = 26, bottom = 22, between = 60;
+    const sizes = [0, 1, 2].map(axis => spanOf(run, axis)).map(([least, most]) => Math.max(most - least, 1e-3));
+    const most = Math.max(...sizes), [wide, deep, tall] = sizes.map(size => Math.max(size, most * 0.3) * 1.12);
+    const plot = narrow ? width - left - right : (width - left - right - between) / 2;
+    const scale = Math.min(plot / wide, (narrow ? 320 : 380) / Math.max(deep, tall));
+    const heights = [deep, tall].map(size => Math.max(70, Math.round(size * scale)));
+    const above = drawView(run, [0, 1], 'from above: y [m] over x [m]', left, top, plot, heights[0], scale);
+    const aside = narrow
+        ? drawView(run, [0, 2], 'from the side: z [m] over x [m]', left, top + heights[0] + bottom + 34, plot, heights[1], scale)
+        : drawView(run, [0, 2], 'from the side: z [m] over x [m]', left + plot + between, top, plot, heights[1], scale);
+    const height = narrow ? top + heights[0] + heights[1] + 2 * bottom + 34 : top + Math.max(...heights) + bottom;
+    pathsLive.innerHTML = `<svg viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img">` +
+        `<title>Where the robots went, from above and from the side</title>${above.content}${aside.content}</svg>`;
+    const circles = [...pathsLive.querySelectorAll('circle.now')];
+    dots = [...above.markers, ...aside.markers].map((marker, i) => ({...marker, circle: circles[i]}));
+    circles.forEach((circle, i) => circle.addEventListener('click', () => tcs.chooseRobot(dots[i].robot)));
+    moveDots();
+  }
+  function moveDots() {
+    for (const {path, at, circle} of dots) {
+      const [x, y] = at(tcs.poseAt(tcs.run, path, tcs.time));
+      circle.setAttribute('cx', x.toFixed(1));
+      circle.setAttribute('cy', y.toFixed(1));
+    }
+  }
+
+  // --- Over time -----------------------------------------------------------------------------------
+
+  const motion = document.getElementById('motion');
+  const motionLive = motion && goLive(motion);
+  const chooser = motion && motion.querySelector('select');
+  let panels = [], plot = {x: 0, width: 1};
+
+  // Roll, pitch and yaw in degrees, without jumps by a whole turn.
+  function anglesOf(track) {
+    const angles = [[], [], []], last = [0, 0, 0];
+    for (let i = 0; i < track.count; ++i) {
+      const [x, y, z, w] = track.poses.subarray(7 * i + 3, 7 * i + 7);
+      const now = [Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+                   Math.asin(Math.min(1, Math.max(-1, 2 * (w * y - z * x)))),
+                   Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))];
+      now.forEach((angle, axis) => {
+        const turns = i ? Math.round((last[axis] - angle) / (2 * Math.PI)) : 0;
+        last[axis] = angle + turns * 2 * Math.PI;
+        angles[axis].push(last[axis] * 180 / Math.PI);
+      });
+    }
+    return angles;
+  }
+
+  function panelsOf(run, number) {
+    const robot = run.robots[number], all = [];
+    const track = run.tracks[robot.root];
+    if (track.count > 1) {
+      const along = axis => Array.from({length: track.count}, (_, i) => track.poses[7 * i + axis]);
+      all.push({title: 'position [m]', lines: ['x', 'y', 'z'].map((name, axis) => ({name, first: 0, values: along(axis)}))});
+      const angles = anglesOf(track);
+      all.push({title: 'orientation [°]', lines: ['roll', 'pitch', 'yaw'].map((name, axis) => ({name, first: 0, values: angles[axis]}))});
+    }
+    for (const signal of run.signals) {
+      if (signal.robot !== number || (track.count < 2 && signal.panel.startsWith('velocity'))) continue;
+      const panel = all.find(each => each.title === signal.panel);
+      if (panel) panel.lines.push(signal); else all.push({title: signal.panel, lines: [signal]});
+    }
+    return all;
+  }
+
+  function pathOf(run, line, at, columns) {
+    const stride = Math.max(1, Math.floor(line.values.length / columns / 2));
+    let path = '';
+    for (let i = 0; i < line.values.length; i += stride) {
+      // Of the values of a column both the least and the most.
+      let least = i, most = i;
+      for (let k = i + 1; k < Math.min(i + stride, line.values.length); ++k) {
+        if (line.values[k] < line.values[least]) least = k;
+        if (line.values[k] > line.values[most]) most = k;
+      }
+      for (const k of stride === 1 ? [i] : [Math.min(least, most), Math.max(least, most)]) {
+        const [x, y] = at(run.time[line.first + k], line.values[k]);
+        path += `${path ? 'L' : 'M'}${x.toFixed(1)} ${y.toFixed(1)}`;
+      }
+    }
+    return path;
+  }
+
+  const MOST_LINES = 14, PANEL = 92, ABOVE = 30;
+  function drawMotion() {
+    if (!motionLive) return;
+    const {run} = tcs, width = Math.max(280, Math.floor(motionLive.clientWidth)), narrow = width < 560;
+    const left = 48, columns = width - left - 12;
+    plot = {x: left, width: columns};
+    const scale = columns / run.end;
+    let y = 0, content = '';
+    // What is 0 all the time needs no picture.
+    const isZero = panel => panel.lines.every(line => line.values.every(value => Math.abs(value) < 1e-6));
+    const all = panelsOf(run, tcs.robot), zero = all.filter(isZero);
+    panels = all.filter(panel => !isZero(panel));
+    for (const panel of panels) {
+      const shown = panel.lines.slice(0, MOST_LINES);
+      y += ABOVE;
+      let least = Infinity, most = -Infinity;
+      for (const line of shown) {
+        for (const value of line.values) {
+          least = Math.min(least, value);
+          most = Math.max(most, value);
+        }
+      }
+      if (most - least < 1e-6) [least, most] = [least - 0.5, most + 0.5];
+      const room = (most - least) * 0.06;
+      [least, most] = [least - room, most + room];
+      const at = (time, value) => [left + time * scale, y + PANEL * (1 - (value - least) / (most - least))];
+      content += text(left, y - 8, 'name', panel.title);
+      panel.readings = [];
+      content += `<rect class="lane" x="${left}" y="${y}" width="${columns}" height="${PANEL}"/>`;
+      for (const [value, label] of ticks(least, most, 4)) {
+        const py = at(0, value)[1];
+        content += `<path class="grid" d="M${left} ${py.toFixed(1)}h${columns}"/>` + text(left - 6, py + 4, 'tick', label, 'end');
+      }
+      shown.forEach((line, i) => {
+        content += `<path class="line s${i % 7}" d="${pathOf(run, line, at, columns)}"/>`;
+      });
+      content += `<text class="legend" x="${width - 12}" y="${y - 8}" text-anchor="end">` +
+          shown.map((line, i) => `<tspan class="t${i % 7}" dx="${i ? 9 : 0}">${escaped(line.name)}</tspan><tspan class="value" dx="4"></tspan>`).join('') +
+          (panel.lines.length > MOST_LINES ? `<tspan dx="9">and ${panel.lines.length - MOST_LINES} more</tspan>` : '') + '</text>';
+      y += PANEL;
+    }
+    if (panels.length === 0) {
+      motionLive.innerHTML = '<p class="nothing">It does not move, has no joints, and nothing is commanded of it.</p>';
+      return;
+    }
+    content += `<path class="axis" d="M${left} ${y}h${columns}"/>`;
+    for (const [value, label] of ticks(0, run.end, narrow ? 4 : 9)) {
+      const px = left + value * scale;
+      content += `<path class="axis" d="M${px.toFixed(1)} ${y}v4"/>` + text(px, y + 17, 'tick', label, px < left + 8 ? 'start' : 'middle');
+    }
+    content += text(left + columns, y + 33, 'tick', 'virtual time [s]', 'end');
+    for (const line of run.said) {
+      if (line.isMark) content += `<path class="mark" d="M${(left + line.time * scale).toFixed(1)} ${ABOVE}V${y}"><title>${escaped(line.text)}</title></path>`;
+    }
+    if (zero.length) {
+      content += text(left, y + 46, 'tick', `Always 0: ${zero.map(panel => panel.title.replace(/ \[.*/, '')).join(', ')}.`);
+    }
+    content += `<path class="cursor" d="M0 ${ABOVE - 4}V${y}"/>`;
+    const height = y + (zero.length ? 54 : 40);
+    motionLive.innerHTML = `<svg viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img">` +
+        `<title>What is known of ${escaped(run.robots[tcs.robot].name)} over time</title>${content}</svg>`;
+    const legends = [...motionLive.querySelectorAll('.legend')];
+    panels.forEach((panel, i) => { panel.readings = [...legends[i].querySelectorAll('.value')]; });
+    moveCursor();
+  }
+  const digits = value => Math.abs(value) < 0.005 ? '0.00' : Math.abs(value) >= 99.95 ? value.toFixed(0) : Math.abs(value) >= 9.995 ? value.toFixed(1) : value.toFixed(2);
+  function moveCursor() {
+    const cursor = motionLive && motionLive.querySelector('.cursor');
+    if (!cursor) return;
+    cursor.setAttribute('transform', `translate(${(plot.x + plot.width * tcs.time / tcs.run.end).toFixed(1)} 0)`);
+    const moment = tcs.momentAt(tcs.run, tcs.time), wide = motionLive.clientWidth >= 560;
+    for (const panel of panels) {
+      panel.readings.forEach((reading, i) => {
+        const {first, values} = panel.lines[i];
+        reading.textContent = wide && panel.lines.length <= 6 && moment >= first ? digits(values[moment - first]) : '';
+      });
+    }
+  }
+
+  function seekTo(event) {
+    const svg = motionLive.querySelector('svg');
+    if (!svg) return;
+    tcs.seek((event.clientX - svg.getBoundingClientRect().left - plot.x) / plot.width * tcs.run.end);
+  }
+  if (motionLive) {
+    motionLive.addEventListener('pointerdown', event => {
+      if (event.button !== 0) return;
+      tcs.pause();
+      motionLive.setPointerCapture(event.pointerId);
+      seekTo(event);
+    });
+    motionLive.addEventListener('pointermove', event => { if (event.buttons & 1) seekTo(event); });
+    motionLive.addEventListener('keydown', event => {
+      const by = {ArrowLeft: -1, ArrowRight: 1}[event.key];
+      if (!by) return;
+      event.preventDefault();
+      tcs.step(by);
+    });
+    tcs.onWidth(motionLive, drawMotion);
+  }
+  if (pathsLive) tcs.onWidth(pathsLive, drawPaths);
+  function fillChooser() {
+    if (!chooser) return;
+    chooser.replaceChildren(...tcs.run.robots.map((robot, i) => new Option(robot.name, i)));
+    chooser.closest('.controls').hidden = tcs.run.robots.length < 2;
+    chooser.value = String(tcs.robot);
+  }
+  if (chooser) chooser.addEventListener('change', () => tcs.chooseRobot(Number(chooser.value)));
+
+  tcs.on(what => {
+    if (what === 'time') {
+      moveDots();
+      moveCursor();
+    }
+    if (what === 'run') fillChooser();
+    if (what === 'robot' || what === 'run') {
+      if (chooser) chooser.value = String(tcs.robot);
+      drawPaths();
+      drawMotion();
+    }
+  });
+  fillChooser();
+  drawPaths();
+  drawMotion();
+})();

@@ -1,0 +1,62 @@
+// What programs said, in their order in time; a click on a line moves the world there.
+(() => {
+  'use strict';
+  const list = document.getElementById('said-lines');
+  if (!list || !tcs.run) return;
+  const filter = document.querySelector('#said select');
+  const items = [];
+  let here = -1;
+
+  function fill() {
+    const chosen = filter.value;
+    items.length = 0;
+    list.replaceChildren();
+    here = -1;
+    for (const line of tcs.run.said) {
+      if (chosen && line.client !== chosen) continue;
+      const item = document.createElement('li');
+      const button = document.createElement('button');
+      const parts = [['time', `${line.time.toFixed(3)}\u00a0s`], ['who', line.client], [line.isMark ? 'text mark' : `text ${line.stream}`, line.text]];
+      for (const [name, content] of parts) {
+        const part = document.createElement('span');
+        part.className = name;
+        part.textContent = content;
+        button.append(part);
+      }
+      button.type = 'button';
+      button.addEventListener('click', () => { tcs.pause(); tcs.seek(line.time); });
+      item.append(button);
+      list.append(item);
+      items.push({item, time: line.time});
+    }
+    show();
+  }
+  function fillFilter() {
+    const clients = [...new Set(tcs.run.said.map(line => line.client))].sort();
+    filter.replaceChildren(new Option('all programs', ''), ...clients.map(client => new Option(client, client)));
+    filter.closest('.controls').hidden = clients.length < 2;
+  }
+  function show() {
+    let last = -1;
+    while (last + 1 < items.length && items[last + 1].time <= tcs.time + 1e-6) ++last;
+    if (last === here) return;
+    if (items[here]) items[here].item.classList.remove('is-now');
+    here = last;
+    if (!items[here]) return;
+    const {item} = items[here];
+    item.classList.add('is-now');
+    // Within the list alone: the page stays where it is.
+    list.scrollTop = item.offsetTop - list.offsetTop - list.clientHeight / 2 + item.clientHeight / 2;
+  }
+  filter.addEventListener('change', fill);
+  tcs.on(what => {
+    if (what === 'run') {
+      fillFilter();
+      fill();
+    }
+    if (what === 'time') show();
+  });
+  fillFilter();
+  fill();
+  document.getElementById('said').classList.add('is-live');
+})();

@@ -1,0 +1,73 @@
+// What the world of one run did, made small enough for a page that shows it again.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::report {
+
+// Position in metres, then an orientation x, y, z, w.
+using PoseRow = std::array<double, 7>;
+
+// Of a body, or of a link and all that is fixed to it.
+struct PoseTrack {
+  std::string name;  // in bodies.csv
+  std::vector<PoseRow> poses;
+
+  [[nodiscard]] bool IsStill() const;
+};
+
+// A quantity over time. What is commanded counts from the first command on.
+struct Signal {
+  std::size_t robot = 0;
+  std::string panel;  // that it is drawn in, with its unit: "velocity [m/s]"
+  std::string name;
+  std::size_t first = 0;  // moment from which on there are values
+  std::vector<double> values;
+};
+
+// A body or a model.
+struct RobotTracks {
+  std::string name;
+  std::size_t root = 0;  // a track
+  std::vector<std::size_t>
+      paths;  // tracks that show its way: the root, or what moves on one that stands
+};
+
+// A line that a client wrote. A mark is one that begins with "mark:".
+struct Said {
+  std::int64_t time_us = 0;
+  std::string client, stream, text;
+  bool is_mark = false;
+};
+
+struct Replay {
+  std::string name;            // the system's
+  std::vector<double> time_s;  // of the moments, in virtual time
+  std::vector<PoseTrack> tracks;
+  std::vector<RobotTracks> robots;
+  std::vector<Signal> signals;
+  nlohmann::ordered_json scene;  // what to draw: "tracks" has the shapes of each, in its frame
+  std::vector<Said> said;
+  std::int64_t said_more = 0;  // lines that there was no room for
+  double end_s = 0;
+  std::size_t trials = 1;  // of which it is the first
+};
+
+// From what a run left. A folder without bodies.csv has a replay without moments, tracks and
+// robots. Of earlier versions' runs there are no shapes. `most_bytes` is about what the encoded
+// replay may take: more bodies have fewer moments.
+[[nodiscard]] LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name,
+                                            double end_s, std::size_t most_bytes,
+                                            std::vector<std::string>* warnings);
+
+// As page/replay_data.js reads it: an object of JSON, tracks and signals in it as base64 of bytes.
+[[nodiscard]] std::string Encoded(const Replay& replay);
+
+}  // namespace tcs::report

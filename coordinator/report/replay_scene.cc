@@ -1,0 +1,156 @@
+#include "coordinator/report/replay_scene.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "coordinator/report/csv.h"
+#include "simbody_bridge/model/pose.h"
+
+namespace tcs::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Pose PoseFrom(const Json& json) {
+  const auto n = json.get<std::array<double, 7>>();
+  return {{n[0], n[1], n[2]}, Normalised({n[3], n[4], n[5], n[6]})};
+}
+
+Json JsonOf(const Pose& pose) {
+  const auto& p = pose.position_m;
+  const auto& q = pose.orientation_xyzw;
+  return {p[0], p[1], p[2], q[0], q[1], q[2], q[3]};
+}
+
+// A body has no shape: it is shown as a box of even density with its mass and its moments.
+Json BoxLike(const Json& body) {
+  const auto mass = body.at("mass_kg").get<double>();
+  const auto i = body.at("inertia_kgm2").get<std::array<double, 3>>();
+  std::array<double, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double others = i[(axis + 1) % 3] + i[(axis + 2) % 3] - i[axis];
+    size[axis] = std::sqrt(std::max(0.0, 6 * others / mass));
+  }
+  return {{"kind", "body"}, {"size", size}, {"pose", JsonOf({})}};
+}
+
+class Reader {
+ public:
+  explicit Reader(Json scene) : scene_(std::move(scene)) {}
+
+  ReplayScene Read() {
+    for (const Json& body : scene_.at("bodies")) {
+      const std::size_t track = AddTrack(body.at("name"));
+      shapes_[track].push_back(BoxLike(body));
+      found_.robots.push_back({body.at("name"), track, {track}, {}});
+    }
+    for (const Json& model : scene_.at("models")) AddModel(model);
+    Json tracks = Json::array();
+    for (std::size_t i = 0; i < found_.tracks.size(); ++i) tracks.push_back(shapes_[i]);
+    AddSensors();
+    found_.json = {{"region", scene_.at("region_m")},
+                   {"fixtures", scene_.at("fixtures")},
+                   {"meshes", scene_.at("meshes")},
+                   {"sensors", std::move(sensors_)},
+                   {"tracks", std::move(tracks)}};
+    return std::move(found_);
+  }
+
+ private:
+  struct Place {
+    std::size_t track = 0;
+    Pose pose;  // in the track's frame
+  };
+
+  std::size_t AddTrack(const std::string& name) {
+    found_.tracks.push_back(name);
+    shapes_.push_back(Json::array());
+    return found_.tracks.size() - 1;
+  }
+
+  void AddModel(const Json& model) {
+    const Json& links = model.at("links");
+    std::vector<bool> is_placed(links.size());
+    std::vector<Place> places(links.size());
+    ReplayScene::Robot robot{model.at("name"), 0, {}, {}};
+    // A parent may stand after its child. Each round places at least one, or the file is no tree.
+    for (std::size_t left = links.size(), before = left + 1; left > 0 && left < before;) {
+      before = left;
+      for (std::size_t i = 0; i < links.size(); ++i) {
+        if (is_placed[i]) continue;
+        const Json& link = links[i];
+        const bool has_parent = link.contains("parent");
+        const auto parent = has_parent ? link.at("parent").get<std::size_t>() : 0;
+        if (has_parent && !is_placed.at(parent)) continue;
+        if (has_parent && link.at("kind") == "fixed") {
+          places[i] = {places[parent].track, Times(places[parent].pose, PoseFrom(link.at("pose")))};
+        } else {
+          places[i] = {AddTrack(link.at("name")), {}};
+          robot.tracks.push_back(places[i].track);
+        }
+        is_placed[i] = true;
+        --left;
+        NoteJoint(link, &robot);
+        AddShapes(link, places[i]);
+        places_[link.at("name")] = places[i];
+      }
+    }
+    if (robot.tracks.empty()) return;
+    robot.root = robot.tracks.front();
+    found_.robots.push_back(std::move(robot));
+  }
+
+  static void NoteJoint(const Json& link, ReplayScene::Robot* robot) {
+    if (!link.contains("joint")) return;
+    const std::string name = robot->name + "/" + link.at("joint").get<std::string>();
+    robot->joint_units[name] = link.at("kind") == "prismatic" ? "m" : "rad";
+  }
+
+  // What it looks like, or where nothing is said of that, what it collides with. The colour of a
+  // mesh that is not here is that of the shapes in its stead.
+  void AddShapes(const Json& link, const Place& place) {
+    const Json& visuals = link.at("visuals");
+    bool is_drawn = !visuals.empty();
+    Json colour;
+    for (const Json& visual : visuals) {
+      is_drawn = is_drawn && visual.at("kind") != "mesh_file";
+      if (visual.contains("colour") && colour.is_null()) colour = visual.at("colour");
+    }
+    for (Json shape : is_drawn ? visuals : link.at("shapes")) {
+      shape["pose"] = JsonOf(Times(place.pose, PoseFrom(shape.at("pose"))));
+      if (!is_drawn && !colour.is_null()) shape["colour"] = colour;
+      shapes_[place.track].push_back(std::move(shape));
+    }
+  }
+
+  void AddSensors() {
+    for (Json sensor : scene_.at("sensors")) {
+      const Place& place = places_.at(sensor.at("link"));
+      sensor["track"] = place.track;
+      sensor["pose"] = JsonOf(Times(place.pose, PoseFrom(sensor.at("pose"))));
+      sensors_.push_back(std::move(sensor));
+    }
+  }
+
+  const Json scene_;
+  ReplayScene found_;
+  std::vector<Json> shapes_;  // of each track
+  std::map<std::string, Place> places_;
+  Json sensors_ = Json::array();
+};
+
+}  // namespace
+
+LoadResult<ReplayScene> ReadReplayScene(const std::string& folder) {
+  const std::string path = folder + "/scene.json";
+  const auto text = ReadFile(path);
+  if (!text) return ReplayScene{};
+  try {
+    return Reader(Json::parse(*text)).Read();
+  } catch (const std::exception&) {
+    return LoadError{path + " is damaged; make the run again"};
+  }
+}
+
+}  // namespace tcs::report

@@ -1,0 +1,30 @@
+// scene.json, as a page needs it: what is fixed to each other is one.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::report {
+
+struct ReplayScene {
+  struct Robot {
+    std::string name;
+    std::size_t root = 0;
+    std::vector<std::size_t> tracks;                 // all of it
+    std::map<std::string, std::string> joint_units;  // "rad" or "m" of each joint, by MODEL/JOINT
+  };
+  std::vector<std::string> tracks;  // names in bodies.csv
+  std::vector<Robot> robots;
+  nlohmann::ordered_json json;
+};
+
+// What the run of `folder` wrote; nothing of it where there is no such file, as of earlier
+// versions.
+[[nodiscard]] LoadResult<ReplayScene> ReadReplayScene(const std::string& folder);
+
+}  // namespace tcs::report

@@ -1,0 +1,53 @@
+#include "coordinator/trace/output_log.h"
+
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace tcs {
+
+std::string OutputLog::Open(const std::string& folder) {
+  folder_ = folder;
+  const std::string path = folder + "/output.csv";
+  unlink(path.c_str());
+  watch_.Reset(inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  if (!watch_ || inotify_add_watch(watch_.get(), folder.c_str(), IN_MODIFY) < 0) {
+    watch_.Reset();
+    return {};
+  }
+  return csv_.Open(path, "time_ns,client,stream,begin,end");
+}
+
+void OutputLog::Add(const std::string& client, const std::string& file) {
+  streams_[file + ".out.log"] = {client, "out"};
+  streams_[file + ".err.log"] = {client, "err"};
+}
+
+void OutputLog::LookAt(std::int64_t now_ns) {
+  if (!watch_) return;
+  alignas(inotify_event) char events[8192];
+  for (;;) {
+    const ssize_t size = read(watch_.get(), events, sizeof events);
+    if (size <= 0) return;
+    for (const char* at = events; at < events + size;) {
+      const auto& event = *reinterpret_cast<const inotify_event*>(at);
+      at += sizeof event + event.len;
+      if (event.len > 0) Grew(event.name, now_ns);
+      if ((event.mask & IN_Q_OVERFLOW) == 0) continue;
+      for (const auto& [file, stream] : streams_) Grew(file, now_ns);
+    }
+  }
+}
+
+void OutputLog::Grew(const std::string& file, std::int64_t now_ns) {
+  const auto found = streams_.find(file);
+  struct stat is {};
+  if (found == streams_.end() || stat((folder_ + "/" + file).c_str(), &is) != 0) return;
+  Stream& stream = found->second;
+  const std::int64_t before = std::exchange(stream.bytes, is.st_size);
+  if (stream.bytes > before) csv_.Line(now_ns, stream.client, stream.name, before, stream.bytes);
+}
+
+}  // namespace tcs

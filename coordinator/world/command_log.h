@@ -1,0 +1,34 @@
+// The commands of a run, as they were given to the physics: commands.csv, a line for each quantity.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "coordinator/trace/csv_file.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+class CommandLog {
+ public:
+  // Of one channel's command.
+  struct Moment {
+    VirtualTime sent;
+    VirtualDuration latency;
+  };
+
+  // Empty on success, else one sentence. Until then nothing is written.
+  [[nodiscard]] std::string Open(const std::string& path);
+  void Write(Moment moment, std::string_view channel, std::string_view target,
+             std::string_view quantity, double value) {
+    file_.Line(moment.sent.ns(), (moment.sent + moment.latency).ns(), channel, target, quantity,
+               value);
+  }
+  void Flush() { file_.Flush(); }
+  [[nodiscard]] std::string Close() { return file_.Close(); }
+
+ private:
+  CsvFile file_;
+};
+
+}  // namespace tcs

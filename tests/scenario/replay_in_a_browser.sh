@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# The world of a run, shown again in a browser: the robot is where bodies.csv says, whichever way the time
+# is set (slider, keys, playing, a click in the timeline or on what a program said); at 400 pixels, by
+# touch, in the dark, in print, and without WebGL.
+for command in chromium chromedriver; do
+  command -v "$command" >/dev/null || fail "$command is not installed (cmake/packages.txt)"
+done
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+"$tcsim" run "$build/examples/rover/scenario.yaml" --accounting fixed --duration 4s --out "$out/rover" >"$out/said" || fail "$(cat "$out/said")"
+cat >"$out/talk.yaml" <<'YAML'
+duration: 2s
+dynamics: {}
+bodies: {drone: {mass: 1, inertia: [0.1, 0.1, 0.1], linear_velocity: [1, 0, 0]}}
+robots:
+  drone:
+    clients:
+      talker: {command: [python3, -u, -c, "import time\nfor i in range(4):\n  time.sleep(0.4)\n  print('mark: half way' if i == 1 else 'tick <%.6f>' % time.monotonic())"]}
+YAML
+"$tcsim" run "$out/talk.yaml" --accounting fixed --out "$out/talk" >"$out/said" || fail "$(cat "$out/said")"
+for run in rover talk; do
+  "$tcsim" report "$out/$run" --out "$out/$run.html" >"$out/said" || fail "$(cat "$out/said")"
+  (($(stat -c %s "$out/$run.html") < 2000000)) || fail "the page of a few seconds is large"
+done
+cd "$(dirname -- "${BASH_SOURCE[0]}")"
+timeout 400 python3 -B replay_in_a_browser.py "$out" || fail "the page is not as it should be"
