@@ -162,7 +162,8 @@ bool ComputingAhead::TakeTurn(Task& task, std::int64_t horizon_ns) {
     std::erase(owing_, &task);
     return false;
   }
-  Pay(task, horizon_ns);
+  // Whoever was woken meanwhile is not to be left behind further than the drift bound.
+  Pay(task, std::min(horizon_ns, parts_.run.root.Horizon(task.cpu->leaf)));
   if (!task.is_ahead) SendIfItComputes(task);
   return true;
 }
@@ -199,7 +200,8 @@ void ComputingAhead::Await(Task& task, std::int64_t horizon_ns) {
 
 void ComputingAhead::Pay(Task& task, std::int64_t horizon_ns) {
   const std::int64_t start = task.cpu->progress_ns;
-  const std::int64_t ns = std::clamp<std::int64_t>(task.debt_ns, 0, horizon_ns - start);
+  const std::int64_t most_ns = std::max<std::int64_t>(0, horizon_ns - start);
+  const std::int64_t ns = std::clamp<std::int64_t>(task.debt_ns, 0, most_ns);
   if (task.state == TaskState::kDead || ns == 0) return;
   task.debt_ns -= ns;
   task.cpu->ComeTo(start + ns);

@@ -225,7 +225,8 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
   const std::int64_t room = computes ? horizon_ns : std::min(horizon_ns, now + bound / 2);
   if (world + bound < room) {
     // As far as they may: the fewer slices, the better.
-    const std::int64_t to = computes ? now + bound : now;
+    const std::int64_t to =
+        computes ? std::min(now + bound, run_.root.Horizon(task.cpu->leaf)) : now;
     const std::uint64_t begun_tsc = __rdtsc();
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();

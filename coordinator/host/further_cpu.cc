@@ -98,12 +98,14 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   const std::int64_t begun_ns = clock ? ReadThreadCpuClock(clock.get()) : -1;
   if (begun_ns < 0) return false;
   if (!warden_.joinable()) StartWarden();
-  executor_.LetGo(thread.tid);
+  // In this order: with ordinary priority on the home processor it could run there, before this
+  // process, for as long as the kernel has ordinary threads run that real-time ones have kept
+  // waiting (50 ms of each second).
   if (!BindTo(thread.tid, cpu_)) {
-    executor_.Hold(thread.tid);
     not_before_tsc_ = UINT64_MAX;
     return false;
   }
+  executor_.LetGo(thread.tid);
   thread_ = &thread;
   thread.is_ahead = true;
   thread.may_run = false;

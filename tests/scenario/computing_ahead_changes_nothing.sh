@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# Two robots whose planners compute, and a controller of 100 Hz beside each: what they are charged is
+# Two robots whose planners compute, a controller of 100 Hz beside each, and a body that moves: what they are charged is
 # what they have computed, and the run's invariants hold, with one processor of the host and with two,
 # where planners compute ahead.
 (($(nproc) > 1)) || { echo "this machine has one processor"; exit 77; }
@@ -8,6 +8,8 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 {
   echo "duration: 4s"
+  echo "dynamics: {}"
+  echo "bodies: {thrown: {mass: 1, inertia: [1, 1, 1], linear_velocity: [1, 0, 0]}}"
   echo "robots:"
   for robot in first second; do
     echo "  $robot:"

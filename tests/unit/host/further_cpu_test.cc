@@ -68,6 +68,16 @@ TEST_F(FurtherCpuTest, AThreadGoesThereAndIsSentHomeAtItsLimit) {
   EXPECT_TRUE(cpu_->IsFreeAt(__rdtsc()));
 }
 
+TEST_F(FurtherCpuTest, AThreadIsNotOrdinaryOnTheHomeProcessor) {
+  cpu_set_t when_let_go;
+  CPU_ZERO(&when_let_go);
+  executor_.lets_go = [&](pid_t tid) { sched_getaffinity(tid, sizeof when_let_go, &when_let_go); };
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  EXPECT_TRUE(CPU_ISSET(cpu_->cpu(), &when_let_go));
+  EXPECT_FALSE(CPU_ISSET(home_, &when_let_go));
+  cpu_->BringHome();
+}
+
 TEST_F(FurtherCpuTest, WhoIsAllowedMoreGoesOn) {
   ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
   cpu_->Allow(2'000 * kMs);

@@ -1,6 +1,7 @@
 // An executor that only notes what it is told.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,11 @@ class NotingExecutor final : public Executor {
   void LetRun(pid_t tid) override { Note("run", tid); }
   void Hold(pid_t tid) override { Note("hold", tid); }
   void LetKernelFinish(pid_t tid) override { Note("finish", tid); }
+  void LetGo(pid_t tid) override {
+    if (lets_go) lets_go(tid);
+  }
+
+  std::function<void(pid_t)> lets_go;  // asked in that very instant; may be null
 
   // Since it was last asked.
   std::vector<std::string> Told() { return std::exchange(told_, {}); }
