@@ -67,6 +67,7 @@ void FurtherCpu::Guard() {
     executor_.Hold(tid_);
     BindTo(tid_, home_);
     tid_ = 0;
+    left_at_ns_ = PassedNs(__rdtsc());
     has_left_.store(true);
   }
 }
@@ -130,7 +131,8 @@ std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
   const auto lock = Lock();
-  return is_claimed_.load() || ahead_.IsStarvedBy(PassedNs(tsc));
+  // Since it has left nobody looks, however late this process comes to ask.
+  return is_claimed_.load() || ahead_.IsStarvedBy(has_left_.load() ? left_at_ns_ : PassedNs(tsc));
 }
 
 // If this process slept meanwhile, threads would run whose turn it is not.

@@ -92,6 +92,7 @@ class FurtherCpu {
   UniqueFd clock_;  // its CPU clock,
   std::int64_t begun_ns_ = 0;
   AheadClock ahead_;
+  std::int64_t left_at_ns_ = 0;  // when it left, since it was sent
   bool ends_ = false;
   std::thread warden_;
 };

@@ -96,6 +96,14 @@ TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
   EXPECT_FALSE(cpu_->Send(thread_, __rdtsc(), kMs)) << "it cannot be sent again";
 }
 
+TEST_F(FurtherCpuTest, HowLateIsAskedAfterOneThatHasLeftMakesNoDifference) {
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), kMs));
+  while (!cpu_->HasLeft()) sched_yield();
+  const bool was_starved = cpu_->IsStarvedBy(__rdtsc());
+  EXPECT_EQ(cpu_->IsStarvedBy(__rdtsc() + 1'000'000 * kMs), was_starved);
+  cpu_->BringHome();
+}
+
 TEST_F(FurtherCpuTest, AProcessorThatAnotherRunHasClaimedIsLeftToIt) {
   is_claimed_ = true;
   ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
