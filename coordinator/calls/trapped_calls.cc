@@ -43,8 +43,9 @@ void TrappedCalls::Exit(Task& task, const TrappedCall& call) {
   task.trap_id = 0;
   deaths_.EndAndWake(task, {task.reached_ns});
   ContinueTrapped(call.listener, call.id);
-  // Who waits for it looks at a word that the kernel clears.
-  if (run_.gates_only) executor_.LetKernelFinish(call.tid);
+  // A thread that joins it looks at a word that the kernel clears. Were the kernel not through with
+  // it, the coordinator would have to sleep for that, and threads would run whose turn it is not.
+  executor_.LetKernelFinish(call.tid);
 }
 
 void TrappedCalls::ReleaseAll() {
