@@ -34,7 +34,7 @@ struct RunOptions {
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
   bool record = false;           // all DDS topics, into a bag in output_directory
   bool waits_for_cpu = true;     // where other runs have them all
-  int host_cpus = 1;             // at most so many; 0: what there is
+  int host_cpus = 0;             // at most so many; 0: what there is
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides where allocations are counted
