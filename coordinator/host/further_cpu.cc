@@ -172,8 +172,10 @@ void FurtherCpu::BringHome() {
 }
 
 void FurtherCpu::LeaveToOthers(std::uint64_t tsc) {
-  const std::int64_t ns = kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings);
-  not_before_tsc_ = tsc + TicksIn(ns);
+  // What was of use for longer than it had been left to others begins anew.
+  if (tsc > not_before_tsc_ + left_ticks_) left_to_others_ = 0;
+  left_ticks_ = TicksIn(kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings));
+  not_before_tsc_ = tsc + left_ticks_;
 }
 
 }  // namespace tcs

@@ -58,7 +58,8 @@ class FurtherCpu {
   // It stands still at home, if it lives, and is not said to be here any more. Where it computed,
   // this process looks on until it has stopped, and does not sleep.
   void BringHome();
-  // Others had the processor for long: nobody comes here for some time, the longer the more often.
+  // Others had the processor for long: nobody comes here for some time, and for twice as long if
+  // they had it again within as long as it was left to them before.
   void LeaveToOthers(std::uint64_t tsc);
 
  private:
@@ -79,6 +80,7 @@ class FurtherCpu {
   const std::function<bool(int)> asks_whether_claimed_;
   HostThread* thread_ = nullptr;
   int left_to_others_ = 0;  // in a row
+  std::uint64_t left_ticks_ = 0;  // the last time
   std::uint64_t not_before_tsc_ = 0;
   std::atomic<std::int64_t> allowed_ns_{0};
   std::atomic<bool> has_left_{false};

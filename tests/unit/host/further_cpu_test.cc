@@ -121,6 +121,11 @@ TEST_F(FurtherCpuTest, OneThatIsLeftToOthersIsFreeLaterTheOftenerTheLater) {
   cpu_->LeaveToOthers(1'000);
   EXPECT_FALSE(cpu_->IsFreeAt(1'000 + 999 * kMs));
   EXPECT_TRUE(cpu_->IsFreeAt(1'000 + 1'000 * kMs));
+  // It is of use from then on, and for long.
+  const std::uint64_t later_tsc = 1'000 + 2'001 * kMs;
+  cpu_->LeaveToOthers(later_tsc);
+  EXPECT_FALSE(cpu_->IsFreeAt(later_tsc + 499 * kMs));
+  EXPECT_TRUE(cpu_->IsFreeAt(later_tsc + 500 * kMs));
 }
 
 }  // namespace
