@@ -16,6 +16,7 @@
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/keys.h"
+#include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/own_receivers.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
@@ -87,7 +88,7 @@ bool ReadDatagram(GuestThread& t, int fd, Reads reads, AtOnce at_once, ssize_t* 
   long got = at_once();
   if (got == -EAGAIN) {
     if (!reads.dont_wait && !IsNonBlocking(fd)) return false;
-    if (now > t.slot->clock.read_safe_ns) {
+    if (!IsSafeLook(t, fd, now)) {
       HoldForRead(t);
       BeginTaking(t, fd, true);
       got = at_once();
@@ -195,7 +196,11 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
 
 // What only the coordinator receives waits for nobody: it keeps it until its virtual time.
 void HoldToSend(GuestThread& t, int fd, const msghdr& message) {
-  if (BeginWrite(t) || IsForCoordinator(fd, message.msg_name, message.msg_namelen)) return;
+  const bool may_go_on = BeginWrite(t);
+  if (ReachesSafely(t, message) || may_go_on ||
+      IsForCoordinator(fd, message.msg_name, message.msg_namelen)) {
+    return;
+  }
   Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
 }
 
@@ -470,7 +475,12 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
 // Connecting is a write: it makes the listener's descriptor readable.
 TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   const Entered t;
-  if (t != nullptr) HoldForWrite(*t);
+  if (t != nullptr) {
+    const bool may_go_on = BeginWrite(*t);
+    if (!ReachesSafely(*t, address, size) && !may_go_on) {
+      Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+    }
+  }
   sa_family_t family = AF_UNSPEC;
   if (t != nullptr && size >= sizeof family && CanRead(address, sizeof family)) {
     family = address->sa_family;

@@ -13,6 +13,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/select_sets.h"
 #include "libtcs_preload/signal_mask.h"
@@ -28,15 +29,16 @@ constexpr timespec kNow{};
 
 // The shape of all of them: nothing there: wait, and probe again. Something there, or no wait
 // wanted: hold, so that the probe finds all that was sent until now. `is_ready` takes nothing away,
-// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `wait(deadline,
-// signals)` returns a WaitResult. A signal ends these calls if a handler runs and nothing was
-// found, those without a timeout too but for epoll's (`looks_first`).
-template <class IsReady, class Probe, class Wait>
+// `probe` may (epoll). Both return what the kernel returns, 0 for "nothing"; `hold` returns once a
+// look misses nothing; `wait(deadline, signals)` returns a WaitResult. A signal ends these calls if
+// a handler runs and nothing was found, those without a timeout too but for epoll's
+// (`looks_first`).
+template <class IsReady, class Hold, class Probe, class Wait>
 long ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const MaskedWait& masked,
-                  bool looks_first, IsReady is_ready, Probe probe, Wait wait) {
+                  bool looks_first, IsReady is_ready, Hold hold, Probe probe, Wait wait) {
   const std::int64_t deadline = DeadlineAfter(t, timeout_ns);
   if (timeout_ns == 0 || is_ready() != 0 || masked.IsPending()) {
-    HoldForRead(t);
+    hold();
     if (const long found = probe(); found != 0) return found;
     if ((timeout_ns != 0 || looks_first) && masked.Deliver()) return -EINTR;
     if (timeout_ns == 0) return 0;
@@ -50,12 +52,12 @@ long ProbeAndWait(GuestThread& t, std::int64_t timeout_ns, const MaskedWait& mas
   }
 }
 
-template <class IsReady, class Probe, class Wait>
+template <class IsReady, class Hold, class Probe, class Wait>
 int CallWithMask(GuestThread& t, std::int64_t timeout_ns, const sigset_t* mask, bool looks_first,
-                 IsReady is_ready, Probe probe, Wait wait) {
+                 IsReady is_ready, Hold hold, Probe probe, Wait wait) {
   pthread_testcancel();
   MaskedWait masked(mask);
-  const long found = ProbeAndWait(t, timeout_ns, masked, looks_first, is_ready, probe, wait);
+  const long found = ProbeAndWait(t, timeout_ns, masked, looks_first, is_ready, hold, probe, wait);
   masked.Restore();
   if (found == -EINTR) pthread_testcancel();
   return static_cast<int>(ToErrno(found));
@@ -69,7 +71,10 @@ int PollNs(GuestThread& t, pollfd* fds, nfds_t count, std::int64_t timeout_ns,
   auto probe = [&] {
     return RawSyscall(SYS_ppoll, Arg(fds), static_cast<long>(count), Arg(&kNow), 0, 0);
   };
-  return CallWithMask(t, timeout_ns, mask, true, probe, probe,
+  auto hold = [&] {
+    if (!AreSafeLooks(t, fds, count, NowNs(t))) HoldForRead(t);
+  };
+  return CallWithMask(t, timeout_ns, mask, true, probe, hold, probe,
                       [&](std::int64_t deadline, unsigned long signals) {
                         return WaitForFds(t, fds, count, deadline, {.signals = signals});
                       });
@@ -86,7 +91,8 @@ int SelectNs(GuestThread& t, int n, fd_set* r, fd_set* w, fd_set* e, std::int64_
     const pollfd* wanted = sets.Wanted(&count);
     return WaitForFds(t, wanted, count, deadline, {.signals = signals});
   };
-  const int found = CallWithMask(t, timeout_ns, mask, true, probe, probe, wait);
+  auto hold = [&] { HoldForRead(t); };
+  const int found = CallWithMask(t, timeout_ns, mask, true, probe, hold, probe, wait);
   if (found < 0) return found;
   const int error = sets.PutBack();
   return error == 0 ? found : Fail(error);
@@ -109,7 +115,7 @@ int EpollNs(GuestThread& t, int epfd, epoll_event* events, int max, std::int64_t
   }
   bool again = false;
   const int found = CallWithMask(
-      t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); },
+      t, timeout_ns, mask, false, [&] { return PeekEvents(epfd); }, [&] { HoldForRead(t); },
       [&] { return RawSyscall(SYS_epoll_wait, epfd, Arg(events), max, 0); },
       [&](std::int64_t deadline, unsigned long signals) {
         const pollfd set{epfd, POLLIN, 0};

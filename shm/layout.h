@@ -1,8 +1,8 @@
 // The shared memory: the contract between the coordinator and the shim inside each client.
 //
-//   of the run:            +-----------+----------+--------------+
-//   the coordinator's      | RunHeader | IpcTimes | OwnReceivers |  (own_receivers.h)
-//                          +-----------+----------+--------------+
+//   of the run:            +-----------+----------+--------------+--------------+
+//   the coordinator's      | RunHeader | IpcTimes | OwnReceivers | LocalSockets | (own_receivers.h,
+//                          +-----------+----------+--------------+--------------+  local_sockets.h)
 //   of each process:       +---------------+---------------+-----
 //   its and the            | ThreadSlot[0] | ThreadSlot[1] | ...
 //   coordinator's          +---------------+---------------+-----
@@ -33,7 +33,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 16;
+inline constexpr std::uint32_t kVersion = 17;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -98,6 +98,12 @@ enum class NotificationKind : std::uint32_t {
   kKernelWait = 31,  // in its next system call the kernel may hold the thread; see kernel_waiters
   kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
   kPreempted = 34,   // the thread computes, and has got kPreemptionSignal
+  // Of sockets that are known to be local to one robot (local_sockets.h).
+  kBinds = 35,    // the thread is about to bind a datagram socket to an abstract name; args[0]: the
+                  // socket's cookie, args[1]: the name's hash
+  kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another one
+                  // or with a descriptor that leaves its own: go on as with kWrite, and once that
+                  // robot has looked for the last time without waiting for others
 };
 
 // By this the coordinator stops a thread that computes, where only gates keep threads apart
@@ -201,12 +207,15 @@ struct ClockPage {
   // Written by the coordinator at each dispatch: of each allocation; 0 under measured accounting.
   std::int64_t allocation_cost_ns;
   std::uint64_t counts_work;  // not 0: the thread keeps its WorkCounts; kBeginsInCall
-  std::uint64_t reserved[2];
+  // Nothing is produced before this any more in sockets that are local to the robot.
+  std::int64_t local_read_safe_ns;
+  std::uint64_t reserved[1];
 };
 static_assert(sizeof(ClockPage) == 192);
 static_assert(offsetof(ClockPage, staleness_ns) == 152);
 static_assert(offsetof(ClockPage, allocation_cost_ns) == 160);
 static_assert(offsetof(ClockPage, counts_work) == 168);
+static_assert(offsetof(ClockPage, local_read_safe_ns) == 176);
 static_assert(offsetof(ClockPage, executed_adjust) == 64);
 static_assert(offsetof(ClockPage, last_shown_ns) == 80);
 
@@ -276,7 +285,9 @@ struct alignas(64) ThreadSlot {
   // Written by the thread: how many of its calls the shim has begun and not ended. More than one:
   // handlers' within others'. Too many where a handler has left by longjmp.
   std::atomic<std::uint32_t> open_calls;
-  std::uint8_t reserved[20];
+  // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
+  std::uint32_t robot;
+  std::uint8_t reserved[16];
 };
 static_assert(sizeof(ThreadSlot) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);
@@ -286,6 +297,7 @@ static_assert(offsetof(ThreadSlot, signals) == 560);
 static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
 static_assert(offsetof(ThreadSlot, receipts) == 760);
 static_assert(offsetof(ThreadSlot, work) == 1104);
+static_assert(offsetof(ThreadSlot, robot) == 1132);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters and kernel_waiters.

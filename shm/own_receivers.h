@@ -16,6 +16,7 @@
 #include <cstdint>
 
 #include "shm/layout.h"
+#include "shm/local_sockets.h"
 
 namespace tcs::shm {
 
@@ -73,8 +74,14 @@ inline bool IsAmong(const OwnReceivers& receivers, const ReceiverAddress& addres
 struct PublishedRun {
   RunMemory run;
   OwnReceivers own_receivers;
+  LocalSockets local_sockets;
 };
 static_assert(offsetof(PublishedRun, own_receivers) == 131200);
+static_assert(offsetof(PublishedRun, local_sockets) == 245896);
+
+inline const LocalSockets& LocalSocketsOf(const RunMemory& run) {
+  return reinterpret_cast<const PublishedRun&>(run).local_sockets;
+}
 
 inline const OwnReceivers& OwnReceiversOf(const RunMemory& run) {
   return reinterpret_cast<const PublishedRun&>(run).own_receivers;

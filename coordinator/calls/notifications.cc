@@ -126,6 +126,14 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kQueueNotifies:
       run_.header->queues_notify.store(1);
       break;
+    case Kind::kBinds:
+      parts_.local_sockets.Binds(robot, static_cast<std::uint64_t>(note.args[0]),
+                                 static_cast<std::uint64_t>(note.args[1]));
+      break;
+    case Kind::kReaches:
+      parts_.local_sockets.Reaches(task, static_cast<std::uint32_t>(note.args[0]));
+      waker_.Hold(task, Kind::kWrite);
+      break;
     case Kind::kNone:
     case Kind::kHorizon:
     case Kind::kInterrupted:

@@ -9,6 +9,7 @@
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/kernel_object_waits.h"
+#include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/scheduling_calls.h"
 #include "coordinator/calls/signal_calls.h"
 #include "coordinator/calls/spawns.h"
@@ -34,6 +35,7 @@ class Notifications {
     SignalCalls& signals;
     KernelObjectWaits& objects;
     DdsGateway& dds;
+    LocalSockets& local_sockets;
   };
 
   Notifications(RunState& run, Waker& waker, Parts parts)

@@ -117,9 +117,17 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
         Lock(task);
       }
       break;
+    case SYS_bind:
+      task.trap_continues = true;
+      parts_.local_sockets.BindsUnseen(task.process->pid, call);
+      break;
+    case SYS_pidfd_getfd:
+      task.trap_continues = true;
+      parts_.local_sockets.ReachesBy(task, call);
+      waker_.HoldInCall(task, shm::NotificationKind::kWrite);
+      break;
     case SYS_ioctl:
     case SYS_ptrace:
-    case SYS_pidfd_getfd:
     case SYS_process_madvise:
       task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
       break;

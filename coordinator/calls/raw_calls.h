@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "coordinator/calls/futex_words.h"
+#include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_child_waits.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_scheduling.h"
@@ -30,6 +31,7 @@ class RawCalls {
     RawChildWaits& children;
     RawScheduling& scheduling;
     FutexWords& words;
+    LocalSockets& local_sockets;
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.

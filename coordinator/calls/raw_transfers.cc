@@ -139,6 +139,7 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   }
   if (!transfer.reads) {
     shm::NoteSent(SlotOf(task).receipts);
+    local_sockets_.ReachesBy(task, call);
     if (waker_.counts().for_objects() > 0 && fd.IsTerminal()) task.follow_up = FollowUp::kTerminals;
   } else if (fd.IsReady(events) && (transfer.flags & (MSG_PEEK | MSG_ERRQUEUE)) == 0) {
     const bool of_timer = timers_.Find(task, number).owner != nullptr;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "coordinator/calls/descriptor_waits.h"
+#include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_timers.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/activations.h"
@@ -15,8 +16,12 @@ namespace tcs {
 class RawTransfers {
  public:
   RawTransfers(Waker& waker, Activations& activations, DescriptorWaits& descriptors,
-               RawTimers& timers)
-      : waker_(waker), activations_(activations), descriptors_(descriptors), timers_(timers) {}
+               RawTimers& timers, LocalSockets& local_sockets)
+      : waker_(waker),
+        activations_(activations),
+        descriptors_(descriptors),
+        timers_(timers),
+        local_sockets_(local_sockets) {}
 
   // The call goes on once it is ready, or can find all that was sent until now.
   void Handle(Task& task, const TrappedCall& call);
@@ -27,6 +32,7 @@ class RawTransfers {
   Activations& activations_;
   DescriptorWaits& descriptors_;
   RawTimers& timers_;
+  LocalSockets& local_sockets_;
 };
 
 }  // namespace tcs

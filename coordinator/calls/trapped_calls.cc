@@ -34,6 +34,7 @@ void TrappedCalls::HandleUnmanaged(const TrappedCall& call, Moment moment) {
     process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
     futexes_.CarryOutWake(*process, call, moment);
   }
+  if (call.number == SYS_bind) local_sockets_.BindsUnseen(call.tid, call);
   guard_.LetThrough(call);
 }
 

@@ -5,6 +5,7 @@
 
 #include "coordinator/calls/futex_calls.h"
 #include "coordinator/calls/guarded_calls.h"
+#include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/raw_calls.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/os/trap.h"
@@ -17,14 +18,16 @@ namespace tcs {
 class TrappedCalls {
  public:
   TrappedCalls(RunState& run, Waker& waker, FutexCalls& futexes, RawCalls& raw,
-               const GuardedCalls& guard, Deaths& deaths, Executor& executor)
+               const GuardedCalls& guard, Deaths& deaths, Executor& executor,
+               LocalSockets& local_sockets)
       : run_(run),
         waker_(waker),
         futexes_(futexes),
         raw_(raw),
         guard_(guard),
         deaths_(deaths),
-        executor_(executor) {}
+        executor_(executor),
+        local_sockets_(local_sockets) {}
 
   // That of a thread that has stopped in it. True: there may be more by now that belongs to this
   // moment.
@@ -44,6 +47,7 @@ class TrappedCalls {
   const GuardedCalls& guard_;
   Deaths& deaths_;
   Executor& executor_;
+  LocalSockets& local_sockets_;
 };
 
 }  // namespace tcs

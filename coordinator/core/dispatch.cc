@@ -31,6 +31,14 @@ constexpr int kStartTurns = 600;
 
 }  // namespace
 
+// What the thread may do without asking.
+void Engine::GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const {
+  const bool world_stands = run_.IsCallback();
+  grant.read_safe_ns = world_stands ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
+  grant.local_read_safe_ns = world_stands ? cpu.progress_ns : run_.root.LocalReadSafe(cpu.leaf);
+  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
+}
+
 void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
   shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
@@ -44,8 +52,7 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   grant.base_cpu_ns = task.charged_ns;
   grant.horizon_ns = clock.At(RobotTime(horizon_ns)).ns();
   grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
-  grant.read_safe_ns = run_.IsCallback() ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
-  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
+  GrantWhatIsSafe(cpu, grant);
   host_cpu_.SetRates(
       task,
       {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
@@ -114,8 +121,7 @@ void Engine::GoOnBesideWoken() {
   ClockGrant& grant = run_.turn.task()->grant;
   grant.horizon_ns = OwnHorizonNs();
   grant.idle_until_ns = 0;  // it asks
-  grant.read_safe_ns = run_.IsCallback() ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
-  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
+  GrantWhatIsSafe(cpu, grant);
   grant.NoteLimits();
   grant.WriteTo(page);
 }

@@ -21,6 +21,7 @@
 #include "coordinator/calls/futex_words.h"
 #include "coordinator/calls/guarded_calls.h"
 #include "coordinator/calls/kernel_object_waits.h"
+#include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/lock_futexes.h"
 #include "coordinator/calls/notifications.h"
 #include "coordinator/calls/priority_inheritance.h"
@@ -119,6 +120,7 @@ class Engine {
   void EndTurn(Task& task);
   void TellOthersOf(Task& task, Moment call, bool looks_again);
   void Answer(Task& task);
+  void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
   void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
   void Resume(Task& task);
   void GoOnBesideWoken();
@@ -220,6 +222,7 @@ class Engine {
   RawTimers raw_timers_{run_, timers_};
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
+  LocalSockets local_sockets_{run_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.ns);
                              }};
@@ -247,15 +250,16 @@ class Engine {
   // Calls that are made raw.
   RawTimes raw_times_{run_, waker_};
   RawPolls raw_polls_{waker_, descriptors_};
-  RawTransfers raw_transfers_{waker_, activations_, descriptors_, raw_timers_};
+  RawTransfers raw_transfers_{waker_, activations_, descriptors_, raw_timers_, local_sockets_};
   RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
   RawCalls raw_calls_{waker_,
                       {raw_times_, raw_timers_, raw_polls_, raw_transfers_, raw_child_waits_,
-                       raw_scheduling_, words_},
+                       raw_scheduling_, words_, local_sockets_},
                       [this](Task& task) { return notifications_.Yield(task); },
                       [this](Task& task, const TrappedCall& call) { trapped_.Exit(task, call); }};
   TrappedWaits trapped_waits_{words_, raw_child_waits_, activations_};
-  TrappedCalls trapped_{run_, waker_, futexes_, raw_calls_, guard_, deaths_, *executor_};
+  TrappedCalls trapped_{run_,   waker_,  futexes_,   raw_calls_,
+                        guard_, deaths_, *executor_, local_sockets_};
   FollowUps follow_ups_{run_, objects_, shared_events_, signals_, signal_wakes_};
 
   // What they notify.
@@ -263,7 +267,7 @@ class Engine {
   Notifications notifications_{run_,
                                waker_,
                                {expulsion_, descriptors_, unknown_children_, timers_, spawns_,
-                                scheduling_, signals_, objects_, dds_}};
+                                scheduling_, signals_, objects_, dds_, local_sockets_}};
 
   // What users are told.
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};

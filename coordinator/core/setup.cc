@@ -110,6 +110,7 @@ std::string Engine::PrepareMemory() {
   registration_.ShareMemory(memfd_.get());
   auto* published = new (memory.at) shm::PublishedRun{};
   world_.NameReceivers(published->own_receivers);
+  local_sockets_.PublishIn(published->local_sockets);
   memory_ = &published->run;
   run_.header = &memory_->header;
   run_.header->magic = shm::kMagic;
@@ -148,12 +149,13 @@ void Engine::MakeRobots() {
         spec.name, spec.speed, RobotScheduler(cores, !run_.IsCallback(), [this](int order) {
           return waker_.WaitOf(run_.table.At(order));
         }));
+    robot.number = static_cast<std::uint32_t>(run_.robots.size());
     robot.is_ideal = spec.is_ideal;
     for (std::uint32_t core = 0; core < cores; ++core) {
       VirtualCpu& cpu = run_.cpus.emplace_back();
       cpu.robot = &robot;
       cpu.core = core;
-      cpu.leaf = run_.root.AddLeaf(static_cast<int>(run_.robots.size()));
+      cpu.leaf = run_.root.AddLeaf(static_cast<int>(robot.number));
       robot.cpus.push_back(&cpu);
     }
   }

@@ -13,6 +13,7 @@ struct ClockGrant {
   std::int64_t base_time_ns = 0, base_cpu_ns = 0;
   std::uint64_t base_tsc = 0, ns_per_tick_q32 = 0;
   std::int64_t horizon_ns = 0, idle_until_ns = 0, read_safe_ns = 0, write_safe_ns = 0;
+  std::int64_t local_read_safe_ns = 0;
   std::uint64_t ns_per_host_ns_q32 = 0, check_after_ticks = 0;
   std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
   std::uint64_t counts_work = 0;

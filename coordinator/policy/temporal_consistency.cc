@@ -15,6 +15,7 @@ constexpr std::int64_t kNoTimeNs = -1;
 }  // namespace
 
 TemporalConsistency::Leaf TemporalConsistency::AddLeaf(int computer) {
+  TCS_CHECK(leaves_.empty() || leaves_.back().computer <= computer);
   const auto leaf = static_cast<Leaf>(leaves_.size());
   leaves_.push_back({computer, 0, shm::kNeverNs, shm::kNeverNs, kNoTimeNs, {}});
   leaves_.back().rank = RankOf(leaf);
@@ -118,10 +119,29 @@ std::int64_t TemporalConsistency::DynamicsHorizon() const {
   return has_dynamics_ ? shm::AddSaturated(dynamics_ns_, drift_bound_ns_) : shm::kNeverNs;
 }
 
+std::int64_t TemporalConsistency::BeforeOutput(std::int64_t ns) const {
+  return has_dynamics_ && output_ns_ != shm::kNeverNs ? std::min(ns, output_ns_ - 1) : ns;
+}
+
 std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
-  std::int64_t safe = LeastOther(leaf);
-  if (has_dynamics_ && output_ns_ != shm::kNeverNs) safe = std::min(safe, output_ns_ - 1);
-  return safe;
+  return BeforeOutput(LeastOther(leaf));
+}
+
+std::int64_t TemporalConsistency::LocalReadSafe(Leaf leaf) const {
+  std::int64_t safe = shm::kNeverNs;
+  for (Leaf other = leaf - 1; other >= 0 && At(other).computer == At(leaf).computer; --other) {
+    safe = std::min(safe, EarliestActOf(other, leaf));
+  }
+  const auto end = static_cast<Leaf>(leaves_.size());
+  for (Leaf other = leaf + 1; other < end && At(other).computer == At(leaf).computer; ++other) {
+    safe = std::min(safe, EarliestActOf(other, leaf));
+  }
+  return BeforeOutput(safe);
+}
+
+// While `but` does nothing.
+std::int64_t TemporalConsistency::EarliestActOf(Leaf leaf, Leaf but) const {
+  return std::max(At(leaf).progress_ns, std::min(At(leaf).next_ns, LeastOther(but)));
 }
 
 std::int64_t TemporalConsistency::NextInputFromOutside(Leaf leaf) const {

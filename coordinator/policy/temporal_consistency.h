@@ -22,7 +22,8 @@ class TemporalConsistency {
   TemporalConsistency(std::int64_t drift_bound_ns, std::int64_t end_ns)
       : drift_bound_ns_(drift_bound_ns), end_ns_(end_ns) {}
 
-  // Of the computer with that number. What its leaves do to each other is inside.
+  // Of the computer with that number, whose leaves follow each other. What they do to each other is
+  // inside.
   Leaf AddLeaf(int computer);
 
   // The leaf has come to `progress_ns` and can neither act nor cause anything before `next_ns`:
@@ -58,6 +59,9 @@ class TemporalConsistency {
   // Nothing that the leaf could read is produced before this any more. What the dynamics send at an
   // instant is there for a read at that instant.
   std::int64_t ReadSafe(Leaf leaf) const;
+  // The same of what only leaves of its computer, and the dynamics, can produce. One of them that
+  // waits can be woken as soon as any other one acts.
+  std::int64_t LocalReadSafe(Leaf leaf) const;
   // When another leaf could next wake a thread of this one; a leaf of another computer.
   std::int64_t NextInput(Leaf leaf) const { return LeastOther(leaf); }
   std::int64_t NextInputFromOutside(Leaf leaf) const;
@@ -87,6 +91,8 @@ class TemporalConsistency {
   Rank RankOf(Leaf leaf) const;
   void Reorder(Leaf leaf);
   std::int64_t LeastOther(Leaf leaf) const;
+  std::int64_t BeforeOutput(std::int64_t ns) const;
+  std::int64_t EarliestActOf(Leaf leaf, Leaf but) const;
   std::int64_t LeastRun(Leaf but) const;
   void NoteDrift(std::int64_t progress_ns);
 

@@ -172,6 +172,7 @@ void Registration::PlaceAtGate(Task& task, std::int64_t at_ns) {
   slot.pid = task.process->pid;
   slot.tid = task.tid;
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
+  slot.robot = task.process->robot->number;
   slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;

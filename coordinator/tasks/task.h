@@ -169,7 +169,9 @@ struct Robot {
 
   std::string name;
   double speed;
-  bool is_ideal = false;  // its threads are charged nothing
+  std::uint32_t number = 0;  // in the scenario's order, from 1 on
+  bool is_ideal = false;     // its threads are charged nothing
+  bool is_reached = false;   // nothing is local to it any more (calls/local_sockets.h)
   RobotScheduler scheduler;
   std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                // by core

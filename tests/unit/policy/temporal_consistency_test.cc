@@ -220,6 +220,40 @@ TEST(TemporalConsistency, NobodyGetsFurtherAwayFromOneThatDoesNothingForAWhile) 
   EXPECT_EQ(root.First(), ahead);
 }
 
+TEST(TemporalConsistency, WhatIsLocalToAComputerDoesNotDependOnOthers) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto other = root.AddLeaf(1), reader = root.AddLeaf(2), third = root.AddLeaf(3);
+  root.Update(other, 300, 300);
+  root.Update(reader, 500, 500);
+  root.Update(third, 0, kNever);
+  EXPECT_EQ(root.ReadSafe(reader), 300);
+  EXPECT_EQ(root.LocalReadSafe(reader), kNever);
+}
+
+TEST(TemporalConsistency, WhatIsLocalDependsOnTheDynamics) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto reader = root.AddLeaf(1);
+  root.Update(reader, 500, 500);
+  root.UpdateDynamics(400, 1000);
+  EXPECT_EQ(root.LocalReadSafe(reader), 999) << "what they send at 1000 is there at 1000";
+}
+
+TEST(TemporalConsistency, WhatIsLocalDependsOnTheComputersOtherCores) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto before = root.AddLeaf(1), first = root.AddLeaf(2), second = root.AddLeaf(2);
+  root.Update(before, 300, 300);
+  root.Update(first, 500, 500);
+  root.Update(second, 450, 450);
+  EXPECT_EQ(root.LocalReadSafe(first), 450);
+  EXPECT_EQ(root.LocalReadSafe(second), 500);
+  root.Update(second, 450, 700);
+  EXPECT_EQ(root.LocalReadSafe(first), 450) << "the other computer may wake it at 300";
+  root.Update(before, 300, 600);
+  EXPECT_EQ(root.LocalReadSafe(first), 600);
+  root.Update(before, 300, kNever);
+  EXPECT_EQ(root.LocalReadSafe(first), 700);
+}
+
 TEST(TemporalConsistency, NoLeafsProgressGoesBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto leaf = root.AddLeaf(0);

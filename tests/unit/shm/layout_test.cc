@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 16u);
+  EXPECT_EQ(kVersion, 17u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 1152u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -25,6 +25,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
   EXPECT_EQ(offsetof(ClockPage, allocation_cost_ns), 160u);
   EXPECT_EQ(offsetof(ClockPage, counts_work), 168u);
+  EXPECT_EQ(offsetof(ClockPage, local_read_safe_ns), 176u);
   EXPECT_EQ(offsetof(ThreadSlot, note), 192u);
   EXPECT_EQ(offsetof(ThreadSlot, gate), 504u);
   EXPECT_EQ(offsetof(ThreadSlot, reply), 512u);
@@ -32,13 +33,16 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, ipc_notes), 568u);
   EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
+  EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
 }
 
-TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsAndReceivers) {
+TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSockets) {
   EXPECT_EQ(offsetof(RunMemory, ipc_times), 128u);
   EXPECT_EQ(sizeof(RunMemory), 128u + 4096u * 32u);
   EXPECT_EQ(offsetof(PublishedRun, own_receivers), 128u + 4096u * 32u);
   EXPECT_EQ(sizeof(OwnReceivers), 8u + 1024u * 112u);
+  EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245896u);
+  EXPECT_EQ(sizeof(LocalSockets), 2u * 8192u * 16u);
   EXPECT_EQ(kProcessMemorySize, 4096u * 1152u);
 }
 

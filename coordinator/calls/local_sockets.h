@@ -1,0 +1,55 @@
+// Which sockets only programs of one robot send to, for as long as that is so
+// (shm/local_sockets.h).
+//
+// For the coordinator's thread only. What clients say of their sockets is not checked: a name that
+// two robots claim is nobody's, a socket is looked for by its own robot only, and whoever says too
+// much of its own deceives itself.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "coordinator/os/trap.h"
+#include "coordinator/tasks/run_state.h"
+#include "shm/local_sockets.h"
+
+namespace tcs {
+
+class LocalSockets {
+ public:
+  explicit LocalSockets(RunState& run) : run_(run) {}
+  LocalSockets(const LocalSockets&) = delete;
+  LocalSockets& operator=(const LocalSockets&) = delete;
+
+  // Where all clients see it; outlives this.
+  void PublishIn(shm::LocalSockets& sockets) { sockets_ = &sockets; }
+
+  // A program of the robot is about to bind that socket to a name.
+  void Binds(const Robot& robot, std::uint64_t cookie, std::uint64_t name);
+  // A process is about to bind a socket in a call that the shim does not see: what it does with it
+  // is not known, and if the name was some robot's nothing is local to that robot any more.
+  void BindsUnseen(pid_t pid, const TrappedCall& call);
+  // The thread is about to reach the robot of that number: nothing is local to it any more, and the
+  // thread has come no less far than that robot has looked by now. A number that no robot has is
+  // passed by.
+  void Reaches(Task& task, std::uint32_t number);
+  // The same of a call that the kernel is to carry out, if it is one that reaches a robot.
+  void ReachesBy(Task& task, const TrappedCall& call);
+
+ private:
+  bool Claim(shm::RobotByNumber& table, std::size_t* count, std::uint64_t number,
+             const Robot& robot);
+  void TakeOut(std::uint32_t number);
+  void ReachesAll(Task& task);
+  std::uint32_t OwnerOf(pid_t pid, std::uint64_t address, std::uint64_t size) const;
+  void ReachesByAddress(Task& task, std::uint64_t address, std::uint64_t size);
+  void ReachesByMessage(Task& task, std::uint64_t message);
+
+  RunState& run_;
+  shm::LocalSockets* sockets_ = nullptr;
+  std::size_t cookies_ = 0, names_ = 0;  // that have a place
+};
+
+}  // namespace tcs

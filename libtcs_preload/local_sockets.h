@@ -1,0 +1,28 @@
+// Sockets that only programs of the own robot send to (shm/local_sockets.h). Async-signal-safe.
+#pragma once
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cstdint>
+
+#include "libtcs_preload/guest.h"
+
+namespace tcs::preload {
+
+// A look at the descriptor at `now_ns` by the thread's clock misses nothing, though others have not
+// come as far. Makes a system call.
+bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns);
+// The same of several; false where they are many.
+bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long count,
+                  std::int64_t now_ns);
+
+// Before what is written goes to that address (null: to where the socket is connected). True if the
+// thread need not hold for the write any more: only its own robot's programs receive it, none of
+// which can look at an earlier time; or another robot's do, to which sockets were local so far, and
+// it has held.
+bool ReachesSafely(GuestThread& thread, const void* address, socklen_t size);
+// The same of a message, which may have descriptors in it that leave the own robot.
+bool ReachesSafely(GuestThread& thread, const msghdr& message);
+
+}  // namespace tcs::preload

@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# Who looks into a socket that only its own robot's programs, and sensors, can send to, or sends there, does not wait for
+# other robots: a tick of a loop is one dispatch, though other robots tick, too. And from another robot's first
+# datagram on, whichever way it is sent, nothing is seen too late: it counts as sent when the socket was last looked into.
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+cat >"$out/ticks.py" <<'PY'
+# NAME TICKS: a thousand times a second sends to a socket of its own robot, and looks into two.
+import socket, sys, time
+name, ticks = sys.argv[1], int(sys.argv[2])
+def receiver(name):
+    s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    s.bind("\0tcs-test-" + name)
+    s.setblocking(False)
+    return s
+sockets = [receiver(name + "/a"), receiver(name + "/b")]
+begin = time.clock_gettime_ns(time.CLOCK_MONOTONIC) // 10**6 * 10**6 + 10**7
+for tick in range(ticks):
+    time.sleep((begin + tick * 10**6 - time.clock_gettime_ns(time.CLOCK_MONOTONIC)) / 1e9)
+    sockets[0].sendto(b"tick", "\0tcs-test-" + name + "/b")
+    for s in sockets:
+        try:
+            s.recv(100)
+        except BlockingIOError:
+            pass
+PY
+cat >"$out/look.py" <<'PY'
+# Looks on and on, and says when it had last looked in vain before it found something.
+import socket, time
+s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+s.bind("\0tcs-test-looked-into")
+s.setblocking(False)
+now = lambda: time.clock_gettime_ns(time.CLOCK_MONOTONIC)
+in_vain = looks = 0
+while True:
+    at = now()
+    try:
+        text = s.recv(100).decode()
+    except BlockingIOError:
+        in_vain, looks = at, looks + 1
+        continue
+    print(text, in_vain, now(), looks, flush=True)
+PY
+cat >"$out/send.py" <<'PY'
+# WAY: sends twice from another robot, and says when each call began and ended.
+import ctypes, socket, sys, time
+way, name = sys.argv[1], b"\0tcs-test-looked-into"
+now = lambda: time.clock_gettime_ns(time.CLOCK_MONOTONIC)
+libc = ctypes.CDLL(None, use_errno=True)
+s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+address = (1).to_bytes(2, "little") + name
+def raw(text):
+    sent = libc.syscall(44, s.fileno(), text, len(text), 0, address, len(address))  # sendto
+    assert sent == len(text), ctypes.get_errno()
+connected = False
+def send(text):
+    global connected
+    if way == "connect":
+        if not connected: s.connect(name)
+        connected = True
+        s.send(text)
+    elif way == "sendto": s.sendto(text, name)
+    elif way == "sendmsg": s.sendmsg([text], [], 0, name)
+    elif way == "raw": raw(text)
+for number, delay in enumerate((0.2505, 0.0203)):
+    time.sleep(delay)
+    began = now()
+    send(str(number).encode())
+    print(number, began, now(), flush=True)
+PY
+dispatches_of() {  # TICKS
+  cat >"$out/ticks.yaml" <<YAML
+duration: 1s
+robots:
+  a: {clients: {c: {command: [python3, ticks.py, a, "$1"]}}}
+  b: {clients: {c: {command: [python3, ticks.py, b, "$1"]}}}
+  c: {clients: {c: {command: [python3, ticks.py, c, "$1"]}}}
+YAML
+  "$tcsim" run "$out/ticks.yaml" --accounting fixed --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["dispatches"])' "$out/run/summary.json"
+}
+# What the interpreters' starts take is in both.
+few=$(dispatches_of 100) many=$(dispatches_of 500)
+((many - few < 1300)) || fail "1200 ticks took $((many - few)) dispatches"
+
+for way in sendto connect sendmsg raw; do
+  cat >"$out/$way.yaml" <<YAML
+duration: 0.5s
+robots:
+  looker: {clients: {c: {command: [python3, look.py]}}}
+  sender: {clients: {c: {command: [python3, send.py, $way]}}}
+YAML
+  for accounting in fixed measured; do
+    "$tcsim" run "$out/$way.yaml" --accounting $accounting --out "$out/run" >"$out/said" 2>&1 || fail "$way: $(cat "$out/said")"
+    python3 - "$out/run" <<'PY' || fail "$way, $accounting: $(cat "$out/run"/*.log "$out/said")"
+import json, sys
+run = sys.argv[1]
+read = lambda name: [tuple(map(int, line.split())) for line in open(f"{run}/{name}.out.log")]
+sent, seen = read("sender-c"), read("looker-c")
+assert len(sent) == len(seen) == 2, (sent, seen)
+for (number, began, ended), (found, in_vain, at, looks) in zip(sent, seen):
+    assert number == found
+    assert in_vain <= ended, f"{number}: looked in vain at {in_vain}, sent by {ended}"
+    assert began <= at, f"{number}: sent at {began}, found at {at}"
+assert sent[0][2] - sent[0][1] <= 1_100_000, "more than the drift bound"
+assert seen[0][3] > 100, "it has not looked before"
+assert json.load(open(run + "/summary.json"))["staleness_ns"] == 0
+PY
+  done
+done
