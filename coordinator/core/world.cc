@@ -216,18 +216,17 @@ bool World::Advance(std::int64_t limit_ns) {
   }
   Settle(progress_ns_);
   ReadDue();
+  due_links_.Read(sensors_, VirtualTime::FromNanoseconds(progress_ns_), *dynamics_);
   WriteStates();
-  const bool sent =
-      sensors_.Act(VirtualTime::FromNanoseconds(progress_ns_),
-                   [this](int body) { return states_[static_cast<std::size_t>(body)]; },
-                   {.links =
-                        [this](std::span<const int> links, std::span<LinkState> states) {
-                          dynamics_->ReadLinks(dynamics_->Now(), links, states);
-                        },
-                    .joints =
-                        [this](std::span<const int> joints, std::span<JointState> states) {
-                          dynamics_->ReadJoints(dynamics_->Now(), joints, states);
-                        }});
+  const bool sent = sensors_.Act(
+      VirtualTime::FromNanoseconds(progress_ns_),
+      [this](int body) { return states_[static_cast<std::size_t>(body)]; },
+      {.links = [this](std::span<const int> links,
+                       std::span<LinkState> states) { due_links_.Give(links, states); },
+       .joints =
+           [this](std::span<const int> joints, std::span<JointState> states) {
+             dynamics_->ReadJoints(dynamics_->Now(), joints, states);
+           }});
   if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
   FindNextStop();
   return sent;

@@ -13,6 +13,7 @@
 #include "coordinator/trace/csv_file.h"
 #include "coordinator/world/command_queue.h"
 #include "coordinator/world/commands.h"
+#include "coordinator/world/due_links.h"
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
 #include "coordinator/world/sensors.h"
@@ -109,6 +110,7 @@ class World {
   LinkLines link_lines_;
   JointLines joint_lines_;
   CsvFile joints_csv_;
+  DueLinks due_links_;
   std::vector<int> all_bodies_, due_;
   std::vector<BodyState> states_;  // of all bodies, as each was read last
   std::vector<BodyState> read_;    // memory of ReadDue

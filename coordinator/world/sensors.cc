@@ -59,6 +59,14 @@ void Sensors::AddDueBodies(VirtualTime now, std::vector<int>* bodies) const {
   }
 }
 
+void Sensors::AddDueLinks(VirtualTime now, std::vector<int>* links) const {
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.next > now || sensor.instrument == nullptr) continue;
+    const std::span<const int> its = sensor.instrument->links();
+    links->insert(links->end(), its.begin(), its.end());
+  }
+}
+
 bool Sensors::Act(VirtualTime now, const Read& read, const Eyes& eyes) {
   bool went_out = false;
   for (Sensor& sensor : sensors_) {

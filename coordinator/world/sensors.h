@@ -57,8 +57,10 @@ class Sensors {
   VirtualTime NextStop() const;
   VirtualTime NextArrival() const;
 
-  // Appends the bodies that samples are due of. One may be there more than once.
+  // Appends the bodies that samples are due of, and the links that looks are. One may be there more
+  // than once.
   void AddDueBodies(VirtualTime now, std::vector<int>* bodies) const;
+  void AddDueLinks(VirtualTime now, std::vector<int>* links) const;
   // Takes the samples that are due, and has arrived what is due. True if something went out.
   bool Act(VirtualTime now, const Read& read, const Eyes& eyes = {});
 

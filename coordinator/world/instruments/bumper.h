@@ -14,6 +14,7 @@ class Bumper final : public Instrument {
       : spec_(spec), touching_(world, spec.mount.link) {
     measured_.frame = spec.mount.frame;
   }
+  std::span<const int> links() const override { return touching_.links(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 

@@ -32,7 +32,9 @@ class Instrument {
     VirtualDuration apart{};
   };
   virtual Looks looks() const { return {}; }
-  // One of them, counted from 0, at `now`.
+  // The links that it asks for in a look, so that all that are due can be read at once.
+  virtual std::span<const int> links() const { return {}; }
+  // The look of that number, counted from 0, at `now`.
   virtual void Look(int number, VirtualTime now, const Eyes& eyes) = 0;
   // What came out of it, once all looks are taken.
   virtual Measurement Finish() = 0;

@@ -13,6 +13,7 @@ class Lidar final : public Instrument {
  public:
   Lidar(const LidarSpec& spec, VirtualDuration period, const WorldSpec& world);
   Looks looks() const override { return sweep_.looks(); }
+  std::span<const int> links() const override { return sweep_.links(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -26,6 +27,7 @@ class Lidar3d final : public Instrument {
  public:
   Lidar3d(const Lidar3dSpec& spec, const WorldSpec& world);
   Looks looks() const override { return sweep_.looks(); }
+  std::span<const int> links() const override { return sweep_.links(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 

@@ -14,6 +14,7 @@ LinkState LookAt(const Mount& mount, const Eyes& eyes);
 class Imu final : public Instrument {
  public:
   Imu(const ImuSpec& spec, const std::array<double, 3>& gravity_mps2);
+  std::span<const int> links() const override { return {&spec_.mount.link, 1}; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -26,6 +27,7 @@ class Imu final : public Instrument {
 class Truth final : public Instrument {
  public:
   explicit Truth(const TruthSpec& spec);
+  std::span<const int> links() const override { return {&spec_.mount.link, 1}; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -37,6 +39,7 @@ class Truth final : public Instrument {
 class Gnss final : public Instrument {
  public:
   explicit Gnss(const GnssSpec& spec);
+  std::span<const int> links() const override { return {&spec_.mount.link, 1}; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -48,6 +51,7 @@ class Gnss final : public Instrument {
 class Magnetometer final : public Instrument {
  public:
   explicit Magnetometer(const MagnetometerSpec& spec);
+  std::span<const int> links() const override { return {&spec_.mount.link, 1}; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -59,6 +63,7 @@ class Magnetometer final : public Instrument {
 class Barometer final : public Instrument {
  public:
   explicit Barometer(const BarometerSpec& spec);
+  std::span<const int> links() const override { return {&spec_.mount.link, 1}; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 

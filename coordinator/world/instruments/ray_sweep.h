@@ -14,6 +14,7 @@ class RaySweep {
   RaySweep(const Mount& mount, std::size_t columns, VirtualDuration sweep, const WorldSpec& world);
 
   Instrument::Looks looks() const { return looks_; }
+  std::span<const int> links() const { return seen_.links(); }
   double column_s() const { return column_s_; }  // between two columns
 
   // A look of the instrument's: calls `cast` for each column that has its turn by then, with the

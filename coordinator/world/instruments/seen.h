@@ -13,6 +13,8 @@ class Seen {
  public:
   Seen(const Mount& mount, const WorldSpec& world);
 
+  // Those that it reads.
+  std::span<const int> links() const { return links_; }
   // The world as it is now; what was read before is forgotten.
   void Begin(const Eyes& eyes);
   // The same `after` the last look.

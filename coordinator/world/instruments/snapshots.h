@@ -13,6 +13,7 @@ namespace tcs {
 class RangeFinder final : public Instrument {
  public:
   RangeFinder(const RangeSpec& spec, const WorldSpec& world);
+  std::span<const int> links() const override { return seen_.links(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
@@ -26,6 +27,7 @@ class RangeFinder final : public Instrument {
 class DepthCamera final : public Instrument {
  public:
   DepthCamera(const DepthCameraSpec& spec, const WorldSpec& world);
+  std::span<const int> links() const override { return seen_.links(); }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 

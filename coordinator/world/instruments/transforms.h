@@ -11,6 +11,7 @@ namespace tcs {
 class Transforms final : public Instrument {
  public:
   explicit Transforms(const TransformsSpec& spec);
+  std::span<const int> links() const override { return links_; }
   void Look(int number, VirtualTime now, const Eyes& eyes) override;
   Measurement Finish() override { return measured_; }
 
