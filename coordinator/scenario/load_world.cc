@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "coordinator/scenario/load_air.h"
+#include "coordinator/scenario/load_joints.h"
 #include "coordinator/scenario/load_values.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
@@ -126,25 +128,36 @@ BodySpec LoadBody(const YamlMap::Entry& entry) {
   return body;
 }
 
-// Lists of bodies that are one island each.
-std::vector<std::vector<int>> LoadTogether(const YamlValue& value, const Scenario& scenario) {
-  std::vector<std::vector<int>> islands;
-  std::vector<int> placed;
+// Lists of names that are one island each: of bodies, or of models.
+void LoadTogether(const YamlValue& value, Scenario* scenario) {
+  WorldSpec& world = *scenario->world;
+  std::set<std::string> placed;
   for (const YamlValue& list : value.AsList("[[predator, prey]]")) {
     const std::vector<YamlValue> names = list.AsList("[predator, prey]");
-    if (names.size() < 2) list.Fail("names one body, which is by itself already; name two or more");
-    std::vector<int>& island = islands.emplace_back();
+    if (names.size() < 2) {
+      list.Fail("names one " + std::string(world.bodies.empty() ? "model" : "body") +
+                ", which is by itself already; name two or more");
+    }
+    const auto is_model = [&world](const YamlValue& name) {
+      return world.bodies.empty() || std::ranges::find(world.models, name.AsText(),
+                                                       &RobotModel::name) != world.models.end();
+    };
+    const bool of_models = is_model(names.front());
+    std::vector<int>& island = (of_models ? world.models_together : world.together).emplace_back();
     for (const YamlValue& name : names) {
-      const int body = FindBody(name, scenario);
-      if (std::find(placed.begin(), placed.end(), body) != placed.end()) {
-        name.Fail("names the body '" + name.AsText() +
-                  "' a second time; bodies that all belong together stand in one list");
+      if (is_model(name) != of_models) {
+        name.Fail("names '" + name.AsText() + "' beside '" + names.front().AsText() +
+                  "', and one of them is a body, the other one a model; free bodies touch nothing, "
+                  "so give each kind lists of its own");
       }
-      placed.push_back(body);
-      island.push_back(body);
+      island.push_back(of_models ? static_cast<int>(FindModel(name, *scenario))
+                                 : FindBody(name, *scenario));
+      if (!placed.insert(name.AsText()).second) {
+        name.Fail("names the " + std::string(of_models ? "model" : "body") + " '" + name.AsText() +
+                  "' a second time; those that all belong together stand in one list");
+      }
     }
   }
-  return islands;
 }
 
 void LoadBodies(const YamlValue& value, WorldSpec* world) {
@@ -205,7 +218,7 @@ void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenari
     models->Fail("has nothing that moves; give one of them mass, or remove dynamics");
   }
   if (const YamlValue* together = map.Find("together")) {
-    scenario->world->together = LoadTogether(*together, *scenario);
+    LoadTogether(*together, scenario);
   }
 }
 

@@ -75,6 +75,32 @@ const RobotModel& Named(const Scenario& scenario, std::string_view name) {
   throw std::logic_error("no model " + std::string(name));
 }
 
+TEST(LoadModels, ThoseThatStandTogetherAreOneIsland) {
+  const Folder folder;
+  EXPECT_TRUE(Loaded(folder).world->models_together.empty());
+  std::string text(kGood);
+  const std::string_view gravity = "gravity: [0, 0, -9.81]";
+  text.replace(text.find(gravity), gravity.size(), "together: [[ball, crate]]");
+  const WorldSpec world = *Loaded(folder, text).world;
+  ASSERT_EQ(world.models_together.size(), 1u);
+  ASSERT_EQ(world.models_together[0].size(), 2u);
+  EXPECT_EQ(world.models[static_cast<std::size_t>(world.models_together[0][0])].name, "ball");
+  EXPECT_EQ(world.models[static_cast<std::size_t>(world.models_together[0][1])].name, "crate");
+  EXPECT_TRUE(world.together.empty());
+}
+
+TEST(LoadModels, ABodyAndAModelDoNotStandTogether) {
+  const Folder folder;
+  std::string text(kGood);
+  const std::string_view gravity = "gravity: [0, 0, -9.81]";
+  text.replace(text.find(gravity), gravity.size(), "together: [[ship, crate]]");
+  text += "bodies: {ship: {mass: 1, inertia: [1, 1, 1]}}\n";
+  const auto loaded = LoadScenario(folder.Write("s.yaml", text));
+  ASSERT_TRUE(std::holds_alternative<LoadError>(loaded));
+  EXPECT_THAT(std::get<LoadError>(loaded).message,
+              testing::HasSubstr("names 'crate' beside 'ship', and one of them is a body"));
+}
+
 TEST(LoadModels, ARobotStandsWhereTheScenarioSays) {
   const Folder folder;
   const Scenario scenario = Loaded(folder);
@@ -234,6 +260,21 @@ const Mistake kMistakes[] = {
      "bodies: {ball: {mass: 1, inertia: [1, 1, 1]}}\nmodels:",
      "s.yaml:14",
      {"models.ball has the name of a body"}},
+    {"TogetherWithAStranger",
+     "gravity: [0, 0, -9.81]",
+     "together: [[ball, cam]]",
+     "s.yaml:2",
+     {"dynamics.together[0][1] names the unknown model 'cam'", "'can'?"}},
+    {"TogetherTwice",
+     "gravity: [0, 0, -9.81]",
+     "together: [[ball, can], [can, pill]]",
+     "s.yaml:2",
+     {"together[1][0] names the model 'can' a second time", "one list"}},
+    {"TogetherAlone",
+     "gravity: [0, 0, -9.81]",
+     "together: [[can]]",
+     "s.yaml:2",
+     {"dynamics.together[0] names one model", "two or more"}},
     {"NoSuchFile",
      "urdf: arm.urdf",
      "urdf: leg.urdf",
