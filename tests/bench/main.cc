@@ -21,6 +21,7 @@ constexpr char kDds[] = "dds";
 constexpr char kPhysics[] = "physics";
 constexpr char kFleet[] = "fleet";
 constexpr char kDispatch[] = "dispatch";
+constexpr char kRobots[] = "robots";
 constexpr int kRounds = 7;
 constexpr int kDdsRounds = 3;  // each of which takes a minute or two
 
@@ -34,14 +35,15 @@ int main(int argc, char** argv) {
   std::optional<int> asked_rounds;
   std::vector<std::string> only;
   bool json = false, quick = false;
-  std::vector<std::string> names{kWork, kPlanning, kDds, kPhysics, kFleet, kDispatch};
+  std::vector<std::string> names{kWork, kPlanning, kDds, kPhysics, kFleet, kDispatch, kRobots};
   for (const auto& benchmark : tcs::bench::CallBenchmarks()) names.push_back(benchmark.name);
 
   CLI::App app{"Prints what tcs costs, as ratios to references measured in the same run"};
   app.add_option(
          "--rounds", asked_rounds,
-         fmt::format("whose medians are printed; {} unless told, of dds, fleet and dispatch {}",
-                     kRounds, kDdsRounds))
+         fmt::format(
+             "whose medians are printed; {} unless told, of dds, fleet, dispatch and robots {}",
+             kRounds, kDdsRounds))
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", only, "these benchmarks alone")->check(CLI::IsMember(names));
   app.add_flag("--json", json, "print one JSON object instead of tables");
@@ -88,6 +90,10 @@ int main(int argc, char** argv) {
   if (Wanted(only, kDispatch)) {
     results.dispatches = tcs::bench::MeasureDispatches(asked_rounds.value_or(kDdsRounds), quick);
     complete = complete && results.dispatches.has_value();
+  }
+  if (Wanted(only, kRobots)) {
+    results.robots = tcs::bench::MeasureRobots(asked_rounds.value_or(kDdsRounds), quick);
+    complete = complete && results.robots.has_value();
   }
   fmt::print("{}", json ? ToJson(results) : ToTables(results));
   return complete ? 0 : 1;

@@ -10,6 +10,7 @@
 #include "tests/bench/dispatch_rows.h"
 #include "tests/bench/fleet_rows.h"
 #include "tests/bench/physics_rows.h"
+#include "tests/bench/robot_rows.h"
 #include "tests/bench/under_load.h"
 
 namespace tcs::bench {
@@ -22,6 +23,7 @@ struct Results {
   std::optional<PhysicsRows> physics;
   std::optional<FleetRows> fleets;
   std::optional<DispatchRows> dispatches;
+  std::optional<RobotRows> robots;
 };
 
 std::string ToTables(const Results& results);

@@ -32,7 +32,8 @@ std::nullopt_t Complain(const std::string& name, const std::string& error) {
 
 }  // namespace
 
-std::optional<TcsimRun> TcsimRun::Of(const std::string& name, const std::string& scenario) {
+std::optional<TcsimRun> TcsimRun::Of(const std::string& name, const std::string& scenario,
+                                     const std::vector<std::string>& options) {
   std::string folder = fs::temp_directory_path() / "tcs_bench.XXXXXX";
   if (mkdtemp(folder.data()) == nullptr) return Complain(name, "cannot make " + folder);
   TcsimRun run(folder);
@@ -40,7 +41,9 @@ std::optional<TcsimRun> TcsimRun::Of(const std::string& name, const std::string&
   if (!(std::ofstream(file) << scenario).flush())
     return Complain(name, "cannot write to " + folder);
   const fs::path tcsim = fs::read_symlink("/proc/self/exe").replace_filename("tcsim");
-  const ChildResult result = RunChild({tcsim, "run", file, "--out", out}, kLongestRun);
+  Command command{tcsim, "run", file, "--out", out};
+  command.insert(command.end(), options.begin(), options.end());
+  const ChildResult result = RunChild(command, kLongestRun);
   if (!result.error.empty()) return Complain(name, result.error);
   run.cpu_seconds_ = result.cpu_seconds;
   try {

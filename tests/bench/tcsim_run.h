@@ -6,15 +6,17 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace tcs::bench {
 
 // A run that ended in order, with its results, which go with this.
 class TcsimRun {
  public:
-  // Runs the scenario, YAML or JSON. None, with a sentence on stderr that begins with `name`, if it
-  // did not end in order.
-  static std::optional<TcsimRun> Of(const std::string& name, const std::string& scenario);
+  // Runs the scenario, YAML or JSON, with more options of `tcsim run`. None, with a sentence on
+  // stderr that begins with `name`, if it did not end in order.
+  static std::optional<TcsimRun> Of(const std::string& name, const std::string& scenario,
+                                    const std::vector<std::string>& options = {});
 
   TcsimRun(TcsimRun&& other) noexcept;
   TcsimRun& operator=(TcsimRun&&) = delete;
