@@ -84,6 +84,18 @@ int LineOfValue(const YAML::Node& node, int key_line) {
   return node.IsScalar() ? LineOf(node, key_line) : key_line;
 }
 
+// Without the middle, where a text of the file makes it endless: it begins with what is wrong and
+// ends with how to mend it. Between characters of UTF-8.
+std::string Readable(std::string_view sentence) {
+  constexpr std::size_t kMost = 2'000, kFirst = 1'000, kLast = 500;
+  if (sentence.size() <= kMost) return std::string(sentence);
+  const auto is_inside = [sentence](std::size_t at) { return (sentence[at] & 0xc0) == 0x80; };
+  std::size_t first = kFirst, last = sentence.size() - kLast;
+  while (first > 0 && is_inside(first)) --first;
+  while (last < sentence.size() && is_inside(last)) ++last;
+  return std::string(sentence.substr(0, first)) + " ... " + std::string(sentence.substr(last));
+}
+
 }  // namespace
 
 YamlValue::YamlValue(Place place, std::string name, YAML::Node node,
@@ -98,7 +110,7 @@ void YamlValue::Fail(std::string_view sentence) const {
 }
 
 void YamlValue::FailPlainly(std::string_view sentence) const {
-  throw ScenarioMistake{place_.Prefix() + std::string(sentence)};
+  throw ScenarioMistake{place_.Prefix() + Readable(sentence)};
 }
 
 Place YamlValue::PlaceOf(const YAML::Node& node, int line) const {

@@ -325,5 +325,20 @@ TEST(UnreadableFile, IsNamed) {
   EXPECT_THAT(std::get<LoadError>(endless).message, HasSubstr("larger than 1 MiB"));
 }
 
+TEST(LoadErrors, ATextWithoutEndIsCutInTheMiddle) {
+  const ScenarioFolder folder;
+  std::string endless;
+  for (int i = 0; i < 20'000; ++i) endless += "\u00e9";
+  const std::string path = folder.Write(
+      "s.yaml", WithReplaced("listen: \"127.0.0.1:47011\"", "listen: \"1" + endless + ":47011\""));
+  const auto loaded = LoadScenario(path);
+  ASSERT_TRUE(std::holds_alternative<LoadError>(loaded));
+  const std::string& message = std::get<LoadError>(loaded).message;
+  EXPECT_LT(message.size(), path.size() + 2'100);
+  EXPECT_THAT(message, HasSubstr("channels.hands.commands.listen has the address '1\u00e9"));
+  EXPECT_THAT(message, HasSubstr("\u00e9 ... \u00e9"));
+  EXPECT_TRUE(message.ends_with("write ADDRESS:PORT, like \"127.0.0.1:47010\"")) << message;
+}
+
 }  // namespace
 }  // namespace tcs
