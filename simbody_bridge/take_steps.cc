@@ -4,6 +4,7 @@
 
 #include "simbody_bridge/island.h"
 #include "simbody_bridge/model/finite.h"
+#include "simbody_bridge/one_line.h"
 
 namespace tcs {
 namespace {
@@ -35,7 +36,7 @@ void TakeEachStep(IslandEngine& engine, std::span<IslandStep* const> steps,
       throw;
     } catch (const std::exception& e) {
       throw DynamicsError(fmt::format("the integration from {:.12g} s on failed: {}",
-                                      step->at.seconds(), e.what()));
+                                      step->at.seconds(), OnOneLine(e.what())));
     }
     Check(*step, who);
   }
