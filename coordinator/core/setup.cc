@@ -76,6 +76,7 @@ std::string Engine::Prepare() {
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
+  if (network_.present()) dds_.UseNetwork(*network_.wire());
   if (world_.present()) run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
   if (world_.has_terminals()) waker_.AwaitTerminals();
