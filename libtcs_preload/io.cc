@@ -470,6 +470,25 @@ long ConnectLocally(GuestThread& t, int fd, const sockaddr* address, socklen_t s
   }
 }
 
+// The other end may be a while away.
+long ConnectFar(GuestThread& t, int fd, const sockaddr* address, socklen_t size) {
+  const long result = ConnectOnce(fd, address, size);
+  if (result != -EINPROGRESS) return result;
+  if (!PollNow(fd, POLLOUT)) {
+    const int saved = errno;
+    const std::int64_t deadline = SocketDeadline(t, fd, SO_SNDTIMEO);
+    if (AwaitFd(t, fd, POLLOUT, deadline) == FdState::kFailed) {
+      const int error = errno == EAGAIN ? EINPROGRESS : errno;
+      errno = saved;
+      return -error;
+    }
+  }
+  int error = 0;
+  socklen_t error_size = sizeof error;
+  RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_ERROR, Arg(&error), Arg(&error_size));
+  return -error;
+}
+
 }  // namespace
 
 // Connecting is a write: it makes the listener's descriptor readable.
@@ -487,6 +506,9 @@ TCS_EXPORT int connect(int fd, const sockaddr* address, socklen_t size) {
   }
   if (family == AF_UNIX && !IsNonBlocking(fd)) {
     return static_cast<int>(ToErrno(ConnectLocally(*t, fd, address, size)));
+  }
+  if ((family == AF_INET || family == AF_INET6) && !IsNonBlocking(fd)) {
+    return static_cast<int>(ToErrno(ConnectFar(*t, fd, address, size)));
   }
   return static_cast<int>(ToErrno(RawSyscall(SYS_connect, fd, Arg(address), size)));
 }

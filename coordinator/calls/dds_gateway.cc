@@ -29,6 +29,23 @@ dds::Speaker DdsGateway::WhoIs(dds::Hub::Number number) const {
   return {};
 }
 
+// Its number in the scenario.
+std::size_t DdsGateway::RobotOf(dds::Hub::Number number) const {
+  const auto process = std::ranges::find_if(
+      joined_, [number](const Process* one) { return one->dds_number == number; });
+  std::size_t robot = 0;
+  for (const Robot& each : run_.robots) {
+    if (process != joined_.end() && &each == (*process)->robot) break;
+    ++robot;
+  }
+  return robot;
+}
+
+void DdsGateway::UseNetwork(Wire& wire) {
+  paths_.emplace(wire, [this](std::uint32_t process) { return RobotOf(process); });
+  hub_.Route(&*paths_);
+}
+
 void DdsGateway::TakeOwnMessages() {
   const std::int64_t until = std::min(run_.root.Least(), run_.end_ns);
   if (hub_.OwnDueNs() > until) return;

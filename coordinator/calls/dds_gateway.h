@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
+#include "coordinator/network/dds_paths.h"
 #include "coordinator/tasks/moment.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -40,6 +42,9 @@ class DdsGateway {
   // more.
   void TakeOwnMessages();
 
+  // Messages between robots go over its links. It outlives this.
+  void UseNetwork(Wire& wire);
+
   // What a thread notifies of DDS; what it asks for is in its reply, or it waits.
   void Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
   // The process has died, or executes another program.
@@ -59,6 +64,7 @@ class DdsGateway {
 
  private:
   dds::Speaker WhoIs(dds::Hub::Number number) const;
+  std::size_t RobotOf(dds::Hub::Number number) const;
   void Join(Task& task);
   void Send(Process& process, std::size_t bytes, std::int64_t at_ns);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
@@ -75,6 +81,7 @@ class DdsGateway {
   dds::OwnEndpoints ends_{hub_};
   DdsRecords records_{run_, hub_, ends_, [this](dds::Hub::Number number) { return WhoIs(number); }};
   std::vector<Process*> joined_;
+  std::optional<DdsPaths> paths_;
 };
 
 }  // namespace tcs

@@ -22,12 +22,21 @@ Either(Cases...) -> Either<Cases...>;
 
 }  // namespace
 
-std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
+std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends,
+                           const MakeAt& make_at) {
+  // The end on UDP that `open` makes, where its address is.
+  const auto at = [&make_at](const UdpEndpoint& endpoint, const auto& open) {
+    decltype(open()) opened = std::string();
+    make_at(endpoint.host, [&] { opened = open(); });
+    return opened;
+  };
   std::unique_ptr<DdsChannels> dds = DdsChannels::For(scenario, ends);
   auto serial = std::make_unique<PtyChannels>();
   for (const SensorChannelSpec& spec : scenario.sensors) {
     auto outlet =
-        std::visit(Either{[&](const UdpEndpoint& to) { return OpenUdpOutlet(to, spec.fields); },
+        std::visit(Either{[&](const UdpEndpoint& to) {
+                            return at(to, [&] { return OpenUdpOutlet(to, spec.fields); });
+                          },
                           [&](const UnixName& to) { return OpenUnixOutlet(to, spec.fields); },
                           [&](const SerialPort& to) { return serial->OutletOn(to, spec); },
                           [&](const DdsSensorEnd&) { return Opened<Outlet>(dds->OutletOf(spec)); }},
@@ -38,7 +47,9 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   std::unique_ptr<Inlet> dds_commands = dds == nullptr ? nullptr : dds->Commands();
   for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
     auto inlet = std::visit(
-        Either{[i](const UdpEndpoint& from) { return OpenUdpInlet(from, i); },
+        Either{[&](const UdpEndpoint& from) {
+                 return at(from, [&] { return OpenUdpInlet(from, i); });
+               },
                [i](const UnixName& from) { return OpenUnixInlet(from, i); },
                [&](const SerialPort& from) { return serial->InletOn(from, i); },
                [](const DdsCommandEnd&) { return Opened<Inlet>(std::unique_ptr<Inlet>()); }},

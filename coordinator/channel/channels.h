@@ -1,6 +1,7 @@
 // The open channels of a run, each on the transport that the scenario names.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct FileAlias {
   std::string file;  // that is opened instead
 };
 
+// Has a socket made where programs reach that IPv4 address.
+using MakeAt = std::function<void(const std::string& address, const std::function<void()>& make)>;
+
 struct Channels {
   std::vector<std::unique_ptr<Transport>> transports;  // outlive the rest
   std::vector<std::unique_ptr<Outlet>> outlets;        // of the scenario's sensors, in their order
@@ -37,7 +41,8 @@ struct Channels {
 
   // Claims what the channels need of the host, ports for example. Empty on success, else one
   // sentence. The scenario and the endpoints outlive this.
-  [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends);
+  [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
+                                 const MakeAt& make_at);
   void Begin(VirtualDuration realtime_offset);
 };
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <time.h>
+#include <unistd.h>
 #include <x86intrin.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_network.h"
 #include "shm/check.h"
 
 namespace tcs {
@@ -214,6 +216,23 @@ bool Engine::StepWorld() {
   return true;
 }
 
+// Packets arrive once nobody can act before that. False if none does.
+bool Engine::StepNetwork() {
+  const std::int64_t due_ns = network_.NextDue().ns();
+  if (due_ns > run_.root.Least() || due_ns >= run_.end_ns) return false;
+  run_.latest_ns = std::max(run_.latest_ns, due_ns);
+  Beat();
+  network_.Arrive(VirtualTime::FromNanoseconds(due_ns));
+  ShowNetwork(std::max(network_ns_, due_ns));
+  PollEvents(0, {.ns = due_ns, .from_outside = true});
+  return true;
+}
+
+void Engine::ShowNetwork(std::int64_t progress_ns) {
+  network_ns_ = progress_ns;
+  run_.root.Update(network_leaf_, network_ns_, network_.NextDue().ns());
+}
+
 // To move the dynamics costs next to nothing, but every horizon costs a context switch. So they may
 // lag behind while threads act for short, and where a thread computes on and on they lead: within
 // the drift bound on either side its slices are twice as long. Returns how far the thread may run.
@@ -334,7 +353,7 @@ bool Engine::Step() {
   LookAround();
   dds_.TakeOwnMessages();
   ahead_.Look();
-  if (StepWorld()) return true;
+  if (StepWorld() || StepNetwork()) return true;
   const std::int64_t least = run_.root.Least();
   if (least >= run_.end_ns || least == shm::kNeverNs) {
     if (least == shm::kNeverNs && !WorldGoesOn() && AwaitOutside()) return true;
@@ -367,7 +386,9 @@ RunReport Engine::Run() {
   }
   reporter_.Conclude(reached_end_ ? run_.end_ns : FurthestNs());
   // First: what clients do at their end is no part of the run.
-  for (const std::string& error : {records_.Close(), dds_.records().Close()}) {
+  const std::string& folder = run_.options.output_directory;
+  for (const std::string& error : {records_.Close(), dds_.records().Close(),
+                                   folder.empty() ? "" : network_.WriteCounts(folder)}) {
     if (run_.report.error.empty()) run_.report.error = error;
   }
   RunReport report = run_.report;
@@ -379,7 +400,18 @@ RunReport Engine::Run() {
   return report;
 }
 
+// Who is not root may make the robots' computers in a user namespace, which has to be entered
+// before anything else is tried.
 RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {
+  if (scenario.network && geteuid() != 0) {
+    if (const std::string why_not = EnterOwnNetwork(); !why_not.empty()) {
+      RunReport refused;
+      refused.error = "this host does not let a robot have a network of its own (" + why_not +
+                      "); run tcsim as root, or allow user namespaces, or leave `network` out of "
+                      "the scenario";
+      return refused;
+    }
+  }
   return Engine(scenario, options).Run();
 }
 

@@ -48,6 +48,7 @@
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
+#include "coordinator/network/robot_network.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
@@ -103,6 +104,8 @@ class Engine {
   void PayDebt(Task& task, std::int64_t ns);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
+  bool StepNetwork();
+  void ShowNetwork(std::int64_t progress_ns);
   std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
   bool HasJumpedOver();
   std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
@@ -145,6 +148,7 @@ class Engine {
   Reactor::Found OnUnknownChildEnd(Subject child, std::uint32_t events, Moment moment);
   Reactor::Found OnTrap(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnCommand(Subject channel, std::uint32_t events, Moment moment);
+  Reactor::Found OnNetwork(Subject robot, std::uint32_t events, Moment moment);
   Reactor::Found OnSignal(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
@@ -188,6 +192,9 @@ class Engine {
 
   RunState run_;
   World world_{[this](const std::string& text) { run_.Warn(text); }};
+  RobotNetwork network_;
+  TemporalConsistency::Leaf network_leaf_ = -1;  // -1: there is no network
+  std::int64_t network_ns_ = 0;                  // its progress
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
@@ -241,7 +248,7 @@ class Engine {
                                TimerCalls::DeletePosix(process);
                                dds_.Leave(process, moment);
                              }};
-  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, guard_.guarded()};
+  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, network_, guard_.guarded()};
   UnmanagedThreads unmanaged_{run_};
   UnknownChildren unknown_children_{run_.table, reactor_, unmanaged_};
   Grace grace_{run_, reactor_, unknown_children_,

@@ -27,6 +27,7 @@ void Engine::RegisterHandlers() {
   on(Tag::kUnknownChild, &Engine::OnUnknownChildEnd);
   on(Tag::kTrap, &Engine::OnTrap);
   on(Tag::kCommand, &Engine::OnCommand);
+  on(Tag::kNetwork, &Engine::OnNetwork);
   on(Tag::kSignal, &Engine::OnSignal);
   on(Tag::kGraceRanOut, &Engine::OnGraceRanOut);
   on(Tag::kDetector, &Engine::OnDetector);
@@ -88,6 +89,14 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
 
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
   world_.ReceiveCommands(channel.index, moment.ns);
+  return {};
+}
+
+// The thread that has sent goes on, as far as those allow who receive it.
+Reactor::Found Engine::OnNetwork(Subject robot, std::uint32_t, Moment moment) {
+  network_.Take(robot.index, VirtualTime::FromNanoseconds(moment.ns));
+  ShowNetwork(network_ns_);
+  if (run_.turn.lasts() && run_.turn.HasClock()) GoOnBesideWoken();
   return {};
 }
 

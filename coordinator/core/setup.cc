@@ -45,7 +45,13 @@ std::string Engine::Prepare() {
     return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
            ", and to run without it takes Linux 5.19 or newer";
   }
-  if (std::string error = world_.Open(run_.scenario, dds_.ends()); !error.empty()) return error;
+  if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
+  const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
+    network_.MakeAt(address, make);
+  };
+  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at); !error.empty()) {
+    return error;
+  }
   std::string taken;
   claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
@@ -70,6 +76,7 @@ std::string Engine::Prepare() {
   RegisterHandlers();
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
+  if (network_.present()) dds_.UseNetwork(*network_.wire());
   if (world_.present()) run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
   if (world_.has_terminals()) waker_.AwaitTerminals();
@@ -78,6 +85,8 @@ std::string Engine::Prepare() {
     if (fd >= 0) reactor_.Add(fd, EPOLLIN, {Tag::kCommand, inlet});
     ++inlet;
   }
+  std::uint32_t robot = 0;
+  for (const int fd : network_.fds()) reactor_.Add(fd, EPOLLIN, {Tag::kNetwork, robot++});
   return PrepareHostCpu();
 }
 
@@ -158,6 +167,9 @@ void Engine::MakeRobots() {
       cpu.leaf = run_.root.AddLeaf(static_cast<int>(robot.number));
       robot.cpus.push_back(&cpu);
     }
+  }
+  if (network_.present()) {
+    network_leaf_ = run_.root.AddLeaf(static_cast<int>(run_.robots.size()) + 1);
   }
 }
 

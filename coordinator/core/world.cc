@@ -61,7 +61,7 @@ World::World(std::function<void(const std::string&)> warn)
             dynamics_->ReadJoints(std::max(at, dynamics_->Now()), joints, states);
           }) {}
 
-std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
+std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -74,7 +74,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends) {
   std::vector<std::string> names_of_bodies;
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
-  if (std::string error = channels_.Open(scenario_, ends); !error.empty()) return error;
+  if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
   if (channels_.clock != nullptr) {
     sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
   }

@@ -111,7 +111,11 @@ Hub::Number Hub::Join(std::int64_t now_ns) {
   for (Number other = 1; other < number; ++other) {
     if (members_[other - 1].full && Find(other) != nullptr) member.ShowFull(other, true);
   }
-  for (const Known& known : known_) Queue(number, now_ns, known.message);
+  for (const Known& known : known_) {
+    const bool is_far = paths_ != nullptr && known.from != shm::kDdsCoordinator;
+    const std::int64_t way_ns = is_far ? paths_->RoundTripNs(known.from, number) : 0;
+    Queue(number, now_ns + way_ns, known.message);
+  }
   return number;
 }
 
@@ -319,13 +323,26 @@ void Hub::Enter(const DdsMessage& header, Bytes bytes) {
   }
   Remember(header, message);
   if (header.to == shm::kDdsEverybody) {
-    QueueForOthers(header.from, header.time_ns, message);
+    for (Number to = shm::kDdsCoordinator; to <= count(); ++to) {
+      if (to != header.from) Pass(to, header, message);
+    }
     const bool to_sender = (header.flags & shm::kDdsToSender) != 0;
     if (to_sender && header.from != shm::kDdsCoordinator) {
       Queue(header.from, header.time_ns, message);
     }
   } else {
-    Queue(header.to, header.time_ns, message);
+    Pass(header.to, header, message);
+  }
+}
+
+void Hub::Pass(Number to, const DdsMessage& header, const Message& message) {
+  std::int64_t due_ns = header.time_ns;
+  const bool has_way = header.from != shm::kDdsCoordinator && to != shm::kDdsCoordinator;
+  if (paths_ != nullptr && has_way && Find(to) != nullptr) due_ns = paths_->ArrivalNs(header, to);
+  if (due_ns != shm::kNeverNs) {
+    Queue(to, due_ns, message);
+  } else if (observer_ != nullptr && header.kind == DdsKind::kSample) {
+    observer_->Dropped(header, to);
   }
 }
 

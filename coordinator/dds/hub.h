@@ -37,6 +37,17 @@ class HubObserver {
   virtual void Left(std::uint32_t from) = 0;
 };
 
+// How long messages between two processes are on their way.
+class HubPaths {
+ public:
+  virtual ~HubPaths() = default;
+  // When one that is sent now (its time_ns) reaches the process; never: it is lost. Asked once of
+  // each message and receiver, in the order of sending.
+  virtual std::int64_t ArrivalNs(const shm::DdsMessage& header, std::uint32_t to) = 0;
+  // How long it takes to hear of what another process has, when asked for it.
+  virtual std::int64_t RoundTripNs(std::uint32_t one, std::uint32_t other) const = 0;
+};
+
 class Hub {
  public:
   using Number = std::uint32_t;  // of a process, from 1 on; 0: the coordinator
@@ -84,6 +95,9 @@ class Hub {
 
   // Null: nobody. It outlives this.
   void Observe(HubObserver* observer) { observer_ = observer; }
+
+  // Null: messages arrive when they are sent. It outlives this.
+  void Route(HubPaths* paths) { paths_ = paths; }
 
   // How many processes have joined so far: the largest number.
   Number count() const { return static_cast<Number>(members_.size()); }
@@ -141,6 +155,8 @@ class Hub {
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);
+  // The same of one that is sent now.
+  void Pass(Number to, const shm::DdsMessage& header, const Message& message);
   // What others get when the leases of what a process has are over.
   std::vector<Message> EndLeases(Number number, const std::vector<Known>& of, std::int64_t now_ns);
   void Introduce(Number to, Number whom, std::int64_t now_ns);
@@ -152,6 +168,7 @@ class Hub {
   static void GiveBack(const Member& member, std::size_t box, std::size_t bytes);
 
   HubObserver* observer_ = nullptr;
+  HubPaths* paths_ = nullptr;
   bool tells_own_ = false;
   Queued own_;                           // for the coordinator
   std::vector<Member> members_;          // of number i + 1

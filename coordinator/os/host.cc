@@ -376,6 +376,10 @@ Spawned Spawn(const SpawnRequest& request) {
   sockets->ours.Reset();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
+  if (request.computer != nullptr && !EnterComputer(*request.computer)) {
+    Say(std::string(argv[0]) + " cannot be put into its robot's network: " + strerror(errno));
+    _exit(127);
+  }
   HandOverTrap(sockets->theirs.get(), request);
   sigset_t none;
   sigemptyset(&none);

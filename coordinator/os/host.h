@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/os/own_computer.h"
 #include "coordinator/os/unique_fd.h"
 
 namespace tcs {
@@ -138,10 +139,11 @@ struct SpawnRequest {
   std::vector<std::string> command;
   std::string working_directory;  // empty: unchanged
   std::map<std::string, std::string> environment;
-  std::string log_stdout, log_stderr;  // empty: inherited
-  bool fixed_layout = false;           // no address-space randomisation
-  std::vector<pid_t> guarded;          // processes that it is not to touch
-  bool traps_ends = false;             // that it ends is trapped, too (trap.h)
+  std::string log_stdout, log_stderr;     // empty: inherited
+  bool fixed_layout = false;              // no address-space randomisation
+  std::vector<pid_t> guarded;             // processes that it is not to touch
+  bool traps_ends = false;                // that it ends is trapped, too (trap.h)
+  const OwnComputer* computer = nullptr;  // null: the host
 };
 
 struct Spawned {

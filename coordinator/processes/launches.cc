@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "coordinator/os/files.h"
@@ -45,12 +46,14 @@ SpawnRequest RequestFor(const ClientSpec& client, const Robot& robot, const RunO
 
 std::string Launches::Begin() {
   auto robot = run_.robots.begin();
+  std::size_t number = 0;
   for (const RobotSpec& spec : run_.scenario.robots) {
     for (const ClientSpec& client : spec.clients) {
       const std::int64_t start_ns = client.after.empty() ? client.start.ns() : shm::kNeverNs;
-      launches_.push_back({&client, &*robot, start_ns, nullptr});
+      launches_.push_back({&client, &*robot, number, start_ns, nullptr});
     }
     ++robot;
+    ++number;
   }
   for (Robot& each : run_.robots) FindNext(each);
   for (Robot& each : run_.robots) StartDue(each, 0);
@@ -104,7 +107,12 @@ std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
   SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
   request.traps_ends = run_.has_porters;
-  const std::string socket_name = sockets_.Open();
+  request.computer = network_.ComputerOf(launch.number);
+  // Of those that ask their environment for it.
+  if (request.computer != nullptr && getenv("HOSTNAME") != nullptr) {
+    request.environment.try_emplace("HOSTNAME", launch.robot->name);
+  }
+  const std::string socket_name = sockets_.Open(request.computer);
   if (socket_name.empty()) return "the socket that clients register at cannot be made";
   request.environment["TCS_SOCKET"] = socket_name;
   if (const std::string aliases = world_.AliasesOf(launch.robot->name); !aliases.empty()) {

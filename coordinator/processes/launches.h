@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coordinator/core/world.h"
+#include "coordinator/network/robot_network.h"
 #include "coordinator/processes/births.h"
 #include "coordinator/processes/registration_sockets.h"
 #include "coordinator/processes/trap_listeners.h"
@@ -26,19 +27,22 @@ class Launches {
   struct Launch {
     const ClientSpec* spec;
     Robot* robot;
+    std::size_t number;     // of the robot
     std::int64_t start_ns;  // never: it waits for another one to end
     Process* process;       // once started
   };
 
   // The processes in `guarded` are tcsim's own. All of these outlive this.
   Launches(RunState& run, Waker& waker, Births& births, RegistrationSockets& sockets,
-           TrapListeners& traps, const World& world, const std::vector<pid_t>& guarded)
+           TrapListeners& traps, const World& world, const RobotNetwork& network,
+           const std::vector<pid_t>& guarded)
       : run_(run),
         waker_(waker),
         births_(births),
         sockets_(sockets),
         traps_(traps),
         world_(world),
+        network_(network),
         guarded_(guarded) {}
 
   // Of all clients, once their robots are there; then starts those that start at 0. Empty on
@@ -67,6 +71,7 @@ class Launches {
   RegistrationSockets& sockets_;
   TrapListeners& traps_;
   const World& world_;
+  const RobotNetwork& network_;
   const std::vector<pid_t>& guarded_;
   std::vector<Launch> launches_;
 };

@@ -20,10 +20,18 @@ RegistrationSockets::RegistrationSockets(Reactor& reactor)
     : reactor_(reactor),
       name_(fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC))) {}
 
-std::string RegistrationSockets::Open() {
+std::string RegistrationSockets::Open(const OwnComputer* computer) {
   const auto number = static_cast<std::uint32_t>(sockets_.size());
   const std::string name = fmt::format("{}.{}", name_, number);
-  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  int fd = -1;
+  const auto make = [&fd] {
+    fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  };
+  if (computer == nullptr) {
+    make();
+  } else if (!InNetworkOf(*computer, make)) {
+    return {};
+  }
   if (fd < 0) return {};
   sockets_.push_back({UniqueFd(fd), nullptr});
   sockaddr_un address{};

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/os/own_computer.h"
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/tasks/reactor.h"
 #include "coordinator/tasks/task.h"
@@ -31,8 +32,9 @@ class RegistrationSockets {
 
   explicit RegistrationSockets(Reactor& reactor);
 
-  // A socket for the next client and its descendants. Its name, or nothing: errno is set.
-  std::string Open();
+  // A socket for the next client and its descendants, which programs on that computer find (null:
+  // on the host). Its name, or nothing: errno is set.
+  std::string Open(const OwnComputer* computer);
   // The socket that was opened last is that client's. Before anybody can have connected there.
   void AssignTo(Process& client) { sockets_.back().client = &client; }
 

@@ -60,7 +60,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top = ParseYaml(path, ReadFile(path, "a scenario file"), settings).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "models",
-                 "robots", "channels", "clock", "ros"});
+                 "robots", "network", "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -84,6 +84,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
   const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
   LoadWorld(top, variables, &scenario);
   LoadRobots(top, variables, &scenario);
+  LoadNetwork(top, &scenario);
   LoadChannels(top, variables, &scenario);
   CheckDdsTransports(top, &scenario);
   return scenario;

@@ -144,7 +144,7 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
                     const Scenario& scenario) {
   CheckName(entry);
   const YamlMap map = entry.value.AsMap();
-  map.AllowOnly({"cpu", "scheduler", "clients"});
+  map.AllowOnly({"cpu", "scheduler", "address", "clients"});
   RobotSpec robot;
   robot.name = entry.key;
   if (const YamlValue* cpu = map.Find("cpu")) LoadCpu(*cpu, &robot);

@@ -38,6 +38,13 @@ UdpEndpoint LoadEndpoint(const YamlValue& value) {
 
 UdpEndpoint UdpEndpoints::Load(const YamlValue& value) {
   const UdpEndpoint endpoint = LoadEndpoint(value);
+  if (network_ &&
+      std::ranges::find(network_->addresses, endpoint.host) == network_->addresses.end()) {
+    value.Fail(
+        "has the address " + endpoint.host + ", which is no robot's: with `network` each " +
+        "robot has its own 127.0.0.1; write the address of the robot whose body it is, like " +
+        network_->addresses.front());
+  }
   for (const Use& use : uses_) {
     const bool same_host = use.endpoint.host == endpoint.host || use.endpoint.host == kAnyAddress ||
                            endpoint.host == kAnyAddress;
@@ -76,6 +83,10 @@ UnixName UnixNames::Load(const YamlValue& value) {
     value.Fail("is '" + name.Text() + "', which is longer than a UNIX socket's name may be (" +
                std::to_string(UnixName::kLongest) + " bytes); choose a shorter path, or a name " +
                "without a file, like \"@eyes\"");
+  }
+  if (name.is_abstract && has_network_) {
+    value.Fail("is '" + written + "', a name without a file, which with `network` each robot has " +
+               "for itself; write the path of a UNIX socket, like eyes.sock");
   }
   for (const Use& use : uses_) {
     if (use.text != name.Text()) continue;

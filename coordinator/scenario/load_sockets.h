@@ -2,6 +2,7 @@
 // thrown as ScenarioMistake.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,9 @@ namespace tcs {
 // The endpoints given so far: each belongs to one channel.
 class UdpEndpoints {
  public:
+  // With a network each is at the address of a robot. It outlives this.
+  explicit UdpEndpoints(const std::optional<NetworkSpec>& network) : network_(network) {}
+
   UdpEndpoint Load(const YamlValue& value);
   // One that can be sent to.
   UdpEndpoint LoadReceiver(const YamlValue& value);
@@ -25,13 +29,16 @@ class UdpEndpoints {
     std::string name;
     Place place;
   };
+  const std::optional<NetworkSpec>& network_;
   std::vector<Use> uses_;
 };
 
 // The same of UNIX sockets' names.
 class UnixNames {
  public:
-  explicit UnixNames(Variables variables) : variables_(std::move(variables)) {}
+  // With a network, names without a file are each robot's own.
+  UnixNames(Variables variables, bool has_network)
+      : variables_(std::move(variables)), has_network_(has_network) {}
 
   UnixName Load(const YamlValue& value);
 
@@ -42,6 +49,7 @@ class UnixNames {
     Place place;
   };
   Variables variables_;
+  bool has_network_;
   std::vector<Use> uses_;
 };
 

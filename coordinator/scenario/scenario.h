@@ -18,6 +18,7 @@
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
 #include "coordinator/scenario/instruments.h"
+#include "coordinator/scenario/network_spec.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/model/joint_goal.h"
@@ -265,6 +266,7 @@ struct Scenario {
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
   std::vector<RobotSpec> robots;
+  std::optional<NetworkSpec> network;  // none: all robots share the host's
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;
   std::optional<ClockSpec> clock;

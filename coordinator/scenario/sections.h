@@ -22,6 +22,9 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
 // `robots`. Reads the duration and the world's bodies from `scenario`.
 void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
+// `network`, and the robots' addresses. Reads the robots and the seed from `scenario`.
+void LoadNetwork(const YamlMap& top, Scenario* scenario);
+
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario);
 

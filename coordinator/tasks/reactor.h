@@ -25,6 +25,7 @@ enum class Tag : std::uint32_t {
   kUnknownChild,
   kTrap,
   kCommand,
+  kNetwork,
   kSignal,
   kGraceRanOut,
   kDetector,

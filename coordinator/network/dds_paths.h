@@ -1,0 +1,47 @@
+// What DDS messages meet between robots, where they go in shared memory (`dds: endpoints`): the
+// same links as packets.
+//
+// A best-effort sample that is lost does not come. What is reliable comes later by a round trip for
+// each time that it is lost, as a reader asks for it again, and what the same process sends
+// reliably after it waits for it. News of participants and endpoints are reliable, and no sample
+// overtakes them. Pure, for the coordinator's thread only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "coordinator/dds/hub.h"
+#include "coordinator/network/wire.h"
+
+namespace tcs {
+
+class DdsPaths final : public dds::HubPaths {
+ public:
+  // On which robot a process is, by its number; the number of robots: on none.
+  using RobotOf = std::function<std::size_t(std::uint32_t process)>;
+
+  DdsPaths(Wire& wire, RobotOf robot_of) : wire_(wire), robot_of_(std::move(robot_of)) {}
+
+  std::int64_t ArrivalNs(const shm::DdsMessage& header, std::uint32_t to) override;
+  std::int64_t RoundTripNs(std::uint32_t one, std::uint32_t other) const override;
+
+ private:
+  // Between two processes, when the last of each kind arrives.
+  struct Last {
+    VirtualTime reliable, news;
+  };
+
+  bool AreApart(std::size_t from, std::size_t to) const;
+  // Never: it is lost each time.
+  VirtualTime SendAgain(NetworkLink& link, std::size_t bytes, VirtualTime arrives,
+                        VirtualDuration round_trip);
+
+  Wire& wire_;
+  RobotOf robot_of_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Last> last_;
+};
+
+}  // namespace tcs

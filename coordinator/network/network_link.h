@@ -1,0 +1,60 @@
+// One direction between two robots: how long a packet takes, and whether it arrives.
+//
+// The model is that of a line with a queue before it. A packet waits until those before it have
+// been sent, takes its bits' time at the link's bandwidth, then the latency and a share of the
+// jitter, drawn evenly for each packet. Packets arrive in the order in which they were sent. One
+// that finds the queue full is dropped; one that is lost was sent, and took its time. What is drawn
+// comes from the scenario's seed, so that the same packets at the same times have the same fate.
+//
+// Pure: no system calls, no clock. Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/scenario/network_spec.h"
+#include "coordinator/world/random_stream.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+class NetworkLink {
+ public:
+  struct Counts {
+    std::uint64_t packets = 0, bytes = 0;  // that were to be sent
+    std::uint64_t lost = 0, dropped = 0;   // of these packets
+  };
+
+  // `number` tells the links of a network apart.
+  NetworkLink(const LinkSpec& spec, std::uint64_t seed, std::uint64_t number)
+      : spec_(spec), random_(seed, RandomPurpose::kFate, number) {}
+
+  // When a packet of so many bytes, sent at that time, arrives; nothing: it does not. What is sent
+  // for an earlier time than the packet before goes after that one.
+  std::optional<VirtualTime> Send(VirtualTime at, std::size_t bytes);
+
+  // The same of a message that may be larger than a packet, and goes in several.
+  struct Passage {
+    VirtualTime arrives;
+    bool is_whole = true;  // none of its packets was lost or dropped
+  };
+  Passage SendMessage(VirtualTime at, std::size_t bytes);
+
+  // Whether a message gets through that is sent once more: then nothing is in its way but loss.
+  bool GetsThroughAgain(std::size_t bytes);
+
+  const LinkSpec& spec() const { return spec_; }
+  const Counts& counts() const { return counts_; }
+
+ private:
+  // When its last bit has been sent; nothing: it is dropped.
+  std::optional<VirtualTime> Transmit(VirtualTime at, std::size_t bytes);
+
+  LinkSpec spec_;
+  RandomStream random_;
+  VirtualTime busy_until_, last_arrival_;
+  Counts counts_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,56 @@
+// The network of a run: a computer of its own for each robot (os/own_computer.h), and the wire
+// between them.
+//
+// For the coordinator's thread only. Whoever steps it says the time: a packet is sent at the time
+// at which the thread was that sent it, and received when nobody can act before it any more.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/network/wire.h"
+#include "coordinator/os/own_computer.h"
+#include "coordinator/scenario/scenario.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+class RobotNetwork {
+ public:
+  // Makes the computers, if the scenario has a network. Empty on success, else one sentence.
+  [[nodiscard]] std::string Open(const Scenario& scenario);
+  bool present() const { return wire_.has_value(); }
+
+  // Of each robot, in the scenario's order: readable once it has sent something.
+  std::vector<int> fds() const;
+  // Takes what the robot has sent, all of it at that time.
+  void Take(std::size_t robot, VirtualTime at);
+
+  VirtualTime NextDue() const { return present() ? wire_->NextDue() : VirtualTime::Never(); }
+  // Delivers what has arrived by then.
+  void Arrive(VirtualTime now);
+
+  // Null without a network.
+  const OwnComputer* ComputerOf(std::size_t robot) const {
+    return present() ? &computers_[robot] : nullptr;
+  }
+  // Has a socket made where programs reach that address.
+  void MakeAt(const std::string& address, const std::function<void()>& make) const;
+
+  // What each link was given to carry, and what of it did not arrive: network.csv in that folder.
+  // Empty on success, else one sentence.
+  [[nodiscard]] std::string WriteCounts(const std::string& folder) const;
+
+  // Null without a network.
+  Wire* wire() { return wire_ ? &*wire_ : nullptr; }
+
+ private:
+  std::optional<Wire> wire_;
+  std::vector<std::string> names_, addresses_;  // of the robots
+  std::vector<OwnComputer> computers_;
+};
+
+}  // namespace tcs

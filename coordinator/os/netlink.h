@@ -1,0 +1,53 @@
+// What a network device is told by rtnetlink: its address, its routes, its queue. Each is one
+// message, answered at once.
+#pragma once
+
+#include <netinet/in.h>
+
+#include <cstdint>
+
+#include "coordinator/os/unique_fd.h"
+
+namespace tcs {
+
+class Netlink {
+ public:
+  // Of the network that the calling thread is in.
+  Netlink();
+
+  explicit operator bool() const { return static_cast<bool>(socket_); }
+
+  // All return 0 or the kernel's errno; `device` is the interface's index.
+
+  // How many packets the device keeps for whoever reads them.
+  int KeepPackets(int device, std::uint32_t packets);
+
+  // TCP hands it one segment at a time: how many it would else goes by the round trip in the host's
+  // time.
+  int SendSegmentsOneByOne(int device);
+
+  // The device's own address. It makes no route.
+  int AddAddress(int device, in_addr address);
+
+  // How TCP behaves along a route; 0: as anywhere.
+  struct RouteMetrics {
+    std::uint32_t least_timeout_ms = 0;  // until it sends again
+    bool acknowledges_at_once = false;
+  };
+  // To the addresses that begin with those bits, with `source` as the sender's.
+  int AddRoute(int device, in_addr to, unsigned bits, in_addr source, const RouteMetrics& metrics);
+
+  // Packets to that address are for all who can be reached over the device.
+  int AddBroadcast(int device, in_addr to, in_addr source);
+
+  // What is sent is handed to the device at once.
+  int SendWithoutQueue(int device);
+
+ private:
+  int Set(int device, std::uint16_t what, std::uint32_t value);
+  int Do(const void* message, std::uint32_t size);
+
+  UniqueFd socket_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,261 @@
+#include "coordinator/os/own_computer.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/if_tun.h>
+#include <net/if.h>
+#include <sched.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/mount.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <climits>
+#include <optional>
+
+#include "coordinator/os/netlink.h"
+#include "coordinator/os/passed_fd.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr char kDevice[] = "eth0";
+constexpr std::uint32_t kDeviceQueue = 32768;  // packets; more than one call sends
+// Longer than any wait of the host's: the kernel's own limit.
+constexpr std::uint32_t kNoTimeoutMs = 120'000;
+constexpr std::uint32_t kHostsOfNet = 0xff;  // as network/wire.cc has them
+
+// What the host's time would have a part in, and what makes up for it. Kernels that do not have one
+// of these do not have what it turns off, either.
+struct Setting {
+  const char* path;
+  const char* value;
+};
+constexpr Setting kSettings[] = {
+    {"ipv4/tcp_congestion_control", "reno"},
+    {"ipv4/tcp_sack", "0"},
+    {"ipv4/tcp_timestamps", "0"},
+    {"ipv4/tcp_early_retrans", "0"},
+    {"ipv4/tcp_recovery", "0"},
+    {"ipv4/tcp_frto", "0"},
+    {"ipv4/tcp_ecn", "0"},
+    {"ipv4/tcp_autocorking", "0"},
+    {"ipv4/tcp_no_metrics_save", "1"},
+    {"ipv4/tcp_slow_start_after_idle", "0"},
+    {"ipv4/tcp_moderate_rcvbuf", "0"},
+    {"ipv4/tcp_rmem", "4096 4194304 6291456"},
+    {"ipv4/tcp_invalid_ratelimit", "0"},
+    {"ipv4/icmp_ratelimit", "0"},
+    {"ipv4/conf/all/rp_filter", "0"},
+    {"ipv4/conf/default/rp_filter", "0"},
+    // Its eth0 would otherwise announce itself now and then.
+    {"ipv6/conf/default/disable_ipv6", "1"},
+};
+
+bool Put(const std::string& path, const std::string& text) {
+  const UniqueFd fd(open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  return fd && write(fd.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
+}
+
+void ChangeSettings() {
+  for (const Setting& setting : kSettings) {
+    Put(std::string("/proc/sys/net/") + setting.path, setting.value);
+  }
+  // Who may send an echo request without being root; a user namespace has only one's own group.
+  const std::string own = std::to_string(getegid());
+  if (!Put("/proc/sys/net/ipv4/ping_group_range", "0 2147483647")) {
+    Put("/proc/sys/net/ipv4/ping_group_range", own + " " + own);
+  }
+}
+
+// What the new computer tells its maker: which step has failed, or a descriptor.
+struct Told {
+  int error = 0;
+  char step[60] = "";
+};
+
+// One who makes it from inside, in a process of its own. Each step returns false with errno.
+class Maker {
+ public:
+  explicit Maker(const ComputerRequest& request) : request_(request) {}
+
+  // The step that failed; null: none.
+  const char* Make(UniqueFd* device) {
+    if (unshare(CLONE_NEWNET | CLONE_NEWUTS | CLONE_NEWNS) != 0) return "unshare";
+    if (sethostname(request_.name.data(), request_.name.size()) != 0) return "sethostname";
+    ChangeSettings();
+    *device = MakeDevice();
+    if (!*device) return "/dev/net/tun";
+    Netlink netlink;
+    const int index = static_cast<int>(if_nametoindex(kDevice));
+    errno = netlink.KeepPackets(index, kDeviceQueue);
+    if (errno == 0) errno = netlink.SendSegmentsOneByOne(index);
+    if (errno != 0) return "setting up the interface";
+    if (!Raise("lo") || !Raise(kDevice)) return "raising the interfaces";
+    if (!GiveAddresses(netlink, index)) return "addresses and routes";
+    return GiveFiles() ? nullptr : "mounting /etc/hosts";
+  }
+
+ private:
+  UniqueFd MakeDevice() {
+    UniqueFd fd(open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC));
+    ifreq wanted{};
+    strcpy(wanted.ifr_name, kDevice);
+    wanted.ifr_flags = IFF_TUN | IFF_NO_PI;
+    if (!fd || ioctl(fd.get(), TUNSETIFF, &wanted) != 0) return {};
+    return fd;
+  }
+
+  bool Raise(const char* name) {
+    const UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    ifreq wanted{};
+    strcpy(wanted.ifr_name, name);
+    if (ioctl(fd.get(), SIOCGIFFLAGS, &wanted) != 0) return false;
+    wanted.ifr_flags = static_cast<short>(wanted.ifr_flags | IFF_UP);
+    return ioctl(fd.get(), SIOCSIFFLAGS, &wanted) == 0;
+  }
+
+  bool GiveAddresses(Netlink& netlink, int device) {
+    const auto parsed = [](const std::string& text) {
+      in_addr address{};
+      inet_pton(AF_INET, text.c_str(), &address);
+      return address;
+    };
+    const in_addr own = parsed(request_.address);
+    const Netlink::RouteMetrics to_robots{.least_timeout_ms = kNoTimeoutMs,
+                                          .acknowledges_at_once = true};
+    errno = netlink.AddAddress(device, own);
+    if (errno == 0) errno = netlink.SendWithoutQueue(device);
+    for (const std::string& other : request_.others) {
+      if (errno == 0) errno = netlink.AddRoute(device, parsed(other), 32, own, to_robots);
+    }
+    if (errno == 0) errno = netlink.AddRoute(device, parsed("224.0.0.0"), 4, own, {});
+    const in_addr to_all = parsed("255.255.255.255"), to_net{own.s_addr | htonl(kHostsOfNet)};
+    for (const in_addr to : {to_all, to_net}) {
+      if (errno == 0) errno = netlink.AddBroadcast(device, to, own);
+    }
+    return errno == 0;
+  }
+
+  // They are written where nobody else looks, then shown in the places of the host's.
+  bool GiveFiles() {
+    constexpr char kPlace[] = "/tmp";
+    if (mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) != 0 ||
+        mount("tmpfs", kPlace, "tmpfs", MS_NOSUID | MS_NODEV, "mode=0755") != 0) {
+      return false;
+    }
+    const bool shown =
+        Show(kPlace, "hosts", request_.hosts_file) &&
+        (access("/etc/hostname", F_OK) != 0 || Show(kPlace, "hostname", request_.name + "\n"));
+    const int error = errno;
+    const bool left = umount2(kPlace, MNT_DETACH) == 0;
+    if (!shown) errno = error;
+    return shown && left;
+  }
+
+  static bool Show(const std::string& folder, const std::string& name, const std::string& text) {
+    const std::string path = folder + "/" + name;
+    {
+      const UniqueFd fd(open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+      if (!fd || fchmod(fd.get(), 0644) != 0 ||
+          write(fd.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+        return false;
+      }
+    }
+    return mount(path.c_str(), ("/etc/" + name).c_str(), nullptr, MS_BIND, nullptr) == 0;
+  }
+
+  const ComputerRequest& request_;
+};
+
+void Tell(int socket, Told told, int fd) {
+  const PassedMessage message(&told, sizeof told, fd);
+  sendmsg(socket, message.get(), MSG_NOSIGNAL);
+}
+
+constexpr const char* kNamespaces[] = {"/proc/self/ns/net", "/proc/self/ns/uts",
+                                       "/proc/self/ns/mnt"};
+
+[[noreturn]] void MakeIn(int socket, const ComputerRequest& request) {
+  UniqueFd device;
+  if (const char* step = Maker(request).Make(&device); step != nullptr) {
+    Told told{.error = errno};
+    snprintf(told.step, sizeof told.step, "%s", step);
+    Tell(socket, told, -1);
+    _exit(1);
+  }
+  Tell(socket, {}, device.get());
+  for (const char* path : kNamespaces) {
+    const UniqueFd fd(open(path, O_RDONLY | O_CLOEXEC));
+    Told told{.error = fd ? 0 : errno};
+    snprintf(told.step, sizeof told.step, "%s", path);
+    Tell(socket, told, fd.get());
+  }
+  _exit(0);
+}
+
+std::string WhyNot(const Told& told) {
+  const std::string reason =
+      std::string("this host does not let a robot have a network of its own (") + told.step + ": " +
+      strerror(told.error) + "); ";
+  if (strcmp(told.step, "/dev/net/tun") == 0) {
+    return reason +
+           "load the module tun (modprobe tun), in a container add --device /dev/net/tun, or leave "
+           "`network` out of the scenario";
+  }
+  return reason +
+         "run tcsim as root, or allow user namespaces, in a container with --privileged; or leave "
+         "`network` out of the scenario";
+}
+
+}  // namespace
+
+std::variant<OwnComputer, std::string> MakeComputer(const ComputerRequest& request) {
+  std::optional<SocketPair> sockets = SocketPair::Make();
+  const pid_t pid = sockets ? fork() : -1;
+  if (pid == 0) {
+    sockets->ours.Reset();
+    MakeIn(sockets->theirs.get(), request);
+  }
+  Told told{.error = errno, .step = "fork"};
+  OwnComputer computer;
+  if (pid > 0) {
+    sockets->theirs.Reset();
+    for (UniqueFd* fd :
+         {&computer.device, &computer.network, &computer.host_name, &computer.files}) {
+      told = {.error = EPROTO, .step = "its first process"};
+      *fd = std::move(ReceivePassed(sockets->ours.get(), &told, sizeof told, 0).fd);
+      if (!*fd) break;
+    }
+    while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  if (!computer.files) return WhyNot(told);
+  return computer;
+}
+
+bool EnterComputer(const OwnComputer& computer) {
+  char folder[PATH_MAX];
+  const bool has_folder = getcwd(folder, sizeof folder) != nullptr;
+  return setns(computer.network.get(), CLONE_NEWNET) == 0 &&
+         setns(computer.host_name.get(), CLONE_NEWUTS) == 0 &&
+         setns(computer.files.get(), CLONE_NEWNS) == 0 && (!has_folder || chdir(folder) == 0);
+}
+
+bool InNetworkOf(const OwnComputer& computer, const std::function<void()>& make) {
+  const UniqueFd own(open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC));
+  if (!own || setns(computer.network.get(), CLONE_NEWNET) != 0) return false;
+  make();
+  const int error = errno;
+  const bool is_back = setns(own.get(), CLONE_NEWNET) == 0;
+  errno = error;
+  return is_back;
+}
+
+}  // namespace tcs

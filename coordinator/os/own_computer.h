@@ -1,0 +1,44 @@
+// A robot's own computer, as far as the kernel can make one: a network with addresses and ports of
+// its own, a host name, and files that name the others. Programs on it need nothing preloaded for
+// that, and see it however they ask.
+//
+// Its network has a loopback interface, and `eth0`, whose packets go to and come from the device
+// that its maker holds. TCP on it waits for nothing in the host's time but the handshake's first
+// second: it acknowledges at once, retransmits what acknowledgements show to be missing, and leaves
+// what takes a timeout to others.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/os/unique_fd.h"
+
+namespace tcs {
+
+struct ComputerRequest {
+  std::string name;                 // of the host
+  std::string address;              // IPv4, of eth0
+  std::vector<std::string> others;  // addresses that are reached over it
+  std::string hosts_file;           // the text of its /etc/hosts
+};
+
+struct OwnComputer {
+  UniqueFd network, host_name, files;  // its namespaces
+  UniqueFd device;                     // reads and writes one packet at a time; does not wait
+};
+
+// A computer that lasts as long as its descriptors and its processes, or why there is none: one
+// sentence. Needs root, or to be root in a user namespace (EnterOwnNetwork).
+[[nodiscard]] std::variant<OwnComputer, std::string> MakeComputer(const ComputerRequest& request);
+
+// The calling process, which must be the only thread, becomes one of that computer. It keeps its
+// working directory. False: errno is set.
+[[nodiscard]] bool EnterComputer(const OwnComputer& computer);
+
+// Calls `make` while the calling thread is in that computer's network: sockets stay where they were
+// made. False, with errno, if it could not enter.
+[[nodiscard]] bool InNetworkOf(const OwnComputer& computer, const std::function<void()>& make);
+
+}  // namespace tcs
