@@ -35,8 +35,7 @@ std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
 }  // namespace
 
 Engine::Engine(const Scenario& scenario, const RunOptions& options)
-    : run_(scenario, options, !WhyNoRealTime().empty() || WhyNoDuplicates() != 0,
-           WhyNoDuplicates() != 0),
+    : run_(scenario, options, !WhyNoRealTime().empty(), WhyNoDuplicates() != 0),
       activations_(run_.IsCallback()),
       executor_(MakeExecutor(run_.gates_only)),
       host_cpu_(*executor_) {
