@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 #include <time.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <utility>
