@@ -9,9 +9,8 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 
 option(TCS_WERROR "Treat warnings as errors" ON)
-# Three quarters of compiling go into headers. It is for who builds once: ccache does not keep what is
-# compiled with them unless told, missing includes do not show, and GCC forgets what is not to be
-# warned of in the C++ library, so that there are no warnings at all.
+# Three quarters of compiling go into headers. It is for who builds once: missing includes do not show, and GCC forgets
+# what is not to be warned of in the C++ library, so that there are no warnings at all.
 option(TCS_PRECOMPILE "Precompile what most files of a library include; no warnings" OFF)
 
 include(TcsSanitizers)
@@ -21,7 +20,9 @@ function(tcs_target_defaults target)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "NO_SANITIZE" "" "")
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
   if(TCS_PRECOMPILE)
-    target_compile_options(${target} PRIVATE -w)
+    # The second is for ccache. What is precompiled with fmt's macros is for those that have them.
+    target_compile_options(${target} PRIVATE -w -fpch-preprocess)
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Wno-missing-field-initializers)
@@ -41,10 +42,26 @@ function(tcs_target_defaults target)
   endif()
 endfunction()
 
-# tcs_precompile(target HEADERS...)
+# What most files include. Headers of ours that have many inline functions cost more than they save: GCC
+# instantiates the templates that they need anew at the end of each file.
+set(TCS_STANDARD_HEADERS <algorithm> <deque> <functional> <map> <memory> <optional> <set> <string> <unordered_map>
+                         <variant> <vector> <fmt/format.h>)
+
+# tcs_precompile(target HEADERS...). Our own headers are named as in #include <…>: with a path, ccache would find
+# nothing of what it knows from another folder that the tree was in.
 function(tcs_precompile target)
   if(TCS_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# tcs_share_precompiled(target TARGETS...): what the first has precompiled serves the others, which are compiled with
+# the same flags; it has no macros that they have not.
+function(tcs_share_precompiled from)
+  if(TCS_PRECOMPILE)
+    foreach(target ${ARGN})
+      target_precompile_headers(${target} REUSE_FROM ${from})
+    endforeach()
   endif()
 endfunction()
 

@@ -66,6 +66,20 @@ int OpenPidfd(pid_t child, int* pidfd) {
   return 0;
 }
 
+// `real()` is posix_spawn or posix_spawnp.
+template <class Real>
+int SpawnWithShim(Real real, pid_t* pid, const char* program,
+                  const posix_spawn_file_actions_t* actions, const posix_spawnattr_t* attributes,
+                  char* const argv[], char* const envp[]) {
+  const Entered t;
+  EnvironmentCopy storage;
+  pid_t child = 0;
+  const int error = real()(&child, program, actions, attributes, argv, WithShim(envp, storage));
+  if (pid != nullptr && error == 0) *pid = child;
+  if (t != nullptr && error == 0) TellSpawned(*t, child);
+  return error;
+}
+
 }  // namespace
 
 TCS_EXPORT pid_t fork(void) noexcept {
@@ -147,27 +161,15 @@ TCS_EXPORT int fexecve(int fd, char* const argv[], char* const envp[]) noexcept 
 TCS_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
                            const posix_spawnattr_t* attributes, char* const argv[],
                            char* const envp[]) noexcept {
-  const Entered t;
-  EnvironmentCopy storage;
-  pid_t child = 0;
-  const int error =
-      TCS_REAL(posix_spawn)(&child, path, actions, attributes, argv, WithShim(envp, storage));
-  if (pid != nullptr && error == 0) *pid = child;
-  if (t != nullptr && error == 0) TellSpawned(*t, child);
-  return error;
+  return SpawnWithShim([] { return TCS_REAL(posix_spawn); }, pid, path, actions, attributes, argv,
+                       envp);
 }
 
 TCS_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
                             const posix_spawnattr_t* attributes, char* const argv[],
                             char* const envp[]) noexcept {
-  const Entered t;
-  EnvironmentCopy storage;
-  pid_t child = 0;
-  const int error =
-      TCS_REAL(posix_spawnp)(&child, file, actions, attributes, argv, WithShim(envp, storage));
-  if (pid != nullptr && error == 0) *pid = child;
-  if (t != nullptr && error == 0) TellSpawned(*t, child);
-  return error;
+  return SpawnWithShim([] { return TCS_REAL(posix_spawnp); }, pid, file, actions, attributes, argv,
+                       envp);
 }
 
 // Those of glibc 2.39, by what there was before.

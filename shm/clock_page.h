@@ -11,7 +11,7 @@
 // Everything here is async-signal-safe, takes no lock and makes no system call.
 #pragma once
 
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include "shm/layout.h"
 

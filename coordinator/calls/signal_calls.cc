@@ -1,6 +1,6 @@
 #include "coordinator/calls/signal_calls.h"
 
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 

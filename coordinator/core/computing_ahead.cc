@@ -1,7 +1,7 @@
 #include "coordinator/core/computing_ahead.h"
 
-#include <immintrin.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 

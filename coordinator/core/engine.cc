@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <time.h>
 #include <unistd.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -37,8 +37,7 @@ std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
 }  // namespace
 
 Engine::Engine(const Scenario& scenario, const RunOptions& options)
-    : run_(scenario, options, !WhyNoRealTime().empty() || WhyNoDuplicates() != 0,
-           WhyNoDuplicates() != 0),
+    : run_(scenario, options, !WhyNoRealTime().empty(), WhyNoDuplicates() != 0),
       activations_(run_.IsCallback()),
       executor_(MakeExecutor(run_.gates_only)),
       host_cpu_(*executor_) {

@@ -107,8 +107,7 @@ void Engine::TellOfMissingRights(bool may_have_levels) const {
   if (run_.IsFixed() && WhyNoFixedLayout() != 0) {
     run_.options.on_notice(
         "addresses are others in each run here, for personality is refused: programs that go by "
-        "them "
-        "do not repeat to the byte (`tcsim doctor` says more)");
+        "them do not repeat to the byte (`tcsim doctor` says more)");
   }
 }
 

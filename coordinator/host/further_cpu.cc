@@ -1,8 +1,8 @@
 #include "coordinator/host/further_cpu.h"
 
-#include <immintrin.h>
 #include <signal.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
+#include <xmmintrin.h>
 
 #include <algorithm>
 #include <chrono>

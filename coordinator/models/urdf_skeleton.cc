@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string_view>
-#include <utility>
 
 #include "coordinator/models/urdf_grammar.h"
 #include "coordinator/models/urdf_xml.h"
 #include "coordinator/scenario/nearest.h"
+#include "simbody_bridge/model/joint_kinds.h"
 #include "simbody_bridge/model/model_check.h"
 
 namespace tcs {
@@ -89,17 +88,9 @@ void UrdfSkeleton::AddJoint(const XMLElement& element) {
 }
 
 JointKind UrdfSkeleton::KindOf(const XMLElement& joint) const {
-  constexpr std::array<std::pair<std::string_view, JointKind>, 6> kKinds = {{
-      {"fixed", JointKind::kFixed},
-      {"revolute", JointKind::kRevolute},
-      {"continuous", JointKind::kContinuous},
-      {"prismatic", JointKind::kPrismatic},
-      {"planar", JointKind::kPlanar},
-      {"floating", JointKind::kFloating},
-  }};
   const std::string type = joint.Attribute("type");
   std::vector<std::string> known;
-  for (const auto& [name, kind] : kKinds) {
+  for (const auto& [name, kind] : kJointKinds) {
     if (name == type) return kind;
     known.emplace_back(name);
   }

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -326,7 +326,8 @@ void HandOverTrap(int to_parent, const SpawnRequest& request) {
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
   int error = listener ? 0 : errno;
-  PassedMessage message(&error, sizeof error, listener.get());
+  const int fd = listener.get();
+  PassedMessage message(&error, sizeof error, std::span(&fd, listener ? 1 : 0));
   if (syscall(SYS_sendmsg, to_parent, message.get(), MSG_NOSIGNAL, 0, 0, own) < 0) _exit(127);
   char none;
   while (syscall(SYS_read, to_parent, &none, 1, 0, 0, own) < 0 && errno == EINTR) {

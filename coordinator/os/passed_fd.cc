@@ -3,6 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "shm/check.h"
+
 namespace tcs {
 
 std::optional<SocketPair> SocketPair::Make() {
@@ -11,17 +13,19 @@ std::optional<SocketPair> SocketPair::Make() {
   return SocketPair{UniqueFd(ends[0]), UniqueFd(ends[1])};
 }
 
-PassedMessage::PassedMessage(void* bytes, std::size_t size, int fd) : iov_{bytes, size} {
+PassedMessage::PassedMessage(void* bytes, std::size_t size, std::span<const int> fds)
+    : iov_{bytes, size} {
+  TCS_CHECK(fds.size() <= shm::kMostAttachFds);
   message_.msg_iov = &iov_;
   message_.msg_iovlen = 1;
-  if (fd < 0) return;
+  if (fds.empty()) return;
   message_.msg_control = control_;
-  message_.msg_controllen = sizeof control_;
+  message_.msg_controllen = CMSG_SPACE(fds.size_bytes());
   cmsghdr* header = CMSG_FIRSTHDR(&message_);
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
-  header->cmsg_len = CMSG_LEN(sizeof fd);
-  memcpy(CMSG_DATA(header), &fd, sizeof fd);
+  header->cmsg_len = CMSG_LEN(fds.size_bytes());
+  memcpy(CMSG_DATA(header), fds.data(), fds.size_bytes());
 }
 
 Passed ReceivePassed(int socket, void* to, std::size_t size, int flags) {

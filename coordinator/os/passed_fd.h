@@ -8,8 +8,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "coordinator/os/unique_fd.h"
+#include "shm/attach_protocol.h"
 
 namespace tcs {
 
@@ -21,10 +23,11 @@ struct SocketPair {
   static std::optional<SocketPair> Make();
 };
 
-// A message for sendmsg, with a descriptor beside it; fd -1: with none. `bytes` must live as long.
+// A message for sendmsg, with descriptors beside it, kMostAttachFds at the most. `bytes` must live
+// as long.
 class PassedMessage {
  public:
-  PassedMessage(void* bytes, std::size_t size, int fd);
+  PassedMessage(void* bytes, std::size_t size, std::span<const int> fds);
   PassedMessage(const PassedMessage&) = delete;
   PassedMessage& operator=(const PassedMessage&) = delete;
 
@@ -32,7 +35,7 @@ class PassedMessage {
 
  private:
   iovec iov_;
-  alignas(cmsghdr) char control_[CMSG_SPACE(sizeof(int))] = {};
+  alignas(cmsghdr) char control_[CMSG_SPACE(shm::kMostAttachFds * sizeof(int))] = {};
   msghdr message_{};
 };
 

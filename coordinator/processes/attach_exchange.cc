@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "coordinator/os/passed_fd.h"
+
 namespace tcs {
 
 namespace {
@@ -16,21 +18,8 @@ shm::AttachReply NewReply() {
 }
 
 void Send(int connection, shm::AttachReply reply, std::span<const int> fds) {
-  iovec iov{&reply, sizeof reply};
-  alignas(cmsghdr) char control[CMSG_SPACE(shm::kMostAttachFds * sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &iov;
-  message.msg_iovlen = 1;
-  if (!fds.empty()) {
-    message.msg_control = control;
-    message.msg_controllen = CMSG_SPACE(fds.size_bytes());
-    cmsghdr* header = CMSG_FIRSTHDR(&message);
-    header->cmsg_level = SOL_SOCKET;
-    header->cmsg_type = SCM_RIGHTS;
-    header->cmsg_len = CMSG_LEN(fds.size_bytes());
-    memcpy(CMSG_DATA(header), fds.data(), fds.size_bytes());
-  }
-  sendmsg(connection, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  const PassedMessage message(&reply, sizeof reply, fds);
+  sendmsg(connection, message.get(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 pid_t PeerOf(int connection) {

@@ -159,6 +159,13 @@ struct FieldError {
   double noise = 0;              // standard deviation, of each reading anew
   double bias_deviation = 0;     // standard deviation of a bias that is drawn once a run
   std::array<double, 3> bias{};  // beside that one
+
+  // A bias that is drawn once is as unknown as the noise.
+  double Variance() const { return noise * noise + bias_deviation * bias_deviation; }
+  // Nothing is wrong.
+  bool IsExact() const {
+    return noise == 0 && bias_deviation == 0 && bias == std::array<double, 3>{};
+  }
 };
 struct SensorErrors {
   std::array<FieldError, kSensorFields> fields{};

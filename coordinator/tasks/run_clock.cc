@@ -1,7 +1,7 @@
 #include "coordinator/tasks/run_clock.h"
 
 #include <time.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include "coordinator/os/host.h"
 #include "shm/clock_page.h"

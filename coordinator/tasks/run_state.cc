@@ -8,7 +8,7 @@ RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, 
                    bool with_porters)
     : scenario(its_scenario),
       options(its_options),
-      gates_only(only_gates),
+      gates_only(only_gates || with_porters),
       has_porters(with_porters),
       table([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
       root(scenario.drift_bound.ns(), scenario.duration.ns()),

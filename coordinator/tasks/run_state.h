@@ -22,6 +22,7 @@
 namespace tcs {
 
 struct RunState {
+  // Where each process has a porter there are only gates.
   RunState(const Scenario& its_scenario, const RunOptions& its_options, bool only_gates,
            bool with_porters = false);
 

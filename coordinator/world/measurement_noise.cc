@@ -72,8 +72,7 @@ class MeasurementNoise::Draws {
 
  private:
   double VarianceOf(MeasuredField field) const {
-    const FieldError& error = noise_.errors_[static_cast<std::size_t>(field)];
-    return error.noise * error.noise + error.bias_deviation * error.bias_deviation;
+    return noise_.errors_[static_cast<std::size_t>(field)].Variance();
   }
   std::array<double, 3> ErrorOf(MeasuredField field) const {
     const auto index = static_cast<std::size_t>(field);
@@ -119,7 +118,7 @@ MeasurementNoise::MeasurementNoise(const MeasurementErrors& errors, std::uint64_
     : errors_(errors), seed_(seed) {
   for (std::size_t i = 0; i < kMeasuredFields; ++i) {
     const FieldError& field = errors_[i];
-    is_exact_ &= field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
+    is_exact_ &= field.IsExact();
     RandomStream random = StreamOf(seed, RandomPurpose::kBias, i, 0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       biases_[i][axis] = field.bias[axis] + field.bias_deviation * random.Normal();

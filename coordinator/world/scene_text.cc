@@ -8,6 +8,7 @@
 
 #include "coordinator/models/urdf_visuals.h"
 #include "coordinator/world/link_lines.h"
+#include "simbody_bridge/model/joint_kinds.h"
 
 namespace tcs {
 namespace {
@@ -18,24 +19,6 @@ Json PoseJson(const Pose& pose) {
   const auto& p = pose.position_m;
   const auto& q = pose.orientation_xyzw;
   return {p[0], p[1], p[2], q[0], q[1], q[2], q[3]};
-}
-
-const char* NameOf(JointKind kind) {
-  switch (kind) {
-    case JointKind::kFixed:
-      return "fixed";
-    case JointKind::kRevolute:
-      return "revolute";
-    case JointKind::kContinuous:
-      return "continuous";
-    case JointKind::kPrismatic:
-      return "prismatic";
-    case JointKind::kPlanar:
-      return "planar";
-    case JointKind::kFloating:
-      break;
-  }
-  return "floating";
 }
 
 class SceneWriter {

@@ -40,16 +40,12 @@ double* NumberOf(JointState* joint, JointQuantity quantity) {
   return &joint->effort;
 }
 
-bool IsExact(const FieldError& field) {
-  return field.noise == 0 && field.bias_deviation == 0 && field.bias == FieldError{}.bias;
-}
-
 }  // namespace
 
 SensorNoise::SensorNoise(const SensorErrors& errors, std::size_t bodies, std::size_t joints)
     : errors_(errors),
-      is_exact_(std::ranges::all_of(errors.fields, IsExact) &&
-                std::ranges::all_of(errors.joints, IsExact)) {
+      is_exact_(std::ranges::all_of(errors.fields, &FieldError::IsExact) &&
+                std::ranges::all_of(errors.joints, &FieldError::IsExact)) {
   for (std::size_t body = 0; body < bodies; ++body) {
     RandomStream random(errors_.seed, RandomPurpose::kBias, body);
     Biases& biases = biases_.emplace_back();

@@ -2,7 +2,7 @@
 
 #include <sched.h>
 #include <time.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <cstdint>
 

@@ -15,11 +15,9 @@ namespace tcs {
 
 namespace {
 
-// A bias that is drawn once is as unknown as the noise.
 dds::BodyVariances VariancesOf(const SensorErrors& errors) {
   const auto of = [&errors](SensorField field) {
-    const FieldError& error = errors.fields[static_cast<std::size_t>(field)];
-    return error.noise * error.noise + error.bias_deviation * error.bias_deviation;
+    return errors.fields[static_cast<std::size_t>(field)].Variance();
   };
   return {.position = of(SensorField::kPosition),
           .orientation = of(SensorField::kOrientation),

@@ -5,6 +5,7 @@ const tcs = (() => {
 
   // --- The data: see encode_replay.cc. -------------------------------------------------------------
 
+  // See bytes.h.
   function numbersIn(text) {
     const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
     let at = 0;
@@ -139,7 +140,7 @@ const tcs = (() => {
   }
 
   return Object.assign(state, {
-    momentAt, poseAt, seek, step, play, pause,
+    numbersIn, momentAt, poseAt, seek, step, play, pause,
     on: listener => listeners.push(listener),
     toggle: () => state.isPlaying ? pause() : play(),
     setSpeed: speed => { state.speed = speed; tell('playing'); },

@@ -11,21 +11,7 @@
 
   function decode(element) {
     const run = JSON.parse(element.textContent);
-    const bytes = Uint8Array.from(atob(run.slices), c => c.charCodeAt(0));
-    let at = 0;
-    const number = () => {
-      let value = 0, scale = 1;
-      for (;;) {
-        const byte = bytes[at++];
-        value += (byte & 127) * scale;
-        if (byte < 128) return value;
-        scale *= 128;
-      }
-    };
-    const signed = () => {
-      const value = number();
-      return value % 2 ? -(value + 1) / 2 : value / 2;
-    };
+    const {number, signed} = tcs.numbersIn(run.slices);
     // `density`: how much of a slice the row ran; 1 but for those that were made of several.
     const times = last => ({start: new Float64Array(run.count), end: new Float64Array(run.count),
                             density: new Float32Array(run.count).fill(1), last});

@@ -1,7 +1,7 @@
 // Timing of something so short that only many calls of it can be timed.
 #pragma once
 
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <cstdint>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include <time.h>
 #include <unistd.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <cstdint>
 #include <cstdlib>

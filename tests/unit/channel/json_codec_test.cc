@@ -125,44 +125,55 @@ constexpr std::string_view kPieces[] = {"0",
                                         "5e-324"};
 constexpr std::string_view kBlanks[] = {"", " ", "\t\n", "\r  "};
 
+// Piece by piece, with the same blanks before each.
+struct WrittenTwice {
+  explicit WrittenTwice(Draws& its_draw) : draw(its_draw) {}
+
+  void Add(std::string_view text, std::string_view other) {
+    const std::string_view blank = kBlanks[draw(std::size(kBlanks))];
+    plain.append(blank).append(text);
+    escaped.append(blank).append(other);
+  }
+  void Add(std::string_view text) { Add(text, text); }
+
+  Draws& draw;
+  std::string plain, escaped;
+};
+
 // Plain commands are read in another way than all others; a blank key makes one of the others of it
 // by an escape, which means the same.
 TEST(CommandDatagram, IsTheSameHoweverItIsWritten) {
   Draws draw;
   int commands = 0;
   for (int i = 0; i < 20'000; ++i) {
-    std::string plain, escaped;
-    const auto add = [&](std::string_view text, std::string_view other) {
-      const std::string_view blank = kBlanks[draw(std::size(kBlanks))];
-      plain.append(blank).append(text);
-      escaped.append(blank).append(other);
-    };
-    add("{", "{");
+    WrittenTwice command(draw);
+    command.Add("{");
     for (std::uint64_t n = 0, count = draw(3); n < count; ++n) {
-      if (n > 0) add(",", ",");
+      if (n > 0) command.Add(",");
       const bool is_force = draw(2) == 0;
-      add(is_force ? "\"force\"" : "\"torque\"", is_force ? "\"\\u0066orce\"" : "\"\\u0074orque\"");
-      add(":", ":");
+      command.Add(is_force ? "\"force\"" : "\"torque\"",
+                  is_force ? "\"\\u0066orce\"" : "\"\\u0074orque\"");
+      command.Add(":");
       for (int axis = 0; axis < 3; ++axis) {
-        add(axis == 0 ? "[" : ",", axis == 0 ? "[" : ",");
+        command.Add(axis == 0 ? "[" : ",");
         const std::string_view number = kPieces[draw(std::size(kPieces))];
-        add(number, number);
+        command.Add(number);
       }
-      add("]", "]");
+      command.Add("]");
     }
-    add("}", "}");
-    const auto a = DecodeCommand(plain), b = DecodeCommand(escaped);
-    ASSERT_EQ(a.index(), b.index()) << plain;
+    command.Add("}");
+    const auto a = DecodeCommand(command.plain), b = DecodeCommand(command.escaped);
+    ASSERT_EQ(a.index(), b.index()) << command.plain;
     const auto *x = std::get_if<Wrench>(&a), *y = std::get_if<Wrench>(&b);
     if (x == nullptr) continue;
     ++commands;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       ASSERT_EQ(std::bit_cast<std::uint64_t>(x->force_n[axis]),
                 std::bit_cast<std::uint64_t>(y->force_n[axis]))
-          << plain;
+          << command.plain;
       ASSERT_EQ(std::bit_cast<std::uint64_t>(x->torque_nm[axis]),
                 std::bit_cast<std::uint64_t>(y->torque_nm[axis]))
-          << plain;
+          << command.plain;
     }
   }
   EXPECT_GT(commands, 5000);
@@ -246,30 +257,26 @@ TEST(JointCommandDatagram, IsTheSameHoweverItIsWritten) {
   Draws draw;
   int commands = 0;
   for (int i = 0; i < 20'000; ++i) {
-    std::string plain, escaped;
-    const auto add = [&](std::string_view text, std::string_view other) {
-      const std::string_view blank = kBlanks[draw(std::size(kBlanks))];
-      plain.append(blank).append(text);
-      escaped.append(blank).append(other);
-    };
-    add("{", "{");
+    WrittenTwice command(draw);
+    command.Add("{");
     for (std::uint64_t n = 0, count = draw(4); n < count; ++n) {
-      if (n > 0) add(",", ",");
+      if (n > 0) command.Add(",");
       const bool is_elbow = draw(2) == 0;
-      add(is_elbow ? "\"elbow\"" : "\"wrist\"", is_elbow ? "\"\\u0065lbow\"" : "\"\\u0077rist\"");
-      add(":", ":");
+      command.Add(is_elbow ? "\"elbow\"" : "\"wrist\"",
+                  is_elbow ? "\"\\u0065lbow\"" : "\"\\u0077rist\"");
+      command.Add(":");
       const std::string_view number = kPieces[draw(std::size(kPieces))];
-      add(number, number);
+      command.Add(number);
     }
-    add("}", "}");
-    const auto a = DecodedJoints(plain), b = DecodedJoints(escaped);
-    ASSERT_EQ(a.index(), b.index()) << plain;
+    command.Add("}");
+    const auto a = DecodedJoints(command.plain), b = DecodedJoints(command.escaped);
+    ASSERT_EQ(a.index(), b.index()) << command.plain;
     const auto *x = std::get_if<0>(&a), *y = std::get_if<0>(&b);
     if (x == nullptr) continue;
     ++commands;
-    ASSERT_EQ(*x, *y) << plain;
+    ASSERT_EQ(*x, *y) << command.plain;
     for (std::size_t n = 0; n < x->size(); ++n) {
-      ASSERT_EQ(std::signbit(*(*x)[n].velocity), std::signbit(*(*y)[n].velocity)) << plain;
+      ASSERT_EQ(std::signbit(*(*x)[n].velocity), std::signbit(*(*y)[n].velocity)) << command.plain;
     }
   }
   EXPECT_GT(commands, 5000);

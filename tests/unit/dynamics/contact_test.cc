@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include "tests/unit/dynamics/taken_back.h"
 #include "tests/unit/dynamics/test_models.h"
 
 namespace tcs {
@@ -242,27 +243,7 @@ TEST_P(ModelsInContact, AreTakenBackToTheByte) {
     dynamics.ReadJoints(At(ns), std::array{0, 1}, all.joints);
     return all;
   };
-  for (const Timed& command : commands) apply(*known, command);
-  std::unique_ptr<Dynamics::Checkpoint> checkpoint;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const std::int64_t now_ns = commands[i].at_ns;
-    known->AdvanceTo(At(now_ns));
-    leading->AdvanceTo(At(now_ns));
-    const All a = read(*known, now_ns), b = read(*leading, now_ns);
-    ASSERT_EQ(std::memcmp(&a, &b, sizeof a), 0) << "before command " << i << " at " << now_ns;
-    (void)read(*leading, now_ns + draw(40'000'000));
-    if (draw(8) == 0) checkpoint = leading->Save(std::move(checkpoint));
-    apply(*leading, commands[i]);
-    if (checkpoint != nullptr && draw(8) == 0) {
-      leading->Restore(*checkpoint);
-      const VirtualTime from = leading->Now();
-      std::size_t first = i + 1;
-      while (first > 0 && At(commands[first - 1].at_ns) >= from) --first;
-      for (std::size_t k = first; k <= i; ++k) apply(*leading, commands[k]);
-    }
-  }
-  EXPECT_GT(leading->work().taken_back, 300);
-  EXPECT_EQ(known->work().taken_back, 0);
+  ASSERT_NO_FATAL_FAILURE(ExpectTheSameToTheByte(*known, *leading, commands, apply, read, draw));
   const All end = read(*known, commands.back().at_ns);
   EXPECT_GT(std::abs(end.links[3].pose.position_m[0] - 0.3), 0.01) << "the box was struck";
 }

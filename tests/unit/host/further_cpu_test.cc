@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <atomic>
 #include <optional>

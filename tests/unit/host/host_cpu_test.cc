@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <x86intrin.h>
+#include <x86gprintrin.h>
 
 #include <memory>
 #include <string>

@@ -9,7 +9,7 @@ namespace tcs {
 namespace {
 
 void Send(int socket, int number, int fd) {
-  PassedMessage message(&number, sizeof number, fd);
+  PassedMessage message(&number, sizeof number, std::span(&fd, fd < 0 ? 0 : 1));
   ASSERT_EQ(sendmsg(socket, message.get(), 0), static_cast<ssize_t>(sizeof number));
 }
 

@@ -27,7 +27,7 @@ class PorterTest : public testing::Test {
   }
 
   static bool Answer(int socket, shm::PorterAnswer answer, int fd) {
-    PassedMessage message(&answer, sizeof answer, fd);
+    PassedMessage message(&answer, sizeof answer, std::span(&fd, fd < 0 ? 0 : 1));
     return sendmsg(socket, message.get(), MSG_NOSIGNAL) == sizeof answer;
   }
   [[noreturn]] static void HandOver(int socket) {
