@@ -7,10 +7,10 @@ import time
 
 
 class LiveRun:
-    def __init__(self, tcsim, scenario, out, *options):
+    def __init__(self, tcsim, scenario, out, *options, accounting="fixed"):
         self.out = out
         self.said = open(f"{out}.said", "w+")
-        self.process = subprocess.Popen([tcsim, "run", scenario, "--accounting", "fixed", "--out", out, "--view", *options],
+        self.process = subprocess.Popen([tcsim, "run", scenario, "--accounting", accounting, "--out", out, "--view", *options],
                                         stdout=self.said, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
         self.url = self.until(self.find_url)
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([0-9a-f]{32})/", self.url)

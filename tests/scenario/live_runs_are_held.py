@@ -128,6 +128,38 @@ def an_end_while_it_stands():
         assert summary["interrupted"] and 200 * MS <= summary["virtual_ns"] <= 202 * MS, summary["virtual_ns"]
 
 
+COMPUTES = """
+import time
+for _ in range(6):
+    begun = time.monotonic()
+    sum(range(4_000_000))
+    print(time.monotonic() - begun, flush=True)
+    time.sleep(0.05)
+"""
+
+
+def computing_is_charged():
+    """A program that is held in the middle of what it computes has computed it at the same virtual times."""
+    with open(f"{OUT}/computes.yaml", "w") as file:
+        file.write("duration: 20s\ndynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}\n"
+                   f"robots: {{b: {{clients: {{c: {{command: [python3, -c, {json.dumps(COMPUTES)}]}}}}}}}}\n")
+    with LiveRun(TCSIM, f"{OUT}/computes.yaml", f"{OUT}/computes", "--pause", accounting="measured") as run:
+        for _ in range(30):
+            if run.wish(f"step {20 * MS}")["stage"] == "ended":
+                break
+            time.sleep(0.1)
+        run.wish("go")
+        run.end()
+    with open(f"{OUT}/computes/summary.json") as file:
+        client = json.load(file)["clients"]["b/c"]
+    with open(f"{OUT}/computes/b-c.out.log") as file:
+        took = [float(line) for line in file]
+    assert len(took) == 6 and client["wait_status"] == 0, (took, client)
+    # What the kernel says that it has used is what its clock says that it took.
+    assert abs(client["charged_ns"] / client["host_cpu_ns"] - 1) < 0.02, client
+    assert 0.6 < sum(took) / (client["charged_ns"] / 1e9) < 1.01, (took, client)
+
+
 def sentences():
     """What is asked for in vain is said in one line each."""
     def fails(*words):
@@ -149,6 +181,6 @@ def sentences():
     assert "is nothing that `tcsim run` writes" in fails("view", f"{OUT}/empty")
 
 
-for check in (steps, pauses, bad_watchers, a_dead_server, an_end_while_it_stands, sentences):
+for check in (steps, pauses, bad_watchers, a_dead_server, an_end_while_it_stands, computing_is_charged, sentences):
     check()
     print(check.__name__, flush=True)
