@@ -10,6 +10,13 @@
 
 namespace tcs {
 
+namespace {
+
+// What people see need not be newer; in between nothing is written to memory that others look at.
+constexpr std::int64_t kTellEveryNs = 5'000'000;
+
+}  // namespace
+
 Pacing::Pacing(const RunOptions& options, std::int64_t end_ns,
                std::function<void(const std::string&)> notice)
     : pacer_(options.pace, options.starts_standing),
@@ -23,6 +30,7 @@ Pacing::Pacing(const RunOptions& options, std::int64_t end_ns,
 void Pacing::TakeWishes(std::int64_t real_ns) {
   const auto wishes = view_->Take();
   if (!wishes) return;
+  next_tell_ns_ = real_ns;
   if (wishes->step_ns > 0) {
     pacer_.StepBy(wishes->step_ns, real_ns);
   } else if (!wishes->stands) {
@@ -51,7 +59,8 @@ std::int64_t Pacing::ToWait(std::int64_t next_ns) {
   const std::int64_t wait_ns = pacer_.ToWait(next_ns, real_ns);
   if (held_since_ns_ >= 0) held_ns_ += real_ns - held_since_ns_;
   held_since_ns_ = wait_ns > 0 ? real_ns : -1;
-  if (view_ != nullptr) {
+  if (view_ != nullptr && (wait_ns > 0 || real_ns >= next_tell_ns_)) {
+    next_tell_ns_ = real_ns + kTellEveryNs;
     view_->Tell({.stage = pacer_.stands() ? RunStage::kStands : RunStage::kGoesOn,
                  .now_ns = pacer_.now_ns(),
                  .end_ns = end_ns_,

@@ -43,6 +43,7 @@ class Pacing {
   const std::function<void(const std::string&)> notice_;
   const bool is_on_;
   bool is_orphaned_ = false;  // the server has ended
+  std::int64_t next_tell_ns_ = 0;
   std::int64_t begun_real_ns_ = -1, held_since_ns_ = -1, held_ns_ = 0;
 };
 
