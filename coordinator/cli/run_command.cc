@@ -135,7 +135,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
     return Fail(error);
   }
   TakeNoteBack();
-  if (options.view != nullptr) options.view->Conclude();
+  if (options.view != nullptr) options.view->Conclude(report.virtual_ns);
   if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }

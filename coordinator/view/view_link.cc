@@ -56,7 +56,8 @@ bool ViewLink::IsGone() const {
   return poll(&server, 1, 0) != 0;
 }
 
-void ViewLink::Conclude() {
+void ViewLink::Conclude(std::int64_t now_ns) {
+  page_->now_ns.store(now_ns);
   page_->stage.store(RunStage::kEnded);
   for (int turn = 0; turn < kMostTurns && page_->has_told.load() == 0; ++turn) {
     pollfd server{server_.get(), POLLIN, 0};

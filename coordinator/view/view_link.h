@@ -44,8 +44,9 @@ class ViewLink {
   // True once the server has ended. A system call.
   bool IsGone() const;
 
-  // The run has ended: waits, in real time, until those who watch it know, a second at most.
-  void Conclude();
+  // The run has ended, at virtual `now_ns`: waits, in real time, until those who watch it know, a
+  // second at most.
+  void Conclude(std::int64_t now_ns);
 
  private:
   ControlPage* page_;
