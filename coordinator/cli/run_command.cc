@@ -100,6 +100,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   }
   options.output_directory = overrides.result_directory;
   if (options.view != nullptr) {
+    // Before anybody knows where to ask for something else.
+    options.view->Begin(arguments.pace, arguments.pauses);
     Say(fmt::format("watch the run at {}{}", options.view->url(),
                     arguments.pauses ? ", where it stands until it is let go on" : ""));
   }

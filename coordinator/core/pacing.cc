@@ -23,9 +23,7 @@ Pacing::Pacing(const RunOptions& options, std::int64_t end_ns,
       view_(options.view),
       end_ns_(end_ns),
       notice_(std::move(notice)),
-      is_on_(options.pace > 0 || options.starts_standing || options.view != nullptr) {
-  if (view_ != nullptr) view_->Begin(options.pace, options.starts_standing);
-}
+      is_on_(options.pace > 0 || options.starts_standing || options.view != nullptr) {}
 
 void Pacing::TakeWishes(std::int64_t real_ns) {
   const auto wishes = view_->Take();

@@ -36,7 +36,7 @@ class ViewLink {
 
   const std::string& url() const { return url_; }
 
-  // How the run begins: what is shown before anybody asks for something else.
+  // How the run begins. Before anybody is told the address: it would undo what they ask for.
   void Begin(double pace, bool stands);
   // What is wanted now; none where nothing was asked for since the last time.
   std::optional<Wishes> Take();
