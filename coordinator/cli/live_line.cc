@@ -6,6 +6,9 @@ namespace tcs {
 
 namespace {
 
+// Of being behind a pace.
+constexpr std::int64_t kWorthSayingNs = 50'000'000;
+
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
@@ -18,6 +21,12 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
                                                             static_cast<double>(progress.real_ns)
                                                       : 0.0,
                                  Seconds(progress.drift_ns) * 1e3);
+  if (progress.pace.stands) {
+    text += "  paused";
+  } else if (progress.pace.late_ns > kWorthSayingNs) {
+    text += fmt::format("  {:.1f} s behind pace {:g}", Seconds(progress.pace.late_ns),
+                        progress.pace.pace);
+  }
   for (const RunProgress::Load& load : progress.clients) {
     std::int64_t& last_ns = last_charged_ns_[load.client];
     const double share =

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,12 @@
 #include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
+#include "coordinator/cli/view_command.h"
 #include "coordinator/doctor/doctor.h"
+#include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/view/launch.h"
 
 namespace {
 
@@ -102,6 +106,18 @@ int main(int argc, char** argv) {
   bool for_fit = false;
   run->add_flag("--for-fit", for_fit,
                 "also count each client's calls and allocations, which `tcsim fit` needs");
+  std::string view;
+  run->add_flag(
+         "--view", view,
+         "shows the run while it goes, in a browser at the address that is printed; "
+         "--view=PORT or --view=ADDRESS:PORT: there, else at a free port of this machine alone")
+      ->type_name("[=WHERE]");
+  run->add_option("--pace", arguments.pace,
+                  "how fast virtual time is to pass, as a multiple of the wall clock: 1 for people "
+                  "and devices beside it; as fast as it can unless told")
+      ->check(CLI::Range(1e-3, 1e3));
+  run->add_flag("--pause", arguments.pauses,
+                "with --view: stands at the start until it is let go on there");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
@@ -169,6 +185,13 @@ int main(int argc, char** argv) {
   report->add_option("--title", report_arguments.title,
                      "of the page; the scenario's name unless told");
 
+  std::string viewed, view_where;
+  CLI::App* show =
+      app.add_subcommand("view", "shows a result folder in a browser, also while the run goes");
+  show->add_option("folder", viewed, "what run writes, or wrote")->required();
+  show->add_option("--at", view_where,
+                   "PORT or ADDRESS:PORT; else a free port of this machine alone");
+
   tcs::TopicsArguments topics_arguments;
   CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
   topics->add_option("folder", topics_arguments.folder, "what run wrote")->required();
@@ -217,6 +240,7 @@ int main(int argc, char** argv) {
   }
   if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
   if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
+  if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
   if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
@@ -234,6 +258,19 @@ int main(int argc, char** argv) {
   options.waits_for_cpu = !no_wait;
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
+  if (arguments.pauses && view.empty()) {
+    return tcs::Fail("--pause is for runs that somebody lets go on: give --view, too");
+  }
+  // Before there is anything else of the run: the server is no part of it.
+  std::unique_ptr<tcs::ViewLink> link;
+  if (run->parsed() && !view.empty() && !arguments.check) {
+    tcs::ViewRequest request{.folder = tcs::AbsolutePathOf(arguments.out)};
+    std::string error = tcs::TakeViewAddress(view == "true" ? "" : view, &request);
+    if (!error.empty()) return tcs::Fail("--view: " + error);
+    link = tcs::StartView(request, &error);
+    if (link == nullptr) return tcs::Fail(error);
+    options.view = link.get();
+  }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
   return tcs::RunGuarded([&] {

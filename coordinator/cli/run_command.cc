@@ -13,6 +13,7 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
+#include "coordinator/view/view_link.h"
 
 namespace tcs {
 
@@ -57,6 +58,20 @@ void SayHowFar(int fd, const RunProgress& progress) {
   static_cast<void>(n);  // nobody has to know
 }
 
+// Only a world goes by the wall clock: without one nothing says when virtual time passes while all
+// programs sleep.
+std::string TakePace(const RunArguments& arguments, const Scenario& scenario, RunOptions* options) {
+  const char* what = arguments.pace > 0 ? "--pace" : options->view != nullptr ? "--view" : nullptr;
+  if (what != nullptr && !scenario.world.has_value()) {
+    return fmt::format(
+        "{} is for worlds, and the scenario {} has none: give it `dynamics`, or leave {} out", what,
+        Visible(scenario.path), what);
+  }
+  options->pace = arguments.pace;
+  options->starts_standing = arguments.pauses;
+  return {};
+}
+
 }  // namespace
 
 int RunCommand(const RunArguments& arguments, RunOptions options) {
@@ -74,6 +89,9 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   if (const auto* error = std::get_if<LoadError>(&loaded)) return Fail(error->message);
   const Scenario& scenario = std::get<Scenario>(loaded);
   if (arguments.check) return SaySound(scenario);
+  if (const std::string error = TakePace(arguments, scenario, &options); !error.empty()) {
+    return Fail(error);
+  }
   if (const std::string error = MakeFolder(arguments.out); !error.empty()) return Fail(error);
   const FolderLock lock(arguments.out);
   if (!lock.IsOurs()) {
@@ -81,6 +99,12 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
                 "'; wait for it, or choose another one with --out");
   }
   options.output_directory = overrides.result_directory;
+  if (options.view != nullptr) {
+    // Before anybody knows where to ask for something else.
+    options.view->Begin(arguments.pace, arguments.pauses);
+    Say(fmt::format("watch the run at {}{}", options.view->url(),
+                    arguments.pauses ? ", where it stands until it is let go on" : ""));
+  }
 
   LiveLine line(scenario.duration.ns());
   const int progress_fd = arguments.progress_fd;
@@ -113,6 +137,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
     return Fail(error);
   }
   TakeNoteBack();
+  if (options.view != nullptr) options.view->Conclude(report.virtual_ns);
   if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }

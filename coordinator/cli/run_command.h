@@ -16,6 +16,8 @@ struct RunArguments {
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
   bool check = false;                 // load the scenario, and no more
+  double pace = 0;                    // 0: as fast as it can
+  bool pauses = false;                // it starts standing
   int progress_fd = -1;               // a file that gets the virtual time; -1: none
 };
 

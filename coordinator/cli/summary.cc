@@ -46,6 +46,23 @@ nlohmann::json EngineOf(const Scenario& scenario) {
 
 }  // namespace
 
+namespace {
+
+// Nothing of a run that had none, and that nobody let stand.
+void PrintPace(const PaceReport& pace) {
+  if (pace.stood_ns > 0) Print("it was paused for {:.3f} s of that\n", Seconds(pace.stood_ns));
+  if (pace.pace <= 0) return;
+  if (pace.behind_ns == 0) {
+    Print("it kept to {:g} x the wall clock, {:.1f} ms behind at most\n", pace.pace,
+          Milliseconds(pace.most_ns));
+    return;
+  }
+  Print("it was behind its pace of {:g} x the wall clock for {:.3f} s, {:.3f} s at its end\n",
+        pace.pace, Seconds(pace.behind_ns), Seconds(pace.late_ns));
+}
+
+}  // namespace
+
 double OverheadPercent(const RunReport& r) {
   return r.real_ns == 0 ? 0.0 : 100.0 * Seconds(r.coordinating_ns) / Seconds(r.real_ns);
 }
@@ -60,6 +77,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   Print("{}{:.3f} s of virtual time in {:.3f} s: {:.2f} x real time\n",
         r.interrupted ? "interrupted; " : "", Seconds(r.virtual_ns), Seconds(r.real_ns),
         Seconds(r.virtual_ns) / std::max(1e-9, Seconds(r.real_ns)));
+  PrintPace(r.pace);
   const bool all_ended = std::all_of(r.clients.begin(), r.clients.end(),
                                      [](const ClientReport& c) { return c.ended_at_ns >= 0; });
   if (!r.interrupted && all_ended && r.virtual_ns < scenario.duration.ns()) {
@@ -135,6 +153,13 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"samples", r.samples},
             {"commands", r.commands},
             {"warnings", r.warnings}};
+  if (r.pace.pace > 0 || r.pace.stood_ns > 0) {
+    json["pace"] = {{"wanted", r.pace.pace},
+                    {"behind_ns", r.pace.behind_ns},
+                    {"most_ns", r.pace.most_ns},
+                    {"late_ns", r.pace.late_ns},
+                    {"stood_ns", r.pace.stood_ns}};
+  }
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
     for (const ClientSpec& client : robot.clients) {

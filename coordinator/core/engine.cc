@@ -90,7 +90,7 @@ std::int64_t Engine::LeftToHoldNs(const Task& task) const {
 // The virtual CPU of an ideal robot has been at this instant for long, of real time, though its
 // threads stop and go on: they may be answering each other for ever.
 bool Engine::StandsForEver(VirtualCpu& cpu) const {
-  const std::int64_t now_ns = HostClockNs(CLOCK_MONOTONIC);
+  const std::int64_t now_ns = RunningNs();
   if (std::exchange(cpu.stands_at_ns, cpu.progress_ns) != cpu.progress_ns) {
     cpu.stands_since_ns = now_ns;
   }
@@ -300,10 +300,10 @@ void Engine::LookAround() {
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
   if (run_.options.on_progress) {
-    if (shows_++ % kShowsPerFlush == 0) records_.Flush();
+    if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) records_.Flush();
     run_.options.on_progress(reporter_.Now());
   }
-  if (run_.options.on_notice) standstill_.Look(HostClockNs(CLOCK_MONOTONIC), FurthestNs());
+  if (run_.options.on_notice) standstill_.Look(RunningNs(), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
@@ -332,7 +332,7 @@ bool Engine::AwaitOutside() {
     if (found.wakes_others || run_.root.Least() != shm::kNeverNs) return true;
     if (waker_.unseen() == 0 && !has_spinners_ && !unknown_children_.AnyCounts() && !UnmanagedRun())
       return false;
-    const std::int64_t furthest_ns = FurthestNs(), now_ns = HostClockNs(CLOCK_MONOTONIC);
+    const std::int64_t furthest_ns = FurthestNs(), now_ns = RunningNs();
     if (std::exchange(idle_at_ns_, furthest_ns) != furthest_ns) idle_since_real_ns_ = now_ns;
     if (now_ns - idle_since_real_ns_ >= run_.end_ns - furthest_ns) return false;
   }
@@ -352,7 +352,7 @@ bool Engine::Step() {
   LookAround();
   dds_.TakeOwnMessages();
   ahead_.Look();
-  if (StepWorld() || StepNetwork()) return true;
+  if (!KeepPace() || StepWorld() || StepNetwork()) return true;
   const std::int64_t least = run_.root.Least();
   if (least >= run_.end_ns || least == shm::kNeverNs) {
     if (least == shm::kNeverNs && !WorldGoesOn() && AwaitOutside()) return true;

@@ -1,7 +1,7 @@
 // The engine: its parts, how they are set up and told of each other (setup.cc), the loop and the
 // choice of who acts (engine.cc), the dispatch of a thread and its charge (dispatch.cc), what the
-// kernel says meanwhile (events.cc, handlers.cc), what clients say (notifications.cc), and the end
-// (end.cc).
+// kernel says meanwhile (events.cc, handlers.cc), when it is held back (keep_pace.cc), what clients
+// say (notifications.cc), and the end (end.cc).
 #pragma once
 
 #include <deque>
@@ -42,6 +42,7 @@
 #include "coordinator/calls/trapped_calls.h"
 #include "coordinator/calls/trapped_waits.h"
 #include "coordinator/core/computing_ahead.h"
+#include "coordinator/core/pacing.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/world.h"
@@ -115,6 +116,12 @@ class Engine {
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
+
+  // Holding the run back (keep_pace.cc).
+  bool KeepPace();
+  std::int64_t NextActNs() const;
+  std::int64_t RunningNs() const;
+  void FlushForWatchers();
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
@@ -203,6 +210,7 @@ class Engine {
   HostCpu host_cpu_;
   HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
+  Pacing pacing_{run_.options, run_.end_ns, run_.options.on_notice};
   ComputingAhead ahead_{{run_, waker_, host_cpu_, *executor_, clock_, records_},
                         [this](Moment moment) { return PollEvents(0, moment); }};
   // What programs ask for, and what they wait for.
@@ -278,7 +286,7 @@ class Engine {
 
   // What users are told.
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
-  RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records()}};
+  RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records(), pacing_}};
 
   CpuClaim claim_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
@@ -295,6 +303,7 @@ class Engine {
   int shows_ = 0;
 
   std::uint64_t next_look_tsc_ = 0;
+  std::int64_t next_flush_ns_ = 0;
 };
 
 }  // namespace tcs

@@ -90,9 +90,11 @@ void Engine::BringToGate(Task& task) {
 }
 
 // What the thread has computed since its last turn ended, or while it was taken to be stopped, is a
-// debt like what it computes beyond its horizon.
+// debt like what it computes beyond its horizon. Levels let nobody compute then, but while the run
+// is held back.
 void Engine::ChargeUndispatched(Task& task) {
-  if (!run_.Preempts() || task.slot < 0) return;
+  const bool may_have_computed = run_.Preempts() || (pacing_.IsOn() && !run_.IsFixed());
+  if (!may_have_computed || task.slot < 0) return;
   const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
   run_.ChargeAsDebt(task, ns);
 }

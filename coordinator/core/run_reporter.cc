@@ -23,6 +23,7 @@ RunProgress RunReporter::Now() const {
   progress.client_ns = run_.report.client_ns;
   progress.dynamics_ns = world.present() ? world.host_ns() : 0;
   progress.coordinating_ns = CoordinatingNs();
+  progress.pace = from_.pacing.Report();
   for (const Process& process : run_.table.processes()) {
     if (!process.is_client) continue;
     progress.clients.push_back({process.name, from_.usage.ChargedToAllOf(process)});
@@ -47,6 +48,7 @@ void RunReporter::Conclude(std::int64_t virtual_ns) {
   report.real_ns = from_.clock.RealNs();
   report.coordinating_ns = CoordinatingNs();
   report.virtual_ns = virtual_ns;
+  report.pace = from_.pacing.Report();
   from_.dds_records.WarnOfDrops();
   WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();

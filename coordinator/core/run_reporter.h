@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "coordinator/calls/dds_records.h"
+#include "coordinator/core/pacing.h"
 #include "coordinator/core/world.h"
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/usage_book.h"
@@ -24,6 +25,7 @@ class RunReporter {
     const UsageBook& usage;
     const Launches& launches;
     const DdsRecords& dds_records;
+    const Pacing& pacing;
   };
 
   RunReporter(RunState& run, const Sources& from) : run_(run), from_(from) {}

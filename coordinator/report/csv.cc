@@ -15,9 +15,7 @@
 
 namespace tcs::report {
 
-namespace {
-
-void Split(std::string_view line, CsvFields* fields) {
+void SplitCsv(std::string_view line, CsvFields* fields) {
   fields->clear();
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   for (;;) {
@@ -27,8 +25,6 @@ void Split(std::string_view line, CsvFields* fields) {
     line.remove_prefix(comma + 1);
   }
 }
-
-}  // namespace
 
 std::optional<double> ToReal(std::string_view text) {
   double value = 0;
@@ -75,7 +71,7 @@ LoadResult<std::int64_t> ReadCsv(const std::string& path,
       ++unusable;
       break;
     }
-    Split(rest.substr(0, end), &line);
+    SplitCsv(rest.substr(0, end), &line);
     rest.remove_prefix(end + 1);
     if (is_header) {
       for (const std::string_view column : columns) {

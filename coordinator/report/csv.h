@@ -22,6 +22,9 @@ using CsvFields = std::vector<std::string_view>;
                                                const std::vector<std::string_view>& columns,
                                                const std::function<bool(const CsvFields&)>& take);
 
+// The fields of a line, which is without its end.
+void SplitCsv(std::string_view line, CsvFields* fields);
+
 // None unless all of `text` is one finite number.
 [[nodiscard]] std::optional<double> ToReal(std::string_view text);
 [[nodiscard]] std::optional<std::int64_t> ToInteger(std::string_view text);

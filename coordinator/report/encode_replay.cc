@@ -77,7 +77,7 @@ Json SignalJson(const Signal& signal) {
 
 }  // namespace
 
-std::string Encoded(const Replay& replay) {
+Json ToJson(const Replay& replay) {
   std::string times;
   std::int64_t before = 0;
   for (const double time_s : replay.time_s) {
@@ -95,15 +95,13 @@ std::string Encoded(const Replay& replay) {
   for (const Said& line : replay.said) {
     said.push_back({line.time_us, line.client, line.stream, line.text, line.is_mark});
   }
-  return ForScript({{"name", replay.name},
-                    {"end", replay.end_s},
-                    {"count", replay.time_s.size()},
-                    {"times", Base64(times)},
-                    {"tracks", std::move(tracks)},
-                    {"robots", std::move(robots)},
-                    {"signals", std::move(signals)},
-                    {"said", std::move(said)},
-                    {"scene", replay.scene}});
+  return {{"name", replay.name},           {"end", replay.end_s},
+          {"count", replay.time_s.size()}, {"times", Base64(times)},
+          {"tracks", std::move(tracks)},   {"robots", std::move(robots)},
+          {"signals", std::move(signals)}, {"said", std::move(said)},
+          {"scene", replay.scene}};
 }
+
+std::string Encoded(const Replay& replay) { return ForScript(ToJson(replay)); }
 
 }  // namespace tcs::report

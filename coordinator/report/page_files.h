@@ -12,7 +12,10 @@ extern const std::string_view kPathsLive;
 extern const std::string_view kMotionControls;
 extern const std::string_view kThreeJs;
 extern const std::string_view kReplayDataJs;
-// All other scripts, in the order in which they run.
+// Of a run that goes on.
+extern const std::string_view kLiveHtml;
+extern const std::string_view kLiveJs;
+// All other scripts of any page, in the order in which they run.
 extern const std::string_view kPageJs;
 
 }  // namespace tcs::report

@@ -11,13 +11,34 @@
 namespace tcs::report {
 namespace {
 
-constexpr std::size_t kMostLines = 4000, kMostMarks = 300, kLongest = 200;
+constexpr std::size_t kLongest = 200;
 constexpr std::string_view kMark = "mark:";
 
 std::string_view Trimmed(std::string_view text) {
   while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
   return text;
 }
+
+}  // namespace
+
+std::optional<Said> SaidOf(std::int64_t time_us, const std::string& client,
+                           const std::string& stream, std::string_view line) {
+  line = Trimmed(line);
+  if (line.empty()) return {};
+  const bool is_mark = line.starts_with(kMark);
+  if (is_mark) {
+    line.remove_prefix(kMark.size());
+    while (line.starts_with(' ')) line.remove_prefix(1);
+  }
+  return Said{time_us, client, stream, std::string(line.substr(0, kLongest)), is_mark};
+}
+
+std::string SaidFile(const std::string& folder, std::string client, const std::string& stream) {
+  std::replace(client.begin(), client.end(), '/', '-');
+  return folder + "/" + client + "." + stream + ".log";
+}
+
+namespace {
 
 class Reader {
  public:
@@ -62,36 +83,28 @@ class Reader {
     const auto [place, is_new] = streams_.try_emplace({client, name});
     Stream& stream = place->second;
     if (!is_new) return stream;
-    std::string file = client;
-    std::replace(file.begin(), file.end(), '/', '-');
     stream.client = client;
     stream.name = name;
-    stream.text = ReadFile(folder_ + "/" + file + "." + name + ".log");
+    stream.text = ReadFile(SaidFile(folder_, client, name));
     return stream;
   }
 
   // All clients have the same room.
   void CutShort() {
     const std::size_t of_each =
-        kMostLines / std::max<std::size_t>(1, counts_.size() - counts_.count(""));
+        kMostSaidLines / std::max<std::size_t>(1, counts_.size() - counts_.count(""));
     std::map<std::string, std::size_t> kept;
     const std::size_t all = std::erase_if(replay_.said, [&](const Said& line) {
-      return ++kept[line.is_mark ? "" : line.client] > (line.is_mark ? kMostMarks : of_each);
+      return ++kept[line.is_mark ? "" : line.client] > (line.is_mark ? kMostSaidMarks : of_each);
     });
     replay_.said_more = static_cast<std::int64_t>(all);
   }
 
   void Add(const Stream& stream, std::string_view line) {
-    line = Trimmed(line);
-    if (line.empty()) return;
-    const bool is_mark = line.starts_with(kMark);
-    if (is_mark) {
-      line.remove_prefix(kMark.size());
-      while (line.starts_with(' ')) line.remove_prefix(1);
-    }
-    ++counts_[is_mark ? "" : stream.client];
-    replay_.said.push_back({stream.time_us, stream.client, stream.name,
-                            std::string(line.substr(0, kLongest)), is_mark});
+    auto said = SaidOf(stream.time_us, stream.client, stream.name, line);
+    if (!said) return;
+    ++counts_[said->is_mark ? "" : stream.client];
+    replay_.said.push_back(std::move(*said));
   }
 
   const std::string folder_;

@@ -68,6 +68,7 @@ struct Replay {
                                             std::vector<std::string>* warnings);
 
 // As page/replay_data.js reads it: an object of JSON, tracks and signals in it as base64 of bytes.
+[[nodiscard]] nlohmann::ordered_json ToJson(const Replay& replay);
 [[nodiscard]] std::string Encoded(const Replay& replay);
 
 }  // namespace tcs::report

@@ -27,4 +27,8 @@ struct ReplayScene {
 // versions.
 [[nodiscard]] LoadResult<ReplayScene> ReadReplayScene(const std::string& folder);
 
+// How far moments of a replay of so many seconds are apart, so that it takes about `most_bytes`
+// when it is encoded: what a screen shows, or more.
+[[nodiscard]] double IntervalOf(const ReplayScene& scene, double end_s, std::size_t most_bytes);
+
 }  // namespace tcs::report

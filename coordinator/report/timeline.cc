@@ -18,36 +18,36 @@ std::int64_t Microseconds(std::int64_t ns) { return (ns + 500) / 1000; }
 // "predator/planner #7" is a thread of "predator/planner".
 std::string_view ClientOf(std::string_view row) { return row.substr(0, row.find(" #")); }
 
-class Builder {
- public:
-  explicit Builder(Timeline* timeline) : timeline_(*timeline) {}
+}  // namespace
 
-  bool Take(const CsvFields& fields) {
-    std::int64_t times[4] = {0, 0, 0, 0};
-    for (std::size_t i = 1; i < fields.size(); ++i) {
-      const auto ns = ToInteger(fields[i]);
-      if (!ns || *ns < 0) return false;
-      times[i - 1] = *ns;
-    }
-    if (times[1] < times[0] || times[3] < times[2]) return false;
-    for (std::int64_t& time : times) time = Microseconds(time);
-    timeline_.slices.push_back({RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3],
-                                times[1] - times[0], times[3] - times[2]});
-    timeline_.virtual_end = std::max(timeline_.virtual_end, times[1]);
-    timeline_.real_end = std::max(timeline_.real_end, times[3]);
-    return true;
+bool TimelineBuilder::Take(const CsvFields& fields) {
+  std::int64_t times[4] = {0, 0, 0, 0};
+  for (std::size_t i = 1; i < fields.size(); ++i) {
+    const auto ns = ToInteger(fields[i]);
+    if (!ns || *ns < 0) return false;
+    times[i - 1] = *ns;
   }
+  if (times[1] < times[0] || times[3] < times[2]) return false;
+  for (std::int64_t& time : times) time = Microseconds(time);
+  timeline_.slices.push_back({RowOf(ClientOf(fields[0])), times[0], times[1], times[2], times[3],
+                              times[1] - times[0], times[3] - times[2]});
+  timeline_.virtual_end = std::max(timeline_.virtual_end, times[1]);
+  timeline_.real_end = std::max(timeline_.real_end, times[3]);
+  timeline_.has_real_times = fields.size() == kDispatchColumns.size();
+  return true;
+}
 
- private:
-  int RowOf(std::string_view name) {
-    auto& rows = timeline_.rows;
-    const auto place = std::find(rows.begin(), rows.end(), name) - rows.begin();
-    if (place == static_cast<std::ptrdiff_t>(rows.size())) rows.emplace_back(name);
-    return static_cast<int>(place);
-  }
+int TimelineBuilder::RowOf(std::string_view name) {
+  auto& rows = timeline_.rows;
+  const auto place = std::find(rows.begin(), rows.end(), name) - rows.begin();
+  if (place == static_cast<std::ptrdiff_t>(rows.size())) rows.emplace_back(name);
+  return static_cast<int>(place);
+}
 
-  Timeline& timeline_;
-};
+const std::vector<std::string_view> kDispatchColumns{"row", "virtual_start_ns", "virtual_end_ns",
+                                                     "real_start_ns", "real_end_ns"};
+
+namespace {
 
 // The dynamics first, the rest by name.
 void SortRows(Timeline* timeline) {
@@ -98,16 +98,15 @@ std::vector<Slice> Merged(const std::vector<Slice>& slices, std::int64_t gap_us)
 LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name) {
   Timeline timeline;
   timeline.name = name;
-  Builder builder(&timeline);
+  TimelineBuilder builder(&timeline);
   const auto take = [&](const CsvFields& fields) { return builder.Take(fields); };
   const std::string path = folder + "/dispatches.csv";
   // Deterministic runs have no real times.
-  std::vector<std::string_view> columns{"row", "virtual_start_ns", "virtual_end_ns",
-                                        "real_start_ns", "real_end_ns"};
+  std::vector<std::string_view> columns = kDispatchColumns;
   auto read = ReadCsv(path, columns, take);
   timeline.has_real_times = std::holds_alternative<std::int64_t>(read);
   if (!timeline.has_real_times) {
-    columns.resize(3);
+    columns.resize(kDispatchColumnsWithoutReal);
     read = ReadCsv(path, columns, take);
   }
   if (const auto* error = std::get_if<LoadError>(&read)) return *error;
@@ -135,7 +134,7 @@ void Shorten(std::vector<Timeline>* timelines, std::size_t most_slices) {
   }
 }
 
-std::string Encoded(const Timeline& timeline) {
+nlohmann::ordered_json ToJson(const Timeline& timeline) {
   std::string bytes;
   std::int64_t virtual_end = 0, real_start = 0;
   const bool merged = timeline.merged_us > 0;
@@ -151,15 +150,16 @@ std::string Encoded(const Timeline& timeline) {
     real_start = slice.real_start;
     if (merged) PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_ran));
   }
-  const nlohmann::ordered_json json{{"name", timeline.name},
-                                    {"rows", timeline.rows},
-                                    {"real", timeline.has_real_times},
-                                    {"merged", merged},
-                                    {"virtualEnd", timeline.virtual_end},
-                                    {"realEnd", timeline.real_end},
-                                    {"count", timeline.slices.size()},
-                                    {"slices", Base64(bytes)}};
-  return ForScript(json);
+  return {{"name", timeline.name},
+          {"rows", timeline.rows},
+          {"real", timeline.has_real_times},
+          {"merged", merged},
+          {"virtualEnd", timeline.virtual_end},
+          {"realEnd", timeline.real_end},
+          {"count", timeline.slices.size()},
+          {"slices", Base64(bytes)}};
 }
+
+std::string Encoded(const Timeline& timeline) { return ForScript(ToJson(timeline)); }
 
 }  // namespace tcs::report

@@ -1,10 +1,14 @@
 // Who ran when in one run, in virtual and in real time, made small enough for a page.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "coordinator/report/csv.h"
 #include "coordinator/scenario/load_error.h"
 
 namespace tcs::report {
@@ -27,6 +31,25 @@ struct Timeline {
   std::int64_t merged_us = 0;  // slices of a row that are closer than this are one
 };
 
+// What is read of dispatches.csv. Deterministic runs have no real times.
+extern const std::vector<std::string_view> kDispatchColumns;
+inline constexpr std::size_t kDispatchColumnsWithoutReal = 3;
+
+// Makes a timeline of the lines of dispatches.csv, one after the other; rows in the order in which
+// they come.
+class TimelineBuilder {
+ public:
+  // `timeline` is filled, and outlives this.
+  explicit TimelineBuilder(Timeline* timeline) : timeline_(*timeline) {}
+  // Fields under the columns above. False: the line is of no use.
+  bool Take(const CsvFields& fields);
+
+ private:
+  int RowOf(std::string_view name);
+
+  Timeline& timeline_;
+};
+
 // From a run's dispatches.csv. A client's threads share its row.
 [[nodiscard]] LoadResult<Timeline> ReadTimeline(const std::string& folder, const std::string& name);
 
@@ -39,6 +62,7 @@ struct Timeline {
 void Shorten(std::vector<Timeline>* timelines, std::size_t most_slices);
 
 // As page/timeline.js reads it: an object of JSON, the slices in it as base64 of bytes.
+[[nodiscard]] nlohmann::ordered_json ToJson(const Timeline& timeline);
 [[nodiscard]] std::string Encoded(const Timeline& timeline);
 
 }  // namespace tcs::report

@@ -16,6 +16,18 @@
 
 namespace tcs {
 
+class ViewLink;
+
+// How a run has kept to its pace; real nanoseconds.
+struct PaceReport {
+  double pace = 0;             // virtual seconds for each real one; 0: as fast as it can
+  bool stands = false;         // until somebody lets it go on
+  std::int64_t late_ns = 0;    // where it is now, behind where its pace would have it
+  std::int64_t behind_ns = 0;  // for how long it was behind, in all (policy/pacer.h)
+  std::int64_t most_ns = 0;    // by how much at most
+  std::int64_t stood_ns = 0;   // for how long it was left standing
+};
+
 // How a run is going, for people who watch.
 struct RunProgress {
   struct Load {
@@ -25,6 +37,7 @@ struct RunProgress {
   std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0;
   std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, as in RunReport
   std::vector<Load> clients;
+  PaceReport pace;
 };
 
 struct RunOptions {
@@ -34,6 +47,9 @@ struct RunOptions {
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
   bool record = false;           // all DDS topics, into a bag in output_directory
   bool waits_for_cpu = true;     // where other runs have them all
+  double pace = 0;               // virtual seconds for each real one; 0: as fast as it can
+  bool starts_standing = false;  // until somebody lets it go on
+  ViewLink* view = nullptr;      // where people watch it, or nobody
   int host_cpus = 0;             // at most so many; 0: what there is
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
@@ -75,6 +91,7 @@ struct RunReport {
   std::int64_t awaited_ns = 0;  // and for how long they were waited for
   std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
+  PaceReport pace;
   std::vector<ClientReport> clients;
   std::vector<std::string> warnings;
 };

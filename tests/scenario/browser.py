@@ -38,7 +38,8 @@ class Browser:
             raise AssertionError(f"{path}: {error.read().decode()[:500]}") from None
 
     def open(self, path):
-        self.call("/url", {"url": f"file://{path}"})
+        """A file, or what has another address."""
+        self.call("/url", {"url": path if "://" in path else f"file://{path}"})
 
     def js(self, script, *args):
         return self.call("/execute/sync", {"script": script, "args": list(args)})

@@ -65,7 +65,7 @@
   // Wherever the reader is, unless a control takes the key for itself.
   document.addEventListener('keydown', event => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-    if (event.target.closest('select, textarea, .live')) return;
+    if (event.target.closest('select, textarea, .live, .run')) return;
     if (event.key === ' ' && event.target.closest('button, input[type=checkbox], summary, a')) return;
     if (!keys[event.key]) return;
     event.preventDefault();
@@ -74,7 +74,7 @@
 
   tcs.on(what => {
     if (what === 'time') showTime();
-    if (what === 'run') showRun();
+    if (what === 'run' || what === 'grown') showRun();
     if (what !== 'playing') return;
     toggle.classList.toggle('is-playing', tcs.isPlaying);
     toggle.title = tcs.isPlaying ? 'Pause (space)' : 'Play (space)';

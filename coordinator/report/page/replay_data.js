@@ -46,8 +46,7 @@ const tcs = (() => {
     return {...signal, data: null, values};
   }
 
-  function decode(element) {
-    const run = JSON.parse(element.textContent);
+  function decode(run) {
     const numbers = numbersIn(run.times);
     run.time = new Float64Array(run.count);
     for (let i = 0, us = 0; i < run.count; ++i) run.time[i] = (us += numbers.number()) / 1e6;
@@ -59,8 +58,9 @@ const tcs = (() => {
     return run;
   }
 
-  const runs = [...document.querySelectorAll('script.replay')].map(decode);
-  const state = {runs, run: runs[0] || null, time: 0, robot: 0, isPlaying: false, speed: 1};
+  const runs = [...document.querySelectorAll('script.replay')].map(element => decode(JSON.parse(element.textContent)));
+  const state = {runs, run: runs[0] || null, time: 0, robot: 0, isPlaying: false, isFollowing: false, speed: 1,
+                 isLive: document.querySelector('script.live') !== null};
 
   // --- Where things are ----------------------------------------------------------------------------
 
@@ -100,10 +100,14 @@ const tcs = (() => {
   const listeners = [];
   const tell = what => listeners.forEach(listener => listener(what));
 
-  function seek(time) {
+  function show(time) {
     if (!state.run) return;
     state.time = Math.min(state.run.end, Math.max(0, time));
     tell('time');
+  }
+  function seek(time) {
+    leave();
+    show(time);
   }
   // By moments of the replay.
   function step(count) {
@@ -122,11 +126,12 @@ const tcs = (() => {
     const passed = Math.min(0.25, (now - last) / 1000) * state.speed;
     last = now;
     if (state.time + passed >= state.run.end) pause();
-    seek(state.time + passed);
+    show(state.time + passed);
     if (state.isPlaying) requestAnimationFrame(onFrame);
   }
   function play() {
     if (!state.run || state.isPlaying) return;
+    leave();
     if (state.time >= state.run.end - 1e-9) state.time = 0;
     state.isPlaying = true;
     last = performance.now();
@@ -134,12 +139,93 @@ const tcs = (() => {
     tell('playing');
   }
   function pause() {
+    leave();
     if (!state.isPlaying) return;
     state.isPlaying = false;
     tell('playing');
   }
 
+  // --- A run that goes on ----------------------------------------------------------------------------
+
+  const joined = (a, b) => {
+    const all = new a.constructor(a.length + b.length);
+    all.set(a);
+    all.set(b, a.length);
+    return all;
+  };
+  // All moments of a track, also of one that stands still.
+  function spread({name, count, poses}, moments) {
+    if (count === moments || count === 0) return {name, count, poses};
+    const all = new Float32Array(moments * 7);
+    for (let i = 0; i < moments; ++i) all.set(poses.subarray(7 * Math.min(i, count - 1), 7 * Math.min(i, count - 1) + 7), 7 * i);
+    return {name, count: moments, poses: all};
+  }
+  function append(run, part) {
+    run.tracks = run.tracks.map((track, i) => {
+      const own = spread(track, run.count), more = spread(part.tracks[i], part.count);
+      return {name: own.name, count: own.count + more.count, poses: joined(own.poses, more.poses)};
+    });
+    for (const signal of part.signals) {
+      const known = run.signals.find(own => own.robot === signal.robot && own.panel === signal.panel && own.name === signal.name);
+      if (known) known.values.push(...signal.values);
+      else run.signals.push({...signal, first: signal.first + run.count});
+    }
+    run.time = joined(run.time, part.time);
+    run.count += part.count;
+    run.said.push(...part.said);
+  }
+
+  // What the server says is new, from which moment on. From the first on it takes the place of all.
+  function grow(news, from) {
+    const part = decode(news), {run} = state;
+    const isWhole = from.moments === 0;
+    const last = run.count ? run.time[run.count - 1] : 0;
+    if (isWhole) {
+      Object.assign(run, part);
+      run.tracks = run.tracks.map(track => spread(track, run.count));
+    } else {
+      append(run, part);
+      if (part.count) run.end = run.time[run.count - 1];
+    }
+    const isOther = JSON.stringify(run.robots) !== JSON.stringify(part.robots);
+    run.robots = part.robots;
+    if (state.time > run.end) state.time = run.end;
+    tell(isWhole || isOther ? 'run' : 'grown');
+    if (state.isFollowing) glide(part.count && run.end - last);
+  }
+
+  // To the newest moment, in about the time until the next one comes: so that it moves evenly.
+  let path = null, arrived = 0, gliding = 0;
+  function glide(more) {
+    const now = performance.now();
+    if (more || !path) {
+      path = {from: state.time, to: state.run.end, begin: now, length: Math.min(600, Math.max(60, 1.1 * (now - arrived)))};
+      arrived = now;
+      if (!gliding) gliding = requestAnimationFrame(onGlide);
+    }
+  }
+  function onGlide(now) {
+    gliding = 0;
+    if (!state.isFollowing || !path) return;
+    const share = Math.min(1, Math.max(0, (now - path.begin) / path.length));
+    show(path.from + (path.to - path.from) * share);
+    if (share < 1 && !gliding) gliding = requestAnimationFrame(onGlide);
+  }
+  function follow() {
+    pause();
+    state.isFollowing = true;
+    path = null;
+    tell('following');
+    show(state.run.end);
+  }
+  function leave() {
+    if (!state.isFollowing) return;
+    state.isFollowing = false;
+    tell('following');
+  }
+
   return Object.assign(state, {
+    grow, follow,
     numbersIn, momentAt, poseAt, seek, step, play, pause,
     on: listener => listeners.push(listener),
     toggle: () => state.isPlaying ? pause() : play(),
@@ -150,7 +236,7 @@ const tcs = (() => {
       state.run = runs[run];
       state.robot = Math.min(state.robot, Math.max(0, state.run.robots.length - 1));
       tell('run');
-      seek(state.time);
+      show(state.time);
     },
     // For who asks by name: where it is now.
     pose: name => poseAt(state.run, state.run.tracks.findIndex(track => track.name === name), state.time),

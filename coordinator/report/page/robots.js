@@ -111,7 +111,7 @@
   const motion = document.getElementById('motion');
   const motionLive = motion && goLive(motion);
   const chooser = motion && motion.querySelector('select');
-  let panels = [], plot = {x: 0, width: 1};
+  let panels = [], plot = {x: 0, width: 1, end: 1};
 
   // Roll, pitch and yaw in degrees, without jumps by a whole turn.
   function anglesOf(track) {
@@ -170,7 +170,7 @@
     if (!motionLive) return;
     const {run} = tcs, width = Math.max(280, Math.floor(motionLive.clientWidth)), narrow = width < 560;
     const left = 48, columns = width - left - 12;
-    plot = {x: left, width: columns};
+    plot = {x: left, width: columns, end: run.end};
     const scale = columns / run.end;
     let y = 0, content = '';
     // What is 0 all the time needs no picture.
@@ -234,12 +234,12 @@
   function moveCursor() {
     const cursor = motionLive && motionLive.querySelector('.cursor');
     if (!cursor) return;
-    cursor.setAttribute('transform', `translate(${(plot.x + plot.width * tcs.time / tcs.run.end).toFixed(1)} 0)`);
+    cursor.setAttribute('transform', `translate(${(plot.x + plot.width * Math.min(1, tcs.time / plot.end)).toFixed(1)} 0)`);
     const moment = tcs.momentAt(tcs.run, tcs.time), wide = motionLive.clientWidth >= 560;
     for (const panel of panels) {
       panel.readings.forEach((reading, i) => {
         const {first, values} = panel.lines[i];
-        reading.textContent = wide && panel.lines.length <= 6 && moment >= first ? digits(values[moment - first]) : '';
+        reading.textContent = wide && panel.lines.length <= 6 && moment >= first && moment - first < values.length ? digits(values[moment - first]) : '';
       });
     }
   }
@@ -247,7 +247,7 @@
   function seekTo(event) {
     const svg = motionLive.querySelector('svg');
     if (!svg) return;
-    tcs.seek((event.clientX - svg.getBoundingClientRect().left - plot.x) / plot.width * tcs.run.end);
+    tcs.seek((event.clientX - svg.getBoundingClientRect().left - plot.x) / plot.width * plot.end);
   }
   if (motionLive) {
     motionLive.addEventListener('pointerdown', event => {
@@ -274,7 +274,14 @@
   }
   if (chooser) chooser.addEventListener('change', () => tcs.chooseRobot(Number(chooser.value)));
 
+  // What takes longer is not drawn for each moment that comes.
+  let pending = 0;
+  function drawLater() {
+    if (!pending) pending = setTimeout(() => { pending = 0; drawPaths(); drawMotion(); }, 400);
+  }
+
   tcs.on(what => {
+    if (what === 'grown') drawLater();
     if (what === 'time') {
       moveDots();
       moveCursor();

@@ -5,14 +5,19 @@
   if (!list || !tcs.run) return;
   const filter = document.querySelector('#said select');
   const items = [];
-  let here = -1;
+  let here = -1, known = 0;
 
   function fill() {
-    const chosen = filter.value;
     items.length = 0;
     list.replaceChildren();
     here = -1;
-    for (const line of tcs.run.said) {
+    known = 0;
+    more();
+  }
+  // What has come since.
+  function more() {
+    const chosen = filter.value;
+    for (const line of tcs.run.said.slice(known)) {
       if (chosen && line.client !== chosen) continue;
       const item = document.createElement('li');
       const button = document.createElement('button');
@@ -29,6 +34,7 @@
       list.append(item);
       items.push({item, time: line.time});
     }
+    known = tcs.run.said.length;
     show();
   }
   function fillFilter() {
@@ -55,6 +61,12 @@
       fill();
     }
     if (what === 'time') show();
+    if (what === 'grown' && tcs.run.said.length > known) {
+      const chosen = filter.value;
+      fillFilter();
+      filter.value = chosen;
+      more();
+    }
   });
   fillFilter();
   fill();

@@ -101,6 +101,8 @@
     });
     for (const shape of fixtures) cornersOf(shape, meshes).forEach(corner => box.expandByPoint(corner));
     if (region) box.expandByPoint(new THREE.Vector3(region, region, region)).expandByPoint(new THREE.Vector3(-region, -region, -region));
+    // Of a run that goes on there is more to come, all around.
+    if (tcs.isLive && !box.isEmpty()) box.expandByScalar(Math.max(0.3, 0.05 * box.getSize(new THREE.Vector3()).length()));
     if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
     return box;
   }
@@ -224,6 +226,21 @@
     return line;
   };
 
+  // The moments that have come since. False if there is no room for them.
+  function lengthen(each) {
+    const {count, poses} = tcs.run.tracks[each.path];
+    if (count + 1 > each.room) return false;
+    for (; each.known < count; ++each.known) each.points.set(poses.subarray(7 * each.known, 7 * each.known + 3), 3 * each.known);
+    each.trail.geometry.attributes.position.array.set(each.points);
+    each.isStale = true;
+    return true;
+  }
+  // Whether all of a run that goes on is still where it is looked for.
+  function isInBounds() {
+    return tcs.run.tracks.every(({count, poses}, i) => count === 0 || i >= reaches.length ||
+        bounds.containsPoint(vector(poses.subarray(7 * count - 7, 7 * count - 4))));
+  }
+
   function build() {
     const {run} = tcs;
     readColours();
@@ -271,12 +288,12 @@
       nameLayer.append(label);
       for (const path of robot.paths) {
         const track = run.tracks[path];
-        if (track.count > 1) {
-          const trail = lineOf(track.count + 1, colours[tcs.colourOf(i)], 0.9);
-          const points = trail.geometry.attributes.position.array;
-          for (let k = 0; k < track.count; ++k) points.set(track.poses.subarray(7 * k, 7 * k + 3), 3 * k);
+        if (track.count > 1 || tcs.isLive) {
+          const room = tcs.isLive ? Math.max(2000, 2 * track.count) : track.count + 1;
+          const trail = lineOf(room, colours[tcs.colourOf(i)], 0.9);
           scene.add(trail);
-          trails.push({trail, path, points: points.slice(), end: 0});
+          trails.push({trail, path, room, points: new Float32Array(3 * room), known: 0, end: 0});
+          lengthen(trails[trails.length - 1]);
         }
         if (foot !== null) {
           const stalk = lineOf(2, colours.faint, 0.6);
@@ -301,7 +318,9 @@
     const next = tcs.momentAt(run, time) + 1;
     attribute.array.set(points.subarray(3 * end, 3 * end + 3), 3 * end);
     attribute.array.set(tcs.poseAt(run, path, time).slice(0, 3), 3 * next);
-    attribute.updateRange = {offset: 3 * Math.min(end, next), count: 3 * (Math.abs(end - next) + 1)};
+    attribute.updateRange = each.isStale ? {offset: 0, count: -1}
+        : {offset: 3 * Math.min(end, next), count: 3 * (Math.abs(end - next) + 1)};
+    each.isStale = false;
     attribute.needsUpdate = true;
     trail.geometry.setDrawRange(0, next + 1);
     each.end = next;
@@ -410,8 +429,10 @@
   // --- Looking -------------------------------------------------------------------------------------
 
   // As near as all of it is seen.
+  const fitted = new THREE.Box3();
   function fit() {
     const {min, max} = bounds;
+    fitted.copy(bounds);
     const tall = Math.tan(camera.fov * Math.PI / 360) * 0.94;
     const wide = tall * stage.clientWidth / Math.max(1, stage.clientHeight);
     camera.position.set(Math.cos(orbit.height) * Math.cos(orbit.turn), Math.cos(orbit.height) * Math.sin(orbit.turn),
@@ -435,17 +456,21 @@
     replay.querySelectorAll('[data-look]').forEach(button => button.setAttribute('aria-pressed', button.dataset.look === kind));
     drawSoon();
   }
+  let isAimed = false;  // by hand
   function turn(by, up) {
+    isAimed = true;
     orbit.turn -= by;
     orbit.height = Math.min(Math.PI / 2 - 1e-4, Math.max(-1.2, orbit.height + up));
     replay.querySelectorAll('[data-look]').forEach(button => button.setAttribute('aria-pressed', 'false'));
     drawSoon();
   }
   function zoom(factor) {
+    isAimed = true;
     orbit.radius = Math.min(1e4, Math.max(0.05, orbit.radius * factor));
     drawSoon();
   }
   function pan(dx, dy) {
+    isAimed = true;
     const scale = 2 * orbit.radius * Math.tan(camera.fov * Math.PI / 360) / stage.clientHeight;
     const right = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
     const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
@@ -530,7 +555,12 @@
     if (what === 'run') {
       fillRobots();
       build();
-      lookAt('free');
+      if (!tcs.isLive) lookAt('free');
+    }
+    if (what === 'grown' && !(isInBounds() && trails.every(lengthen))) build();
+    if ((what === 'grown' || (what === 'run' && tcs.isLive)) && !isAimed && !options.follow && !bounds.equals(fitted)) {
+      orbit.target.copy(bounds.getCenter(new THREE.Vector3()));
+      fit();
     }
     if (what === 'robot') set('robot').value = tcs.robot;
     drawSoon();

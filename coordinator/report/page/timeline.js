@@ -9,8 +9,7 @@
 
   // --- The data: see Encoded() in timeline.cc. Times are microseconds. ---------------------------
 
-  function decode(element) {
-    const run = JSON.parse(element.textContent);
+  function decode(run) {
     const {number, signed} = tcs.numbersIn(run.slices);
     // `density`: how much of a slice the row ran; 1 but for those that were made of several.
     const times = last => ({start: new Float64Array(run.count), end: new Float64Array(run.count),
@@ -36,8 +35,8 @@
     return run;
   }
 
-  const runs = [...figure.querySelectorAll('script.timeline')].map(decode);
-  const hasReal = runs.every(run => run.real);
+  const runs = [...figure.querySelectorAll('script.timeline')].map(element => decode(JSON.parse(element.textContent)));
+  let hasReal = runs.every(run => run.real);
   const view = {axis: hasReal ? 'real' : 'virtual', from: 0, to: 1};
   const last = axis => Math.max(...runs.map(run => run[axis].last), 1);
   view.to = last(view.axis);
@@ -306,6 +305,42 @@
     showMoment();
     output.textContent = shown;
     axisButton.textContent = view.axis === 'real' ? 'show over virtual time' : 'show over real time';
+  }
+
+  // --- A run that goes on --------------------------------------------------------------------------
+
+  const joined = (a, b) => {
+    const all = new a.constructor(a.length + b.length);
+    all.set(a);
+    all.set(b, a.length);
+    return all;
+  };
+  const joinedTimes = (a, b) => b && {start: joined(a.start, b.start), end: joined(a.end, b.end), density: joined(a.density, b.density), last: b.last};
+  // What the server says is new, from which slice on. From the first on it takes the place of all.
+  // A few times a second is often enough for so many.
+  const waiting = [];
+  tcs.growTimeline = (news, from) => {
+    if (waiting.push([news, from]) > 1) return;
+    setTimeout(() => {
+      const isAll = view.from <= 0 && view.to >= last(view.axis);
+      waiting.splice(0).forEach(each => take(...each));
+      if (isAll) [view.from, view.to] = [0, last(view.axis)];
+      draw();
+    }, 400);
+  };
+  function take(news, from) {
+    const part = decode(news), [run] = runs;
+    if (from.slices > 0) {
+      part.virtual = joinedTimes(run.virtual, part.virtual);
+      part.real = joinedTimes(run.real, part.real);
+      part.row = joined(run.row, part.row);
+      part.count += run.count;
+    }
+    // What was made of the slices before is made again.
+    Object.assign(run, part, {steps: null, order: null, longest: 0});
+    hasReal = Boolean(run.real);
+    if (!hasReal) view.axis = 'virtual';
+    axisButton.hidden = !hasReal;
   }
 
   // --- The view and its address ------------------------------------------------------------------

@@ -1,0 +1,39 @@
+#include "coordinator/cli/view_command.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/os/files.h"
+#include "coordinator/view/launch.h"
+
+namespace tcs {
+
+int ViewCommand(const std::string& folder, const std::string& where) {
+  ViewRequest request{.folder = AbsolutePathOf(folder)};
+  if (const std::string error = TakeViewAddress(where, &request); !error.empty()) {
+    return Fail("--at: " + error);
+  }
+  std::error_code error;
+  bool is_of_run = false;
+  // A run that goes on has no summary yet, one without bodies no scene.
+  for (const char* file : {"summary.json", "unfinished.json", "scene.json", "dispatches.csv"}) {
+    is_of_run |=
+        std::filesystem::is_regular_file(std::filesystem::path(request.folder) / file, error);
+  }
+  if (!is_of_run) {
+    return Fail("in the folder '" + folder +
+                "' is nothing that `tcsim run` writes; name the one that it was given as --out");
+  }
+  const std::string program = ViewProgram(), port = std::to_string(request.port);
+  execl(program.c_str(), program.c_str(), request.folder.c_str(), request.address.c_str(),
+        port.c_str(), nullptr);
+  return Fail("the server of the page, " + program + ", cannot be started: " + strerror(errno) +
+              "; build tcs again");
+}
+
+}  // namespace tcs

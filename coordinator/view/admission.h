@@ -1,0 +1,44 @@
+// Who may speak to the server of a live page: whoever was given its address, which has a secret in
+// it, and no page of another origin that a browser has open beside it.
+//
+// Pure, and thread-safe: nothing changes once it is made.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tcs {
+
+// Equal or not in the time that the length of `secret` takes, whatever is given.
+[[nodiscard]] bool EqualsSecret(std::string_view given, std::string_view secret);
+
+// 128 bits of the kernel's, in 32 hexadecimal digits. Empty if it has none to give.
+[[nodiscard]] std::string MakeToken();
+
+class Admission {
+ public:
+  // What is said of a request. Origin: empty if the browser, or another program, sends none.
+  struct Request {
+    std::string_view path;
+    std::string_view host, origin;
+  };
+
+  // It listens at `address`, a number, at that port.
+  Admission(std::string token, std::string address, int port);
+
+  // The part of the path behind the token; none where the request is refused.
+  [[nodiscard]] std::optional<std::string_view> Admit(const Request& request) const;
+
+  // "http://127.0.0.1:40000/0123.../".
+  [[nodiscard]] std::string url() const;
+
+ private:
+  bool IsOurHost(std::string_view host) const;
+  bool IsOurOrigin(std::string_view origin, std::string_view host) const;
+
+  std::string token_, address_, port_;
+  bool is_loopback_;
+};
+
+}  // namespace tcs

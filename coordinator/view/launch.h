@@ -1,0 +1,29 @@
+// Starts the server of a live page, a process of its own at ordinary priority: tcsim-view, beside
+// tcsim.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "coordinator/view/view_link.h"
+
+namespace tcs {
+
+struct ViewRequest {
+  std::string folder;                 // absolute; that the run writes to, and may not be there yet
+  std::string address = "127.0.0.1";  // at which it listens
+  int port = 0;                       // 0: any that is free
+};
+
+// "8080", "127.0.0.1", "192.0.2.7:8080", "[::1]:8080", "[::1]"; empty: the defaults. Empty on
+// success, else one sentence.
+[[nodiscard]] std::string TakeViewAddress(const std::string& text, ViewRequest* request);
+
+// Waits until the server can be reached. Null: `error` says in a sentence what is in the way. The
+// server ends with the thread that calls this; call it before there are threads.
+std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* error);
+
+// Where the server's program is.
+std::string ViewProgram();
+
+}  // namespace tcs
