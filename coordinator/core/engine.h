@@ -41,6 +41,7 @@
 #include "coordinator/calls/trapped_calls.h"
 #include "coordinator/calls/trapped_waits.h"
 #include "coordinator/core/computing_ahead.h"
+#include "coordinator/core/debugger_hold.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/world.h"
@@ -108,6 +109,7 @@ class Engine {
   void PollUnseen();
   bool UnmanagedRun() const;
   void WaitOutside();
+  void WaitForDebugger();
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
@@ -266,6 +268,7 @@ class Engine {
                                 scheduling_, signals_, objects_, dds_}};
 
   // What users are told.
+  DebuggerHold debugger_{run_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records()}};
 
