@@ -2,16 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "coordinator/trials/progress.h"
+
 namespace tcs {
 
 namespace {
 
 // Of being behind a pace.
 constexpr std::int64_t kWorthSayingNs = 50'000'000;
+constexpr double kWeight = 0.2;                     // of the last stretch among all before it
+constexpr std::int64_t kTellingNs = 1'000'000'000;  // of real time, for a first guess
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
+
+// From how fast it has gone lately: a planner that starts or ends makes another run of it.
+std::string LiveLine::ToGo(const RunProgress& progress) {
+  const std::int64_t passed_ns = progress.real_ns - last_real_ns_;
+  if (passed_ns > 0) {
+    const double rate = static_cast<double>(progress.virtual_ns - last_virtual_ns_) /
+                        static_cast<double>(passed_ns);
+    rate_ = rate_ < 0 ? rate : (1 - kWeight) * rate_ + kWeight * rate;
+  }
+  last_real_ns_ = progress.real_ns;
+  if (progress.real_ns < kTellingNs || rate_ <= 0) return {};
+  const double left_s = Seconds(std::max<std::int64_t>(0, duration_ns_ - progress.virtual_ns));
+  return "  about " + AsTime(left_s / rate_) + " to go";
+}
 
 std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   const double passed_ns = static_cast<double>(progress.virtual_ns - last_virtual_ns_);
@@ -26,6 +46,8 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   } else if (progress.pace.late_ns > kWorthSayingNs) {
     text += fmt::format("  {:.1f} s behind pace {:g}", Seconds(progress.pace.late_ns),
                         progress.pace.pace);
+  } else {
+    text += ToGo(progress);
   }
   for (const RunProgress::Load& load : progress.clients) {
     std::int64_t& last_ns = last_charged_ns_[load.client];

@@ -21,7 +21,12 @@ class LiveLine {
   void Clear() { line_.Clear(); }
 
  private:
+  // "  about 1:20 to go", in real time; empty while nothing can be said.
+  std::string ToGo(const RunProgress& progress);
+
   std::int64_t duration_ns_;
+  std::int64_t last_real_ns_ = 0;
+  double rate_ = -1;  // virtual time over real time, of late; below 0: not known yet
   std::int64_t last_virtual_ns_ = 0;
   std::map<std::string, std::int64_t> last_charged_ns_;
   TerminalLine line_;

@@ -8,9 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/cli/check_command.h"
+#include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/fit_command.h"
+#include "coordinator/cli/manual/generate.h"
+#include "coordinator/cli/manual/help_text.h"
+#include "coordinator/cli/new_command.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/report_command.h"
@@ -18,6 +23,7 @@
 #include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
+#include "coordinator/cli/version.h"
 #include "coordinator/cli/view_command.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/files.h"
@@ -34,7 +40,7 @@ std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> commands;
   const CLI::App* used = nullptr;
   for (const CLI::App* sub : app.get_subcommands(nullptr)) {
-    commands.push_back(sub->get_name());
+    if (!sub->get_group().empty()) commands.push_back(sub->get_name());
     if (sub->get_name() == argv[1]) used = sub;
   }
   if (used == nullptr) {
@@ -77,18 +83,23 @@ int Parse(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Runs robot programs in a simulation in which computing takes time"};
+  CLI::App app{"run robot programs in a simulation in which computing takes time", "tcsim"};
+  app.formatter(tcs::HelpFormatter());  // before the commands, which inherit it
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.set_help_flag("-h,--help", "print this help, and exit");
+  app.set_version_flag("--version", std::string("tcsim ") + tcs::kVersion,
+                       "print the version, and exit");
   tcs::RunOptions options;
   options.user_preload = tcs::TakeUserPreload(argv);
 
   tcs::RunArguments arguments;
   std::uint64_t seed = 0;
   CLI::App* run = app.add_subcommand("run", "run a scenario");
-  run->add_option("scenario", arguments.scenario, "the YAML file (docs/SCENARIO.md)")->required();
-  run->add_option("--duration", arguments.duration, "of virtual time, such as 20s");
-  run->add_option("--drift", arguments.drift, "how far progress may drift apart, such as 1ms");
+  run->add_option("scenario", arguments.scenario, "FILE: the YAML file (docs/SCENARIO.md)")
+      ->capture_default_str();
+  run->add_option("--duration", arguments.duration, "TIME: of virtual time, such as 20s");
+  run->add_option("--drift", arguments.drift,
+                  "TIME: how far progress may drift apart, such as 1ms");
   CLI::Option* seeded = run->add_option("--seed", seed, "what ${seed} stands for");
   run->add_option("--overlay", arguments.overlays,
                   "FILE: a piece of a scenario whose values replace the scenario's, such as what "
@@ -97,7 +108,7 @@ int main(int argc, char** argv) {
   run->add_option("--set", arguments.set,
                   "KEY=VALUE: what the file would say, such as dynamics.engine=ode; repeatable")
       ->allow_extra_args(false);
-  run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
+  run->add_option("--out", arguments.out, "FOLDER: for logs, body states, trace and summary")
       ->capture_default_str();
   run->add_flag("--check", arguments.check, "only load the scenario, and say whether it is sound");
   bool record = false;
@@ -118,6 +129,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1e-3, 1e3));
   run->add_flag("--pause", arguments.pauses,
                 "with --view: stands at the start until it is let go on there");
+  run->add_option("--gdb", arguments.debugged,
+                  "ROBOT/CLIENT: opens that client in gdb, before it begins; virtual time stands "
+                  "still while gdb has stopped it");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
   run->add_option("--sync", sync,
@@ -127,6 +141,14 @@ int main(int argc, char** argv) {
 
   tcs::TrialsArguments trials_arguments;
   const CLI::App* trials = tcs::AddTrials(&app, &trials_arguments);
+
+  tcs::NewArguments new_arguments;
+  const CLI::App* make_new = tcs::AddNew(&app, &new_arguments);
+  tcs::CheckArguments check_arguments;
+  const CLI::App* check = tcs::AddCheck(&app, &check_arguments);
+  std::string generated;
+  CLI::App* generate = app.add_subcommand("generate")->group("");  // for the build
+  generate->add_option("folder", generated)->required();
 
   double speed = 1.0;
   int cores = 1;
@@ -145,18 +167,19 @@ int main(int argc, char** argv) {
       "the C library reads inside itself, see the host's time");
   std::string uptime;
   exec->add_option("--uptime", uptime,
-                   "CLOCK_MONOTONIC when the program starts; 1000s unless told");
+                   "TIME: CLOCK_MONOTONIC when the program starts; 1000s unless told");
   std::string date;
-  exec->add_option("--date", date,
-                   "CLOCK_REALTIME when the program starts, as 2005-03-18, 0:00 UTC; now unless "
-                   "told, under --accounting fixed 2024-01-01");
+  exec->add_option(
+      "--date", date,
+      "DATE: CLOCK_REALTIME when the program starts, as 2005-03-18, 0:00 UTC; now unless "
+      "told, under --accounting fixed 2024-01-01");
   std::string call_cost;
   exec->add_option("--call-cost", call_cost,
-                   "of one call under --accounting fixed; 1us unless told");
+                   "TIME: of one call under --accounting fixed; 1us unless told");
   std::string allocation_cost;
   exec->add_option(
       "--allocation-cost", allocation_cost,
-      "of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
+      "TIME: of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
   std::string dds = "endpoints";
   exec->add_option(
           "--dds", dds,
@@ -168,8 +191,9 @@ int main(int argc, char** argv) {
 
   tcs::ReportArguments report_arguments;
   CLI::App* report = app.add_subcommand("report", "make one HTML page of result folders");
-  report->add_option("folders", report_arguments.folders, "what run or trials wrote")->required();
-  report->add_option("--out", report_arguments.out, "the page")->capture_default_str();
+  report->add_option("folders", report_arguments.folders, "FOLDER: what run or trials wrote")
+      ->required();
+  report->add_option("--out", report_arguments.out, "FILE: the page")->capture_default_str();
   report
       ->add_option("--figures", report_arguments.figures,
                    "svg or png: each figure as a file next to the page, too")
@@ -178,12 +202,12 @@ int main(int argc, char** argv) {
                      "A,B: whose distance is meant; the first two unless told");
   report
       ->add_option("--mark", report_arguments.marks,
-                   "a distance in metres that figures mark and tables count below; may be repeated")
+                   "METRES: a distance that figures mark and tables count below; repeatable")
       ->expected(1)
       ->take_all()
       ->check(CLI::NonNegativeNumber);
   report->add_option("--title", report_arguments.title,
-                     "of the page; the scenario's name unless told");
+                     "TITLE: of the page; the scenario's name unless told");
 
   std::string viewed, view_where;
   CLI::App* show =
@@ -194,16 +218,16 @@ int main(int argc, char** argv) {
 
   tcs::TopicsArguments topics_arguments;
   CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
-  topics->add_option("folder", topics_arguments.folder, "what run wrote")->required();
+  topics->add_option("folder", topics_arguments.folder, "FOLDER: what run wrote")->required();
   topics->add_flag("--qos", topics_arguments.with_qos,
                    "the quality of service of each endpoint, too");
 
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
       "fit", "the set costs with which --accounting fixed charges what a run has measured");
-  fit->add_option("folder", fit_arguments.folder, "what run --for-fit wrote")->required();
+  fit->add_option("folder", fit_arguments.folder, "FOLDER: what run --for-fit wrote")->required();
   fit->add_option("--out", fit_arguments.out,
-                  "a file for the costs, as run --overlay takes it; printed unless told");
+                  "FILE: for the costs, as run --overlay takes it; printed unless told");
 
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
@@ -226,7 +250,11 @@ int main(int argc, char** argv) {
                     "cost per call, so that two runs are identical")
         ->check(CLI::IsMember({"measured", "fixed"}));
   }
+  tcs::AddExamples(&app);
   if (const int status = Parse(app, argc, argv); status >= 0) return status;
+  if (generate->parsed()) return tcs::Generate(tcs::Describe(app), generated);
+  if (make_new->parsed()) return tcs::FlushStdout(tcs::NewCommand(new_arguments));
+  if (check->parsed()) return tcs::FlushStdout(tcs::CheckCommand(check_arguments));
 
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
@@ -273,6 +301,12 @@ int main(int argc, char** argv) {
   }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
+  if (!arguments.debugged.empty()) {
+    return tcs::RunWithGdb([&](const tcs::GdbSession& gdb) {
+      return tcs::RunGuarded(
+          [&] { return tcs::FlushStdout(tcs::RunCommand(arguments, options, gdb)); });
+    });
+  }
   return tcs::RunGuarded([&] {
     return exec->parsed()
                ? tcs::ExecCommand({command, speed, cores, patch_vdso, call_cost, allocation_cost,

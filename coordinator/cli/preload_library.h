@@ -1,15 +1,22 @@
+// Where the parts of tcs are that belong to this tcsim. They are found from its own place, so that
+// an installed tree can be moved: ../LIBDIR/tcs and ../share/tcs beside the folder of the program
+// (CMake's GNUInstallDirs); in a build tree ../lib and ../share/tcs.
 #pragma once
 
 #include <string>
 
 namespace tcs {
 
-// The shim that belongs to this tcsim: ../lib/libtcs_preload.so beside its own folder.
+// The shim.
 std::string PreloadLibrary();
 
-// The library that knows Cyclone DDS: the shim loads it into programs that use that.
+// The library that knows Cyclone DDS: the shim loads it into programs that use that. It has to be
+// beside the shim.
 std::string DdsLibrary();
 // The library that charges allocations under fixed accounting, beside the shim.
 std::string AllocationLibrary();
+
+// The folder of templates, the scenario's schema and the examples.
+std::string DataFolder();
 
 }  // namespace tcs

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
+#include "coordinator/cli/check_command.h"
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
@@ -13,6 +16,7 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/load.h"
+#include "coordinator/scenario/nearest.h"
 #include "coordinator/view/view_link.h"
 
 namespace tcs {
@@ -40,18 +44,6 @@ RunReport UntilNow(const RunProgress& progress) {
   return report;
 }
 
-int SaySound(const Scenario& scenario) {
-  for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
-  std::size_t clients = 0;
-  for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
-  const std::size_t bodies = scenario.world.has_value() ? scenario.world->bodies.size() : 0;
-  const std::size_t models = scenario.world.has_value() ? scenario.world->models.size() : 0;
-  Print("{} is sound: robots {}, clients {}, bodies {}{}\n", Visible(scenario.path),
-        scenario.robots.size(), clients, bodies,
-        models > 0 ? fmt::format(", models {}", models) : "");
-  return kSucceeded;
-}
-
 // For `tcsim trials`, which made the file: the virtual time, as one number at its beginning.
 void SayHowFar(int fd, const RunProgress& progress) {
   const ssize_t n = pwrite(fd, &progress.virtual_ns, sizeof progress.virtual_ns, 0);
@@ -72,9 +64,26 @@ std::string TakePace(const RunArguments& arguments, const Scenario& scenario, Ru
   return {};
 }
 
+// Which client is debugged. The sentence, if there is no such.
+std::string TakeDebugged(const std::string& name, const Scenario& scenario, const GdbSession& gdb,
+                         RunOptions* options) {
+  if (name.empty()) return {};
+  std::vector<std::string> known;
+  for (const RobotSpec& robot : scenario.robots) {
+    for (const ClientSpec& client : robot.clients) known.push_back(client.name);
+  }
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    return "--gdb: there is no client '" + name + "'; " + Suggest(name, known, "clients");
+  }
+  options->debugged = name;
+  options->on_debuggee = gdb.begin;
+  options->is_debugger_gone = gdb.has_ended;
+  return {};
+}
+
 }  // namespace
 
-int RunCommand(const RunArguments& arguments, RunOptions options) {
+int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSession& gdb) {
   ScenarioOverrides overrides;
   overrides.overlays = arguments.overlays;
   overrides.set = arguments.set;
@@ -89,8 +98,10 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
   if (const auto* error = std::get_if<LoadError>(&loaded)) return Fail(error->message);
   const Scenario& scenario = std::get<Scenario>(loaded);
   if (arguments.check) return SaySound(scenario);
-  if (const std::string error = TakePace(arguments, scenario, &options); !error.empty()) {
-    return Fail(error);
+  for (const std::string& error :
+       {TakePace(arguments, scenario, &options),
+        TakeDebugged(arguments.debugged, scenario, gdb, &options)}) {
+    if (!error.empty()) return Fail(error);
   }
   if (const std::string error = MakeFolder(arguments.out); !error.empty()) return Fail(error);
   const FolderLock lock(arguments.out);
@@ -108,7 +119,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options) {
 
   LiveLine line(scenario.duration.ns());
   const int progress_fd = arguments.progress_fd;
-  const bool is_seen = progress_fd < 0 && TerminalLine::IsSeen();
+  const bool is_seen = progress_fd < 0 && arguments.debugged.empty() && TerminalLine::IsSeen();
   if (progress_fd >= 0) fcntl(progress_fd, F_SETFD, FD_CLOEXEC);
   const std::string unfinished = overrides.result_directory + "/unfinished.json";
   std::int64_t next_note_ns = 0;

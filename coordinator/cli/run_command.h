@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/cli/gdb_session.h"
 #include "coordinator/tasks/coordinator.h"
 
 namespace tcs {
 
 struct RunArguments {
-  std::string scenario, duration, drift, out = "out";
+  std::string scenario = "scenario.yaml", duration, drift, out = "out";
+  std::string debugged;  // ROBOT/CLIENT, for gdb; empty: none
   std::optional<std::uint64_t> seed;
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
@@ -21,7 +23,8 @@ struct RunArguments {
   int progress_fd = -1;               // a file that gets the virtual time; -1: none
 };
 
-// The exit status. `options` brings accounting, synchronisation and the shim.
-int RunCommand(const RunArguments& arguments, RunOptions options);
+// The exit status. `options` brings accounting, synchronisation and the shim; `gdb` is for the
+// client that is debugged, if one is.
+int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSession& gdb = {});
 
 }  // namespace tcs

@@ -10,7 +10,7 @@
 namespace tcs {
 
 struct TrialsArguments {
-  std::string scenario, out = "trials", name, vary;
+  std::string scenario = "scenario.yaml", out = "trials", name, vary;
   int trials = 0;
   int jobs = 0;  // 0: as many as there is room for
   std::optional<std::uint64_t> first_seed;

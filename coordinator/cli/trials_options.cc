@@ -10,13 +10,13 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   TrialOptions& options = arguments->options;
   CLI::App* trials =
       app->add_subcommand("trials", "run a scenario with many seeds, and again where it ended");
-  trials->add_option("scenario", arguments->scenario, "the YAML file (docs/SCENARIO.md)")
-      ->required();
+  trials->add_option("scenario", arguments->scenario, "FILE: the YAML file (docs/SCENARIO.md)")
+      ->capture_default_str();
   trials->add_option("--trials", arguments->trials, "how many, each with a seed of its own")
       ->required()
       ->check(CLI::Range(1, kMost));
   trials->add_option("--first-seed", arguments->first_seed, "the scenario's unless told");
-  trials->add_option("--out", arguments->out, "folder for all of them (docs/TRIALS.md)")
+  trials->add_option("--out", arguments->out, "FOLDER: for all of them (docs/TRIALS.md)")
       ->capture_default_str();
   trials
       ->add_option("--jobs", arguments->jobs,
@@ -30,8 +30,9 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_flag("--restart", arguments->restart, "throw away the trials that the folder has");
   trials->add_flag("--host-network", arguments->host_network,
                    "one at a time, in this machine's network, not each in one of its own");
-  trials->add_option("--duration", options.duration, "of virtual time, such as 20s");
-  trials->add_option("--drift", options.drift, "how far progress may drift apart, such as 1ms");
+  trials->add_option("--duration", options.duration, "TIME: of virtual time, such as 20s");
+  trials->add_option("--drift", options.drift,
+                     "TIME: how far progress may drift apart, such as 1ms");
   trials
       ->add_option("--overlay", arguments->overlays,
                    "FILE: a piece of a scenario whose values replace the scenario's")

@@ -271,6 +271,10 @@ void Engine::AwaitStop(Task& task) {
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;
     if (run_.gates_only) host_cpu_.detector().Arm();
+    if (debugger_.Holds()) {
+      Beat();
+      continue;
+    }
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
     if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
       unmanaged_.LowerThoseThatCompute(claim_.cpu, host_cpu_.detector().pid());

@@ -21,6 +21,7 @@ namespace tcs {
 namespace {
 
 constexpr std::int64_t kUnseenPollNs = 1'000'000;
+constexpr std::int64_t kDebuggerPollNs = 10'000'000;
 constexpr std::int64_t kOutsidePollNs = 200'000'000;
 constexpr std::int64_t kMostHeldNs = 10'000'000'000;  // of the world, at one instant
 constexpr int kDeathTurns = 25;                       // of kOutsidePollNs
@@ -274,6 +275,12 @@ void Engine::WaitOutside() {
   PollEvents(unseen ? kUnseenPollNs : kOutsidePollNs, {run_.latest_ns});
 }
 
+// Nobody runs: what comes in meanwhile happens now.
+void Engine::WaitForDebugger() {
+  Beat();
+  PollEvents(kDebuggerPollNs, {run_.latest_ns});
+}
+
 // Before idle time is jumped over: is something from outside already there?
 bool Engine::HasJumpedOver() {
   const Reactor::Found found = PollEvents(0, {run_.latest_ns});
@@ -348,6 +355,10 @@ bool Engine::AwaitOutside() {
 bool Engine::Step() {
   deaths_.DropLinks();
   if (run_.table.living() == 0 && !launches_.AreAhead()) return AwaitDeaths();
+  if (debugger_.Holds()) {
+    WaitForDebugger();
+    return true;
+  }
   PollUnseen();
   LookAround();
   dds_.TakeOwnMessages();

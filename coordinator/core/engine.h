@@ -42,6 +42,7 @@
 #include "coordinator/calls/trapped_calls.h"
 #include "coordinator/calls/trapped_waits.h"
 #include "coordinator/core/computing_ahead.h"
+#include "coordinator/core/debugger_hold.h"
 #include "coordinator/core/pacing.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
@@ -113,6 +114,7 @@ class Engine {
   void PollUnseen();
   bool UnmanagedRun() const;
   void WaitOutside();
+  void WaitForDebugger();
   bool AwaitOutside();
   std::int64_t FurthestNs() const;
   void LookAround();
@@ -285,6 +287,7 @@ class Engine {
                                 scheduling_, signals_, objects_, dds_, local_sockets_}};
 
   // What users are told.
+  DebuggerHold debugger_{run_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records(), pacing_}};
 

@@ -127,7 +127,8 @@ bool Engine::BlockedInKernel() {
   // meanwhile, to its gate or to another call. Then it has said so.
   if (state == 'S' && reactor_.HasMore()) return false;
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
-  const bool stopped = state == 'T' || state == 't';  // until a signal, or its tracer
+  if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
+  const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer
   if (!stopped && (state != 'S' || task.slot < 0)) {
     if (state == 'D') held_.LendLevel();
     return false;

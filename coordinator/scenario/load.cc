@@ -52,41 +52,50 @@ std::string FolderOf(const std::string& path) {
   return (error ? absolute.parent_path() : folder).string();
 }
 
-Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
+void LoadHead(const YamlMap& top, Scenario* scenario) {
+  if (const YamlValue* name = top.Find("name")) {
+    scenario->name = name->AsText();
+    if (scenario->name.empty()) name->Fail("is empty; name the scenario or leave the key out");
+  }
+  scenario->duration = top.Require("duration", "duration: 20s").AsPositiveDuration();
+  if (const YamlValue* drift = top.Find("drift")) {
+    scenario->drift_bound = drift->AsPositiveDuration();
+  }
+  if (const YamlValue* seed = top.Find("seed")) scenario->seed = seed->AsUnsigned64();
+  if (const YamlValue* period = top.Find("csv_period")) {
+    scenario->csv_period = period->AsPositiveDuration();
+  }
+}
+
+// `mistakes`: where they are all noted; null: the first is thrown.
+Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mistakes* mistakes) {
   std::vector<Setting> settings;
   for (const std::string& overlay : overrides.overlays) {
     Append(ReadOverlay(overlay), &settings);
   }
   Append(SettingsOfOptions(overrides.set), &settings);
-  const YamlMap top = ParseYaml(path, ReadFile(path, "a scenario file"), settings).AsMap();
+  const YamlMap top =
+      ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "models",
                  "robots", "network", "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
   scenario.name = fs::path(path).stem().string();
-  if (const YamlValue* name = top.Find("name")) {
-    scenario.name = name->AsText();
-    if (scenario.name.empty()) name->Fail("is empty; name the scenario or leave the key out");
-  }
-  scenario.duration = top.Require("duration", "duration: 20s").AsPositiveDuration();
-  if (const YamlValue* drift = top.Find("drift")) {
-    scenario.drift_bound = drift->AsPositiveDuration();
-  }
-  if (const YamlValue* seed = top.Find("seed")) scenario.seed = seed->AsUnsigned64();
-  if (const YamlValue* period = top.Find("csv_period")) {
-    scenario.csv_period = period->AsPositiveDuration();
-  }
+  top.place().Try([&] { LoadHead(top, &scenario); });
   scenario.duration = overrides.duration.value_or(scenario.duration);
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
   const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
-  LoadWorld(top, variables, &scenario);
-  LoadRobots(top, variables, &scenario);
-  LoadNetwork(top, &scenario);
-  LoadChannels(top, variables, &scenario);
-  CheckDdsTransports(top, &scenario);
+  const YamlValue& all = top.place();
+  const bool has_world = all.Try([&] { LoadWorld(top, variables, &scenario); });
+  // What is on bodies that nobody has read cannot be right.
+  if (!has_world) return scenario;
+  all.Try([&] { LoadRobots(top, variables, &scenario); });
+  all.Try([&] { LoadNetwork(top, &scenario); });
+  all.Try([&] { LoadChannels(top, variables, &scenario); });
+  if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   return scenario;
 }
 
@@ -94,10 +103,24 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides) {
 
 LoadResult<Scenario> LoadScenario(const std::string& path, const ScenarioOverrides& overrides) {
   try {
-    return Load(path, overrides);
+    return Load(path, overrides, nullptr);
   } catch (const ScenarioMistake& mistake) {
     return LoadError{mistake.message};
   }
+}
+
+std::variant<Scenario, std::vector<LoadError>> CheckScenario(const std::string& path,
+                                                             const ScenarioOverrides& overrides) {
+  Mistakes mistakes;
+  std::vector<LoadError> errors;
+  try {
+    Scenario scenario = Load(path, overrides, &mistakes);
+    if (mistakes.empty()) return scenario;
+  } catch (const ScenarioMistake& mistake) {
+    mistakes.Add(mistake);
+  }
+  for (const std::string& sentence : mistakes.Sentences(path)) errors.push_back({sentence});
+  return errors;
 }
 
 LoadResult<std::vector<std::string>> LoadOverlay(const std::string& path) {

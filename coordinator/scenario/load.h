@@ -33,6 +33,10 @@ struct ScenarioOverrides {
 [[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
                                                 const ScenarioOverrides& overrides = {});
 
+// The same, with all mistakes that can be told apart, in the order of the file; not empty.
+[[nodiscard]] std::variant<Scenario, std::vector<LoadError>> CheckScenario(
+    const std::string& path, const ScenarioOverrides& overrides = {});
+
 // What the overlay `path` says, as --set would: a "KEY=VALUE" for each value.
 [[nodiscard]] LoadResult<std::vector<std::string>> LoadOverlay(const std::string& path);
 

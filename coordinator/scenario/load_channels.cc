@@ -222,7 +222,7 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
   const YamlValue* channels = top.Find("channels");
   if (channels == nullptr) return;
   const YamlMap channel_map = channels->AsMap();
-  for (const YamlMap::Entry& entry : channel_map.entries()) {
+  channel_map.ForEach([&](const YamlMap::Entry& entry) {
     CheckName(entry);
     if (!scenario->world) {
       entry.value.Fail("needs bodies, but the scenario has none; add dynamics and bodies");
@@ -242,7 +242,7 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
     } else {
       scenario->commands.push_back(LoadCommands(entry, *commands, type, scenario, &ends));
     }
-  }
+  });
 }
 
 }  // namespace tcs

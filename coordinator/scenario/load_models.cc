@@ -343,7 +343,7 @@ void LoadModels(const YamlValue& value, const Variables& variables, Scenario* sc
   const YamlMap map = value.AsMap();
   if (map.entries().empty()) value.Fail("is empty; describe at least one model");
   Models models(variables, scenario);
-  for (const YamlMap::Entry& entry : map.entries()) models.Add(entry);
+  map.ForEach([&](const YamlMap::Entry& entry) { models.Add(entry); });
   // What is static needs no steps.
   if (engine.has_integrators && !scenario->world->models.empty() &&
       scenario->world->integrator.kind != IntegratorKind::kRungeKutta3) {

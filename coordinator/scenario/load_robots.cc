@@ -153,9 +153,9 @@ RobotSpec LoadRobot(const YamlMap::Entry& entry, const Variables& variables,
       map.Require("clients", "clients: {controller: {command: [./controller]}}");
   const YamlMap client_map = clients.AsMap();
   if (client_map.entries().empty()) clients.Fail("is empty; a robot needs at least one client");
-  for (const YamlMap::Entry& client : client_map.entries()) {
+  client_map.ForEach([&](const YamlMap::Entry& client) {
     robot.clients.push_back(LoadClient(client, robot.name, robot.scheduler, variables, scenario));
-  }
+  });
   return robot;
 }
 
@@ -166,10 +166,10 @@ void LoadRobots(const YamlMap& top, const Variables& variables, Scenario* scenar
       top.Require("robots", "robots: {predator: {clients: {controller: {command: [./fly]}}}}");
   const YamlMap map = robots.AsMap();
   if (map.entries().empty()) robots.Fail("is empty; a scenario needs at least one robot");
-  for (const YamlMap::Entry& entry : map.entries()) {
+  map.ForEach([&](const YamlMap::Entry& entry) {
     scenario->robots.push_back(LoadRobot(entry, variables, *scenario));
-  }
-  LoadOrder(map, scenario);
+  });
+  if (!robots.HasMistakes()) LoadOrder(map, scenario);
 }
 
 }  // namespace tcs

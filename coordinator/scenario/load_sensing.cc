@@ -79,28 +79,33 @@ std::vector<SensorField> LoadSensorFields(const YamlValue& value) {
 void LoadFieldErrors(const YamlMap& map, std::span<const NamedError> fields) {
   std::vector<std::string> names;
   for (const NamedError& field : fields) names.push_back(field.name);
-  const auto of = [&](const YamlMap::Entry& entry) -> const NamedError& {
-    return fields[static_cast<std::size_t>(std::find(names.begin(), names.end(), entry.key) -
-                                           names.begin())];
+  // Null for a key that is unknown, where that was only noted.
+  const auto of = [&](const YamlMap::Entry& entry) -> const NamedError* {
+    const auto found = std::find(names.begin(), names.end(), entry.key);
+    return found == names.end() ? nullptr
+                                : &fields[static_cast<std::size_t>(found - names.begin())];
   };
   if (const YamlValue* value = map.Find("noise")) {
     const YamlMap noise = value->AsMap();
     noise.AllowOnly(names);
     for (const YamlMap::Entry& entry : noise.entries()) {
-      of(entry).error->noise = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+      if (const NamedError* field = of(entry)) {
+        field->error->noise = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+      }
     }
   }
   if (const YamlValue* value = map.Find("bias")) {
     const YamlMap bias = value->AsMap();
     bias.AllowOnly(names);
     for (const YamlMap::Entry& entry : bias.entries()) {
-      const NamedError& field = of(entry);
-      if (entry.value.IsList() && field.is_number) {
-        field.error->bias[0] = entry.value.AsNumbers(1, "[0.02]")[0];
+      const NamedError* field = of(entry);
+      if (field == nullptr) continue;
+      if (entry.value.IsList() && field->is_number) {
+        field->error->bias[0] = entry.value.AsNumbers(1, "[0.02]")[0];
       } else if (entry.value.IsList()) {
-        field.error->bias = entry.value.AsVector3();
+        field->error->bias = entry.value.AsVector3();
       } else {
-        field.error->bias_deviation = entry.value.AsNonNegativeNumber(" (a standard deviation)");
+        field->error->bias_deviation = entry.value.AsNonNegativeNumber(" (a standard deviation)");
       }
     }
   }

@@ -163,7 +163,7 @@ void LoadTogether(const YamlValue& value, Scenario* scenario) {
 void LoadBodies(const YamlValue& value, WorldSpec* world) {
   const YamlMap map = value.AsMap();
   if (map.entries().empty()) value.Fail("is empty; describe at least one body");
-  for (const YamlMap::Entry& entry : map.entries()) world->bodies.push_back(LoadBody(entry));
+  map.ForEach([&](const YamlMap::Entry& entry) { world->bodies.push_back(LoadBody(entry)); });
 }
 
 }  // namespace
@@ -192,11 +192,11 @@ void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenari
   map.AllowOnly(
       {"engine", "integrator", "accuracy", "step", "gravity", "region", "wind", "together"});
   WorldSpec world;
-  world.integrator = LoadIntegrator(map);
+  dynamics->Try([&] { world.integrator = LoadIntegrator(map); });
   if (const YamlValue* gravity = map.Find("gravity")) world.gravity_mps2 = gravity->AsVector3();
   if (const YamlValue* region = map.Find("region")) {
     world.has_region = true;
-    world.region = LoadRegion(*region);
+    region->Try([&] { world.region = LoadRegion(*region); });
   }
 
   if (const YamlValue* wind = map.Find("wind")) world.wind = LoadWind(*wind, scenario->seed);
@@ -204,7 +204,7 @@ void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenari
   if (bodies == nullptr && models == nullptr) {
     dynamics->Fail("has no bodies to move; add the key bodies or models, or remove dynamics");
   }
-  if (bodies != nullptr) LoadBodies(*bodies, &world);
+  if (bodies != nullptr) bodies->Try([&] { LoadBodies(*bodies, &world); });
   const auto feels_air = [](const BodySpec& body) { return body.drag != DragSpec{}; };
   if (const YamlValue* wind = map.Find("wind");
       wind != nullptr && std::none_of(world.bodies.begin(), world.bodies.end(), feels_air)) {
@@ -213,12 +213,13 @@ void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenari
         " moves no body, for none has drag; give one a drag, like drag: {linear: 0.3}");
   }
   scenario->world = std::move(world);
-  if (models != nullptr) LoadModels(*models, variables, scenario);
-  if (scenario->world->bodies.empty() && scenario->world->models.empty()) {
+  if (models != nullptr) models->Try([&] { LoadModels(*models, variables, scenario); });
+  const bool has_none = scenario->world->bodies.empty() && scenario->world->models.empty();
+  if (has_none && !dynamics->HasMistakes()) {
     models->Fail("has nothing that moves; give one of them mass, or remove dynamics");
   }
   if (const YamlValue* together = map.Find("together")) {
-    LoadTogether(*together, scenario);
+    together->Try([&] { LoadTogether(*together, scenario); });
   }
 }
 

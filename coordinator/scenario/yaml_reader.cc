@@ -13,7 +13,6 @@
 
 #include "coordinator/scenario/duration.h"
 #include "coordinator/scenario/nearest.h"
-#include "coordinator/scenario/set_option.h"
 
 namespace tcs {
 namespace {
@@ -99,22 +98,26 @@ std::string Readable(std::string_view sentence) {
 }  // namespace
 
 YamlValue::YamlValue(Place place, std::string name, YAML::Node node,
-                     std::shared_ptr<const SetOptions> set)
+                     std::shared_ptr<const YamlReading> reading)
     : place_(std::move(place)),
       name_(std::move(name)),
       node_(std::move(node)),
-      set_(std::move(set)) {}
+      reading_(std::move(reading)) {}
 
 void YamlValue::Fail(std::string_view sentence) const {
   FailPlainly(Described() + " " + std::string(sentence));
 }
 
 void YamlValue::FailPlainly(std::string_view sentence) const {
-  throw ScenarioMistake{place_.Prefix() + Readable(sentence)};
+  const Mistakes* mistakes = reading_->mistakes;
+  if (mistakes != nullptr && node_.IsScalar() && mistakes->IsOfMissing(node_.Scalar())) {
+    throw ScenarioMistake{};
+  }
+  throw ScenarioMistake{place_.Prefix() + Readable(sentence), place_};
 }
 
 Place YamlValue::PlaceOf(const YAML::Node& node, int line) const {
-  if (const std::string* option = set_->OriginOf(node)) return {*option, 0};
+  if (const std::string* option = reading_->options.OriginOf(node)) return {*option, 0};
   return place_.IsOption() ? place_ : Place{place_.source, line};
 }
 
@@ -133,63 +136,79 @@ std::string YamlValue::AsText() const {
 }
 
 double YamlValue::AsNumber() const {
-  const std::string text = Scalar("a number");
-  const auto number = ParseWhole<double>(text);
-  if (!number || !std::isfinite(*number)) {
-    Fail("is " + Quote(text) + "; it must be a finite number");
-  }
-  return *number;
+  return OrElse(1.0, [&] {
+    const std::string text = Scalar("a number");
+    const auto number = ParseWhole<double>(text);
+    if (!number || !std::isfinite(*number)) {
+      Fail("is " + Quote(text) + "; it must be a finite number");
+    }
+    return *number;
+  });
 }
 
 double YamlValue::AsPositiveNumber(std::string_view unit) const {
-  const double number = AsNumber();
-  if (!(number > 0)) Fail("is " + node_.Scalar() + "; it must be positive" + std::string(unit));
-  return number;
+  return OrElse(1.0, [&] {
+    const double number = AsNumber();
+    if (!(number > 0)) Fail("is " + node_.Scalar() + "; it must be positive" + std::string(unit));
+    return number;
+  });
 }
 
 double YamlValue::AsNonNegativeNumber(std::string_view unit) const {
-  const double number = AsNumber();
-  if (!(number >= 0)) {
-    Fail("is " + node_.Scalar() + "; it must not be negative" + std::string(unit));
-  }
-  return number;
+  return OrElse(1.0, [&] {
+    const double number = AsNumber();
+    if (!(number >= 0)) {
+      Fail("is " + node_.Scalar() + "; it must not be negative" + std::string(unit));
+    }
+    return number;
+  });
 }
 
 std::int64_t YamlValue::AsInteger(std::int64_t least, std::int64_t most) const {
-  const std::string text = Scalar("a whole number");
-  const auto number = ParseWhole<std::int64_t>(text);
-  if (!number || *number < least || *number > most) {
-    Fail("is " + Quote(text) + "; it must be a whole number from " + std::to_string(least) +
-         " to " + std::to_string(most));
-  }
-  return *number;
+  return OrElse(least, [&] {
+    const std::string text = Scalar("a whole number");
+    const auto number = ParseWhole<std::int64_t>(text);
+    if (!number || *number < least || *number > most) {
+      Fail("is " + Quote(text) + "; it must be a whole number from " + std::to_string(least) +
+           " to " + std::to_string(most));
+    }
+    return *number;
+  });
 }
 
 std::uint64_t YamlValue::AsUnsigned64() const {
-  const std::string text = Scalar("a whole number");
-  const auto number = ParseWhole<std::uint64_t>(text);
-  if (!number) Fail("is " + Quote(text) + "; it must be a whole number from 0 to 2^64 - 1");
-  return *number;
+  return OrElse(std::uint64_t{1}, [&] {
+    const std::string text = Scalar("a whole number");
+    const auto number = ParseWhole<std::uint64_t>(text);
+    if (!number) Fail("is " + Quote(text) + "; it must be a whole number from 0 to 2^64 - 1");
+    return *number;
+  });
 }
 
 bool YamlValue::AsBoolean() const {
-  const std::string text = Scalar("true or false");
-  if (text != "true" && text != "false") Fail("is " + Quote(text) + "; it must be true or false");
-  return text == "true";
+  return OrElse(false, [&] {
+    const std::string text = Scalar("true or false");
+    if (text != "true" && text != "false") Fail("is " + Quote(text) + "; it must be true or false");
+    return text == "true";
+  });
 }
 
 VirtualDuration YamlValue::AsDuration() const {
-  const auto result = ParseDuration(Scalar("a duration like 20s or 10ms"));
-  if (const auto* error = std::get_if<LoadError>(&result)) {
-    FailPlainly(Described() + ": " + error->message);
-  }
-  return std::get<VirtualDuration>(result);
+  return OrElse(VirtualDuration::Nanoseconds(1), [&] {
+    const auto result = ParseDuration(Scalar("a duration like 20s or 10ms"));
+    if (const auto* error = std::get_if<LoadError>(&result)) {
+      FailPlainly(Described() + ": " + error->message);
+    }
+    return std::get<VirtualDuration>(result);
+  });
 }
 
 VirtualDuration YamlValue::AsPositiveDuration() const {
-  const VirtualDuration duration = AsDuration();
-  if (duration <= VirtualDuration{}) Fail("is " + node_.Scalar() + "; it must be longer than 0");
-  return duration;
+  return OrElse(VirtualDuration::Nanoseconds(1), [&] {
+    const VirtualDuration duration = AsDuration();
+    if (duration <= VirtualDuration{}) Fail("is " + node_.Scalar() + "; it must be longer than 0");
+    return duration;
+  });
 }
 
 std::vector<YamlValue> YamlValue::AsList(std::string_view example) const {
@@ -201,7 +220,7 @@ std::vector<YamlValue> YamlValue::AsList(std::string_view example) const {
   for (std::size_t i = 0; i < node_.size(); ++i) {
     const YAML::Node element = node_[i];
     list.emplace_back(PlaceOf(element, LineOf(element, place_.line)),
-                      name_ + "[" + std::to_string(i) + "]", element, set_);
+                      name_ + "[" + std::to_string(i) + "]", element, reading_);
   }
   return list;
 }
@@ -239,7 +258,7 @@ YamlMap YamlValue::AsMap() const {
     }
     const std::string key = pair.first.Scalar();
     const YamlValue value(PlaceOf(pair.second, LineOfValue(pair.second, key_line)),
-                          name_.empty() ? key : name_ + "." + key, pair.second, set_);
+                          name_.empty() ? key : name_ + "." + key, pair.second, reading_);
     if (const auto [earlier, is_new] = places.try_emplace(key, key_place); !is_new) {
       value.At(key_place).Fail("is given twice, first " + earlier->second.Reference() +
                                "; rename or remove one");
@@ -255,10 +274,12 @@ YamlMap::YamlMap(YamlValue place, std::vector<Entry> entries)
 void YamlMap::AllowOnly(const std::vector<std::string>& known) const {
   for (const Entry& entry : entries_) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
-    entry.value.At(entry.key_place)
-        .FailPlainly("unknown key " + Quote(entry.key) +
-                     (place_.name().empty() ? "" : " in " + place_.name()) + "; " +
-                     Suggest(entry.key, known, "keys"));
+    place_.Try([&] {
+      entry.value.At(entry.key_place)
+          .FailPlainly("unknown key " + Quote(entry.key) +
+                       (place_.name().empty() ? "" : " in " + place_.name()) + "; " +
+                       Suggest(entry.key, known, "keys"));
+    });
   }
 }
 
@@ -294,15 +315,16 @@ YAML::Node ParseDocument(const std::string& file, const std::string& text) {
 }
 
 YamlValue ParseYaml(const std::string& file, const std::string& text,
-                    const std::vector<Setting>& settings) {
+                    const std::vector<Setting>& settings, Mistakes* mistakes) {
   const YAML::Node document = ParseDocument(file, text);
   if (document.IsNull()) {
     throw ScenarioMistake{Place{file, 1}.Prefix() +
                           "the scenario is empty; write at least duration and robots"};
   }
-  const auto options = std::make_shared<SetOptions>();
-  const YAML::Node tree = options->Apply(document, settings);
-  return YamlValue({file, LineOf(document, 1)}, "", tree, options);
+  const auto reading = std::make_shared<YamlReading>();
+  reading->mistakes = mistakes;
+  const YAML::Node tree = reading->options.Apply(document, settings);
+  return YamlValue({file, LineOf(document, 1)}, "", tree, reading);
 }
 
 void CheckName(const YamlMap::Entry& entry) {

@@ -1,6 +1,7 @@
 // Reading a YAML tree so that every mistake becomes one sentence with its place.
 //
-// Internal to the loader: a mistake is thrown as ScenarioMistake, which LoadScenario catches. A
+// Internal to the loader: a mistake is thrown as ScenarioMistake, which LoadScenario catches; where
+// all mistakes are asked for (mistakes.h) it is noted there, and what can be read is read on. A
 // value knows where it stands: its place, a line of the file or an option of the command line, and
 // its name as a dotted path from the scenario's top ("bodies.predator.mass").
 #pragma once
@@ -14,23 +15,26 @@
 #include <string_view>
 #include <vector>
 
+#include "coordinator/scenario/mistakes.h"
 #include "coordinator/scenario/place.h"
+#include "coordinator/scenario/set_option.h"
 #include "shm/virtual_time.h"
 
 namespace tcs {
 
-struct ScenarioMistake {
-  std::string message;  // "FILE:LINE: …" or "--set KEY=VALUE: …"
-};
-
-struct Setting;
-class SetOptions;
 class YamlMap;
+
+// What all values of a file share.
+struct YamlReading {
+  SetOptions options;            // knows which nodes are not the file's
+  Mistakes* mistakes = nullptr;  // null: the first mistake is thrown
+};
 
 class YamlValue {
  public:
-  // An empty name is the scenario itself. `set` knows which nodes are not the file's.
-  YamlValue(Place place, std::string name, YAML::Node node, std::shared_ptr<const SetOptions> set);
+  // An empty name is the scenario itself.
+  YamlValue(Place place, std::string name, YAML::Node node,
+            std::shared_ptr<const YamlReading> reading);
 
   const std::string& name() const { return name_; }
   const Place& place() const { return place_; }
@@ -39,12 +43,36 @@ class YamlValue {
   std::string Described() const { return name_.empty() ? "the scenario" : name_; }
 
   // The same value, its mistakes reported for another place.
-  YamlValue At(const Place& place) const { return YamlValue(place, name_, node_, set_); }
+  YamlValue At(const Place& place) const { return YamlValue(place, name_, node_, reading_); }
 
   // Throws "PLACE: NAME SENTENCE".
   [[noreturn]] void Fail(std::string_view sentence) const;
   // Throws "PLACE: SENTENCE".
   [[noreturn]] void FailPlainly(std::string_view sentence) const;
+  // Where all mistakes are asked for, those that `read` throws are noted; what it has not read is
+  // left out. False if there was one.
+  template <class Read>
+  bool Try(Read read) const {
+    Mistakes* mistakes = reading_->mistakes;
+    if (mistakes == nullptr) {
+      read();
+      return true;
+    }
+    try {
+      read();
+      return true;
+    } catch (const ScenarioMistake& mistake) {
+      mistakes->Add(mistake);
+      return false;
+    }
+  }
+  // The same of what `read` reads as the part `name` of the scenario.
+  template <class Read>
+  void TryPart(const std::string& name, Read read) const {
+    if (!Try(read)) reading_->mistakes->AddMissing(name);
+  }
+  // True if there was a mistake until now.
+  bool HasMistakes() const { return reading_->mistakes != nullptr && !reading_->mistakes->empty(); }
 
   std::string AsText() const;
   double AsNumber() const;
@@ -66,13 +94,19 @@ class YamlValue {
 
  private:
   std::string Scalar(std::string_view expected) const;
+  // What `read` gives; where all mistakes are asked for and it has one, something harmless.
+  template <class Value, class Read>
+  Value OrElse(Value harmless, Read read) const {
+    Try([&] { harmless = read(); });
+    return harmless;
+  }
   // The place of a node in this one that stands on `line` if it stands in the file at all.
   Place PlaceOf(const YAML::Node& node, int line) const;
 
   Place place_;
   std::string name_;
   YAML::Node node_;
-  std::shared_ptr<const SetOptions> set_;
+  std::shared_ptr<const YamlReading> reading_;
 };
 
 // A map in the order of the file, every key once.
@@ -90,7 +124,15 @@ class YamlMap {
   void entries() && = delete;  // a range-for over a temporary would outlive it
   const YamlValue& place() const { return place_; }
 
-  // The mistake is the first key that is not among `known`.
+  // Reads each entry, by YamlValue::TryPart.
+  template <class Read>
+  void ForEach(Read read) const {
+    for (const Entry& entry : entries_) {
+      place_.TryPart(entry.key, [&] { read(entry); });
+    }
+  }
+
+  // The mistakes are the keys that are not among `known`.
   void AllowOnly(const std::vector<std::string>& known) const;
 
   // Null if the key is not there.
@@ -108,7 +150,7 @@ YAML::Node ParseDocument(const std::string& file, const std::string& text);
 // The same with `settings` applied to it (see set_option.h); throws ScenarioMistake also if it has
 // no such place, or is empty.
 YamlValue ParseYaml(const std::string& file, const std::string& text,
-                    const std::vector<Setting>& settings);
+                    const std::vector<Setting>& settings, Mistakes* mistakes = nullptr);
 
 // Names of bodies, robots, clients and channels become names of files and topics: throws unless
 // the key is made of letters, digits, '_', '-' and '.', and does not begin with '.' or '-'.

@@ -4,6 +4,8 @@
 // where the name says so.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -52,6 +54,7 @@ struct RunOptions {
   ViewLink* view = nullptr;      // where people watch it, or nobody
   int host_cpus = 0;             // at most so many; 0: what there is
   std::string preload_library;
+  std::string debugged;            // a client, for whom on_debuggee gets a debugger; empty: none
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides where allocations are counted
   // What CLOCK_MONOTONIC shows at the start. 0 would look like a clock that was never set.
@@ -62,6 +65,11 @@ struct RunOptions {
   std::function<void(const RunProgress&)> on_progress;
   // Called with each warning when it arises, if set.
   std::function<void(const std::string&)> on_warning;
+  // Of the client `debugged`; both must be set where there is one. The first is called with its
+  // process when it is about to begin, which it does once a tracer has attached to it, or the
+  // second says that none will come.
+  std::function<void(pid_t)> on_debuggee;
+  std::function<bool()> is_debugger_gone;
   // Called with what people who wait for the run are to know now, if set.
   std::function<void(const std::string&)> on_notice;
 };

@@ -119,8 +119,8 @@ std::vector<int> JointsFromRoot(const RobotModel& model) {
   std::vector<int> order = below[static_cast<std::size_t>(model.root)];
   for (std::size_t next = 0; next < order.size(); ++next) {
     const int child = model.joints[static_cast<std::size_t>(order[next])].child;
-    const std::vector<int>& more = below[static_cast<std::size_t>(child)];
-    order.insert(order.end(), more.begin(), more.end());
+    // One by one: of insert() GCC 14 believes that it writes beyond the end.
+    for (const int joint : below[static_cast<std::size_t>(child)]) order.push_back(joint);
   }
   return order;
 }

@@ -1,0 +1,31 @@
+// `tcsim check`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace tcs {
+
+struct Scenario;
+
+struct CheckArguments {
+  std::string scenario = "scenario.yaml";
+  std::vector<std::string> overlays;  // files
+  std::vector<std::string> set;       // KEY=VALUE
+};
+
+// Adds the command, which fills `arguments` in when it is parsed.
+const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments);
+
+// Says all that is wrong with the scenario, each in a sentence with its place on stderr, or that it
+// is sound. The exit status.
+int CheckCommand(const CheckArguments& arguments);
+
+// That it is sound, and what it has; warnings to stderr. The exit status.
+int SaySound(const Scenario& scenario);
+
+}  // namespace tcs

@@ -1,0 +1,13 @@
+// What bash and zsh complete.
+#pragma once
+
+#include <string>
+
+#include "coordinator/cli/manual/description.h"
+
+namespace tcs {
+
+[[nodiscard]] std::string BashCompletion(const DescribedCommand& program);
+[[nodiscard]] std::string ZshCompletion(const DescribedCommand& program);
+
+}  // namespace tcs

@@ -1,0 +1,7 @@
+#include "coordinator/cli/version.h"
+
+namespace tcs {
+
+const char kVersion[] = TCS_VERSION;
+
+}  // namespace tcs
