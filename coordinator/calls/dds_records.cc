@@ -18,8 +18,10 @@ std::string DdsRecords::Open() {
     std::filesystem::remove_all(directory + "/bag", ignored);
     hub_.Observe(&topic_log_);
   }
-  if (!run_.options.record) return {};
-  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros);
+  if (run_.options.record == RecordingKind::kNone) return {};
+  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros,
+                     run_.options.record == RecordingKind::kMcap ? record::StorageKind::kMcap
+                                                                 : record::StorageKind::kSqlite3);
   topic_log_.Tell(&*recording_);
   std::string error = recording_->Open(directory + "/bag");
   if (!error.empty()) {
@@ -48,7 +50,6 @@ std::string DdsRecords::Close() {
 void DdsRecords::Stop() {
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);
-  recording_.reset();
 }
 
 void DdsRecords::WarnOfDrops() const {

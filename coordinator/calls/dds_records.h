@@ -1,5 +1,5 @@
 // What a run keeps of what goes over its DDS topics: topics.json, and with RunOptions::record a bag
-// (docs/RESULTS.md).
+// (docs/RESULTS.md), which others have a part in, too.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once
@@ -32,6 +32,8 @@ class DdsRecords {
   // the hub.
   void ReadNewTopics(std::int64_t now_ns);
   [[nodiscard]] std::string Close();
+  // The recording; null where there is none.
+  record::MessageSink* sink() { return recording_ ? &*recording_ : nullptr; }
   // What is sent from now on is no part of the run.
   void Stop();
 

@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstring>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "coordinator/cli/exec_command.h"
@@ -52,10 +55,31 @@ std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
   return {};
 }
 
+// An option with a word after it or none: "--record mcap" is "--record=mcap". CLI11 would take
+// whatever comes after it, the scenario, too.
+std::vector<std::string> WithRecordJoined(int argc, char** argv) {
+  std::vector<std::string> words;
+  bool is_ours = true;  // what follows "--" is a program's
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    is_ours = is_ours && word != "--";
+    const bool is_format = is_ours && (word == "mcap" || word == "sqlite3");
+    if (is_format && !words.empty() && words.back() == "--record") {
+      words.back() += "=" + std::string(word);
+    } else {
+      words.emplace_back(word);
+    }
+  }
+  return words;
+}
+
 // CLI11's own sentences, with our status: nothing was run.
 int Parse(CLI::App& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = WithRecordJoined(argc, argv);
+    std::ranges::reverse(words);  // CLI11 wants the last one first
+    app.name(argv[0]);
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     const std::string mistyped = WhatWasMistyped(app, argc, argv);
@@ -96,9 +120,12 @@ int main(int argc, char** argv) {
   run->add_option("--out", arguments.out, "folder for logs, body states, trace and summary")
       ->capture_default_str();
   run->add_flag("--check", arguments.check, "only load the scenario, and say whether it is sound");
-  bool record = false;
-  run->add_flag("--record", record,
-                "also write all DDS topics into the folder, as the rosbag2 bag `bag`");
+  std::string record;
+  run->add_flag("--record{sqlite3}", record,
+                "also write all messages and where bodies are into the folder, as the rosbag2 bag "
+                "`bag`; --record mcap: as an MCAP file, which Foxglove, Lichtblick and PlotJuggler "
+                "open, too")
+      ->check(CLI::IsMember({"sqlite3", "mcap"}));
   bool for_fit = false;
   run->add_flag("--for-fit", for_fit,
                 "also count each client's calls and allocations, which `tcsim fit` needs");
@@ -228,7 +255,9 @@ int main(int argc, char** argv) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }
   }
-  options.record = record;
+  if (!record.empty()) {
+    options.record = record == "mcap" ? tcs::RecordingKind::kMcap : tcs::RecordingKind::kSqlite3;
+  }
   options.host_cpus = host_cpus == "auto" ? 0 : std::stoi(host_cpus);
   options.counts_work = for_fit;
   options.waits_for_cpu = !no_wait;

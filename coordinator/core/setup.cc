@@ -45,7 +45,10 @@ std::string Engine::Prepare() {
     return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
            ", and to run without it takes Linux 5.19 or newer";
   }
-  if (std::string error = world_.Open(run_.scenario, dds_.ends()); !error.empty()) return error;
+  const bool is_recorded = run_.options.record != RecordingKind::kNone;
+  if (std::string error = world_.Open(run_.scenario, dds_.ends(), is_recorded); !error.empty()) {
+    return error;
+  }
   std::string taken;
   claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;

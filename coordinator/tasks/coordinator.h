@@ -27,14 +27,17 @@ struct RunProgress {
   std::vector<Load> clients;
 };
 
+// Into which of rosbag2's storages messages are recorded.
+enum class RecordingKind { kNone, kSqlite3, kMcap };
+
 struct RunOptions {
   shm::Accounting accounting = shm::Accounting::kMeasured;
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
-  bool record = false;           // all DDS topics, into a bag in output_directory
-  bool waits_for_cpu = true;     // where other runs have them all
-  int host_cpus = 0;             // at most so many; 0: what there is
+  RecordingKind record = RecordingKind::kNone;  // of the run's messages, in output_directory
+  bool waits_for_cpu = true;                    // where other runs have them all
+  int host_cpus = 0;                            // at most so many; 0: what there is
   std::string preload_library;
   std::string user_preload;        // LD_PRELOAD as the user has it for programs
   std::string allocation_library;  // preloaded besides where allocations are counted
