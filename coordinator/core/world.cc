@@ -168,7 +168,7 @@ std::string World::CloseRecords() {
 
 void World::RecordInto(record::MessageSink& sink) {
   if (!present()) return;
-  topics_.emplace(*scenario_.world, sink);
+  topics_.emplace(scenario_, sink);
   channel_records_->RecordInto(sink);
 }
 

@@ -1,5 +1,8 @@
 #include "coordinator/world/world_topics.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "coordinator/dds/measurement_messages.h"
 #include "coordinator/dds/ros_messages.h"
 #include "coordinator/dds/ros_names.h"
@@ -7,15 +10,28 @@
 
 namespace tcs {
 
-WorldTopics::WorldTopics(const WorldSpec& world, record::MessageSink& sink)
-    : sink_(sink), links_(NamesOfLinks(world)) {
-  for (const BodySpec& body : world.bodies) {
+namespace {
+
+// That would no longer be what they have said.
+bool RobotsHaveTransforms(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.sensors, [](const SensorChannelSpec& sensor) {
+    const auto* to = std::get_if<DdsSensorEnd>(&sensor.to);
+    return to != nullptr && to->end.topic == "/tf";
+  });
+}
+
+}  // namespace
+
+WorldTopics::WorldTopics(const Scenario& scenario, record::MessageSink& sink)
+    : sink_(sink), links_(NamesOfLinks(*scenario.world)) {
+  for (const BodySpec& body : scenario.world->bodies) {
     bodies_.push_back(body.name);
     topics_.push_back(sink_.AddOwnTopic("/bodies/" + dds::RosToken(body.name),
                                         dds::NameOf(dds::SensorMessage::kOdometry)));
   }
   if (bodies_.empty() && links_.empty()) return;
-  transforms_ = sink_.AddOwnTopic("/tf", dds::NameOf(dds::SensorMessage::kTransforms));
+  transforms_ = sink_.AddOwnTopic(RobotsHaveTransforms(scenario) ? "/world/tf" : "/tf",
+                                  dds::NameOf(dds::SensorMessage::kTransforms));
 }
 
 void WorldTopics::Write(VirtualTime at, std::span<const BodyState> states,

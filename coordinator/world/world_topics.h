@@ -1,5 +1,6 @@
 // Where the world's bodies and links are, in the run's recording: /bodies/NAME for each body
-// (Odometry), and /tf for all bodies and links, in the frame "world".
+// (Odometry), and for all bodies and links transforms from the frame "world": on /tf, or where
+// robots have that themselves on /world/tf.
 #pragma once
 
 #include <span>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "coordinator/record/message_sink.h"
+#include "coordinator/scenario/scenario.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
 
@@ -14,8 +16,8 @@ namespace tcs {
 
 class WorldTopics {
  public:
-  // The sink outlives this.
-  WorldTopics(const WorldSpec& world, record::MessageSink& sink);
+  // The sink outlives this. The scenario has a world.
+  WorldTopics(const Scenario& scenario, record::MessageSink& sink);
 
   // `states` are those of the world's bodies, `links` those of all its links, at `at`.
   void Write(VirtualTime at, std::span<const BodyState> states, std::span<const LinkState> links);

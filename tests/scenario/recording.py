@@ -246,7 +246,7 @@ def check_offers(profiles, writers):
 
 def is_own(name):
     """Of the run's own topics, which no program has."""
-    return name.startswith(("/bodies/", "/channels/")) or name == "/tf"
+    return name.startswith(("/bodies/", "/channels/", "/world/")) or name == "/tf"
 
 
 def is_of_world(name, sample):
