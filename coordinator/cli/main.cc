@@ -19,6 +19,7 @@
 #include "coordinator/cli/run_command.h"
 #include "coordinator/cli/topics_command.h"
 #include "coordinator/cli/trials_options.h"
+#include "coordinator/cli/trace_command.h"
 #include "coordinator/cli/user_preload.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
@@ -202,6 +203,13 @@ int main(int argc, char** argv) {
   topics->add_flag("--qos", topics_arguments.with_qos,
                    "the quality of service of each endpoint, too");
 
+  tcs::TraceArguments trace_arguments;
+  CLI::App* trace =
+      app.add_subcommand("trace", "make one trace for ui.perfetto.dev of what a run has written");
+  trace->add_option("folder", trace_arguments.folder, "what run wrote")->required();
+  trace->add_option("--out", trace_arguments.out,
+                    "the trace; trace.json.gz in the folder unless told");
+
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
       "fit", "the set costs with which --accounting fixed charges what a run has measured");
@@ -244,6 +252,7 @@ int main(int argc, char** argv) {
   }
   if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
   if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
+  if (trace->parsed()) return tcs::FlushStdout(tcs::TraceCommand(trace_arguments));
   if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
