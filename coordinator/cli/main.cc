@@ -17,9 +17,10 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/cli/snapshot_command.h"
 #include "coordinator/cli/topics_command.h"
-#include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/trace_command.h"
+#include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
 #include "coordinator/doctor/doctor.h"
 #include "coordinator/os/guardian.h"
@@ -74,6 +75,13 @@ std::vector<std::string> WithRecordJoined(int argc, char** argv) {
   return words;
 }
 
+// Of what is asked for and cannot be: a whole sentence.
+class PlainError final : public CLI::ParseError {
+ public:
+  explicit PlainError(const std::string& sentence)
+      : ParseError("PlainError", sentence, tcs::kCannotRun) {}
+};
+
 // CLI11's own sentences, with our status: nothing was run.
 int Parse(CLI::App& app, int argc, char** argv) {
   try {
@@ -83,6 +91,7 @@ int Parse(CLI::App& app, int argc, char** argv) {
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    if (dynamic_cast<const PlainError*>(&error) != nullptr) return tcs::Fail(error.what());
     const std::string mistyped = WhatWasMistyped(app, argc, argv);
     const auto used = app.get_subcommands();
     const std::string help =
@@ -109,6 +118,13 @@ int main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "run a scenario");
   run->add_option("scenario", arguments.scenario, "the YAML file (docs/SCENARIO.md)")->required();
   run->add_option("--duration", arguments.duration, "of virtual time, such as 20s");
+  run->add_option("--stop-at", arguments.stop_at,
+                  "of virtual time, such as 12.5s: stop there, and write the world as it is then "
+                  "into snapshot.yaml, a piece of a scenario for --overlay");
+  run->add_option_function<std::string>(
+         "--from", [](const std::string& from) { throw PlainError(tcs::NoWayBack(from)); },
+         "DIR@TIME: says what is possible instead; programs cannot go on from within a run")
+      ->expected(1);
   run->add_option("--drift", arguments.drift, "how far progress may drift apart, such as 1ms");
   CLI::Option* seeded = run->add_option("--seed", seed, "what ${seed} stands for");
   run->add_option("--overlay", arguments.overlays,
@@ -210,6 +226,16 @@ int main(int argc, char** argv) {
   trace->add_option("--out", trace_arguments.out,
                     "the trace; trace.json.gz in the folder unless told");
 
+  tcs::SnapshotArguments snapshot_arguments;
+  CLI::App* snapshot = app.add_subcommand(
+      "snapshot", "how a run's world was at one moment, as a piece of a scenario");
+  snapshot
+      ->add_option("from", snapshot_arguments.from,
+                   "DIR or DIR@TIME: what run wrote, and when; the end unless told")
+      ->required();
+  snapshot->add_option("--out", snapshot_arguments.out,
+                       "a file for it, as run --overlay takes it; printed unless told");
+
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
       "fit", "the set costs with which --accounting fixed charges what a run has measured");
@@ -253,6 +279,7 @@ int main(int argc, char** argv) {
   if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
   if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
   if (trace->parsed()) return tcs::FlushStdout(tcs::TraceCommand(trace_arguments));
+  if (snapshot->parsed()) return tcs::FlushStdout(tcs::SnapshotCommand(snapshot_arguments));
   if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(

@@ -11,7 +11,7 @@
 namespace tcs {
 
 struct RunArguments {
-  std::string scenario, duration, drift, out = "out";
+  std::string scenario, duration, stop_at, drift, out = "out";
   std::optional<std::uint64_t> seed;
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
