@@ -76,23 +76,36 @@ LoadResult<RecordedState> ReadState(const std::string& folder, std::optional<std
   if (!report::IsFile(bodies_csv)) {
     return LoadError{bodies_csv + " is not there; give the folder of a run that had a world"};
   }
-  auto bodies = ReadMoment(bodies_csv,
-                           {"time_s", "body", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw", "vx_mps",
-                            "vy_mps", "vz_mps", "wx_radps", "wy_radps", "wz_radps"},
-                           at_ns);
+  const auto bodies_at = [&bodies_csv](std::optional<std::int64_t> ns) {
+    return ReadMoment(bodies_csv,
+                      {"time_s", "body", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw", "vx_mps",
+                       "vy_mps", "vz_mps", "wx_radps", "wy_radps", "wz_radps"},
+                      ns);
+  };
+  const auto joints_at = [&joints_csv](std::optional<std::int64_t> ns) {
+    return ReadMoment(joints_csv, {"time_s", "joint", "position", "velocity"}, ns);
+  };
+  auto bodies = bodies_at(at_ns);
   if (const auto* error = std::get_if<LoadError>(&bodies)) return *error;
+  LoadResult<Moment> joints = Moment{};
+  if (report::IsFile(joints_csv)) {
+    joints = joints_at(at_ns);
+    if (const auto* error = std::get_if<LoadError>(&joints)) return *error;
+    // A run that was killed may have written more of the one than of the other.
+    const std::int64_t both_ns =
+        std::min(std::get<Moment>(bodies).at_ns, std::get<Moment>(joints).at_ns);
+    if (!at_ns && both_ns >= 0) {
+      bodies = bodies_at(both_ns);
+      joints = joints_at(both_ns);
+    }
+  }
   Moment& at = std::get<Moment>(bodies);
   if (at.at_ns < 0) {
     return LoadError{
         fmt::format("{} has no line of {}: {}; a smaller csv_period of the scenario writes more",
                     bodies_csv, at_ns ? SecondsText(*at_ns) : "any time", NextTo(at))};
   }
-  RecordedState state{at.at_ns, std::move(at.lines), {}};
-  if (!report::IsFile(joints_csv)) return state;
-  auto joints = ReadMoment(joints_csv, {"time_s", "joint", "position", "velocity"}, at.at_ns);
-  if (const auto* error = std::get_if<LoadError>(&joints)) return *error;
-  state.joints = std::move(std::get<Moment>(joints).lines);
-  return state;
+  return RecordedState{at.at_ns, std::move(at.lines), std::move(std::get<Moment>(joints).lines)};
 }
 
 }  // namespace tcs::snapshot

@@ -70,7 +70,7 @@ for engine in "${engines[@]}"; do
   run "$out/s.yaml" "${set_engine[@]}" --overlay "$out/world.yaml" --duration 0.4s --out "$out/$engine-on"
   compare "$out/$engine" 0.25 "$out/$engine-on" 0 1e-15
   # By other steps, which makes a little difference.
-  compare "$out/$engine" 0.25 "$out/$engine-on" 0.4 2e-5
+  compare "$out/$engine" 0.25 "$out/$engine-on" 0.4 1e-7
 done
 # What a joint's velocity is at the start is what the scenario says.
 awk -F, '$2 == "pendulum/hinge" && $3 == 0.1 && $4 == -2.5 { found = 1; exit } END { exit !found }' "$out/simbody/joints.csv" ||
