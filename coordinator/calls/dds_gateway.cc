@@ -16,6 +16,7 @@ namespace tcs {
 
 std::string DdsGateway::Open() {
   if (std::string error = records_.Open(); !error.empty()) return error;
+  if (record::MessageSink* sink = records_.sink()) world_.RecordInto(*sink);
   world_.Begin(run_.header->realtime_offset_ns);
   records_.ReadNewTopics(0);
   return {};

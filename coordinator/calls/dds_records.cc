@@ -15,11 +15,19 @@ std::string DdsRecords::Open() {
   if (!directory.empty()) {
     std::error_code ignored;  // of an earlier run into the same folder
     std::filesystem::remove(directory + "/topics.json", ignored);
+    std::filesystem::remove(directory + "/messages.csv", ignored);
     std::filesystem::remove_all(directory + "/bag", ignored);
     hub_.Observe(&topic_log_);
+    messages_.emplace(
+        directory, run_.scenario, topic_log_,
+        [this](dds::Hub::Number number) { return who_(number).process; },
+        run_.header->realtime_offset_ns);
+    topic_log_.TellDeliveries(&*messages_);
   }
-  if (!run_.options.record) return {};
-  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros);
+  if (run_.options.record == RecordingKind::kNone) return {};
+  recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros,
+                     run_.options.record == RecordingKind::kMcap ? record::StorageKind::kMcap
+                                                                 : record::StorageKind::kSqlite3);
   topic_log_.Tell(&*recording_);
   std::string error = recording_->Open(directory + "/bag");
   if (!error.empty()) {
@@ -39,6 +47,9 @@ std::string DdsRecords::Close() {
   if (!topics.empty()) {
     error = dds::WriteTopics(topics, run_.options.output_directory + "/topics.json");
   }
+  if (messages_.has_value()) {
+    if (std::string missing = messages_->Close(); error.empty()) error = std::move(missing);
+  }
   if (recording_.has_value()) {
     if (std::string missing = recording_->Close(); error.empty()) error = std::move(missing);
   }
@@ -48,7 +59,7 @@ std::string DdsRecords::Close() {
 void DdsRecords::Stop() {
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);
-  recording_.reset();
+  topic_log_.TellDeliveries(nullptr);
 }
 
 void DdsRecords::WarnOfDrops() const {

@@ -1,5 +1,5 @@
-// What a run keeps of what goes over its DDS topics: topics.json, and with RunOptions::record a bag
-// (docs/RESULTS.md).
+// What a run keeps of what goes over its DDS topics: topics.json, messages.csv, and with
+// RunOptions::record a bag (docs/RESULTS.md), which others have a part in, too.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once
@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/calls/message_log.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
@@ -24,14 +25,19 @@ class DdsRecords {
 
   // The hub and the endpoints outlive this.
   DdsRecords(RunState& run, dds::Hub& hub, dds::OwnEndpoints& ends, WhoIs who)
-      : run_(run), hub_(hub), ends_(ends), topic_log_(std::move(who)) {}
+      : run_(run), hub_(hub), ends_(ends), who_(who), topic_log_(std::move(who)) {}
 
   // Once the run's header has its times. What an earlier run has left is removed.
   [[nodiscard]] std::string Open();
   // Endpoints may have come since the last call: a recording reads their topics. Not from within
   // the hub.
   void ReadNewTopics(std::int64_t now_ns);
+  void Flush() {
+    if (messages_) messages_->Flush();
+  }
   [[nodiscard]] std::string Close();
+  // The recording; null where there is none.
+  record::MessageSink* sink() { return recording_ ? &*recording_ : nullptr; }
   // What is sent from now on is no part of the run.
   void Stop();
 
@@ -43,7 +49,9 @@ class DdsRecords {
   RunState& run_;
   dds::Hub& hub_;
   dds::OwnEndpoints& ends_;
+  WhoIs who_;
   dds::TopicLog topic_log_;
+  std::optional<MessageLog> messages_;
   std::optional<record::Recording> recording_;
 };
 

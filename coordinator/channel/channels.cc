@@ -69,6 +69,14 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends,
   return {};
 }
 
+void Channels::Record(const Scenario& scenario, ChannelRecords& records) {
+  for (std::size_t i = 0; i < outlets.size(); ++i) {
+    if (std::holds_alternative<DdsSensorEnd>(scenario.sensors[i].to)) continue;
+    outlets[i] = records.Wrap(i, std::move(outlets[i]));
+  }
+  for (auto& inlet : inlets) inlet = records.Wrap(std::move(inlet));
+}
+
 void Channels::Begin(VirtualDuration realtime_offset) {
   for (const auto& transport : transports) transport->Begin(realtime_offset);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/channel/channel.h"
+#include "coordinator/channel/recorded/channel_records.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/scenario/scenario.h"
 
@@ -43,6 +44,9 @@ struct Channels {
   // sentence. The scenario and the endpoints outlive this.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at);
+  // What goes over those that are not on DDS, which records themselves. After Open, and before
+  // anybody has an outlet or an inlet.
+  void Record(const Scenario& scenario, ChannelRecords& records);
   void Begin(VirtualDuration realtime_offset);
 };
 

@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "coordinator/cli/check_command.h"
@@ -20,7 +23,9 @@
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
+#include "coordinator/cli/snapshot_command.h"
 #include "coordinator/cli/topics_command.h"
+#include "coordinator/cli/trace_command.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
 #include "coordinator/cli/version.h"
@@ -62,12 +67,41 @@ std::string WhatWasMistyped(const CLI::App& app, int argc, char** argv) {
   return {};
 }
 
+// An option with a word after it or none: "--record mcap" is "--record=mcap". CLI11 would take
+// whatever comes after it, the scenario, too.
+std::vector<std::string> WithRecordJoined(int argc, char** argv) {
+  std::vector<std::string> words;
+  bool is_ours = true;  // what follows "--" is a program's
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    is_ours = is_ours && word != "--";
+    const bool is_format = is_ours && (word == "mcap" || word == "sqlite3");
+    if (is_format && !words.empty() && words.back() == "--record") {
+      words.back() += "=" + std::string(word);
+    } else {
+      words.emplace_back(word);
+    }
+  }
+  return words;
+}
+
+// Of what is asked for and cannot be: a whole sentence.
+class PlainError final : public CLI::ParseError {
+ public:
+  explicit PlainError(const std::string& sentence)
+      : ParseError("PlainError", sentence, tcs::kCannotRun) {}
+};
+
 // CLI11's own sentences, with our status: nothing was run.
 int Parse(CLI::App& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = WithRecordJoined(argc, argv);
+    std::ranges::reverse(words);  // CLI11 wants the last one first
+    app.name(argv[0]);
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    if (dynamic_cast<const PlainError*>(&error) != nullptr) return tcs::Fail(error.what());
     const std::string mistyped = WhatWasMistyped(app, argc, argv);
     const auto used = app.get_subcommands();
     const std::string help =
@@ -98,6 +132,13 @@ int main(int argc, char** argv) {
   run->add_option("scenario", arguments.scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
   run->add_option("--duration", arguments.duration, "TIME: of virtual time, such as 20s");
+  run->add_option("--stop-at", arguments.stop_at,
+                  "TIME: of virtual time, such as 12.5s: stop there, and write the world as it is then "
+                  "into snapshot.yaml, a piece of a scenario for --overlay");
+  run->add_option_function<std::string>(
+         "--from", [](const std::string& from) { throw PlainError(tcs::NoWayBack(from)); },
+         "DIR@TIME: says what is possible instead; programs cannot go on from within a run")
+      ->expected(1);
   run->add_option("--drift", arguments.drift,
                   "TIME: how far progress may drift apart, such as 1ms");
   CLI::Option* seeded = run->add_option("--seed", seed, "what ${seed} stands for");
@@ -111,9 +152,12 @@ int main(int argc, char** argv) {
   run->add_option("--out", arguments.out, "FOLDER: for logs, body states, trace and summary")
       ->capture_default_str();
   run->add_flag("--check", arguments.check, "only load the scenario, and say whether it is sound");
-  bool record = false;
-  run->add_flag("--record", record,
-                "also write all DDS topics into the folder, as the rosbag2 bag `bag`");
+  std::string record;
+  run->add_flag("--record{sqlite3}", record,
+                "also write all messages and where bodies are into the folder, as the rosbag2 bag "
+                "`bag`; --record mcap: as an MCAP file, which Foxglove, Lichtblick and PlotJuggler "
+                "open, too")
+      ->check(CLI::IsMember({"sqlite3", "mcap"}));
   bool for_fit = false;
   run->add_flag("--for-fit", for_fit,
                 "also count each client's calls and allocations, which `tcsim fit` needs");
@@ -222,6 +266,23 @@ int main(int argc, char** argv) {
   topics->add_flag("--qos", topics_arguments.with_qos,
                    "the quality of service of each endpoint, too");
 
+  tcs::TraceArguments trace_arguments;
+  CLI::App* trace =
+      app.add_subcommand("trace", "make one trace for ui.perfetto.dev of what a run has written");
+  trace->add_option("folder", trace_arguments.folder, "what run wrote")->required();
+  trace->add_option("--out", trace_arguments.out,
+                    "the trace; trace.json.gz in the folder unless told");
+
+  tcs::SnapshotArguments snapshot_arguments;
+  CLI::App* snapshot = app.add_subcommand(
+      "snapshot", "how a run's world was at one moment, as a piece of a scenario");
+  snapshot
+      ->add_option("from", snapshot_arguments.from,
+                   "DIR or DIR@TIME: what run wrote, and when; the end unless told")
+      ->required();
+  snapshot->add_option("--out", snapshot_arguments.out,
+                       "a file for it, as run --overlay takes it; printed unless told");
+
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
       "fit", "the set costs with which --accounting fixed charges what a run has measured");
@@ -269,6 +330,8 @@ int main(int argc, char** argv) {
   if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
   if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
   if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
+  if (trace->parsed()) return tcs::FlushStdout(tcs::TraceCommand(trace_arguments));
+  if (snapshot->parsed()) return tcs::FlushStdout(tcs::SnapshotCommand(snapshot_arguments));
   if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
@@ -280,7 +343,9 @@ int main(int argc, char** argv) {
       return tcs::Fail("the shim is missing: " + library + "; build it again");
     }
   }
-  options.record = record;
+  if (!record.empty()) {
+    options.record = record == "mcap" ? tcs::RecordingKind::kMcap : tcs::RecordingKind::kSqlite3;
+  }
   options.host_cpus = host_cpus == "auto" ? 0 : std::stoi(host_cpus);
   options.counts_work = for_fit;
   options.waits_for_cpu = !no_wait;

@@ -5,12 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
 
 #include "coordinator/cli/check_command.h"
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/cli/snapshot_command.h"
 #include "coordinator/cli/summary.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
@@ -89,14 +93,21 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   overrides.set = arguments.set;
   overrides.seed = arguments.seed;
   overrides.result_directory = AbsolutePathOf(arguments.out);
+  std::optional<VirtualDuration> stop_at;
   for (const std::string& error :
        {TakeDuration("duration", arguments.duration, &overrides.duration),
+        TakeDuration("stop-at", arguments.stop_at, &stop_at),
         TakeDuration("drift", arguments.drift, &overrides.drift)}) {
     if (!error.empty()) return Fail(error);
   }
   auto loaded = LoadScenario(arguments.scenario, overrides);
   if (const auto* error = std::get_if<LoadError>(&loaded)) return Fail(error->message);
-  const Scenario& scenario = std::get<Scenario>(loaded);
+  Scenario& scenario = std::get<Scenario>(loaded);
+  if (stop_at) {
+    const std::string error = WhyNoStopAt(scenario, scenario.duration, *stop_at);
+    if (!error.empty()) return Fail(error);
+    scenario.duration = *stop_at;
+  }
   if (arguments.check) return SaySound(scenario);
   for (const std::string& error :
        {TakePace(arguments, scenario, &options),
@@ -110,6 +121,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
                 "'; wait for it, or choose another one with --out");
   }
   options.output_directory = overrides.result_directory;
+  std::error_code ignored;  // that of an earlier run
+  std::filesystem::remove(overrides.result_directory + "/snapshot.yaml", ignored);
   if (options.view != nullptr) {
     // Before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);
@@ -149,6 +162,12 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   }
   TakeNoteBack();
   if (options.view != nullptr) options.view->Conclude(report.virtual_ns);
+  if (stop_at && !report.interrupted) {
+    if (const std::string error = WriteSnapshot(overrides.result_directory); !error.empty()) {
+      return Fail(error);
+    }
+    Print("the world as it stopped: {}/snapshot.yaml\n", Visible(arguments.out));
+  }
   if (report.interrupted) return InterruptedBy(report.stop_signal);
   return HasFailedClient(report) ? kClientFailed : kSucceeded;
 }

@@ -307,7 +307,10 @@ void Engine::LookAround() {
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   LookAtDetector();
   if (run_.options.on_progress) {
-    if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) records_.Flush();
+    if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) {
+      records_.Flush();
+      dds_.records().Flush();
+    }
     run_.options.on_progress(reporter_.Now());
   }
   if (run_.options.on_notice) standstill_.Look(RunningNs(), FurthestNs());

@@ -49,7 +49,9 @@ std::string Engine::Prepare() {
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
     network_.MakeAt(address, make);
   };
-  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at); !error.empty()) {
+  const bool is_recorded = run_.options.record != RecordingKind::kNone;
+  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded);
+      !error.empty()) {
     return error;
   }
   std::string taken;

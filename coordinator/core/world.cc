@@ -61,7 +61,8 @@ World::World(std::function<void(const std::string&)> warn)
             dynamics_->ReadJoints(std::max(at, dynamics_->Now()), joints, states);
           }) {}
 
-std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at) {
+std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
+                        bool is_recorded) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -75,6 +76,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
+  if (is_recorded) channels_.Record(scenario_, channel_records_.emplace(scenario_));
   if (channels_.clock != nullptr) {
     sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
   }
@@ -165,6 +167,12 @@ std::string World::CloseRecords() {
   return errors[0].empty() ? errors[1] : errors[0];
 }
 
+void World::RecordInto(record::MessageSink& sink) {
+  if (!present()) return;
+  topics_.emplace(scenario_, sink);
+  channel_records_->RecordInto(sink);
+}
+
 void World::FindNextStop() {
   next_output_ns_ = sensors_.NextArrival().ns();
   next_stop_ns_ = std::min({csv_.is_open() ? next_csv_ns_ : shm::kNeverNs, sensors_.NextStop().ns(),
@@ -182,6 +190,7 @@ void World::WriteStates() {
                        s.angular_velocity_radps, &csv_text_);
   }
   link_lines_.Append(*dynamics_, &csv_text_);
+  if (topics_) topics_->Write(VirtualTime::FromNanoseconds(now), states_, link_lines_.states());
   joint_lines_.Write(*dynamics_, &joints_csv_);
   if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }

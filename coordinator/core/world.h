@@ -5,10 +5,13 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "coordinator/channel/channels.h"
+#include "coordinator/channel/recorded/channel_records.h"
+#include "coordinator/record/message_sink.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/trace/csv_file.h"
 #include "coordinator/world/command_queue.h"
@@ -17,6 +20,7 @@
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
 #include "coordinator/world/sensors.h"
+#include "coordinator/world/world_topics.h"
 #include "shm/own_receivers.h"
 
 namespace tcs {
@@ -27,8 +31,9 @@ class World {
   explicit World(std::function<void(const std::string&)> warn);
 
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
-  // are for those on DDS; they outlive this.
-  std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at);
+  // are for those on DDS; they outlive this. RecordInto follows if `is_recorded`.
+  std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
+                   bool is_recorded = false);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
@@ -43,6 +48,9 @@ class World {
   std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   std::string CloseRecords();
+  // After OpenRecords: where bodies are, as often as the files are told, and what goes over
+  // channels that are not on DDS, as messages. The sink outlives this.
+  void RecordInto(record::MessageSink& sink);
 
   bool present() const { return dynamics_ != nullptr; }
   std::int64_t progress_ns() const { return progress_ns_; }
@@ -99,6 +107,7 @@ class World {
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
+  std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
   Channels channels_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
@@ -111,6 +120,7 @@ class World {
   JointLines joint_lines_;
   CsvFile joints_csv_;
   DueLinks due_links_;
+  std::optional<WorldTopics> topics_;
   std::vector<int> all_bodies_, due_;
   std::vector<BodyState> states_;  // of all bodies, as each was read last
   std::vector<BodyState> read_;    // memory of ReadDue

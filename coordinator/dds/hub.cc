@@ -309,9 +309,17 @@ void Hub::SendOwn(DdsMessage header, std::span<const std::byte> payload, std::in
   Enter(header, std::move(bytes));
 }
 
+void Hub::TellDelivered(const Bytes& message, Number to, std::int64_t at_ns) {
+  if (observer_ == nullptr) return;
+  DdsMessage header;
+  memcpy(&header, message.data(), sizeof header);
+  observer_->Delivered(header, to, at_ns);
+}
+
 std::optional<Hub::Bytes> Hub::TakeOwn(std::int64_t now_ns) {
   if (own_.empty() || own_.begin()->first > now_ns) return std::nullopt;
   const Message message = own_.begin()->second;
+  TellDelivered(*message, shm::kDdsCoordinator, own_.begin()->first);
   own_.erase(own_.begin());
   return *message;
 }
@@ -460,6 +468,7 @@ std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
     const bool fits = filled + message.size() <= shm::kDdsUsualSize;
     if (!fits && (filled > 0 || message.size() > shm::kDdsBoxSize)) break;
     memcpy(member->inbox() + filled, message.data(), message.size());
+    TellDelivered(message, number, now_ns);
     filled += message.size();
     member->queued_bytes -= message.size();
     member->queue.erase(member->queue.begin());

@@ -33,6 +33,8 @@ class HubObserver {
   virtual void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) = 0;
   // Process `to` does not get this sample.
   virtual void Dropped(const shm::DdsMessage& header, std::uint32_t to) = 0;
+  // Process `to` has been given the message at `at_ns`; 0: the coordinator has taken it.
+  virtual void Delivered(const shm::DdsMessage&, std::uint32_t /*to*/, std::int64_t /*at_ns*/) {}
   // A process has died, or executes another program: nothing more comes from it.
   virtual void Left(std::uint32_t from) = 0;
 };
@@ -152,6 +154,7 @@ class Hub {
   std::vector<Known>::const_iterator KnownAs(Number from, const Guid& subject) const;
   bool IsAnothers(const Guid& guid, Number number) const;
   void Forget(Number from, const Guid& subject);
+  void TellDelivered(const Bytes& message, Number to, std::int64_t at_ns);
   Member* Find(Number number);
   const Member* Find(Number number) const;
   void Queue(Number to, std::int64_t due_ns, const Message& message);

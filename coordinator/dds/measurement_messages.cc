@@ -4,6 +4,7 @@
 #include <cstring>
 #include <iterator>
 #include <type_traits>
+#include <variant>
 
 #include "coordinator/dds/ros_fields.h"
 
@@ -184,6 +185,18 @@ Owned<BoolMessage> ToMessage(std::int64_t, const ContactMeasurement& measured) {
   Owned<BoolMessage> contact;
   contact->data = measured.is_touching;
   return contact;
+}
+
+SensorMessage MessageOf(const Measurement& measurement) {
+  // As Measurement has its alternatives, the first of which is none.
+  static constexpr SensorMessage kMessages[] = {
+      SensorMessage::kImu,           SensorMessage::kOdometry,      SensorMessage::kTransforms,
+      SensorMessage::kString,        SensorMessage::kLaserScan,     SensorMessage::kPointCloud,
+      SensorMessage::kRange,         SensorMessage::kImage,         SensorMessage::kNavSatFix,
+      SensorMessage::kMagneticField, SensorMessage::kFluidPressure, SensorMessage::kBool};
+  static_assert(std::size(kMessages) + 1 == std::variant_size_v<Measurement>);
+  TCS_CHECK(measurement.index() > 0);
+  return kMessages[measurement.index() - 1];
 }
 
 std::vector<std::byte> EncodeMeasurement(std::int64_t stamp_ns, const Measurement& measurement,

@@ -36,6 +36,8 @@ namespace tcs::dds {
 [[nodiscard]] Owned<BoolMessage> ToMessage(std::int64_t stamp_ns,
                                            const ContactMeasurement& contact);
 
+// Which message that is; there is a measurement.
+[[nodiscard]] SensorMessage MessageOf(const Measurement& measurement);
 // As the bytes of its message, as that release has it; there is a measurement.
 [[nodiscard]] std::vector<std::byte> EncodeMeasurement(std::int64_t stamp_ns,
                                                        const Measurement& measurement,

@@ -100,6 +100,22 @@ void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> p
   writer.sent_to.insert(header.to);
 }
 
+// Of a writer that is gone nobody knows the topic any more.
+void TopicLog::Delivered(const DdsMessage& header, std::uint32_t to, std::int64_t at_ns) {
+  if (deliveries_ == nullptr || header.kind != DdsKind::kSample ||
+      header.sample_kind != shm::kDdsData) {
+    return;
+  }
+  const auto found = known_.find(GuidAt(header.subject));
+  if (found == known_.end()) return;
+  deliveries_->Delivered({.topic = found->second.topic,
+                          .from = header.from,
+                          .to = to,
+                          .sent_ns = header.time_ns,
+                          .source_timestamp_ns = header.source_timestamp_ns,
+                          .received_ns = at_ns});
+}
+
 void TopicLog::Dropped(const DdsMessage& header, std::uint32_t) {
   const auto found = known_.find(GuidAt(header.subject));
   if (found != known_.end()) ++reports_[found->second.topic].drops;

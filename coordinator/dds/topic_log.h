@@ -36,9 +36,23 @@ class TopicLog : public HubObserver {
     virtual void Written(Topic topic, std::int64_t at_ns, std::span<const std::byte> cdr) = 0;
   };
 
+  // A sample that has reached a process.
+  struct Delivery {
+    Topic topic;
+    Hub::Number from, to;  // 0: the coordinator
+    std::int64_t sent_ns;  // as the hub has it: what is on its way is sent when it arrives
+    std::int64_t source_timestamp_ns;
+    std::int64_t received_ns;
+  };
+  struct DeliveryListener {
+    virtual ~DeliveryListener() = default;
+    virtual void Delivered(const Delivery& delivery) = 0;
+  };
+
   explicit TopicLog(std::function<Speaker(Hub::Number)> who) : who_(std::move(who)) {}
   // Null: nobody. It outlives this.
   void Tell(Listener* listener) { listener_ = listener; }
+  void TellDeliveries(DeliveryListener* listener) { deliveries_ = listener; }
 
   const std::vector<TopicReport>& reports() const { return reports_; }
   // False: a program has made ever other topics, or writers and readers of ever other QoS. Of those
@@ -48,6 +62,7 @@ class TopicLog : public HubObserver {
 
   void Entered(const shm::DdsMessage& header, std::span<const std::byte> payload) override;
   void Dropped(const shm::DdsMessage& header, std::uint32_t to) override;
+  void Delivered(const shm::DdsMessage& header, std::uint32_t to, std::int64_t at_ns) override;
   void Left(std::uint32_t from) override;
 
  private:
@@ -67,6 +82,7 @@ class TopicLog : public HubObserver {
 
   std::function<Speaker(Hub::Number)> who_;
   Listener* listener_ = nullptr;
+  DeliveryListener* deliveries_ = nullptr;
   std::vector<TopicReport> reports_;
   std::map<Guid, Known> known_;  // that are there
   std::size_t ends_ = 0;         // in reports_

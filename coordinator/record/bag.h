@@ -1,10 +1,9 @@
-// A recording as ROS 2 keeps it: a rosbag2 bag with SQLite storage, that is a folder with
-// metadata.yaml and NAME_0.db3, in the form of ROS 2 Iron (schema 4): it has the definitions of the
-// messages that tcs knows, and Humble's readers, which want none, read it as well.
+// A recording as ROS 2 keeps it: a rosbag2 bag, that is a folder with metadata.yaml and a file with
+// the samples: NAME_0.db3 or NAME_0.mcap, as the storage has it (bag_storage.h).
 //
 // Samples are written in batches of a virtual second at the most. Whatever ends the process, what
-// was written before the last batch can be opened: SQLite's write-ahead log keeps the database
-// whole (NAME_0.db3-wal, beside it until Close), and metadata.yaml counts what the batches brought.
+// was written before the last batch can be opened, and metadata.yaml counts what the batches
+// brought. Once something cannot be written nothing more is.
 //
 // Not thread-safe. What could not be written is reported by Close().
 #pragma once
@@ -24,16 +23,15 @@
 #include "coordinator/dds/ros_names.h"
 #include "coordinator/os/files.h"
 #include "coordinator/record/bag_metadata.h"
-
-struct sqlite3;
-struct sqlite3_stmt;
+#include "coordinator/record/bag_storage.h"
 
 namespace tcs::record {
 
 class Bag {
  public:
   // The messages are as that release has them.
-  explicit Bag(dds::RosRelease release = dds::RosRelease::kIron);
+  explicit Bag(dds::RosRelease release = dds::RosRelease::kIron,
+               StorageKind kind = StorageKind::kSqlite3);
   // Closes without a word if nobody has.
   ~Bag();
   Bag(const Bag&) = delete;
@@ -42,7 +40,7 @@ class Bag {
   // Makes the folder, and an empty bag in it in place of an earlier one. Empty on success, else one
   // sentence.
   [[nodiscard]] std::string Open(const std::string& folder);
-  bool is_open() const { return database_ != nullptr; }
+  bool is_open() const { return storage_ != nullptr; }
 
   // The number of the topic, for Write. ROS 2's names (dds/ros_names.h); a topic and type that the
   // bag has already keep their number. A topic of another type is another topic, "/odom_2", for
@@ -60,32 +58,22 @@ class Bag {
   const BagMetadata& metadata() const { return metadata_; }
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const;
-  };
-  using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
-
-  // Each is false, and `failure_` says why, once something went wrong.
-  bool Run(const char* sql);
-  bool Prepare(const char* sql, Statement* statement);
-  bool Step(sqlite3_stmt* statement);
-  bool Begin();
-  bool EndBatch();
+  void EndBatch();
   std::string UniqueName(const std::string& name);
-  void WriteDefinition(const std::string& type);
-  bool WriteMetadata(Withstands what);
-  bool Fail(const std::string& why);
+  void WriteMetadata(Withstands what);
+  // `why` is empty where nothing failed.
+  void Note(const std::string& why);
 
   const dds::RosRelease release_;
+  const StorageKind kind_;
   std::string folder_, path_;
-  sqlite3* database_ = nullptr;
-  Statement insert_topic_, update_topic_, insert_definition_, insert_message_;
+  std::unique_ptr<BagStorage> storage_;
   BagMetadata metadata_;
   std::map<std::pair<std::string, std::string>, int> topics_;  // as they were asked for, with types
   std::map<std::string, int> names_;  // that are taken, and how many topics wanted them
-  std::set<std::string> defined_;     // types
-  std::set<int> other_offers_;        // topics whose offers have changed in this batch
-  BagMetadata in_batches_;            // the same as of the last batch that was written whole
+  std::set<std::string> types_;
+  std::set<int> other_offers_;  // topics whose offers have changed in this batch
+  BagMetadata in_batches_;      // the same as of the last batch that was written whole
   bool is_in_batch_ = false;
   std::optional<std::int64_t> batch_began_ns_;  // none: no message in it
   std::size_t batch_bytes_ = 0;

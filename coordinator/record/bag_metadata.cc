@@ -67,7 +67,7 @@ void EmitTopic(YAML::Emitter& out, const BagTopic& topic) {
 void Emit(YAML::Emitter& out, const BagMetadata& metadata) {
   out << BeginMap;
   out << Key << "version" << Value << kMetadataVersion;
-  out << Key << "storage_identifier" << Value << "sqlite3";
+  out << Key << "storage_identifier" << Value << metadata.storage;
   EmitTimes(out, metadata);
   out << Key << "message_count" << Value << metadata.messages;
   out << Key << "topics_with_message_count" << Value << BeginSeq;

@@ -23,6 +23,7 @@ struct BagMetadata {
   std::int64_t first_ns = 0, last_ns = 0;
   std::int64_t messages = 0;  // of all topics
   std::vector<BagTopic> topics;
+  std::string storage = "sqlite3";  // as rosbag2 calls it
 };
 
 // What the topic's writers offer, as YAML with rmw's numbers for the policies.

@@ -164,7 +164,7 @@ class Models {
       const YamlMap starts = joints->AsMap();
       for (const YamlMap::Entry& entry : starts.entries()) {
         const std::size_t joint = FindJoint(entry, *model);
-        model->joints[joint].initial_position = LoadPosition(entry, model->joints[joint].kind);
+        LoadJointStart(entry, &model->joints[joint]);
         places[joint] = entry.value;
       }
     }
@@ -191,6 +191,17 @@ class Models {
     entry.value.At(entry.key_place)
         .FailPlainly("unknown joint '" + entry.key + "' of " + model.name + "; " +
                      Suggest(entry.key, known, "joints"));
+  }
+
+  // Of a joint with one coordinate also [position, velocity].
+  static void LoadJointStart(const YamlMap::Entry& entry, Joint* joint) {
+    if (CoordinatesOf(joint->kind) == 1 && entry.value.IsList()) {
+      const std::vector<double> start = entry.value.AsNumbers(2, "[0.5, 0] (position, velocity)");
+      joint->initial_position = {start[0]};
+      joint->initial_velocity = {start[1]};
+    } else {
+      joint->initial_position = LoadPosition(entry, joint->kind);
+    }
   }
 
   static std::vector<double> LoadPosition(const YamlMap::Entry& entry, JointKind kind) {

@@ -42,12 +42,15 @@ struct RunProgress {
   PaceReport pace;
 };
 
+// Into which of rosbag2's storages messages are recorded.
+enum class RecordingKind { kNone, kSqlite3, kMcap };
+
 struct RunOptions {
   shm::Accounting accounting = shm::Accounting::kMeasured;
   shm::Sync sync = shm::Sync::kConsistent;
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
-  bool record = false;           // all DDS topics, into a bag in output_directory
+  RecordingKind record = RecordingKind::kNone;  // of the run's messages, in output_directory
   bool waits_for_cpu = true;     // where other runs have them all
   double pace = 0;               // virtual seconds for each real one; 0: as fast as it can
   bool starts_standing = false;  // until somebody lets it go on

@@ -20,6 +20,8 @@ class LinkLines {
 
   // A line for each, as they are at dynamics.Now(): the link's frame, in the world.
   void Append(Dynamics& dynamics, std::string* text);
+  // As they were then.
+  const std::vector<LinkState>& states() const { return states_; }
 
  private:
   std::vector<std::string> names_;

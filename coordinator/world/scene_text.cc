@@ -63,6 +63,7 @@ class SceneWriter {
         entry["parent"] = joint->parent;
         entry["joint"] = joint->name;
         entry["kind"] = NameOf(joint->kind);
+        if (joint->mimic) entry["mimics"] = true;
         entry["pose"] = PoseJson(joint->origin);
       }
       Json& shapes = entry["shapes"] = Json::array();
@@ -74,6 +75,7 @@ class SceneWriter {
     return {{"name", model.name},
             {"root", model.root},
             {"fixed_base", model.has_fixed_base},
+            {"urdf", file != scenario_.urdf_files.end()},
             {"links", std::move(links)}};
   }
 

@@ -10,7 +10,7 @@ for run in first second; do
 done
 (($(wc -l <"$out/first/bodies.csv") > 600)) || fail "the body states are missing"
 grep -q '"ph":"X"' "$out/first/trace.json" || fail "the trace is empty"
-for file in bodies.csv commands.csv output.csv scene.json trace.json activations.csv dispatches.csv; do
+for file in bodies.csv commands.csv output.csv messages.csv scene.json trace.json activations.csv dispatches.csv; do
   cmp "$out/first/$file" "$out/second/$file" || fail "$file differs"
 done
 (($(wc -l <"$out/first/activations.csv") > 600)) || fail "the activations are missing"

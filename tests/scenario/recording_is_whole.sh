@@ -37,7 +37,8 @@ check witness "$out/told" "$out/told/r-witness.out.log"
   --record --out "$out/killed" >"$out/said" 2>&1 &
 run=$!
 bag=$out/killed/bag
-for _ in $(seq 200); do
+# It may have to wait for a processor first.
+for _ in $(seq 600); do
   [[ -e $bag/metadata.yaml && $(sed -n 's/^  message_count: //p' "$bag/metadata.yaml") -gt 500 ]] && break
   sleep 0.1
 done

@@ -63,6 +63,43 @@ TEST_F(TopicLogTest, ASampleCountsOnceForHoweverManyItIs) {
                                           Pair(600, "efg!")));
 }
 
+TEST_F(TopicLogTest, ADeliveryIsToldWhenAProcessIsGivenTheSample) {
+  struct Deliveries : TopicLog::DeliveryListener {
+    void Delivered(const TopicLog::Delivery& d) override {
+      told.push_back({static_cast<std::int64_t>(d.topic), d.from, d.to, d.sent_ns,
+                      d.source_timestamp_ns, d.received_ns});
+    }
+    std::vector<std::vector<std::int64_t>> told;
+  } deliveries;
+  log_.TellDeliveries(&deliveries);
+  OwnEndpoints ends(hub_);
+  ends.Add(AReader("rt/cmd"), 0, 0);
+  Client writer(hub_, 0), reader(hub_, 0);
+  const std::int64_t from = writer.number(), to = reader.number();
+  writer.Announce(1, AWriter("rt/odom"), 5);
+  writer.Announce(2, AWriter("rt/cmd"), 5);
+  writer.Write(1, "abcd", {reader.number()}, 100, {.stamp_ns = 90});
+  writer.Write(2, "efgh", {shm::kDdsCoordinator}, 300, {.stamp_ns = 290});
+  EXPECT_THAT(deliveries.told, IsEmpty()) << "nobody has taken anything";
+  reader.Take(shm::DdsKind::kSample, 250);
+  while (ends.Take(400).has_value()) {
+  }
+  const auto topic = [this](const char* name) {
+    std::int64_t number = 0;
+    while (log_.reports()[static_cast<std::size_t>(number)].topic != name) ++number;
+    return number;
+  };
+  EXPECT_THAT(deliveries.told, ElementsAre(ElementsAre(topic("/odom"), from, to, 100, 90, 250),
+                                           ElementsAre(topic("/cmd"), from, 0, 300, 290, 300)));
+  // The end of an instance, and what comes once nobody listens.
+  writer.Write(1, "a key", {reader.number()}, 500, {.stamp_ns = 500, .kind = 1});
+  reader.Take(shm::DdsKind::kSample, 500);
+  log_.TellDeliveries(nullptr);
+  writer.Write(1, "abcd", {reader.number()}, 600, {.stamp_ns = 600});
+  reader.Take(shm::DdsKind::kSample, 600);
+  EXPECT_THAT(deliveries.told, SizeIs(2));
+}
+
 TEST_F(TopicLogTest, TheEndOfAnInstanceIsNoSample) {
   Client writer(hub_, 0), reader(hub_, 0);
   writer.Announce(1, AWriter("rt/odom"), 5);

@@ -115,6 +115,17 @@ TEST(LoadModels, ARobotStandsWhereTheScenarioSays) {
                                              ":11: <gazebo> is not understood and left out"));
 }
 
+TEST(LoadModels, AJointMayMoveAtTheStart) {
+  const Folder folder;
+  const Scenario scenario =
+      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: [1.5, -2], shoulder: 3}", kGood));
+  const RobotModel& arm = Named(scenario, "arm");
+  EXPECT_THAT(arm.joints.at(1).initial_position, ElementsAre(1.5));
+  EXPECT_THAT(arm.joints.at(1).initial_velocity, ElementsAre(-2));
+  EXPECT_THAT(arm.joints.at(0).initial_position, ElementsAre(3));
+  EXPECT_TRUE(arm.joints.at(0).initial_velocity.empty());
+}
+
 TEST(LoadModels, WhatStandsIsOfTheWorld) {
   const Folder folder;
   const Scenario scenario = Loaded(folder);
@@ -306,7 +317,16 @@ const Mistake kMistakes[] = {
      "",
      "s.yaml:4",
      {"joint 'elbow'", "say in joints"}},
-    {"StartIsAList", "{elbow: 1.5}", "{elbow: [1]}", "s.yaml:8", {"is a list; give a number"}},
+    {"StartIsAListOfOne",
+     "{elbow: 1.5}",
+     "{elbow: [1]}",
+     "s.yaml:8",
+     {"joints.elbow has 1 numbers; write 2, like [0.5, 0] (position, velocity)"}},
+    {"StartMovesAtNoNumber",
+     "{elbow: 1.5}",
+     "{elbow: [1, fast]}",
+     "s.yaml:8",
+     {"joints.elbow", "'fast'"}},
     {"AtIsAList",
      "{position: [1, 2, 3], orientation: [0, 0, 1, 0]}",
      "[1, 2, 3]",

@@ -1,0 +1,59 @@
+#include "coordinator/calls/message_log.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace tcs {
+namespace {
+
+// Names that are not ROS 2's may be anything.
+std::string AsField(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c == ',' || c == '"' || c < ' '; }, '_');
+  return name;
+}
+
+}  // namespace
+
+MessageLog::MessageLog(std::string folder, const Scenario& scenario, const dds::TopicLog& topics,
+                       NameOf name, std::int64_t realtime_offset_ns)
+    : path_(std::move(folder) + "/messages.csv"),
+      topics_(topics),
+      name_(std::move(name)),
+      realtime_offset_ns_(realtime_offset_ns) {
+  for (const CommandChannelSpec& command : scenario.commands) {
+    if (const auto* from = std::get_if<DdsCommandEnd>(&command.from)) {
+      commanded_.insert(from->end.topic);
+    }
+  }
+}
+
+// Numbers are not given to others. As the schedule calls the world.
+const std::string& MessageLog::NameOfProcess(dds::Hub::Number number) {
+  const auto [name, is_new] = names_.try_emplace(number);
+  if (is_new) name->second = number == 0 ? "dynamics" : AsField(name_(number));
+  return name->second;
+}
+
+void MessageLog::Delivered(const dds::TopicLog::Delivery& delivery) {
+  const std::string& topic = topics_.reports()[delivery.topic].topic;
+  if (delivery.to == 0 && !commanded_.contains(topic)) return;
+  if (!file_.is_open()) {
+    if (!failure_.empty()) return;
+    failure_ = file_.Open(path_, "sent_ns,sender,received_ns,receiver,topic");
+    if (!failure_.empty()) return;
+  }
+  // What the world says it has seen earlier than it sends it.
+  const std::int64_t sent_ns =
+      delivery.from == 0 ? delivery.source_timestamp_ns - realtime_offset_ns_ : delivery.sent_ns;
+  file_.Line(sent_ns, NameOfProcess(delivery.from), delivery.received_ns,
+             NameOfProcess(delivery.to), AsField(topic));
+}
+
+std::string MessageLog::Close() {
+  std::string error = file_.Close();
+  return failure_.empty() ? error : failure_;
+}
+
+}  // namespace tcs

@@ -1,0 +1,31 @@
+// A file that is compressed as it is written; the same bytes each time.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+struct gzFile_s;
+
+namespace tcs::perfetto {
+
+class GzipFile {
+ public:
+  GzipFile() = default;
+  // Closes without a word if nobody has.
+  ~GzipFile();
+  GzipFile(const GzipFile&) = delete;
+  GzipFile& operator=(const GzipFile&) = delete;
+
+  // Empty on success, else one sentence.
+  [[nodiscard]] std::string Open(const std::string& path);
+  void Append(std::string_view text);
+  // The same; of whatever went wrong since Open.
+  [[nodiscard]] std::string Close();
+
+ private:
+  gzFile_s* file_ = nullptr;
+  std::string path_;
+  bool failed_ = false;
+};
+
+}  // namespace tcs::perfetto

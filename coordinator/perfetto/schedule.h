@@ -1,0 +1,50 @@
+// The schedule that a run has written (trace.json), read again: its events as they are, and which
+// row was busy when.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::perfetto {
+
+// Of a trace: a thread of a process, as its format has them.
+struct Row {
+  int pid = 0, tid = 0;
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy;  // from, until; ns, in order
+};
+
+class Schedule {
+ public:
+  // What is wrong is one sentence.
+  [[nodiscard]] static LoadResult<Schedule> Read(const std::string& path);
+
+  // Without the file's beginning and end; between two of them a comma.
+  std::string_view events() const { return events_; }
+  int last_pid() const { return last_pid_; }
+
+  // None: null. The first thread of a client is called as the client.
+  const Row* Find(const std::string& name) const;
+  // Of the rows of the client's threads the one that stopped at that time, or began, or was busy;
+  // else that of the first. None: null.
+  const Row* ThatStopped(const std::string& client, std::int64_t at_ns) const;
+  const Row* ThatBegan(const std::string& client, std::int64_t at_ns) const;
+
+ private:
+  enum class Edge { kEnd, kBegin };
+  const Row* At(const std::string& client, std::int64_t at_ns, Edge edge) const;
+  void TakeLine(std::string_view line);
+
+  std::string text_;
+  std::string_view events_;
+  int last_pid_ = 0;
+  std::map<std::string, Row, std::less<>> rows_;  // by name
+  std::map<int, std::string> names_;              // by thread
+};
+
+}  // namespace tcs::perfetto
