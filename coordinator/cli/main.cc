@@ -256,9 +256,9 @@ int main(int argc, char** argv) {
   std::string viewed, view_where;
   CLI::App* show =
       app.add_subcommand("view", "shows a result folder in a browser, also while the run goes");
-  show->add_option("folder", viewed, "what run writes, or wrote")->required();
+  show->add_option("folder", viewed, "FOLDER: what run writes, or wrote")->required();
   show->add_option("--at", view_where,
-                   "PORT or ADDRESS:PORT; else a free port of this machine alone");
+                   "WHERE: PORT or ADDRESS:PORT; else a free port of this machine alone");
 
   tcs::TopicsArguments topics_arguments;
   CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
@@ -269,19 +269,19 @@ int main(int argc, char** argv) {
   tcs::TraceArguments trace_arguments;
   CLI::App* trace =
       app.add_subcommand("trace", "make one trace for ui.perfetto.dev of what a run has written");
-  trace->add_option("folder", trace_arguments.folder, "what run wrote")->required();
+  trace->add_option("folder", trace_arguments.folder, "FOLDER: what run wrote")->required();
   trace->add_option("--out", trace_arguments.out,
-                    "the trace; trace.json.gz in the folder unless told");
+                    "FILE: the trace; trace.json.gz in the folder unless told");
 
   tcs::SnapshotArguments snapshot_arguments;
   CLI::App* snapshot = app.add_subcommand(
       "snapshot", "how a run's world was at one moment, as a piece of a scenario");
   snapshot
       ->add_option("from", snapshot_arguments.from,
-                   "DIR or DIR@TIME: what run wrote, and when; the end unless told")
+                   "FOLDER[@TIME]: what run wrote, and when; the end unless told")
       ->required();
   snapshot->add_option("--out", snapshot_arguments.out,
-                       "a file for it, as run --overlay takes it; printed unless told");
+                       "FILE: for it, as run --overlay takes it; printed unless told");
 
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
@@ -357,7 +357,8 @@ int main(int argc, char** argv) {
   // Before there is anything else of the run: the server is no part of it.
   std::unique_ptr<tcs::ViewLink> link;
   if (run->parsed() && !view.empty() && !arguments.check) {
-    tcs::ViewRequest request{.folder = tcs::AbsolutePathOf(arguments.out)};
+    tcs::ViewRequest request{.server = tcs::ViewServer(),
+                             .folder = tcs::AbsolutePathOf(arguments.out)};
     std::string error = tcs::TakeViewAddress(view == "true" ? "" : view, &request);
     if (!error.empty()) return tcs::Fail("--view: " + error);
     link = tcs::StartView(request, &error);

@@ -15,13 +15,14 @@ fs::path ProgramFolder() {
 }
 
 // The places in an installed tree are CMake's, seen from the program's folder.
-std::string Library(const char* name) {
-  const fs::path folder = ProgramFolder();
-  fs::path installed = (folder / TCS_LIBRARIES_FROM_PROGRAM / name).lexically_normal();
+std::string Part(const char* name, const fs::path& in_build_tree) {
+  fs::path installed = (ProgramFolder() / TCS_LIBRARIES_FROM_PROGRAM / name).lexically_normal();
   std::error_code error;
   if (fs::exists(installed, error)) return installed;
-  return folder.parent_path() / "lib" / name;
+  return in_build_tree / name;
 }
+
+std::string Library(const char* name) { return Part(name, ProgramFolder().parent_path() / "lib"); }
 
 }  // namespace
 
@@ -30,6 +31,8 @@ std::string PreloadLibrary() { return Library("libtcs_preload.so"); }
 std::string DdsLibrary() { return Library("libtcs_dds.so"); }
 
 std::string AllocationLibrary() { return Library("libtcs_allocations.so"); }
+
+std::string ViewServer() { return Part("tcsim-view", ProgramFolder()); }
 
 std::string DataFolder() { return (ProgramFolder() / TCS_DATA_FROM_PROGRAM).lexically_normal(); }
 

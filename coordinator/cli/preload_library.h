@@ -16,6 +16,9 @@ std::string DdsLibrary();
 // The library that charges allocations under fixed accounting, beside the shim.
 std::string AllocationLibrary();
 
+// The server of a live page; in a build tree beside the program.
+std::string ViewServer();
+
 // The folder of templates, the scenario's schema and the examples.
 std::string DataFolder();
 

@@ -8,13 +8,14 @@
 #include <system_error>
 
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/preload_library.h"
 #include "coordinator/os/files.h"
 #include "coordinator/view/launch.h"
 
 namespace tcs {
 
 int ViewCommand(const std::string& folder, const std::string& where) {
-  ViewRequest request{.folder = AbsolutePathOf(folder)};
+  ViewRequest request{.server = ViewServer(), .folder = AbsolutePathOf(folder)};
   if (const std::string error = TakeViewAddress(where, &request); !error.empty()) {
     return Fail("--at: " + error);
   }
@@ -29,10 +30,10 @@ int ViewCommand(const std::string& folder, const std::string& where) {
     return Fail("in the folder '" + folder +
                 "' is nothing that `tcsim run` writes; name the one that it was given as --out");
   }
-  const std::string program = ViewProgram(), port = std::to_string(request.port);
-  execl(program.c_str(), program.c_str(), request.folder.c_str(), request.address.c_str(),
+  const std::string port = std::to_string(request.port);
+  execl(request.server.c_str(), request.server.c_str(), request.folder.c_str(), request.address.c_str(),
         port.c_str(), nullptr);
-  return Fail("the server of the page, " + program + ", cannot be started: " + strerror(errno) +
+  return Fail("the server of the page, " + request.server + ", cannot be started: " + strerror(errno) +
               "; build tcs again");
 }
 

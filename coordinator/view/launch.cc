@@ -12,11 +12,9 @@
 #include <unistd.h>
 
 #include <charconv>
-#include <filesystem>
 #include <new>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -72,11 +70,6 @@ bool TakePort(std::string_view text, int* port) {
 
 }  // namespace
 
-std::string ViewProgram() {
-  std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "tcsim-view";
-}
-
 std::string TakeViewAddress(const std::string& text, ViewRequest* request) {
   if (text.empty() || TakePort(text, &request->port)) return {};
   const std::string mistake =
@@ -106,7 +99,7 @@ std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* err
     return nullptr;
   }
   auto* page = new (memory.at) ControlPage{};
-  std::vector<std::string> words{ViewProgram(),           request.folder,
+  std::vector<std::string> words{request.server,          request.folder,
                                  request.address,         std::to_string(request.port),
                                  std::to_string(kPageFd), std::to_string(kReadyFd)};
   std::vector<char*> argv;

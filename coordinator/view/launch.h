@@ -1,5 +1,4 @@
-// Starts the server of a live page, a process of its own at ordinary priority: tcsim-view, beside
-// tcsim.
+// Starts the server of a live page, tcsim-view, a process of its own at ordinary priority.
 #pragma once
 
 #include <memory>
@@ -10,6 +9,7 @@
 namespace tcs {
 
 struct ViewRequest {
+  std::string server;                 // its program
   std::string folder;                 // absolute; that the run writes to, and may not be there yet
   std::string address = "127.0.0.1";  // at which it listens
   int port = 0;                       // 0: any that is free
@@ -22,8 +22,5 @@ struct ViewRequest {
 // Waits until the server can be reached. Null: `error` says in a sentence what is in the way. The
 // server ends with the thread that calls this; call it before there are threads.
 std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* error);
-
-// Where the server's program is.
-std::string ViewProgram();
 
 }  // namespace tcs

@@ -26,6 +26,8 @@ for language in python c; do
     "$installed" run --accounting fixed >/dev/null || fail "the new scenario does not run"
     tail -n 1 out/bodies.csv | awk -F, '{exit !($3^2 + $4^2 + ($5-1)^2 < 0.01^2)}' ||
       fail "the drone does not hover one metre high: $(tail -n 1 out/bodies.csv)"
+    "$installed" run --accounting fixed --view >/dev/null 2>said && grep -q "^tcsim: watch the run at http" said ||
+      fail "the new scenario cannot be watched: $(cat said)"
     schema=$(sed -n 's/^# yaml-language-server: \$schema=//p' scenario.yaml)
     [[ -f $schema && $schema == "$prefix"/* ]] || fail "the scenario's schema is not the installed one: $schema"
   )
