@@ -175,7 +175,7 @@ class Maker {
 };
 
 void Tell(int socket, Told told, int fd) {
-  const PassedMessage message(&told, sizeof told, fd);
+  const PassedMessage message(&told, sizeof told, std::span(&fd, fd < 0 ? 0 : 1));
   sendmsg(socket, message.get(), MSG_NOSIGNAL);
 }
 

@@ -20,7 +20,7 @@ std::vector<std::string> ChoicesIn(const std::string& type) {
 
 // Takes "FILE: " from the text's beginning.
 std::string TakeValueName(std::string* text) {
-  constexpr std::string_view kOfNames = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789=,./";
+  constexpr std::string_view kOfNames = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789=,./@[]";
   const std::size_t end = text->find_first_not_of(kOfNames);
   const bool has_name = end != std::string::npos && end > 0 && text->compare(end, 2, ": ") == 0;
   if (!has_name) return {};

@@ -50,6 +50,7 @@ robots:
     cpu: {QQ}
     clients:
       c: {command: [./controller], working_directory: {fresh: true, QQ}, QQ}
+network: {links: [{between: [r, r], QQ}], QQ}
 clock: {qos: {QQ}, QQ}
 channels:
   x: {type: udp_json, sensors: {bodies: [b], to: "127.0.0.1:47001", noise: {QQ}, bias: {QQ}, QQ}, QQ}
@@ -111,6 +112,7 @@ class SchemaOfKeys : public testing::Test {
     if (node.contains("$ref")) {
       return MapIn(schema_.at(Json::json_pointer(node["$ref"].get<std::string>().substr(1))));
     }
+    if (node.contains("items")) return MapIn(node["items"]);
     if (!node.contains("anyOf")) return nullptr;
     for (const Json& alternative : node["anyOf"]) {
       if (const Json* map = MapIn(alternative)) return map;
@@ -124,6 +126,7 @@ class SchemaOfKeys : public testing::Test {
     std::istringstream names(path);
     for (std::string name; map != nullptr && std::getline(names, name, '.');) {
       const Json& all = *map;
+      name = name.substr(0, name.find('['));  // an element of a list
       if (all.contains("properties") && all["properties"].contains(name)) {
         map = MapIn(all["properties"][name]);
       } else if (all.contains("additionalProperties") && all["additionalProperties"].is_object()) {
