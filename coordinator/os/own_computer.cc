@@ -17,6 +17,7 @@
 
 #include <climits>
 #include <optional>
+#include <span>
 
 #include "coordinator/os/netlink.h"
 #include "coordinator/os/passed_fd.h"
