@@ -132,9 +132,10 @@ int main(int argc, char** argv) {
   run->add_option("scenario", arguments.scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
   run->add_option("--duration", arguments.duration, "TIME: of virtual time, such as 20s");
-  run->add_option("--stop-at", arguments.stop_at,
-                  "TIME: of virtual time, such as 12.5s: stop there, and write the world as it is then "
-                  "into snapshot.yaml, a piece of a scenario for --overlay");
+  run->add_option(
+      "--stop-at", arguments.stop_at,
+      "TIME: of virtual time, such as 12.5s: stop there, and write the world as it is then "
+      "into snapshot.yaml, a piece of a scenario for --overlay");
   run->add_option_function<std::string>(
          "--from", [](const std::string& from) { throw PlainError(tcs::NoWayBack(from)); },
          "DIR@TIME: says what is possible instead; programs cannot go on from within a run")

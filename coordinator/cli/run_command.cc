@@ -109,9 +109,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     scenario.duration = *stop_at;
   }
   if (arguments.check) return SaySound(scenario);
-  for (const std::string& error :
-       {TakePace(arguments, scenario, &options),
-        TakeDebugged(arguments.debugged, scenario, gdb, &options)}) {
+  for (const std::string& error : {TakePace(arguments, scenario, &options),
+                                   TakeDebugged(arguments.debugged, scenario, gdb, &options)}) {
     if (!error.empty()) return Fail(error);
   }
   if (const std::string error = MakeFolder(arguments.out); !error.empty()) return Fail(error);

@@ -31,10 +31,10 @@ int ViewCommand(const std::string& folder, const std::string& where) {
                 "' is nothing that `tcsim run` writes; name the one that it was given as --out");
   }
   const std::string port = std::to_string(request.port);
-  execl(request.server.c_str(), request.server.c_str(), request.folder.c_str(), request.address.c_str(),
-        port.c_str(), nullptr);
-  return Fail("the server of the page, " + request.server + ", cannot be started: " + strerror(errno) +
-              "; build tcs again");
+  execl(request.server.c_str(), request.server.c_str(), request.folder.c_str(),
+        request.address.c_str(), port.c_str(), nullptr);
+  return Fail("the server of the page, " + request.server +
+              ", cannot be started: " + strerror(errno) + "; build tcs again");
 }
 
 }  // namespace tcs

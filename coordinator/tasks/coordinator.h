@@ -51,7 +51,7 @@ struct RunOptions {
   std::string output_directory;  // empty: clients keep the terminal (tcsim exec)
   bool counts_work = false;      // calls and allocations of each activation, for `tcsim fit`
   RecordingKind record = RecordingKind::kNone;  // of the run's messages, in output_directory
-  bool waits_for_cpu = true;     // where other runs have them all
+  bool waits_for_cpu = true;                    // where other runs have them all
   double pace = 0;               // virtual seconds for each real one; 0: as fast as it can
   bool starts_standing = false;  // until somebody lets it go on
   ViewLink* view = nullptr;      // where people watch it, or nobody

@@ -76,9 +76,8 @@ TEST_F(LoadNetworkTest, MistakesAreSentencesWithTheirPlace) {
                  "both directions, or from: A and to: B for one");
   EXPECT_EQ(Refusal("network: {links: [{between: [a, a]}]}"),
             at + "network.links[0] joins a robot to itself; its own programs meet without a link");
-  EXPECT_EQ(
-      Refusal("network: {links: [{from: a, to: bb}]}"),
-      at + "network.links[0].to names the unknown robot 'bb'; did you mean 'b'?");
+  EXPECT_EQ(Refusal("network: {links: [{from: a, to: bb}]}"),
+            at + "network.links[0].to names the unknown robot 'bb'; did you mean 'b'?");
 }
 
 TEST_F(LoadNetworkTest, AddressesAreOfOneRobotEachAndNeedANetwork) {
