@@ -44,7 +44,8 @@ class LaunchesTest : public testing::Test {
   RegistrationSockets sockets_{reactor_};
   TrapListeners traps_{reactor_};
   const std::vector<pid_t> guarded_;
-  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, guarded_};
+  RobotNetwork network_;
+  Launches launches_{run_, waker_, births_, sockets_, traps_, world_, network_, guarded_};
   Process ended_;
 };
 

@@ -48,9 +48,9 @@ class RegistrationSocketsTest : public testing::Test {
 
 TEST_F(RegistrationSocketsTest, WhoComesToAClientsSocketDescendsFromThatClient) {
   Process one, two;
-  const std::string first = sockets_.Open();
+  const std::string first = sockets_.Open(nullptr);
   sockets_.AssignTo(one);
-  const std::string second = sockets_.Open();
+  const std::string second = sockets_.Open(nullptr);
   sockets_.AssignTo(two);
   ASSERT_NE(first, second);
   const UniqueFd at_second = ConnectTo(second), at_first = ConnectTo(first);
@@ -65,7 +65,7 @@ TEST_F(RegistrationSocketsTest, WhoComesToAClientsSocketDescendsFromThatClient) 
 
 TEST_F(RegistrationSocketsTest, OfTooManyWhoSayNothingTheEarliestAreCutOff) {
   Process client;
-  const std::string name = sockets_.Open();
+  const std::string name = sockets_.Open(nullptr);
   sockets_.AssignTo(client);
   std::vector<UniqueFd> connected;
   for (std::size_t i = 0; i <= RegistrationSockets::kMostSilent; ++i) {
