@@ -97,7 +97,6 @@ int Parse(CLI::App& app, int argc, char** argv) {
   try {
     std::vector<std::string> words = WithRecordJoined(argc, argv);
     std::ranges::reverse(words);  // CLI11 wants the last one first
-    app.name(argv[0]);
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
