@@ -111,7 +111,8 @@ class OutputLogTest : public ::testing::Test {
     text << std::ifstream(folder_ + "/output.csv").rdbuf();
     return text.str();
   }
-  const std::string folder_ = ::testing::TempDir() + "output_log_test";
+  const std::string folder_ = ::testing::TempDir() + "output_log_test_" +
+                              ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 TEST_F(OutputLogTest, HasALineForEachPieceThatAClientWrote) {
