@@ -39,8 +39,8 @@ install(DIRECTORY "${CMAKE_SOURCE_DIR}/examples" DESTINATION "${CMAKE_INSTALL_DA
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/coordinator/dds/idl" DESTINATION "${CMAKE_INSTALL_DATADIR}/tcs"
         FILES_MATCHING PATTERN "*.idl")
 set(tcs_doc "${CMAKE_INSTALL_DATADIR}/doc/tcsim")
-install(FILES "${CMAKE_SOURCE_DIR}/README.md" DESTINATION "${tcs_doc}")
-install(DIRECTORY "${CMAKE_SOURCE_DIR}/docs" DESTINATION "${tcs_doc}" PATTERN "images" EXCLUDE)
+install(FILES "${CMAKE_SOURCE_DIR}/README.md" "${CMAKE_SOURCE_DIR}/CONTRIBUTING.md" DESTINATION "${tcs_doc}")
+install(DIRECTORY "${CMAKE_SOURCE_DIR}/docs" DESTINATION "${tcs_doc}")
 
 # --- The Debian package: `cpack -G DEB` in a folder configured for /usr; `./dev package` does both. ------------------
 
