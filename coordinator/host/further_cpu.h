@@ -79,7 +79,7 @@ class FurtherCpu {
   Executor& executor_;
   const std::function<bool(int)> asks_whether_claimed_;
   HostThread* thread_ = nullptr;
-  int left_to_others_ = 0;  // in a row
+  int left_to_others_ = 0;        // in a row
   std::uint64_t left_ticks_ = 0;  // the last time
   std::uint64_t not_before_tsc_ = 0;
   std::atomic<std::int64_t> allowed_ns_{0};
