@@ -48,56 +48,56 @@ void DdsGateway::UseNetwork(Wire& wire) {
 }
 
 void DdsGateway::TakeOwnMessages() {
-  const std::int64_t until = std::min(run_.root.Least(), run_.end_ns);
-  if (hub_.OwnDueNs() > until) return;
+  const VirtualTime until = std::min(run_.root.Least(), run_.end);
+  if (RobotTime(hub_.OwnDueNs()) > until) return;
   if (world_.present() && !run_.IsInGrace()) world_.ReceiveUntold(until);
   // What was for none of the channels, or is from after their end.
-  while (ends_.Take(until).has_value()) {
+  while (ends_.Take(until.ns()).has_value()) {
   }
   ShowDeliverersTheirDeadlines();
 }
 
-void DdsGateway::Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
+void DdsGateway::Handle(Task& task, const shm::Notification& note, VirtualTime deadline) {
   Process& process = *task.process;
   switch (note.kind) {
     case shm::NotificationKind::kDdsJoin:
       Join(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      Send(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
+      Send(process, static_cast<std::size_t>(note.args[0]), task.reached);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
       break;
     case shm::NotificationKind::kDdsRoom: {
       const auto receiver = static_cast<dds::Hub::Number>(note.args[0]);
-      if (hub_.IsFull(receiver)) waker_.Wait(task, {awaited::Room{receiver}, deadline_ns});
+      if (hub_.IsFull(receiver)) waker_.Wait(task, {awaited::Room{receiver}, deadline});
       break;
     }
     case shm::NotificationKind::kDdsSockets:
       WarnOfSockets(process, static_cast<shm::WhySockets>(note.args[0]));
       break;
     default:
-      AwaitDeliverer(task, deadline_ns);
+      AwaitDeliverer(task, deadline);
   }
 }
 
 // The deliverer inherits the priority of the threads that wait for it.
-void DdsGateway::AwaitDeliverer(Task& task, std::int64_t deadline_ns) {
+void DdsGateway::AwaitDeliverer(Task& task, VirtualTime deadline) {
   Process& process = *task.process;
-  if (!IsDelivering(process, task.reached_ns)) return;
-  waker_.Wait(task, {awaited::Deliverer{}, deadline_ns});
+  if (!IsDelivering(process, task.reached)) return;
+  waker_.Wait(task, {awaited::Deliverer{}, deadline});
   PriorityInheritance::BlockOn(task, process.deliverer);
   inheritance_.Find(*process.deliverer);
 }
 
 // What is wrong is said once of each process: it may send as often as it likes.
-void DdsGateway::Send(Process& process, std::size_t bytes, std::int64_t at_ns) {
-  const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns);
+void DdsGateway::Send(Process& process, std::size_t bytes, VirtualTime at) {
+  const std::string wrong = hub_.Send(process.dds_number, bytes, at.ns());
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     run_.Warn(fmt::format("{} {}", process.name, wrong));
   }
-  records_.ReadNewTopics(at_ns);
+  records_.ReadNewTopics(at.ns());
   ShowDeliverersTheirDeadlines();
 }
 
@@ -133,8 +133,8 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
 
 void DdsGateway::Join(Task& task) {
   Process& process = *task.process;
-  Leave(process, {task.reached_ns});
-  process.dds_number = hub_.Join(task.reached_ns);
+  Leave(process, {task.reached});
+  process.dds_number = hub_.Join(task.reached.ns());
   task.reply[0] = process.dds_number != 0 ? process.dds_number : -errno;
   task.reply[1] = run_.scenario.drift_bound.ns();
   if (process.dds_number != 0) joined_.push_back(&process);
@@ -148,7 +148,7 @@ void DdsGateway::Leave(Process& process, Moment moment) {
   if (process.dds_number == 0) return;
   std::erase(joined_, &process);
   const std::uint32_t number = std::exchange(process.dds_number, 0);
-  hub_.Leave(number, moment.ns);
+  hub_.Leave(number, moment.at.ns());
   ReleaseThoseAwaitingRoom(number, moment);
   ShowDeliverersTheirDeadlines();
 }
@@ -161,17 +161,17 @@ void DdsGateway::AwaitMessages(Task& task) {
     task.is_deliverer = true;
   }
   hub_.CameBack(process.dds_number);
-  ReleaseThoseAwaitingRoom(process.dds_number, {task.reached_ns});
-  waker_.Wait(task, {awaited::Messages{}, hub_.DueNs(process.dds_number)});
-  ReleaseThoseAwaitingDeliverer(process, {task.reached_ns});
+  ReleaseThoseAwaitingRoom(process.dds_number, {task.reached});
+  waker_.Wait(task, {awaited::Messages{}, RobotTime(hub_.DueNs(process.dds_number))});
+  ReleaseThoseAwaitingDeliverer(process, {task.reached});
 }
 
-// Whether what is due at `now_ns` is being handed over, or is about to be.
-bool DdsGateway::IsDelivering(const Process& process, std::int64_t now_ns) const {
+// Whether what is due at `now` is being handed over, or is about to be.
+bool DdsGateway::IsDelivering(const Process& process, VirtualTime now) const {
   const Task* deliverer = process.deliverer;
   if (deliverer == nullptr) return false;
   if (deliverer->Awaits<awaited::Messages>() != nullptr) {
-    return hub_.DueNs(process.dds_number) <= now_ns;
+    return RobotTime(hub_.DueNs(process.dds_number)) <= now;
   }
   return Waker::IsRunnable(*deliverer);
 }
@@ -180,7 +180,7 @@ void DdsGateway::ReleaseThoseAwaitingDeliverer(const Process& process, Moment mo
   if (waker_.counts().for_deliverer() == 0) return;
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->Awaits<awaited::Deliverer>() == nullptr) continue;
-    if (!IsDelivering(process, task->reached_ns)) {
+    if (!IsDelivering(process, task->reached)) {
       waker_.Wake(*task, shm::WakeReason::kGo, moment);
     }
   }
@@ -200,11 +200,11 @@ void DdsGateway::ShowDeliverersTheirDeadlines() {
   for (const Process* process : joined_) {
     Task* deliverer = process->deliverer;
     if (deliverer == nullptr || deliverer->Awaits<awaited::Messages>() == nullptr) continue;
-    const std::int64_t due = hub_.DueNs(process->dds_number);
-    if (std::exchange(deliverer->wait->deadline_ns, due) == due) continue;
+    const VirtualTime due = RobotTime(hub_.DueNs(process->dds_number));
+    if (std::exchange(deliverer->wait->deadline, due) == due) continue;
     SchedulerOf(*deliverer).WaitChanged(deliverer->order);
     const bool inside = run_.turn.IsOn(*process->robot);
-    if (due != shm::kNeverNs && !inside) {
+    if (!due.IsNever() && !inside) {
       waker_.NoteLateness(*deliverer, due,
                           SchedulerOf(*deliverer).PreemptsOnWakeup(deliverer->order));
     }
@@ -214,7 +214,7 @@ void DdsGateway::ShowDeliverersTheirDeadlines() {
 
 // It is stopped as a whole from when a signal that does so is there, though its threads notice one
 // after another.
-void DdsGateway::NoteWhetherStopped(const Process& process, std::int64_t at_ns) {
+void DdsGateway::NoteWhetherStopped(const Process& process, VirtualTime at) {
   if (process.dds_number == 0) return;
   bool stopped = false;
   for (Task& task : run_.table.tasks()) {
@@ -225,18 +225,18 @@ void DdsGateway::NoteWhetherStopped(const Process& process, std::int64_t at_ns) 
                ((sets.own_pending | sets.shared_pending) & kStopSignals & ~ignored) != 0;
   }
   if (stopped) {
-    hub_.Stop(process.dds_number, at_ns);
+    hub_.Stop(process.dds_number, at.ns());
   } else {
-    hub_.Continue(process.dds_number, at_ns);
+    hub_.Continue(process.dds_number, at.ns());
   }
   ShowDeliverersTheirDeadlines();
 }
 
 void DdsGateway::HandOver(Task& task) {
-  const std::int64_t until = std::exchange(task.messages_until_ns, -1);
-  if (until < 0) return;
+  const std::optional<VirtualTime> until = std::exchange(task.messages_until, std::nullopt);
+  if (!until.has_value()) return;
   const std::size_t bytes =
-      hub_.Deliver(task.process->dds_number, std::max(until, task.cpu->progress_ns));
+      hub_.Deliver(task.process->dds_number, std::max(*until, task.cpu->progress).ns());
   task.reply[0] = static_cast<std::int64_t>(bytes);
 }
 

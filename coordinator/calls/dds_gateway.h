@@ -46,11 +46,11 @@ class DdsGateway {
   void UseNetwork(Wire& wire);
 
   // What a thread notifies of DDS; what it asks for is in its reply, or it waits.
-  void Handle(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
+  void Handle(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The process has died, or executes another program.
   void Leave(Process& process, Moment moment);
   // Others miss a stopped program when its leases are over. Looks whether it is.
-  void NoteWhetherStopped(const Process& process, std::int64_t at_ns);
+  void NoteWhetherStopped(const Process& process, VirtualTime at);
 
   // The memory through which the process exchanges messages; -1 if it has not joined.
   int AreaOf(const Process& process) const { return hub_.AreaOf(process.dds_number); }
@@ -66,11 +66,11 @@ class DdsGateway {
   dds::Speaker WhoIs(dds::Hub::Number number) const;
   std::size_t RobotOf(dds::Hub::Number number) const;
   void Join(Task& task);
-  void Send(Process& process, std::size_t bytes, std::int64_t at_ns);
+  void Send(Process& process, std::size_t bytes, VirtualTime at);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
   void AwaitMessages(Task& task);
-  void AwaitDeliverer(Task& task, std::int64_t deadline_ns);
-  bool IsDelivering(const Process& process, std::int64_t now_ns) const;
+  void AwaitDeliverer(Task& task, VirtualTime deadline);
+  bool IsDelivering(const Process& process, VirtualTime now) const;
   void ReleaseThoseAwaitingRoom(std::uint32_t number, Moment moment);
 
   RunState& run_;

@@ -33,8 +33,7 @@ std::int64_t FutexCalls::Requeue(const Task& task, const TrappedCall& call, int 
   }
   const FutexKey from = FutexWords::KeyFor(task, call, call.args[0]),
                  to = FutexWords::KeyFor(task, call, call.args[4]);
-  std::int64_t moved =
-      words_.Wake(from, static_cast<int>(call.args[2]), kAnyBit, {task.reached_ns});
+  std::int64_t moved = words_.Wake(from, static_cast<int>(call.args[2]), kAnyBit, {task.reached});
   auto most = static_cast<int>(call.args[3]);
   for (const FutexTable::Thread waiter : words_.table().WaitersAt(from)) {
     if (most-- <= 0) break;
@@ -59,12 +58,12 @@ std::int64_t FutexCalls::WakeOp(const Task& task, const TrappedCall& call) {
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
   std::int64_t woken = words_.Wake(words_.WokenKeyFor(*task.process, call, call.args[0]),
-                                   AtLeastOne(call.args[2]), kAnyBit, {task.reached_ns});
+                                   AtLeastOne(call.args[2]), kAnyBit, {task.reached});
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
     woken += words_.Wake(words_.WokenKeyFor(*task.process, call, call.args[4]),
-                         AtLeastOne(call.args[3]), kAnyBit, {task.reached_ns});
+                         AtLeastOne(call.args[3]), kAnyBit, {task.reached});
   }
   return woken;
 }
@@ -85,7 +84,7 @@ bool FutexCalls::HoldsToWake(Task& task, const TrappedCall& call, int command) {
                      command == FUTEX_WAKE_OP || command == FUTEX_REQUEUE ||
                      command == FUTEX_CMP_REQUEUE || command == FUTEX_CMP_REQUEUE_PI ||
                      command == FUTEX_UNLOCK_PI;
-  if (!wakes || run_.IsCallback() || task.reached_ns <= run_.root.WriteSafe(task.cpu->leaf))
+  if (!wakes || run_.IsCallback() || task.reached <= run_.root.WriteSafe(task.cpu->leaf))
     return false;
   // Nobody waits: then nobody can be woken too early.
   if (command != FUTEX_WAKE_OP &&
@@ -114,7 +113,7 @@ void FutexCalls::Handle(Task& task, const TrappedCall& call) {
       break;
     case FUTEX_WAKE:
     case FUTEX_WAKE_BITSET:
-      task.trap_result = CarryOutWake(*task.process, call, {task.reached_ns});
+      task.trap_result = CarryOutWake(*task.process, call, {task.reached});
       // Threads that tcs does not know wait in the kernel.
       task.trap_continues =
           task.process->has_unmanaged_threads && task.trap_result < static_cast<int>(call.args[2]);

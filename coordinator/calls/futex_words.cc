@@ -42,22 +42,21 @@ FutexKey FutexWords::WokenKeyFor(const Process& process, const TrappedCall& call
 }
 
 std::int64_t FutexWords::Deadline(const Task& task, const TrappedCall& call, int command,
-                                  const timespec& timeout, std::int64_t* deadline_ns) {
-  *deadline_ns = shm::kNeverNs;
+                                  const timespec& timeout, VirtualTime* deadline) {
+  *deadline = VirtualTime::Never();
   if (call.args[3] == 0) return 0;
   if (!shm::IsValid(timeout)) return -EINVAL;
   const std::int64_t ns = shm::ToNs(timeout);
   if (ns > shm::kFarNs) return 0;
-  const std::int64_t now = task.reached_ns;
+  const VirtualTime now = task.reached;
   if (command == FUTEX_WAIT) {
-    *deadline_ns = now + ns;
+    *deadline = now + VirtualNs(ns);
     return 0;
   }
   const bool realtime = command == FUTEX_LOCK_PI || (call.args[1] & FUTEX_CLOCK_REALTIME) != 0;
   const std::int64_t offset =
       realtime ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
-  const ProgramTime deadline = OwnTime(ns - offset);
-  *deadline_ns = std::max(now, task.process->clock.RobotTimeOf(deadline).ns());
+  *deadline = std::max(now, task.process->clock.RobotTimeOf(OwnTime(ns - offset)));
   return 0;
 }
 
@@ -78,8 +77,8 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
             : ReadMemory(task.process->pid, word, {call.args[3], &timeout, sizeof timeout}))) {
     return -EFAULT;
   }
-  std::int64_t deadline_ns = 0;
-  if (const auto wrong = Deadline(task, call, command, timeout, &deadline_ns); wrong != 0) {
+  VirtualTime deadline;
+  if (const auto wrong = Deadline(task, call, command, timeout, &deadline); wrong != 0) {
     return wrong;
   }
   // Nobody has run since the caller looked: this is the check that the kernel makes under its lock.
@@ -96,12 +95,12 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
     }
   }
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
-  Enter(task, {.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK)}, deadline_ns);
+  Enter(task, {.names_tid = static_cast<pid_t>(value & FUTEX_TID_MASK)}, deadline);
   return 0;
 }
 
-void FutexWords::Enter(Task& task, awaited::Futex wait, std::int64_t deadline_ns) {
-  waker_.Wait(task, {wait, deadline_ns, true});
+void FutexWords::Enter(Task& task, awaited::Futex wait, VirtualTime deadline) {
+  waker_.Wait(task, {wait, deadline, true});
 }
 
 std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
@@ -112,14 +111,14 @@ std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
   }
   const pid_t pid = task.process->pid;
   timespec timeout{};
-  std::int64_t deadline_ns = shm::kNeverNs;
+  VirtualTime deadline = VirtualTime::Never();
   if (call.args[3] != 0) {
     const auto clock = static_cast<int>(call.args[4]);
     if (clock != CLOCK_MONOTONIC && clock != CLOCK_REALTIME) return -EINVAL;
     if (!ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
     TrappedCall timed = call;  // in the form of FUTEX_WAIT_BITSET
     timed.args[1] = clock == CLOCK_REALTIME ? FUTEX_CLOCK_REALTIME : 0;
-    const auto wrong = Deadline(task, timed, FUTEX_WAIT_BITSET, timeout, &deadline_ns);
+    const auto wrong = Deadline(task, timed, FUTEX_WAIT_BITSET, timeout, &deadline);
     if (wrong != 0) return wrong;
   }
   std::vector<WaitedWord> words(count);
@@ -138,7 +137,7 @@ std::int64_t FutexWords::WaitForAny(Task& task, const TrappedCall& call) {
     keys.push_back(KeyOf(pid, word.address, (word.flags & FUTEX_PRIVATE_FLAG) != 0));
   }
   table_.WaitForAny(task.order, std::move(keys), kAnyBit);
-  Enter(task, {}, deadline_ns);
+  Enter(task, {}, deadline);
   return 0;
 }
 

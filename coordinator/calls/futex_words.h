@@ -24,7 +24,7 @@ class FutexWords {
   std::int64_t Wait(Task& task, const TrappedCall& call, int command);
   std::int64_t WaitForAny(Task& task, const TrappedCall& call);
   // A wait begins, after the table knows where.
-  void Enter(Task& task, awaited::Futex wait, std::int64_t deadline_ns);
+  void Enter(Task& task, awaited::Futex wait, VirtualTime deadline);
   // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
   std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
 
@@ -33,7 +33,7 @@ class FutexWords {
   // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
   // 0, or the call's error.
   std::int64_t Deadline(const Task& task, const TrappedCall& call, int command,
-                        const timespec& timeout, std::int64_t* deadline_ns);
+                        const timespec& timeout, VirtualTime* deadline);
   static FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
   // The same for a wake. What a shared address is mapped to takes a look at the process, and where
   // nobody waits at the same place of any page, nobody can be woken.

@@ -7,10 +7,10 @@
 
 namespace tcs {
 
-void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, std::int64_t deadline_ns) {
+void KernelObjectWaits::Wait(Task& task, const shm::Notification& note, VirtualTime deadline) {
   const KernelObject object{.kind = note.args[0], .id = note.args[1]};
   objects_.Wait(task.order, object, note.args[2] != 0);
-  waker_.Wait(task, {awaited::Queue{object}, deadline_ns});
+  waker_.Wait(task, {awaited::Queue{object}, deadline});
 }
 
 bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) {
@@ -25,7 +25,7 @@ bool KernelObjectWaits::Wake(std::int64_t kind, std::int64_t id, Moment moment) 
   // A nanosecond apart, so that they try in this order on whatever cores they are.
   for (const WaitQueues::Thread thread : waiters) {
     waker_.Wake(run_.table.At(thread), shm::WakeReason::kGo, moment);
-    ++moment.ns;
+    moment.at += VirtualNs(1);
   }
   return !waiters.empty();
 }

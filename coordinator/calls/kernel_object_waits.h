@@ -22,7 +22,7 @@ class KernelObjectWaits {
       : run_(run), waker_(waker), terminals_written_(std::move(terminals_written)) {}
 
   // As the notification kWaitKey says.
-  void Wait(Task& task, const shm::Notification& note, std::int64_t deadline_ns);
+  void Wait(Task& task, const shm::Notification& note, VirtualTime deadline);
   // The thread waits no longer.
   void Leave(const Task& task) { objects_.Leave(task.order); }
   // It has ended.

@@ -66,7 +66,7 @@ void LocalSockets::Reaches(Task& task, std::uint32_t number) {
   if (robot.is_reached) return;
   TakeOut(number);
   for (const VirtualCpu* cpu : robot.cpus) {
-    task.reached_ns = std::max(task.reached_ns, cpu->progress_ns);
+    task.ComeTo(std::max(task.reached, cpu->progress));
   }
 }
 

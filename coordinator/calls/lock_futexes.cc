@@ -34,14 +34,14 @@ std::int64_t LockFutexes::Lock(Task& task, const TrappedCall& call, int command)
   if (owner == nullptr) return -ESRCH;
   timespec timeout{};
   if (call.args[3] != 0 && !ReadMemory(pid, call.args[3], &timeout, sizeof timeout)) return -EFAULT;
-  std::int64_t deadline_ns = 0;
-  if (const auto wrong = words_.Deadline(task, call, command, timeout, &deadline_ns); wrong != 0) {
+  VirtualTime deadline;
+  if (const auto wrong = words_.Deadline(task, call, command, timeout, &deadline); wrong != 0) {
     return wrong;
   }
   value |= kWaiters;
   if (!WriteMemory(pid, call.args[0], &value, sizeof value)) return -EFAULT;
   words_.table().Wait(task.order, key, FUTEX_BITSET_MATCH_ANY);
-  words_.Enter(task, {.lock_address = call.args[0]}, deadline_ns);
+  words_.Enter(task, {.lock_address = call.args[0]}, deadline);
   PriorityInheritance::BlockOn(task, owner);
   inheritance_.Find(*owner);
   return 0;
@@ -73,7 +73,7 @@ std::int64_t LockFutexes::Unlock(Task& task, const TrappedCall& call) {
   task.handed_lock = 0;
   if (!ReadMemory(task.process->pid, call.args[0], &value, sizeof value)) return -EFAULT;
   if (static_cast<pid_t>(value & kOwner) != task.tid) return -EPERM;
-  if (HandOn(FutexWords::KeyFor(task, call, call.args[0]), 0, {task.reached_ns})) return 0;
+  if (HandOn(FutexWords::KeyFor(task, call, call.args[0]), 0, {task.reached})) return 0;
   value = 0;
   return WriteMemory(task.process->pid, call.args[0], &value, sizeof value) ? 0 : -EFAULT;
 }
@@ -144,7 +144,7 @@ std::int64_t LockFutexes::RequeueFromCondition(Task& task, const TrappedCall& ca
   }
   if (owner_tid == 0) {
     owner->handed_lock = owner->Awaits<awaited::Futex>()->lock_address;
-    waker_.Wake(*owner, shm::WakeReason::kGo, {task.reached_ns});
+    waker_.Wake(*owner, shm::WakeReason::kGo, {task.reached});
   }
   return static_cast<std::int64_t>(count);
 }

@@ -27,10 +27,9 @@ Wait::What IdleFor(const shm::Notification& note) {
 }  // namespace
 
 // From the program's clock to the robot's.
-std::int64_t Notifications::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
-  if (note.deadline_ns == shm::kNeverNs) return shm::kNeverNs;
+VirtualTime Notifications::WaitDeadlineOf(const Task& task, const shm::Notification& note) {
   const ProgramTime deadline = OwnTime(std::max<std::int64_t>(0, note.deadline_ns));
-  return std::max(task.process->clock.RobotTimeOf(deadline).ns(), task.reached_ns);
+  return std::max(task.process->clock.RobotTimeOf(deadline), task.reached);
 }
 
 // Equals have their turn.
@@ -44,7 +43,7 @@ bool Notifications::Yield(Task& task) {
 bool Notifications::Handle(Task& task, const shm::Notification& note) {
   using Kind = shm::NotificationKind;
   Robot& robot = *task.process->robot;
-  const Moment moment{task.reached_ns};
+  const Moment moment{task.reached};
   bool looks_again = false;
   if (task.process->expelled) {
     parts_.expulsion.AwaitDeath(task);
@@ -56,17 +55,17 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
   }
   task.reason = shm::WakeReason::kGo;
   task.expects_kernel = note.kind == Kind::kKernelWait;
-  const std::int64_t deadline_ns = WaitDeadlineOf(task, note);
+  const VirtualTime deadline = WaitDeadlineOf(task, note);
   switch (note.kind) {
     case Kind::kRead:
     case Kind::kWrite:
       waker_.Hold(task, note.kind);
       break;
     case Kind::kIdle:
-      waker_.Wait(task, {IdleFor(note), deadline_ns});
+      waker_.Wait(task, {IdleFor(note), deadline});
       break;
     case Kind::kWaitFds:
-      waker_.Wait(task, {parts_.descriptors.WatchAsAsked(task, note), deadline_ns});
+      waker_.Wait(task, {parts_.descriptors.WatchAsAsked(task, note), deadline});
       looks_again = true;
       break;
     case Kind::kWaitChild:
@@ -104,7 +103,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
       parts_.signals.Sent(static_cast<pid_t>(note.args[0]), moment);
       break;
     case Kind::kWaitKey:
-      parts_.objects.Wait(task, note, deadline_ns);
+      parts_.objects.Wait(task, note, deadline);
       break;
     case Kind::kWakeKey:
       looks_again = note.args[0] == static_cast<std::int64_t>(shm::WaitKey::kTerminals);
@@ -121,7 +120,7 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kDdsSync:
     case Kind::kDdsRoom:
     case Kind::kDdsSockets:
-      parts_.dds.Handle(task, note, deadline_ns);
+      parts_.dds.Handle(task, note, deadline);
       break;
     case Kind::kQueueNotifies:
       run_.header->queues_notify.store(1);

@@ -47,7 +47,7 @@ class Notifications {
   bool Yield(Task& task);
 
  private:
-  static std::int64_t WaitDeadlineOf(const Task& task, const shm::Notification& note);
+  static VirtualTime WaitDeadlineOf(const Task& task, const shm::Notification& note);
 
   RunState& run_;
   Waker& waker_;

@@ -41,7 +41,7 @@ void RawChildWaits::Await(Task& task, const TrappedCall& call) {
       });
   if (stops) ForgetNews(*task.process);
   if (has_news) return waker_.HoldInCall(task, shm::NotificationKind::kRead);
-  waker_.Wait(task, {awaited::Child{which, stops}, shm::kNeverNs, true});
+  waker_.Wait(task, {awaited::Child{which, stops}, VirtualTime::Never(), true});
 }
 
 }  // namespace tcs

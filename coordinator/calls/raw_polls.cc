@@ -101,11 +101,11 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
     waker_.HoldInCall(task, shm::NotificationKind::kRead);
     return 0;
   }
-  const std::int64_t deadline_ns =
-      timeout_ns < 0 ? shm::kNeverNs : std::max(task.reached_ns, task.reached_ns + timeout_ns);
+  const VirtualTime deadline =
+      timeout_ns < 0 ? VirtualTime::Never() : AtMostNever(task.reached, VirtualNs(timeout_ns));
   awaited::Descriptors watched = descriptors_.Watch(task, waited->data(), waited->size());
   watched.signals = SignalsOf(task, call);
-  waker_.Wait(task, {std::move(watched), deadline_ns, true});
+  waker_.Wait(task, {std::move(watched), deadline, true});
   return 0;
 }
 

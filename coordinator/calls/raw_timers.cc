@@ -95,12 +95,10 @@ RawTimers::Found RawTimers::Adopt(const Task& task, int number) {
 
 std::int64_t RawTimers::NowOf(const Task& task, const Process& owner,
                               const shm::TimerKind& kind) const {
-  if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner);
-  if (kind.clock == shm::TimerClock::kTime) {
-    return owner.clock.At(RobotTime(task.reached_ns)).ns();
-  }
+  if (kind.clock == shm::TimerClock::kProcessCpu) return UsageBook::ChargedTo(owner).ns();
+  if (kind.clock == shm::TimerClock::kTime) return owner.clock.At(task.reached).ns();
   const Task* known = run_.table.Living(kind.clock_tid);
-  return known == nullptr ? 0 : known->charged_ns;
+  return known == nullptr ? 0 : known->charged.ns();
 }
 
 // Sets it (first_ns 0: disarms it) and returns what it was set to: until the next expiry, and the

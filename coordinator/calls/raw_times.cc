@@ -43,16 +43,16 @@ std::int64_t RawTimes::Sleep(Task& task, const TrappedCall& call) {
   if (!tcs::Read(task, call.args[plain ? 0 : 2], &request)) return -EFAULT;
   if (!IsValid(request)) return -EINVAL;
   const bool absolute = !plain && (call.args[1] & kTimerAbsolute) != 0;
-  std::int64_t until = task.reached_ns + ToTimeoutNs(request);
+  VirtualTime until = AtMostNever(task.reached, VirtualNs(ToTimeoutNs(request)));
   if (absolute) {
     const bool is_real = shm::ClockOf(clock).kind == shm::ClockKind::kRealtime;
     const std::int64_t offset =
         is_real ? run_.header->realtime_offset_ns : run_.header->monotonic_offset_ns;
-    until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset)).ns();
+    until = task.process->clock.RobotTimeOf(OwnTime(ToTimeoutNs(request) - offset));
   }
   const std::uint64_t remaining_address = absolute ? 0 : call.args[plain ? 1 : 3];
   waker_.Wait(task, {awaited::Time{.remaining_address = remaining_address},
-                     std::max(until, task.reached_ns), true});
+                     std::max(until, task.reached), true});
   return 0;
 }
 

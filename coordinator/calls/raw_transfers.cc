@@ -158,7 +158,9 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   watched.events = waited.events;
   descriptors_.GoBehind(task, watched);
   waker_.Wait(task, {std::move(watched),
-                     timeout == shm::kNeverNs ? shm::kNeverNs : task.reached_ns + timeout, true});
+                     timeout == shm::kNeverNs ? VirtualTime::Never()
+                                              : AtMostNever(task.reached, VirtualNs(timeout)),
+                     true});
 }
 
 }  // namespace tcs

@@ -58,7 +58,7 @@ std::int64_t SchedulingCalls::MaySchedule(const Task& asking, const Task& task,
 std::int64_t SchedulingCalls::Schedule(const Task& asking, Task& task,
                                        const SchedulingParameters& wanted) {
   if (const std::int64_t error = MaySchedule(asking, task, wanted); error != 0) return error;
-  const std::int64_t now = std::max(asking.reached_ns, task.reached_ns);
+  const VirtualTime now = std::max(asking.reached, task.reached);
   SchedulerOf(task).SetParameters(task.order, wanted, now);
   inheritance_.Find(task);
   if (Waker::IsRunnable(task)) waker_.Requeue(task);

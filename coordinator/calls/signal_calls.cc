@@ -13,22 +13,22 @@ bool SignalCalls::Poll() {
   const bool awaited =
       run_.gates_only || waker_.counts().for_signals() > 0 || waker_.counts().for_stops() > 0;
   if (!awaited || __rdtsc() < next_look_tsc_) return false;
-  next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEveryNs);
+  next_look_tsc_ = __rdtsc() + clock_.TicksIn(kLookEvery.ns());
   bool ended = false;
-  const std::int64_t now_ns = run_.turn.lasts() ? run_.WrittenAt() : run_.latest_ns;
+  const VirtualTime now = run_.turn.lasts() ? run_.WrittenAt() : run_.latest;
   for (Task& task : run_.table.tasks()) {
     if (!task.wait.has_value()) continue;
-    const Moment moment{std::max(now_ns, task.reached_ns)};
+    const Moment moment{std::max(now, task.reached)};
     if (wakes_.HasSignalForTrapped(task)) {
       wakes_.WakeForSignals(*task.process, moment);
     } else if (SignalsThatEnd(*task.wait) == 0 ||
                !wakes_.EndAwait(task, SignalsOf(run_, task), moment)) {
       continue;
     }
-    run_.latest_ns = moment.ns;
+    run_.latest = moment.at;
     ended = true;
   }
-  stops_.LookAtAwaited({run_.latest_ns});
+  stops_.LookAtAwaited({run_.latest});
   return ended;
 }
 
@@ -37,7 +37,7 @@ void SignalCalls::Sent(pid_t receiver, Moment moment) {
     if (process.dead || (receiver > 0 && process.pid != receiver)) continue;
     wakes_.WakeForSignals(process, moment);
     stops_.Look(process, moment);
-    looked_at_(process, moment.ns);
+    looked_at_(process, moment.at);
   }
 }
 

@@ -19,12 +19,12 @@ namespace tcs {
 
 class SignalCalls {
  public:
-  // In real time, how often it is looked at what nobody tells of.
-  static constexpr std::int64_t kLookEveryNs = 10'000'000;
+  // How often it is looked at what nobody tells of.
+  static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(10);
 
   // `looked_at`: a signal may have stopped the process or let it go on, at that time.
   SignalCalls(RunState& run, Waker& waker, SignalWakes& wakes, ChildStops& stops,
-              const RunClock& clock, std::function<void(const Process&, std::int64_t)> looked_at)
+              const RunClock& clock, std::function<void(const Process&, VirtualTime)> looked_at)
       : run_(run),
         waker_(waker),
         wakes_(wakes),
@@ -44,7 +44,7 @@ class SignalCalls {
   SignalWakes& wakes_;
   ChildStops& stops_;
   const RunClock& clock_;
-  std::function<void(const Process&, std::int64_t)> looked_at_;
+  std::function<void(const Process&, VirtualTime)> looked_at_;
   std::uint64_t next_look_tsc_ = 0;
 };
 

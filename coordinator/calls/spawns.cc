@@ -18,7 +18,7 @@ void Spawns::OfThread(Task& creator, const shm::Notification& note) {
   for (const pid_t tid : ThreadsOf(creator.process->pid)) {
     if (run_.table.Living(tid) != nullptr || unmanaged_.IsLowered(tid)) continue;
     executor_.Hold(tid);
-    Task& thread = births_.AddThread(*creator.process, tid, creator.reached_ns);
+    Task& thread = births_.AddThread(*creator.process, tid, creator.reached);
     scheduling_.Inherit(thread, creator);
     if (note.args[1] >= 0) scheduling_.SetPriority(creator, thread, note.args[1], note.args[2]);
     if (note.args[3] != 0)
@@ -36,7 +36,7 @@ void Spawns::OfProcess(Task& parent, pid_t pid) {
   const pid_t actual = ParentOf(pid);
   if (actual != of.pid && (actual != of.parent || actual == getpid())) return;
   executor_.Hold(pid);
-  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached_ns), parent);
+  scheduling_.Inherit(births_.AddChild(pid, of.pid, of, parent.reached), parent);
 }
 
 }  // namespace tcs

@@ -84,7 +84,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
     if (note.args[1] == 0) {
       wrote = BringUpToDate(process, task, id);
     } else {
-      timers.AcceptAt(id, task.reached_ns);
+      timers.AcceptAt(id, task.reached);
     }
     TimerSignals::NoteAccepted(process);
     task.reply[0] = timers.Overruns(id);
@@ -103,28 +103,26 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
 
 // What has run out by the time of the call is there when it returns.
 bool TimerCalls::BringUpToDate(Process& owner, const Task& asking, std::int64_t id) {
-  if (!owner.timers.IsBehind(id, asking.reached_ns)) return false;
-  const Moment moment{asking.reached_ns};
-  const bool wrote = Expire(owner, moment.ns);
+  if (!owner.timers.IsBehind(id, asking.reached)) return false;
+  const Moment moment{asking.reached};
+  const bool wrote = Expire(owner, moment.at);
   if (owner.timers.HasSignals()) signals_.Route(owner, moment);
   return wrote;
 }
 
 // Fires what has run out for one process; true if a descriptor was written to.
-bool TimerCalls::Expire(Process& process, std::int64_t now_ns) {
+bool TimerCalls::Expire(Process& process, VirtualTime now) {
   TimerSignals::NoteAccepted(process);
-  const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now_ns);
+  const std::vector<ProcessTimers::RanOut> ran_out = process.timers.Expire(now);
   for (const ProcessTimers::RanOut& timer : ran_out) {
-    process.clock.ComeTo(OwnTime(timer.clock_ns));
+    process.clock.ComeTo(*timer.shown);
     if (timer.is_periodic) process.ended.CountOverruns(timer.count - (IsAwaited(process) ? 1 : 0));
   }
   return TellDescriptors(process, ran_out);
 }
 
 ProcessTimers::CpuUsed TimerCalls::CpuUsedBy(const Task& task) {
-  return {.process_ns = UsageBook::ChargedTo(*task.process),
-          .tid = task.tid,
-          .thread_ns = task.charged_ns};
+  return {.process = UsageBook::ChargedTo(*task.process), .tid = task.tid, .thread = task.charged};
 }
 
 void TimerCalls::ExpireCpu(const Task& ran) {
@@ -135,22 +133,22 @@ void TimerCalls::ExpireCpu(const Task& ran) {
   process.robot->keeps_timer_signals |= process.timers.HasSignals();
 }
 
-bool TimerCalls::FireDue(Robot& robot, std::int64_t now_ns) {
-  const Moment moment{.ns = now_ns, .from_outside = true};
-  run_.latest_ns = now_ns;
+bool TimerCalls::FireDue(Robot& robot, VirtualTime now) {
+  const Moment moment{.at = now, .from_outside = true};
+  run_.latest = now;
   bool wrote = false;
   // Of most steps that is all: to look at each thread would cost more than the rest of the step.
-  if (!std::exchange(robot.keeps_timer_signals, false) && !robot.scheduler.IsAnythingDue(now_ns))
+  if (!std::exchange(robot.keeps_timer_signals, false) && !robot.scheduler.IsAnythingDue(now))
     return wrote;
   for (Task* task : robot.tasks) {
-    if (waker_.HasRunOut(*task, now_ns)) {
+    if (waker_.HasRunOut(*task, now)) {
       task->process->clock.ComeTo(Waker::OwnDeadlineOf(*task));
       waker_.Wake(*task, shm::WakeReason::kDeadline, moment);
     }
     Process& process = *task->process;
-    if (process.timers.NextExpiry() <= now_ns) {
-      process.expired_ns = process.timers.NextExpiry();
-      wrote |= Expire(process, now_ns);
+    if (process.timers.NextExpiry() <= now) {
+      process.expired = process.timers.NextExpiry();
+      wrote |= Expire(process, now);
     }
     if (process.timers.HasSignals()) signals_.Route(process, moment);
   }

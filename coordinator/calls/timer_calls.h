@@ -25,7 +25,7 @@ class TimerCalls {
 
   // Deadlines of threads and timers that have come on the robot. True: a timer descriptor was
   // written to.
-  bool FireDue(Robot& robot, std::int64_t now_ns);
+  bool FireDue(Robot& robot, VirtualTime now);
   // Timers on processor time run out while their process runs; it is told at its next dispatch.
   static void ExpireCpu(const Task& ran);
   static ProcessTimers::CpuUsed CpuUsedBy(const Task& task);
@@ -39,7 +39,7 @@ class TimerCalls {
  private:
   static void Create(Task& task, const shm::Notification& note);
   bool BringUpToDate(Process& owner, const Task& asking, std::int64_t id);
-  static bool Expire(Process& process, std::int64_t now_ns);
+  static bool Expire(Process& process, VirtualTime now);
 
   RunState& run_;
   Waker& waker_;

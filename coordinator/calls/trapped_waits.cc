@@ -16,7 +16,7 @@ void TrappedWaits::Interrupt(Task& task) {
   constexpr int kRestart = 512, kRestartAlways = 513;
   const Wait& wait = *task.wait;
   task.trap_continues = false;
-  task.trap_result = wait.deadline_ns == shm::kNeverNs ? -kRestart : -EINTR;
+  task.trap_result = wait.deadline.IsNever() ? -kRestart : -EINTR;
   if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
     // A lock is never given up for a signal: the C library would take it for acquired.
     if (futex->owner != awaited::kNobody || words_.table().ExpectedLock(task.order).has_value()) {
@@ -27,8 +27,8 @@ void TrappedWaits::Interrupt(Task& task) {
   }
   const auto* sleep = wait.As<awaited::Time>();
   if (sleep != nullptr && sleep->remaining_address != 0) {
-    const std::int64_t left = std::max<std::int64_t>(0, wait.deadline_ns - task.reached_ns);
-    Write(task, sleep->remaining_address, ToTimespec(left));
+    const VirtualDuration left = std::max(VirtualDuration(), wait.deadline - task.reached);
+    Write(task, sleep->remaining_address, ToTimespec(left.ns()));
   }
 }
 

@@ -359,10 +359,11 @@ int main(int argc, char** argv) {
   if (run->parsed() && !view.empty() && !arguments.check) {
     tcs::ViewRequest request{.server = tcs::ViewServer(),
                              .folder = tcs::AbsolutePathOf(arguments.out)};
-    std::string error = tcs::TakeViewAddress(view == "true" ? "" : view, &request);
+    const std::string error = tcs::TakeViewAddress(view == "true" ? "" : view, &request);
     if (!error.empty()) return tcs::Fail("--view: " + error);
-    link = tcs::StartView(request, &error);
-    if (link == nullptr) return tcs::Fail(error);
+    auto started = tcs::StartView(request);
+    if (const auto* why = std::get_if<std::string>(&started)) return tcs::Fail(*why);
+    link = std::move(std::get<std::unique_ptr<tcs::ViewLink>>(started));
     options.view = link.get();
   }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");

@@ -21,7 +21,7 @@ std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
                         VirtualDuration stop_at);
 // Writes snapshot.yaml into the folder of a run that has stopped. Empty on success, else one
 // sentence.
-std::string WriteSnapshot(const std::string& folder);
+[[nodiscard]] std::string WriteSnapshot(const std::string& folder);
 
 // What there is to say to who asks for a run from within another one.
 std::string NoWayBack(const std::string& from);

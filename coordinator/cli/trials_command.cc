@@ -157,9 +157,9 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
 
 // For trials that are not to wait: who has the processors; empty if one is free.
 std::string WhoHasProcessors() {
-  std::string taken;
-  ClaimCpu(false, &taken);  // and given back at once
-  return taken;
+  const auto claim = ClaimCpu(false);  // and given back at once
+  const auto* taken = std::get_if<std::string>(&claim);
+  return taken == nullptr ? std::string() : *taken;
 }
 
 // "seed 3", "seed 3 with drift=1ms"

@@ -16,9 +16,10 @@ namespace tcs {
 namespace {
 
 // What a thread shares in memory with others of its process they see so much too early at most.
-constexpr std::int64_t kMostAheadNs = 1'000'000;
+constexpr VirtualDuration kMostAhead = VirtualDuration::Milliseconds(1);
 // The way there and back was worth while for so much, and for so much it was not.
-constexpr std::int64_t kLongNs = 3'000'000, kShortNs = 1'000'000;
+constexpr VirtualDuration kLong = VirtualDuration::Milliseconds(3),
+                          kShort = VirtualDuration::Milliseconds(1);
 constexpr int kMostComputes = 256;
 // Between two looks, while a thread is waited for, at what the kernel has to say, and at its state.
 constexpr std::int64_t kLookNs = 3'000, kStateLookNs = 200'000;
@@ -40,8 +41,9 @@ bool ComputingAhead::MaySend(const Task& task) const {
   if (task.used_up < task.ahead_after || task.slot < 0) return false;
   if (task.state != TaskState::kReady || task.parked) return false;
   const Process& process = *task.process;
-  const bool is_ordinary = ParametersOf(task).policy == SCHED_OTHER && process.deadline_ns == 0 &&
-                           !process.robot->is_ideal && !process.timers.HasCpuTimers();
+  const bool is_ordinary = ParametersOf(task).policy == SCHED_OTHER &&
+                           process.deadline == VirtualDuration() && !process.robot->is_ideal &&
+                           !process.timers.HasCpuTimers();
   const bool is_busy_otherwise =
       task.is_brief || task.executes || task.spins || task.is_deliverer || task.notified_early ||
       task.early_trap.has_value() || process.expelled || process.stopped || process.stays_home ||
@@ -60,15 +62,15 @@ void ComputingAhead::SendIfItComputes(Task& task) {
   const std::int64_t cpu_ns = HostClockOf(task);
   if (cpu_ns < 0) return;  // it is about to end
   // It computed that here.
-  parts_.run.ChargeAsDebt(task, task.metered.ChargeAt(cpu_ns) - task.charged_ns);
+  parts_.run.ChargeAsDebt(task, task.metered.ChargeAt(cpu_ns) - task.charged);
   // To go there and back again takes its time, too.
-  const std::int64_t most_ns = MostAheadNs();
-  if (task.debt_ns > most_ns / 2) return;
+  const VirtualDuration most = MostAhead();
+  if (task.debt > most / 2) return;
   ClockGrant& grant = task.grant;
   grant.counts_work |= shm::kIsAhead;
   SlotOf(task).clock.counts_work = grant.counts_work;
-  task.ahead_from_ns = task.charged_ns;
-  if (!cpu->Send(task, tsc, task.metered.HostNs(most_ns - task.debt_ns))) return;
+  task.ahead_from = task.charged;
+  if (!cpu->Send(task, tsc, task.metered.OnHost(most - task.debt).ns())) return;
   parts_.cpu.active().Ended(task);
   if (!std::exchange(task.owes_ahead, true)) owing_.push_back(&task);
 }
@@ -78,16 +80,16 @@ FurtherCpu& ComputingAhead::CpuOf(const Task& task) {
                        [&](const FurtherCpu& cpu) { return cpu.thread() == &task; });
 }
 
-std::int64_t ComputingAhead::MostAheadNs() const {
-  return std::min(kMostAheadNs, parts_.run.scenario.drift_bound.ns());
+VirtualDuration ComputingAhead::MostAhead() const {
+  return std::min(kMostAhead, parts_.run.scenario.drift_bound);
 }
 
 void ComputingAhead::HasSpoken(Task& task) {
   if (!task.is_ahead) return;
   BringHome(task);
-  const std::int64_t computed_ns = task.charged_ns - task.ahead_from_ns;
-  if (computed_ns > kLongNs) task.ahead_after = Task::kComputes;
-  if (computed_ns < kShortNs) task.ahead_after = std::min(2 * task.ahead_after, kMostComputes);
+  const VirtualDuration computed = task.charged - task.ahead_from;
+  if (computed > kLong) task.ahead_after = Task::kComputes;
+  if (computed < kShort) task.ahead_after = std::min(2 * task.ahead_after, kMostComputes);
 }
 
 // It stands still, so that its CPU clock is right.
@@ -98,12 +100,12 @@ void ComputingAhead::BringHome(Task& task) {
   }
 }
 
-std::int64_t ComputingAhead::EndOfDebtNs(const Process& process) const {
-  std::int64_t end_ns = 0;
+VirtualTime ComputingAhead::EndOfDebt(const Process& process) const {
+  VirtualTime end;
   for (const Task* task : owing_) {
-    if (task->process == &process) end_ns = task->cpu->progress_ns + task->debt_ns;
+    if (task->process == &process) end = task->cpu->progress + task->debt;
   }
-  return end_ns;
+  return end;
 }
 
 void ComputingAhead::StayHome(Process* process) {
@@ -120,29 +122,29 @@ void ComputingAhead::Forget(const Task& task) {
 }
 
 // What it is to be charged in all; less than so far where it was taken to have computed more.
-void ComputingAhead::Charge(Task& task, std::int64_t charged_ns) {
-  parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged_ns - task.charged_ns);
+void ComputingAhead::Charge(Task& task, VirtualDuration charged) {
+  parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged - task.charged).ns();
 }
 
 void ComputingAhead::ChargeAhead(Task& task) {
   const std::int64_t host_ns = CpuOf(task).ComputedBy(__rdtsc());
-  Charge(task, task.ahead_from_ns + task.metered.VirtualNs(host_ns));
+  Charge(task, task.ahead_from + task.metered.OnRobot(HostNs(host_ns)));
 }
 
 bool ComputingAhead::IsNextOn(const VirtualCpu& cpu) const {
   const RobotScheduler::Turn& turn = cpu.robot->scheduler.Next(cpu.core);
-  return turn.thread != RobotScheduler::kNobody && turn.start_ns <= cpu.progress_ns &&
+  return turn.thread != RobotScheduler::kNobody && turn.start <= cpu.progress &&
          parts_.run.table.At(turn.thread).owes_ahead;
 }
 
-std::int64_t ComputingAhead::EndOfDebtNs(const VirtualCpu& cpu) const {
-  if (owing_.empty() || !IsNextOn(cpu)) return 0;
+VirtualTime ComputingAhead::EndOfDebt(const VirtualCpu& cpu) const {
+  if (owing_.empty() || !IsNextOn(cpu)) return {};
   const Robot& robot = *cpu.robot;
   const Task& task = parts_.run.table.At(robot.scheduler.Next(cpu.core).thread);
-  if (task.debt_ns <= 0) return 0;
-  const std::int64_t ahead_ns = std::min(task.debt_ns, parts_.run.scenario.drift_bound.ns());
-  const std::int64_t paid_ns = std::min(robot.next_launch_ns, cpu.progress_ns + ahead_ns);
-  return robot.scheduler.HorizonOf(cpu.core, task.order, paid_ns, {}).run_ns;
+  if (task.debt <= VirtualDuration()) return {};
+  const VirtualDuration ahead = std::min(task.debt, parts_.run.scenario.drift_bound);
+  const VirtualTime paid = std::min(robot.next_launch, cpu.progress + ahead);
+  return robot.scheduler.HorizonOf(cpu.core, task.order, paid, {}).run;
 }
 
 void ComputingAhead::Look() {
@@ -153,35 +155,35 @@ void ComputingAhead::Look() {
   }
 }
 
-bool ComputingAhead::TakeTurn(Task& task, std::int64_t horizon_ns) {
+bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   if (!task.owes_ahead) return false;
   if (task.is_ahead) {
-    Await(task, horizon_ns);
-  } else if (task.debt_ns <= 0) {
+    Await(task, horizon);
+  } else if (task.debt <= VirtualDuration()) {
     task.owes_ahead = false;
     std::erase(owing_, &task);
     return false;
   }
   // Whoever was woken meanwhile is not to be left behind further than the drift bound.
-  Pay(task, std::min(horizon_ns, parts_.run.root.Horizon(task.cpu->leaf)));
+  Pay(task, std::min(horizon, parts_.run.root.Horizon(task.cpu->leaf)));
   if (!task.is_ahead) SendIfItComputes(task);
   return true;
 }
 
 // Until the thread has computed up to the horizon, has said something, or others have something to
 // do.
-void ComputingAhead::Await(Task& task, std::int64_t horizon_ns) {
+void ComputingAhead::Await(Task& task, VirtualTime horizon) {
   RunState& run = parts_.run;
   FurtherCpu& cpu = CpuOf(task);
-  run.latest_ns = std::max(task.cpu->progress_ns, run.root.Least());
+  run.latest = std::max(task.cpu->progress, run.root.Least());
   Beat();
   const std::uint64_t begun_tsc = run.turn.recorded_tsc = __rdtsc();
   std::uint64_t looks_tsc = begun_tsc + parts_.clock.TicksIn(kStateLookNs);
   for (;;) {
-    const Reactor::Found found = poll_({run.latest_ns});
+    const Reactor::Found found = poll_({run.latest});
     if (found.stops_running || found.wakes_others || !task.is_ahead) break;
     ChargeAhead(task);
-    if (task.cpu->progress_ns + task.debt_ns >= horizon_ns) break;
+    if (task.cpu->progress + task.debt >= horizon) break;
     const std::uint64_t now_tsc = __rdtsc();
     const bool looks = now_tsc >= looks_tsc;
     if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);
@@ -198,18 +200,21 @@ void ComputingAhead::Await(Task& task, std::int64_t horizon_ns) {
   run.report.awaited_ns += parts_.clock.NsAt(__rdtsc()) - parts_.clock.NsAt(begun_tsc);
 }
 
-void ComputingAhead::Pay(Task& task, std::int64_t horizon_ns) {
-  const std::int64_t start = task.cpu->progress_ns;
-  const std::int64_t most_ns = std::max<std::int64_t>(0, horizon_ns - start);
-  const std::int64_t ns = std::clamp<std::int64_t>(task.debt_ns, 0, most_ns);
-  if (task.state == TaskState::kDead || ns == 0) return;
-  task.debt_ns -= ns;
-  task.cpu->ComeTo(start + ns);
-  task.reached_ns = parts_.run.latest_ns = start + ns;
-  parts_.records.Ran(task, {start, start + ns}, {start, start + ns}, __rdtsc());
+void ComputingAhead::Pay(Task& task, VirtualTime horizon) {
+  constexpr VirtualDuration kNone;
+  const VirtualTime start = task.cpu->progress;
+  const VirtualDuration paid = std::clamp(task.debt, kNone, std::max(kNone, horizon - start));
+  if (task.state == TaskState::kDead || paid == kNone) return;
+  const VirtualTime end = start + paid;
+  task.debt -= paid;
+  task.cpu->ComeTo(end);
+  task.ComeTo(end);
+  parts_.run.latest = end;
+  const ProgramClock& clock = task.process->clock;
+  parts_.records.Ran(task, {clock.At(start), clock.At(end)}, {start, end}, __rdtsc());
   if (!task.is_ahead) return;
-  const std::int64_t paid_ns = task.charged_ns - task.ahead_from_ns - task.debt_ns;
-  CpuOf(task).Allow(task.metered.HostNs(paid_ns + MostAheadNs()));
+  const VirtualDuration paid_in_all = task.charged - task.ahead_from - task.debt;
+  CpuOf(task).Allow(task.metered.OnHost(paid_in_all + MostAhead()).ns());
 }
 
 }  // namespace tcs

@@ -52,7 +52,7 @@ class ComputingAhead {
   // It has made a call, or looked at its clock; nothing happens if it does not compute ahead.
   void HasSpoken(Task& task);
   // What becomes of it does so once it has paid: at that time, or now if it owes nothing.
-  std::int64_t EndOfDebtNs(const Process& process) const;
+  VirtualTime EndOfDebt(const Process& process) const;
   // The process's threads take turns only, from now on: what they share is changed here, too. Null:
   // so do all processes'.
   void StayHome(Process* process);
@@ -62,20 +62,20 @@ class ComputingAhead {
   // The virtual CPU's next turn is of a thread that has computed ahead, or does so.
   bool IsNextOn(const VirtualCpu& cpu) const;
   // So far it does nothing to others: until the thread has paid, or others of its robot act.
-  std::int64_t EndOfDebtNs(const VirtualCpu& cpu) const;
+  VirtualTime EndOfDebt(const VirtualCpu& cpu) const;
   // How far they have come, so that others may go on as far.
   void Look();
   // The thread's turn, up to that horizon. False if it has paid all, and is to be dispatched.
-  bool TakeTurn(Task& task, std::int64_t horizon_ns);
+  bool TakeTurn(Task& task, VirtualTime horizon);
 
  private:
   bool MaySend(const Task& task) const;
-  std::int64_t MostAheadNs() const;
+  VirtualDuration MostAhead() const;
   void BringHome(Task& task);
-  void Charge(Task& task, std::int64_t charged_ns);
+  void Charge(Task& task, VirtualDuration charged);
   void ChargeAhead(Task& task);
-  void Await(Task& task, std::int64_t horizon_ns);
-  void Pay(Task& task, std::int64_t horizon_ns);
+  void Await(Task& task, VirtualTime horizon);
+  void Pay(Task& task, VirtualTime horizon);
   FurtherCpu& CpuOf(const Task& task);
 
   const Parts parts_;

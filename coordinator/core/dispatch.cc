@@ -9,6 +9,7 @@
 
 #include "coordinator/calls/ipc_notes.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/core/turn_plan.h"
 #include "coordinator/host/preemption_timer.h"
 #include "coordinator/host/settlement.h"
 #include "coordinator/host/starvation_watch.h"
@@ -22,11 +23,11 @@ namespace tcs {
 namespace {
 
 // Enough for the kernel to carry out a call that does not wait.
-constexpr std::int64_t kBriefNs = 20'000;
+constexpr HostDuration kBrief = HostDuration::Microseconds(20);
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 100;
 // How often a thread is looked at that has no clock yet.
-constexpr std::int64_t kLookTurnNs = 50'000'000;
+constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
 
 }  // namespace
@@ -34,29 +35,27 @@ constexpr int kStartTurns = 600;
 // What the thread may do without asking.
 void Engine::GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const {
   const bool world_stands = run_.IsCallback();
-  grant.read_safe_ns = world_stands ? cpu.progress_ns : run_.root.ReadSafe(cpu.leaf);
-  grant.local_read_safe_ns = world_stands ? cpu.progress_ns : run_.root.LocalReadSafe(cpu.leaf);
-  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf);
+  grant.read_safe_ns = (world_stands ? cpu.progress : run_.root.ReadSafe(cpu.leaf)).ns();
+  grant.local_read_safe_ns = (world_stands ? cpu.progress : run_.root.LocalReadSafe(cpu.leaf)).ns();
+  grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf).ns();
 }
 
-void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
+void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   shm::ThreadSlot& slot = SlotOf(task);
   shm::ClockPage& page = slot.clock;
   const VirtualCpu& cpu = *task.cpu;
   const ProgramClock& clock = task.process->clock;
-  const std::int64_t now_ns = clock.At(RobotTime(cpu.progress_ns)).ns();
+  const ProgramTime now = clock.At(cpu.progress);
   MeteredThread& metered = task.metered;
   if (metered.host_origin_ns < 0) metered.host_origin_ns = HostClockOf(task);
   ClockGrant& grant = task.grant;
-  grant.base_time_ns = now_ns + task.debt_ns;
-  grant.base_cpu_ns = task.charged_ns;
-  grant.horizon_ns = clock.At(RobotTime(horizon_ns)).ns();
-  grant.idle_until_ns = grant.most_idle_ns = idle_until_ns;
+  grant.base_time_ns = (now + task.debt).ns();
+  grant.base_cpu_ns = task.charged.ns();
+  grant.horizon_ns = clock.At(horizon).ns();
+  grant.idle_until_ns = grant.most_idle_ns = idle_until.ns();
   GrantWhatIsSafe(cpu, grant);
   host_cpu_.SetRates(
-      task,
-      {.call_ns = task.process->call_cost_ns, .allocation_ns = task.process->allocation_cost_ns},
-      grant);
+      task, {.call = task.process->call_cost, .allocation = task.process->allocation_cost}, grant);
   // Without levels the shim looks at the beginning of each call whether it may begin.
   grant.counts_work = run_.IsFixed() || run_.options.counts_work || run_.gates_only ? 1 : 0;
   if (run_.gates_only && task.trap_id != 0 && task.trap_continues) {
@@ -69,10 +68,10 @@ void Engine::WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   page.host_cpu_origin_ns = metered.page_origin_ns = metered.host_origin_ns;
   page.other_cpu_ns = task.process->threads == 1
                           ? task.process->ended.usage().charged_ns
-                          : UsageBook::ChargedTo(*task.process) - task.charged_ns;
-  page.children_cpu_ns = task.process->children_cpu_ns;
+                          : (UsageBook::ChargedTo(*task.process) - task.charged).ns();
+  page.children_cpu_ns = task.process->children_cpu.ns();
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
-  page.last_shown_ns.store(std::max(last, now_ns), std::memory_order_relaxed);
+  page.last_shown_ns.store(std::max(last, now.ns()), std::memory_order_relaxed);
   slot.core = cpu.core;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
@@ -114,12 +113,12 @@ void Engine::Resume(Task& task) {
 void Engine::GoOnBesideWoken() {
   shm::ClockPage& page = SlotOf(*run_.turn.task()).clock;
   const VirtualCpu& cpu = *run_.turn.task()->cpu;
-  std::int64_t idle_until = 0;
-  const std::int64_t allowed =
+  VirtualTime idle_until;
+  const VirtualTime allowed =
       std::max(HorizonFor(*run_.turn.task(), &idle_until), run_.WrittenAt());
   run_.turn.LimitTo(allowed);
   ClockGrant& grant = run_.turn.task()->grant;
-  grant.horizon_ns = OwnHorizonNs();
+  grant.horizon_ns = OwnHorizon().ns();
   grant.idle_until_ns = 0;  // it asks
   GrantWhatIsSafe(cpu, grant);
   grant.NoteLimits();
@@ -127,20 +126,20 @@ void Engine::GoOnBesideWoken() {
 }
 
 // Real time until the running thread has to be looked at.
-std::int64_t Engine::NsToLook(Task& task) {
-  if (task.slot < 0) return kLookTurnNs;
-  return host_cpu_.NsToLook(task, OwnHorizonNs());
+HostDuration Engine::TimeToLook(Task& task) {
+  if (task.slot < 0) return kLookTurn;
+  return host_cpu_.TimeToLook(task, OwnHorizon());
 }
 
 // The turn's horizon, as the thread's own clock shows it.
-std::int64_t Engine::OwnHorizonNs() const {
-  return run_.turn.task()->process->clock.At(RobotTime(run_.turn.horizon_ns())).ns();
+ProgramTime Engine::OwnHorizon() const {
+  return run_.turn.task()->process->clock.At(run_.turn.horizon());
 }
 
-void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns) {
-  const std::int64_t stolen_ns = host_cpu_.TakeOutUntold(task, before, asked_ns, CpuClockOf(task));
-  if (stolen_ns <= 0) return;
-  run_.report.untold_ns += stolen_ns;
+void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked) {
+  const HostDuration stolen = host_cpu_.TakeOutUntold(task, before, asked, CpuClockOf(task));
+  if (stolen <= HostDuration()) return;
+  run_.report.untold_ns += stolen.ns();
   ++run_.report.untold;
 }
 
@@ -154,7 +153,7 @@ bool Engine::TakeIpcNotesOf(Task& task) {
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   if (const char* what = slot_check_.WhatIsImpossible(task); what != nullptr) {
-    task.reached_ns = task.cpu->progress_ns;
+    task.ComeTo(task.cpu->progress);
     expulsion_.Expel(*task.process, what);
     return;
   }
@@ -166,56 +165,55 @@ void Engine::Settle(Task& task) {
   const bool made_unseen_call = run_.turn.trapped.has_value() &&
                                 run_.turn.trapped->number != SYS_exit && slot.signals.load() == 0;
   if (made_unseen_call) {
-    host_cpu_.ChargeCall(task, task.process->call_cost_ns);
+    host_cpu_.ChargeCall(task, task.process->call_cost);
   }
   const shm::ClockReading reading = host_cpu_.ClockOf(task);
   ProgramClock& clock = task.process->clock;
   const auto on_robot = [&clock](std::int64_t own_ns) {
-    return clock.RobotTimeOf(OwnTime(own_ns)).ns();
+    return clock.RobotTimeOf(OwnTime(own_ns));
   };
-  const std::int64_t start = task.cpu->progress_ns;
+  const VirtualTime start = task.cpu->progress;
   // Whom it has woken, however long ago it sent what did, it must not have left behind further than
   // the drift bound: what it has computed beyond is a debt.
   if (!run_.IsCallback()) {
     run_.turn.LimitTo(run_.root.Horizon(task.cpu->leaf));
   }
   StoppedRun run{
-      .start_ns = start,
-      .horizon_ns = run_.turn.horizon_ns(),
-      .reached_ns = on_robot(reading.time_ns),
-      .shown_ns = on_robot(page.last_shown_ns.load()),
+      .start = start,
+      .horizon = run_.turn.horizon(),
+      .reached = on_robot(reading.time_ns),
+      .shown = on_robot(page.last_shown_ns.load()),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
-      .credit_ns = -task.debt_ns};
+      .credit = -task.debt};
   if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
-    run.noted_ns = on_robot(slot.note.time_ns);
+    run.noted = on_robot(slot.note.time_ns);
   }
   const auto [progress, debt, ours] = SettleRun(run);
-  metered.host_origin_ns += metered.HostNs(ours);
-  const std::int64_t charged = reading.cpu_ns - ours;
-  const std::int64_t executed = std::max<std::int64_t>(0, charged - task.charged_ns);
-  const std::int64_t host_ns = metered.HostNs(executed);
-  run_.report.client_ns += host_ns;
-  metered.longest_run_ns = PreemptionTimer::LongestOfLate(metered.longest_run_ns, host_ns);
-  task.charged_ns = charged;
-  task.debt_ns = debt;
-  activations_.TakeReceipts(task, clock.At(RobotTime(progress)).ns());
+  metered.host_origin_ns += metered.OnHost(ours).ns();
+  const VirtualDuration charged = VirtualNs(reading.cpu_ns) - ours;
+  const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
+  const HostDuration host = metered.OnHost(executed);
+  run_.report.client_ns += host.ns();
+  metered.longest_run = HostNs(PreemptionTimer::LongestOfLate(metered.longest_run.ns(), host.ns()));
+  task.charged = charged;
+  task.debt = debt;
+  activations_.TakeReceipts(task, clock.At(progress));
   task.trapped_calls += made_unseen_call;
   task.work = WithTrapped(task, slot.work);
   if (run_.IsCallback()) {
     // The world stood still meanwhile: only the program's own clock has moved.
-    const VirtualTime at = RobotTime(start);
-    const VirtualDuration computed = RobotTime(progress) - at;
-    const ProgramTime begun = clock.At(at);
-    clock.NoteHeld(at, computed);
-    clock.Advance(at, computed);
+    const VirtualDuration computed = progress - start;
+    const ProgramTime begun = clock.At(start);
+    clock.NoteHeld(start, computed);
+    clock.Advance(start, computed);
     task.lead = clock.lead();
     run_.most_lead = std::max(run_.most_lead, task.lead);
-    records_.Ran(task, {begun.ns(), clock.At(at).ns()}, {start, start}, host_cpu_.stop_tsc());
+    records_.Ran(task, {begun, clock.At(start)}, {start, start}, host_cpu_.stop_tsc());
     TakeIpcNotesOf(task);
     return;
   }
   task.cpu->ComeTo(progress);
-  task.reached_ns = progress;
+  task.ComeTo(progress);
   // Should it run on undispatched, while the kernel holds the one whose turn it is, it comes to its
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
@@ -223,21 +221,22 @@ void Engine::Settle(Task& task) {
   TakeIpcNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
-  const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
-  records_.Ran(task, {start, busy_until}, {start, busy_until}, host_cpu_.stop_tsc());
+  const VirtualTime busy_until = slept ? std::min(progress, start + executed) : progress;
+  records_.Ran(task, {clock.At(start), clock.At(busy_until)}, {start, busy_until},
+               host_cpu_.stop_tsc());
 }
 
 // The thread has a turn for the call that it has made, from when it was there to make it. True once
 // it must have run, and come back from the kernel: real time that has passed may be the host's.
 bool Engine::HasMadeCall(Task& task, int* turns) {
-  if (task.brief_id == 0 && HostClockOf(task) >= task.brief_until_ns &&
+  if (task.brief_id == 0 && HostNs(HostClockOf(task)) >= task.brief_until &&
       (ThreadState(task.tid) != 'R' || IsInUserMode(task.tid) || ++*turns > kMostBriefTurns)) {
     task.brief_done = true;
     return true;
   }
   if (task.brief_id != 0 && !HasAnswerToTake(task.trap_listener, task.brief_id)) {
     task.brief_id = 0;
-    task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
+    task.brief_until = HostNs(HostClockOf(task)) + kBrief / 2;
   }
   return false;
 }
@@ -246,7 +245,7 @@ bool Engine::HasMadeCall(Task& task, int* turns) {
 bool Engine::GivesUpStart(Task& task, int turns) {
   if (UnmanagedThreads::NeverRegisters(task)) {
     unmanaged_.Lower(task.tid);
-    deaths_.End(task, {task.reached_ns});
+    deaths_.End(task, {task.reached});
     return true;
   }
   if (turns < kStartTurns) return false;
@@ -266,8 +265,8 @@ void Engine::AwaitStop(Task& task) {
     if (!first && task.slot >= 0 && !task.HasOwnClock()) return;
     if (!first) host_cpu_.Continue(task);
     if (std::exchange(opens_gate_, false)) HostCpu::OpenGate(SlotOf(task));
-    const std::int64_t asked_ns = task.is_brief ? kBriefNs : NsToLook(task);
-    if (PollWhileRunning(task, asked_ns)) return;
+    const HostDuration asked = task.is_brief ? kBrief : TimeToLook(task);
+    if (PollWhileRunning(task, asked)) return;
     if (!run_.turn.timed_out) continue;
     run_.turn.timed_out = false;
     if (run_.gates_only) host_cpu_.detector().Arm();
@@ -287,7 +286,7 @@ void Engine::AwaitStop(Task& task) {
       if (GivesUpStart(task, ++starting_turns)) return;
       continue;
     }
-    const Meter::Found found = host_cpu_.Look(task, OwnHorizonNs(), CpuClockOf(task));
+    const Meter::Found found = host_cpu_.Look(task, OwnHorizon(), CpuClockOf(task));
     task.spins = found == Meter::Found::kIsSilent;
     if (found != Meter::Found::kGoesOn) {
       run_.turn.timed_out = true;
@@ -326,7 +325,7 @@ void Engine::WakeSpinners() {
   has_spinners_ = false;
   for (Task& task : run_.table.tasks()) {
     if (task.Awaits<awaited::OthersRun>() != nullptr) {
-      waker_.Wake(task, shm::WakeReason::kGo, {run_.latest_ns});
+      waker_.Wake(task, shm::WakeReason::kGo, {run_.latest});
     }
   }
 }
@@ -336,7 +335,7 @@ bool Engine::AnswerEarly(Task& task) {
   if (!task.notified_early && !task.early_trap.has_value()) return false;
   task.parked = true;
   waker_.SetState(task, TaskState::kReady);
-  const Moment moment{task.reached_ns};
+  const Moment moment{task.reached};
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
@@ -348,29 +347,29 @@ bool Engine::AnswerEarly(Task& task) {
     task.early_trap.reset();
     finds_more = trapped_.Handle(task, early);
   }
-  if (finds_more) PollEvents(0, moment);
+  if (finds_more) PollEvents(kNoWait, moment);
   return true;
 }
 
-void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
+void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   Beat();
   task.is_brief = task.follow_up != FollowUp::kNone && !task.brief_done;
   // How far it comes in so short a time is the host's: under set costs no further than the call.
-  if (task.is_brief && run_.IsFixed()) horizon_ns = task.cpu->progress_ns;
-  run_.turn.Begin(task, horizon_ns);
+  if (task.is_brief && run_.IsFixed()) horizon = task.cpu->progress;
+  run_.turn.Begin(task, horizon);
   says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) waker_.SetState(task, TaskState::kReady);
   if (task.slot >= 0) {
     TimerSignals::SendTo(task);
     dds_.HandOver(task);
-    WritePage(task, horizon_ns, idle_until_ns);
+    WritePage(task, horizon, idle_until);
   }
   if (task.trap_id != 0) task.brief_id = task.trap_id;
-  if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
+  if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + kBrief / 2;
   Resume(task);
   run_.turn.recorded_tsc = host_cpu_.stop_tsc();
   if (task.activation.start_ns < 0) {
-    task.activation.start_ns = task.process->clock.At(RobotTime(task.cpu->progress_ns)).ns();
+    task.activation.start_ns = task.process->clock.At(task.cpu->progress).ns();
   }
 }
 
@@ -378,21 +377,17 @@ void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
   run_.turn.End();
-  run_.latest_ns = task.cpu->progress_ns;
-  if (run_.latest_ns >= run_.turn.horizon_ns()) {
-    ++task.used_up;
-  } else if (run_.turn.HasSpoken()) {
-    task.used_up = 0;
-  }
+  run_.latest = task.cpu->progress;
+  task.used_up = UsedUpAfter(task.used_up, run_.latest, run_.turn.horizon(), run_.turn.HasSpoken());
 }
 
 // Who is concerned by how the turn has passed, whatever its thread wants now. Its calls were made
 // at `call`.
 void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
-  const Moment stop{task.cpu->progress_ns};
+  const Moment stop{task.cpu->progress};
   TimerCalls::ExpireCpu(task);
   if (task.follow_up != FollowUp::kNone) follow_ups_.Do(task, call, looks_again);
-  task.process->timers.EndRests(stop.ns);
+  task.process->timers.EndRests(stop.at);
   if (run_.turn.HasSpoken()) shared_events_.PassOn(task, stop);
   // It cannot say that it has sent a signal before its next dispatch; the receiver must not run, at
   // the level of its last dispatch, beside whoever is next.
@@ -403,7 +398,7 @@ void Engine::TellOthersOf(Task& task, Moment call, bool looks_again) {
 // What the thread has said at the end of its turn.
 void Engine::Answer(Task& task) {
   if (task.state == TaskState::kDead || !run_.turn.HasSpoken()) return;
-  const Moment moment{task.reached_ns};
+  const Moment moment{task.reached};
   task.parked = true;
   // It was found held by the kernel, and has come back at the same instant.
   if (task.state == TaskState::kUnseen) waker_.SetState(task, TaskState::kReady);
@@ -416,14 +411,14 @@ void Engine::Answer(Task& task) {
     finds_more = trapped_.Handle(task, *run_.turn.trapped);
   }
   // What is there already ends the wait here and now.
-  if (finds_more) PollEvents(0, moment);
+  if (finds_more) PollEvents(kNoWait, moment);
 }
 
-void Engine::Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns) {
+void Engine::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   if (AnswerEarly(task)) return;
   const bool looks_again = task.brief_done;
-  const Moment call{task.cpu->progress_ns};
-  BeginTurn(task, horizon_ns, idle_until_ns);
+  const Moment call{task.cpu->progress};
+  BeginTurn(task, horizon, idle_until);
   AwaitStop(task);
   BringToGate(task);
   EndTurn(task);

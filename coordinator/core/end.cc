@@ -9,7 +9,7 @@ namespace tcs {
 void Engine::EndClients() {
   BeginGrace();
   while (grace_.GoOnToNextKill()) {
-    idle_at_ns_ = -1;
+    idle_at_.reset();
     while (!grace_.IsOver() && Step()) {
     }
     grace_.KillOverdue();
@@ -19,7 +19,7 @@ void Engine::EndClients() {
 
 // The world stops, and nothing is recorded any more.
 void Engine::BeginGrace() {
-  run_.grace_began_ns = run_.report.virtual_ns;
+  run_.grace_began = RobotTime(run_.report.virtual_ns);
   if (run_.turn.lasts()) Settle(*run_.turn.task());  // the dynamics have failed beside it
   run_.turn.End();
   run_.root.EndDynamics();
@@ -28,7 +28,7 @@ void Engine::BeginGrace() {
     if (fd >= 0) reactor_.Remove(fd);
   }
   for (VirtualCpu& cpu : run_.cpus) {
-    if (reached_end_) cpu.ComeTo(std::max(cpu.progress_ns, run_.grace_began_ns));
+    if (reached_end_) cpu.ComeTo(std::max(cpu.progress, run_.grace_began));
   }
   launches_.Stop();
   grace_.Begin();

@@ -87,11 +87,11 @@ class Engine {
 
  private:
   // Set-up (setup.cc). Empty on success, else one sentence.
-  std::string Prepare();
+  [[nodiscard]] std::string Prepare();
   void TellOfMissingRights(bool may_have_levels) const;
-  std::string PrepareMemory();
-  std::string PrepareSignals();
-  std::string PrepareHostCpu();
+  [[nodiscard]] std::string PrepareMemory();
+  [[nodiscard]] std::string PrepareSignals();
+  [[nodiscard]] std::string PrepareHostCpu();
   void MakeRobots();
   void TellOfWaits();
   void TellOfEnds();
@@ -99,51 +99,51 @@ class Engine {
   // The loop (engine.cc).
   bool Step();
   bool AwaitDeaths();
-  std::int64_t MostHeldNs() const;
-  std::int64_t LeftToHoldNs(const Task& task) const;
+  VirtualDuration MostHeld() const;
+  VirtualDuration LeftToHold(const Task& task) const;
   bool StandsForEver(VirtualCpu& cpu) const;
   void LetWorldGoOnWithout(Task& task);
-  void PayDebt(Task& task, std::int64_t ns);
+  void PayDebt(Task& task, VirtualDuration passes);
   void StepCpu(VirtualCpu& cpu);
   bool StepWorld();
   bool StepNetwork();
-  void ShowNetwork(std::int64_t progress_ns);
-  std::int64_t KeepWorldNear(const Task& task, std::int64_t horizon_ns);
+  void ShowNetwork(VirtualTime progress);
+  VirtualTime KeepWorldNear(const Task& task, VirtualTime horizon);
   bool HasJumpedOver();
-  std::int64_t HorizonFor(const Task& task, std::int64_t* idle_until);
+  VirtualTime HorizonFor(const Task& task, VirtualTime* idle_until);
   void PollUnseen();
   bool UnmanagedRun() const;
   void WaitOutside();
   void WaitForDebugger();
   bool AwaitOutside();
-  std::int64_t FurthestNs() const;
+  VirtualTime Furthest() const;
   void LookAround();
 
   // Holding the run back (keep_pace.cc).
   bool KeepPace();
-  std::int64_t NextActNs() const;
-  std::int64_t RunningNs() const;
+  VirtualTime NextAct() const;
+  HostTime RunningTime() const;
   void FlushForWatchers();
 
   // The dispatch (dispatch.cc).
-  void Dispatch(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
+  void Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until);
   bool AnswerEarly(Task& task);
-  void BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
+  void BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until);
   void EndTurn(Task& task);
   void TellOthersOf(Task& task, Moment call, bool looks_again);
   void Answer(Task& task);
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
-  void WritePage(Task& task, std::int64_t horizon_ns, std::int64_t idle_until_ns);
+  void WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until);
   void Resume(Task& task);
   void GoOnBesideWoken();
   bool HasMadeCall(Task& task, int* turns);
   bool GivesUpStart(Task& task, int turns);
   void AwaitStop(Task& task);
-  std::int64_t NsToLook(Task& task);
-  std::int64_t OwnHorizonNs() const;
+  HostDuration TimeToLook(Task& task);
+  ProgramTime OwnHorizon() const;
   void Settle(Task& task);
   bool TakeIpcNotesOf(Task& task);
-  void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
+  void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
   void StepAside(Task& task);
   void WakeSpinners();
 
@@ -167,11 +167,12 @@ class Engine {
   Reactor::Found TrapArrived(int listener, Moment moment);
   Reactor::Found TakeTrapped(const TrappedCall& call, Moment moment);
 
-  // Events (events.cc). `timeout_ns` is real; negative: none. What is found happens at `moment`, or
+  static constexpr HostDuration kNoWait{};  // what is there is looked at, and nothing waited for
+  // Events (events.cc). A negative timeout: none. What is found happens at `moment`, or
   // at the time that the running thread has come to.
-  Reactor::Found PollEvents(std::int64_t timeout_ns, Moment moment);
-  bool PollWhileRunning(Task& task, std::int64_t timeout_ns);
-  Reactor::Found TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest);
+  Reactor::Found PollEvents(HostDuration timeout, Moment moment);
+  bool PollWhileRunning(Task& task, HostDuration timeout);
+  Reactor::Found TakeEvents(HostDuration timeout, Moment moment, bool is_rest);
   Reactor::Found WakeReadyAwaiters(Moment moment);
   // They look again where what is waited for may be there already, and be found at this very
   // moment.
@@ -203,7 +204,7 @@ class Engine {
   World world_{[this](const std::string& text) { run_.Warn(text); }};
   RobotNetwork network_;
   TemporalConsistency::Leaf network_leaf_ = -1;  // -1: there is no network
-  std::int64_t network_ns_ = 0;                  // its progress
+  VirtualTime network_progress_;
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
@@ -212,9 +213,9 @@ class Engine {
   HostCpu host_cpu_;
   HeldThreads held_{run_, host_cpu_};
   RunClock clock_;
-  Pacing pacing_{run_.options, run_.end_ns, run_.options.on_notice};
+  Pacing pacing_{run_.options, run_.end, run_.options.on_notice};
   ComputingAhead ahead_{{run_, waker_, host_cpu_, *executor_, clock_, records_},
-                        [this](Moment moment) { return PollEvents(0, moment); }};
+                        [this](Moment moment) { return PollEvents(kNoWait, moment); }};
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
   DdsGateway dds_{run_, waker_, world_, inheritance_};
@@ -226,14 +227,10 @@ class Engine {
                       [this](Process* process) { ahead_.StayHome(process); }};
   SignalWakes signal_wakes_{run_, waker_, host_cpu_.active()};
   ChildStops stops_{run_, waker_, signal_wakes_, host_cpu_.active()};
-  SignalCalls signals_{run_,
-                       waker_,
-                       signal_wakes_,
-                       stops_,
-                       clock_,
-                       [this](const Process& process, std::int64_t at_ns) {
-                         dds_.NoteWhetherStopped(process, at_ns);
-                       }};
+  SignalCalls signals_{
+      run_, waker_, signal_wakes_, stops_, clock_, [this](const Process& process, VirtualTime at) {
+        dds_.NoteWhetherStopped(process, at);
+      }};
   TimerSignals timer_signals_{run_, waker_, signal_wakes_};
   TimerCalls timers_{run_, waker_, timer_signals_};
   RawTimers raw_timers_{run_, timers_};
@@ -241,7 +238,7 @@ class Engine {
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
-                               if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.ns);
+                               if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};
   GuardedCalls guard_;
 
@@ -300,13 +297,14 @@ class Engine {
   std::vector<Late> put_off_;
 
   bool reached_end_ = false;
-  std::int64_t idle_at_ns_ = -1, idle_since_real_ns_ = 0;  // since when nobody acts by itself
-  bool has_spinners_ = false;                              // threads that stepped aside
+  std::optional<VirtualTime> idle_at_;  // where nobody acts by itself,
+  HostTime idle_since_;                 // and since when
+  bool has_spinners_ = false;           // threads that stepped aside
 
   int shows_ = 0;
 
   std::uint64_t next_look_tsc_ = 0;
-  std::int64_t next_flush_ns_ = 0;
+  HostTime next_flush_;
 };
 
 }  // namespace tcs

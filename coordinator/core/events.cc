@@ -24,9 +24,10 @@ namespace {
 
 constexpr int kMostFullTurns = 1000;  // whoever floods its pipe must not hold up everybody
 // How often a thread that the kernel holds is looked at, and for how long a world waits for it.
-constexpr std::int64_t kHeldTurnNs = 100'000;
-constexpr std::int64_t kLentTurnNs = 20'000;  // where another one has its level
-// The detector's false alarms make it wait twice as long each time, up to 2^this times kHeldTurnNs.
+constexpr HostDuration kHeldTurn = HostDuration::Microseconds(100);
+// Where another one has its level.
+constexpr HostDuration kLentTurn = HostDuration::Microseconds(20);
+// The detector's false alarms make it wait twice as long each time, up to 2^this times kHeldTurn.
 constexpr int kMostFalseAlarms = 6;
 constexpr int kHeldTurns = 200;
 constexpr int kHeldTurnsFixed = 10'000;
@@ -120,7 +121,7 @@ bool Engine::BlockedInKernel() {
   if ((state == 'Z' || state == 'X') && run_.turn.held_looks > kExitTurns &&
       HeldThreads::HasExited(task)) {
     Settle(task);
-    deaths_.EndAndWake(task, {task.reached_ns});
+    deaths_.EndAndWake(task, {task.reached});
     return true;
   }
   // This process may have waited in the kernel itself for what /proc says, and the thread gone on
@@ -148,7 +149,7 @@ bool Engine::BlockedInKernel() {
   if (stopped) {
     const Moment moment{run_.WrittenAt()};
     stops_.Look(*task.process, moment);
-    dds_.NoteWhetherStopped(*task.process, moment.ns);
+    dds_.NoteWhetherStopped(*task.process, moment.at);
     return true;
   }
   run_.Warn(fmt::format(
@@ -176,34 +177,33 @@ bool Engine::CutsOff(Task& task) {
 }
 
 // All that there is at this instant: were the rest found later, it would have happened later.
-Reactor::Found Engine::PollEvents(std::int64_t timeout_ns, Moment moment) {
-  Reactor::Found found = TakeEvents(timeout_ns, moment, false);
+Reactor::Found Engine::PollEvents(HostDuration timeout, Moment moment) {
+  Reactor::Found found = TakeEvents(timeout, moment, false);
   for (int turn = 0; turn < kMostFullTurns; ++turn) {
     if (!std::exchange(found.looks_again, false) && !reactor_.IsFull()) break;
-    found |= TakeEvents(0, moment, true);
+    found |= TakeEvents(kNoWait, moment, true);
   }
   return EndCall(found);
 }
 
 // `is_rest`: a further look at an instant, at which the running thread stands as it was found.
-Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool is_rest) {
+Reactor::Found Engine::TakeEvents(HostDuration timeout, Moment moment, bool is_rest) {
   const bool held =
       run_.turn.held_looks > 0 && run_.turn.lasts() && !host_cpu_.detector().is_armed();
   const bool rearms =
       run_.turn.lasts() && run_.turn.false_alarms > 0 && !host_cpu_.detector().is_armed();
-  const std::int64_t turn_ns = host_cpu_.active().is_lent() ? kLentTurnNs
-                               : held                       ? kHeldTurnNs
-                                                            : kHeldTurnNs
-                                            << std::min(run_.turn.false_alarms, kMostFalseAlarms);
-  const bool is_cut_short = (held || rearms) && timeout_ns > turn_ns;
-  if (is_cut_short) timeout_ns = turn_ns;
-  const bool counts = !is_rest && run_.turn.HasClock() && timeout_ns >= 0;
+  const int doublings = held ? 0 : std::min(run_.turn.false_alarms, kMostFalseAlarms);
+  const HostDuration turn =
+      host_cpu_.active().is_lent() ? kLentTurn : kHeldTurn * (std::int64_t{1} << doublings);
+  const bool is_cut_short = (held || rearms) && timeout > turn;
+  if (is_cut_short) timeout = turn;
+  const bool counts = !is_rest && run_.turn.HasClock() && timeout >= HostDuration();
   const shm::ClockReading before =
       counts ? host_cpu_.ClockOf(*run_.turn.task()) : shm::ClockReading{};
-  const std::size_t n = reactor_.Wait(timeout_ns);
+  const std::size_t n = reactor_.Wait(timeout);
   if (!is_rest) host_cpu_.Woke();
   if (n == 0 && is_rest) return {};
-  if (counts) TakeOutUntold(*run_.turn.task(), before, timeout_ns);
+  if (counts) TakeOutUntold(*run_.turn.task(), before, timeout);
   if (n == 0 && run_.turn.lasts()) {
     if (held || (rearms && is_cut_short)) {
       host_cpu_.active().TakeBack();
@@ -223,17 +223,17 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
 }
 
 // PollEvents for the running thread, in turns while somebody waits for signals.
-bool Engine::PollWhileRunning(Task& task, std::int64_t timeout_ns) {
+bool Engine::PollWhileRunning(Task& task, HostDuration timeout) {
   while (waker_.counts().for_signals() + waker_.counts().for_stops() > 0 &&
-         timeout_ns > SignalCalls::kLookEveryNs) {
-    if (PollEvents(SignalCalls::kLookEveryNs, {}).stops_running) return true;
+         timeout > SignalCalls::kLookEvery) {
+    if (PollEvents(SignalCalls::kLookEvery, {}).stops_running) return true;
     if (!run_.turn.timed_out) return false;
     run_.turn.timed_out = false;
     if (signals_.Poll()) return true;
-    timeout_ns -= SignalCalls::kLookEveryNs;
+    timeout -= SignalCalls::kLookEvery;
     host_cpu_.Continue(task);
   }
-  return PollEvents(timeout_ns, {}).stops_running;
+  return PollEvents(timeout, {}).stops_running;
 }
 
 // Those whose descriptors have become ready, all at once: one event may be for one of them only.

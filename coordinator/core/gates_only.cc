@@ -18,8 +18,8 @@ namespace {
 
 // The processor time that a thread has to handle the signal, and the real time: others of the host
 // may go first.
-constexpr std::int64_t kMostWayToGateNs = 100'000;
-constexpr std::int64_t kGateLookNs = 500'000;
+constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
+constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
 constexpr int kMostGateLooks = 400;
 
 }  // namespace
@@ -58,7 +58,7 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
   if (!run_.turn.lasts() || !says_call_) return found;
   const Moment moment{run_.WrittenAt()};
   found |= TakePutOff(moment);
-  while (std::exchange(found.looks_again, false)) found |= TakeEvents(0, moment, true);
+  while (std::exchange(found.looks_again, false)) found |= TakeEvents(kNoWait, moment, true);
   says_call_ = false;
   if (found.stops_running) {
     Task& task = *run_.turn.task();
@@ -79,13 +79,13 @@ void Engine::BringToGate(Task& task) {
                         !task.parked && !run_.turn.HasSpoken() && !task.is_brief &&
                         !task.executes && !task.process->expelled;
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
-  const std::int64_t sent_ns = HostClockOf(task);
+  const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;
   host_cpu_.SendToGate(task.process->pid, task);
   for (int look = 0; look < kMostGateLooks; ++look) {
-    PollEvents(kGateLookNs, {});
+    PollEvents(kGateLook, {});
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
-    if (HostClockOf(task) > sent_ns + kMostWayToGateNs || ThreadState(task.tid) != 'R') return;
+    if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
   }
 }
 
@@ -95,8 +95,7 @@ void Engine::BringToGate(Task& task) {
 void Engine::ChargeUndispatched(Task& task) {
   const bool may_have_computed = run_.Preempts() || (pacing_.IsOn() && !run_.IsFixed());
   if (!may_have_computed || task.slot < 0) return;
-  const std::int64_t ns = HostCpu::Uncharged(task, task.charged_ns, CpuClockOf(task));
-  run_.ChargeAsDebt(task, ns);
+  run_.ChargeAsDebt(task, HostCpu::Uncharged(task, task.charged, CpuClockOf(task)));
 }
 
 }  // namespace tcs

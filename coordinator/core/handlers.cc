@@ -51,7 +51,7 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   Process& ended = run_.table.ProcessAt(process.index);
   const bool runs = run_.turn.IsIn(ended);
-  moment.ns = std::max(moment.ns, ahead_.EndOfDebtNs(ended));
+  moment.at = std::max(moment.at, ahead_.EndOfDebt(ended));
   const auto end = [this, process](Moment at) {
     deaths_.ProcessEnded(process.index, at);
     return kConcernsAll;
@@ -88,14 +88,14 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
 }
 
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
-  world_.ReceiveCommands(channel.index, moment.ns);
+  world_.ReceiveCommands(channel.index, moment.at);
   return {};
 }
 
 // The thread that has sent goes on, as far as those allow who receive it.
 Reactor::Found Engine::OnNetwork(Subject robot, std::uint32_t, Moment moment) {
-  network_.Take(robot.index, VirtualTime::FromNanoseconds(moment.ns));
-  ShowNetwork(network_ns_);
+  network_.Take(robot.index, moment.at);
+  ShowNetwork(network_progress_);
   if (run_.turn.lasts() && run_.turn.HasClock()) GoOnBesideWoken();
   return {};
 }

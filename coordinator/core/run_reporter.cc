@@ -17,16 +17,16 @@ std::int64_t RunReporter::CoordinatingNs() const {
 RunProgress RunReporter::Now() const {
   const World& world = from_.world;
   RunProgress progress;
-  progress.virtual_ns = world.present() ? world.progress_ns() : run_.root.Least();
+  progress.virtual_ns = (world.present() ? world.progress() : run_.root.Least()).ns();
   progress.real_ns = from_.clock.RealNs();
-  progress.drift_ns = run_.DriftNs();
+  progress.drift_ns = run_.Drift().ns();
   progress.client_ns = run_.report.client_ns;
   progress.dynamics_ns = world.present() ? world.host_ns() : 0;
   progress.coordinating_ns = CoordinatingNs();
   progress.pace = from_.pacing.Report();
   for (const Process& process : run_.table.processes()) {
     if (!process.is_client) continue;
-    progress.clients.push_back({process.name, from_.usage.ChargedToAllOf(process)});
+    progress.clients.push_back({process.name, from_.usage.ChargedToAllOf(process).ns()});
   }
   return progress;
 }
@@ -36,23 +36,23 @@ ClientReport RunReporter::ReportOf(const Launches::Launch& launch) const {
   client.name = launch.spec->name;
   if (launch.process == nullptr) return client;
   const Process& process = *launch.process;
-  client.started_at_ns = process.started_at_ns;
+  client.started_at_ns = process.started_at.ns();
   client.usage = from_.usage.UsageOfAll(process);
-  client.ended_at_ns = process.ended_at_ns;
+  client.ended_at_ns = process.ended_at.has_value() ? process.ended_at->ns() : -1;
   client.wait_status = process.wait_status;
   return client;
 }
 
-void RunReporter::Conclude(std::int64_t virtual_ns) {
+void RunReporter::Conclude(VirtualTime end) {
   RunReport& report = run_.report;
   report.real_ns = from_.clock.RealNs();
   report.coordinating_ns = CoordinatingNs();
-  report.virtual_ns = virtual_ns;
+  report.virtual_ns = end.ns();
   report.pace = from_.pacing.Report();
   from_.dds_records.WarnOfDrops();
   WarnOfNeverStarted();
   WarnOfEndsThatDidNotMeet();
-  report.drift_ns = run_.DriftNs();
+  report.drift_ns = run_.Drift().ns();
   report.dynamics_ns = from_.world.host_ns();
   report.samples = from_.world.samples();
   report.commands = from_.world.commands();
@@ -73,7 +73,7 @@ void RunReporter::Conclude(std::int64_t virtual_ns) {
 void RunReporter::WarnOfNeverStarted() {
   if (!run_.report.error.empty() || run_.stop.asked()) return;
   for (const Launches::Launch& launch : from_.launches.all()) {
-    if (launch.process != nullptr || launch.start_ns != shm::kNeverNs) continue;
+    if (launch.process != nullptr || !launch.start.IsNever()) continue;
     run_.Warn(fmt::format("{} was never started: it is to start after {}, which has not ended",
                           launch.spec->name, launch.spec->after));
   }
@@ -82,7 +82,7 @@ void RunReporter::WarnOfNeverStarted() {
 // A robot that was out of reach of its programs, or they of it, has done nothing of what it was run
 // for, and neither status nor summary would say so. Who failed has said why.
 void RunReporter::WarnOfEndsThatDidNotMeet() {
-  const auto ended = [](const Process& process) { return process.ended_at_ns >= 0; };
+  const auto ended = [](const Process& process) { return process.ended_at.has_value(); };
   const auto failed = [&](const Process& process) {
     return process.is_client && ended(process) && process.wait_status != 0;
   };

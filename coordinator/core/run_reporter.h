@@ -32,9 +32,9 @@ class RunReporter {
 
   RunProgress Now() const;
 
-  // The run is over, at `virtual_ns`: its figures, and warnings of what cannot have been meant.
+  // The run is over, at `end`: its figures, and warnings of what cannot have been meant.
   // What clients do from now on is no part of it.
-  void Conclude(std::int64_t virtual_ns);
+  void Conclude(VirtualTime end);
 
  private:
   // Of the processor that the run has had, what was the coordinator's own.

@@ -54,9 +54,9 @@ std::string Engine::Prepare() {
       !error.empty()) {
     return error;
   }
-  std::string taken;
-  claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
-  if (!taken.empty()) return taken;
+  auto claim = ClaimCpu(run_.options.waits_for_cpu);
+  if (const auto* taken = std::get_if<std::string>(&claim)) return *taken;
+  claim_ = std::move(std::get<CpuClaim>(claim));
   ClientsRunOn(claim_.cpu);
   const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
   const std::vector<int> beside = World::ProcessorsBeside(claim_.cpu, run_.options.host_cpus);
@@ -79,7 +79,7 @@ std::string Engine::Prepare() {
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());
-  if (world_.present()) run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
+  if (world_.present()) run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
   if (std::string error = PrepareSignals(); !error.empty()) return error;
   if (world_.has_terminals()) waker_.AwaitTerminals();
   std::uint32_t inlet = 0;
@@ -204,7 +204,7 @@ void Engine::TellOfWaits() {
   waker_.Tell({
       .began_by_signal =
           [this](Task& task) {
-            signal_wakes_.EndAwait(task, SignalsOf(run_, task), {task.reached_ns});
+            signal_wakes_.EndAwait(task, SignalsOf(run_, task), {task.reached});
           },
       .left =
           [this](Task& task, const Wait& left) {
@@ -220,7 +220,7 @@ void Engine::TellOfWaits() {
           [this](const Process& process, Moment moment) {
             dds_.ReleaseThoseAwaitingDeliverer(process, moment);
           },
-      .does_nothing_before = [this](const VirtualCpu& cpu) { return ahead_.EndOfDebtNs(cpu); },
+      .does_nothing_before = [this](const VirtualCpu& cpu) { return ahead_.EndOfDebt(cpu); },
   });
 }
 

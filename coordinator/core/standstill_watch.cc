@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::size_t kMostNamed = 3;
 
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
 std::string NameOf(pid_t pid) {
   const std::string program = ProgramOf(pid);
   return fmt::format("{} (pid {})", program.substr(program.rfind('/') + 1), pid);
@@ -86,13 +84,13 @@ std::vector<std::string> StandstillWatch::WhatComputesUnmanaged() const {
   return computing;
 }
 
-void StandstillWatch::NoteStandstill(std::int64_t now_ns, std::int64_t furthest_ns) {
-  const Standstill now{run_.report.switches, furthest_ns, now_ns};
-  if (now.dispatches != standstill_.dispatches || now.furthest_ns != standstill_.furthest_ns) {
-    standstill_ = now;
+void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
+  if (run_.report.switches != standstill_.dispatches || furthest != standstill_.furthest) {
+    standstill_ = {run_.report.switches, furthest, now};
     return;
   }
-  if (now_ns - standstill_.since_ns < kPatienceNs || AwaitsTerminal()) return;
+  const HostDuration stood = now - standstill_.since;
+  if (stood < kPatience || AwaitsTerminal()) return;
   has_said_standstill_ = true;
   const std::string why =
       unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
@@ -101,11 +99,11 @@ void StandstillWatch::NoteStandstill(std::int64_t now_ns, std::int64_t furthest_
           : "nothing can happen any more but from outside; " + Joined(WhatIsAwaited());
   run_.options.on_notice(
       fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
-                  Seconds(now.furthest_ns), Seconds(now_ns - standstill_.since_ns), why));
+                  furthest.seconds(), stood.seconds(), why));
 }
 
 // A program alone has ended, and the run goes on for what it has left in the background.
-void StandstillWatch::NoteLeftBehind(std::int64_t now_ns) {
+void StandstillWatch::NoteLeftBehind(HostTime now) {
   std::vector<std::string> ended, left;
   for (const Process& process : run_.table.processes()) {
     if (process.is_client) {
@@ -119,8 +117,8 @@ void StandstillWatch::NoteLeftBehind(std::int64_t now_ns) {
     left.push_back(NameOf(pid));
   }
   if (ended.empty() || left.empty()) return;
-  if (alone_since_ns_ < 0) alone_since_ns_ = now_ns;
-  if (now_ns - alone_since_ns_ < kPatienceNs) return;
+  if (!alone_since_.has_value()) alone_since_ = now;
+  if (now - *alone_since_ < kPatience) return;
   has_said_left_behind_ = true;
   run_.options.on_notice(
       fmt::format("{} has ended; the run goes on for what it has left: {}; Ctrl-C "
@@ -128,9 +126,9 @@ void StandstillWatch::NoteLeftBehind(std::int64_t now_ns) {
                   Joined(ended), Joined(left)));
 }
 
-void StandstillWatch::Look(std::int64_t now_ns, std::int64_t furthest_ns) {
-  if (!has_said_left_behind_ && run_.end_ns == shm::kNeverNs) NoteLeftBehind(now_ns);
-  if (!has_said_standstill_) NoteStandstill(now_ns, furthest_ns);
+void StandstillWatch::Look(HostTime now, VirtualTime furthest) {
+  if (!has_said_left_behind_ && run_.end.IsNever()) NoteLeftBehind(now);
+  if (!has_said_standstill_) NoteStandstill(now, furthest);
 }
 
 }  // namespace tcs

@@ -18,24 +18,26 @@ namespace tcs {
 class StandstillWatch {
  public:
   // Shorter waits for what comes from outside are usual.
-  static constexpr std::int64_t kPatienceNs = 5'000'000'000;
+  static constexpr HostDuration kPatience = HostDuration::Seconds(5);
 
   StandstillWatch(const RunState& run, const UnmanagedThreads& unmanaged,
                   const UnknownChildren& unknown_children)
       : run_(run), unmanaged_(unmanaged), unknown_children_(unknown_children) {}
 
-  // It is `now_ns`, and the furthest of all leaves has come to `furthest_ns`, which is virtual. To
-  // be called now and then. What there is to tell goes to RunOptions::on_notice, which must be set.
-  void Look(std::int64_t now_ns, std::int64_t furthest_ns);
+  // It is `now`, and the furthest of all leaves has come to `furthest`. To be called now and then.
+  // What there is to tell goes to RunOptions::on_notice, which must be set.
+  void Look(HostTime now, VirtualTime furthest);
 
  private:
   // What has not changed since.
   struct Standstill {
-    std::int64_t dispatches = -1, furthest_ns = -1, since_ns = 0;
+    std::int64_t dispatches = -1;
+    VirtualTime furthest;
+    HostTime since;
   };
 
-  void NoteStandstill(std::int64_t now_ns, std::int64_t furthest_ns);
-  void NoteLeftBehind(std::int64_t now_ns);
+  void NoteStandstill(HostTime now, VirtualTime furthest);
+  void NoteLeftBehind(HostTime now);
   bool AwaitsTerminal() const;
   std::vector<std::string> WhatIsAwaited() const;
   std::vector<std::string> WhatComputesUnmanaged() const;
@@ -44,7 +46,7 @@ class StandstillWatch {
   const UnmanagedThreads& unmanaged_;
   const UnknownChildren& unknown_children_;
   Standstill standstill_;
-  std::int64_t alone_since_ns_ = -1;
+  std::optional<HostTime> alone_since_;
   bool has_said_standstill_ = false, has_said_left_behind_ = false;
 };
 

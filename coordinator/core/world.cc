@@ -174,34 +174,33 @@ void World::RecordInto(record::MessageSink& sink) {
 }
 
 void World::FindNextStop() {
-  next_output_ns_ = sensors_.NextArrival().ns();
-  next_stop_ns_ = std::min({csv_.is_open() ? next_csv_ns_ : shm::kNeverNs, sensors_.NextStop().ns(),
-                            commands_.NextStop().ns()});
+  next_output_ = sensors_.NextArrival();
+  next_stop_ = std::min({csv_.is_open() ? next_csv_ : VirtualTime::Never(), sensors_.NextStop(),
+                         commands_.NextStop()});
 }
 
 void World::WriteStates() {
-  const std::int64_t now = progress_ns_;
-  if (!csv_.is_open() || now < next_csv_ns_) return;
-  next_csv_ns_ += scenario_.csv_period.ns();
+  const VirtualTime now = progress_;
+  if (!csv_.is_open() || now < next_csv_) return;
+  next_csv_ += scenario_.csv_period;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const BodyState& s = states_[i];
-    AppendBodiesCsvRow(VirtualTime::FromNanoseconds(now), scenario_.world->bodies[i].name,
-                       s.position_m, s.orientation_xyzw, s.linear_velocity_mps,
-                       s.angular_velocity_radps, &csv_text_);
+    AppendBodiesCsvRow(now, scenario_.world->bodies[i].name, s.position_m, s.orientation_xyzw,
+                       s.linear_velocity_mps, s.angular_velocity_radps, &csv_text_);
   }
   link_lines_.Append(*dynamics_, &csv_text_);
-  if (topics_) topics_->Write(VirtualTime::FromNanoseconds(now), states_, link_lines_.states());
+  if (topics_) topics_->Write(now, states_, link_lines_.states());
   joint_lines_.Write(*dynamics_, &joints_csv_);
   if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }
 
 // All that is read now at once: what many bodies need is integrated side by side.
 void World::ReadDue() {
-  if (csv_.is_open() && next_csv_ns_ <= progress_ns_) {
+  if (csv_.is_open() && next_csv_ <= progress_) {
     due_ = all_bodies_;
   } else {
     due_.clear();
-    sensors_.AddDueBodies(VirtualTime::FromNanoseconds(progress_ns_), &due_);
+    sensors_.AddDueBodies(progress_, &due_);
     std::ranges::sort(due_);
     due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
   }
@@ -212,51 +211,49 @@ void World::ReadDue() {
   }
 }
 
-bool World::Advance(std::int64_t limit_ns) {
+bool World::Advance(VirtualTime limit) {
   const Spent spent(&host_ns_);
-  progress_ns_ = std::max(progress_ns_, std::min(limit_ns, next_stop_ns_));
-  const std::int64_t sent_until_ns = std::min(progress_ns_, limit_ns);
-  PassOnSentUntil(sent_until_ns);
-  commands_.ActUntil(VirtualTime::FromNanoseconds(sent_until_ns));
+  progress_ = std::max(progress_, std::min(limit, next_stop_));
+  const VirtualTime sent_until = std::min(progress_, limit);
+  PassOnSentUntil(sent_until);
+  commands_.ActUntil(sent_until);
   // A command that came while the dynamics led may have made firmware act before their progress.
-  if (limit_ns < progress_ns_) {
+  if (limit < progress_) {
     FindNextStop();
     return false;
   }
-  Settle(progress_ns_);
+  Settle(progress_);
   ReadDue();
-  due_links_.Read(sensors_, VirtualTime::FromNanoseconds(progress_ns_), *dynamics_);
+  due_links_.Read(sensors_, progress_, *dynamics_);
   WriteStates();
   const bool sent = sensors_.Act(
-      VirtualTime::FromNanoseconds(progress_ns_),
-      [this](int body) { return states_[static_cast<std::size_t>(body)]; },
+      progress_, [this](int body) { return states_[static_cast<std::size_t>(body)]; },
       {.links = [this](std::span<const int> links,
                        std::span<LinkState> states) { due_links_.Give(links, states); },
        .joints =
            [this](std::span<const int> joints, std::span<JointState> states) {
              dynamics_->ReadJoints(dynamics_->Now(), joints, states);
            }});
-  if (sent) ReceiveFromTerminals(progress_ns_);  // what they echo
+  if (sent) ReceiveFromTerminals(progress_);  // what they echo
   FindNextStop();
   return sent;
 }
 
 // The dynamics integrate what somebody reads, and nobody does before the next stop. Others may
-// still be woken earlier than `now_ns`, but no further back than the drift bound.
-void World::Lead(std::int64_t now_ns, std::int64_t to_ns) {
-  if (PassOnSentUntil(now_ns - scenario_.drift_bound.ns())) FindNextStop();
-  Settle(std::min(now_ns - scenario_.drift_bound.ns(), commands_.NextStop().ns()));
-  progress_ns_ = std::max(progress_ns_, to_ns);
+// still be woken earlier than `now`, but no further back than the drift bound.
+void World::Lead(VirtualTime now, VirtualTime to) {
+  if (PassOnSentUntil(now - scenario_.drift_bound)) FindNextStop();
+  Settle(std::min(now - scenario_.drift_bound, commands_.NextStop()));
+  progress_ = std::max(progress_, to);
 }
 
 // Firmware acts until each of them. True if there were any.
-bool World::PassOnSentUntil(std::int64_t ns) {
-  return queue_.PassOn(VirtualTime::FromNanoseconds(ns),
-                       [this](VirtualTime at) { commands_.ActUntil(at); });
+bool World::PassOnSentUntil(VirtualTime time) {
+  return queue_.PassOn(time, [this](VirtualTime at) { commands_.ActUntil(at); });
 }
 
-void World::Settle(std::int64_t ns) {
-  if (ns > settled_ns()) dynamics_->AdvanceTo(VirtualTime::FromNanoseconds(ns));
+void World::Settle(VirtualTime time) {
+  if (time > dynamics_->Now()) dynamics_->AdvanceTo(time);
 }
 
 VirtualTime World::ActsAt(VirtualTime sent, VirtualDuration latency) const {
@@ -269,11 +266,11 @@ std::vector<int> World::command_fds() const {
   return fds;
 }
 
-void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
+void World::ReceiveCommands(std::size_t index, VirtualTime now) {
   const Spent spent(&host_ns_);
-  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), queue_);
+  channels_.inlets[index]->Receive(now, queue_);
   // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
-  if (now_ns < progress_ns_) next_stop_ns_ = std::min(next_stop_ns_, now_ns);
+  if (now < progress_) next_stop_ = std::min(next_stop_, now);
 }
 
 void World::NameReceivers(shm::OwnReceivers& receivers) const {
@@ -336,21 +333,21 @@ std::string World::AliasesOf(const std::string& robot) const {
   return text;
 }
 
-void World::ReceiveFromTerminals(std::int64_t now_ns) {
+void World::ReceiveFromTerminals(VirtualTime now) {
   if (terminals_.empty()) return;
   const Spent spent(&host_ns_);
-  PassOnSentUntil(now_ns);
+  PassOnSentUntil(now);
   for (Inlet* terminal : terminals_) {
-    terminal->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
+    terminal->Receive(now, commands_);
   }
   FindNextStop();
 }
 
-void World::ReceiveUntold(std::int64_t now_ns) {
+void World::ReceiveUntold(VirtualTime now) {
   const Spent spent(&host_ns_);
-  PassOnSentUntil(now_ns);
+  PassOnSentUntil(now);
   for (const auto& inlet : channels_.inlets) {
-    if (inlet->fd() < 0) inlet->Receive(VirtualTime::FromNanoseconds(now_ns), commands_);
+    if (inlet->fd() < 0) inlet->Receive(now, commands_);
   }
   FindNextStop();
 }

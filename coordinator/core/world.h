@@ -32,8 +32,8 @@ class World {
 
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
   // are for those on DDS; they outlive this. RecordInto follows if `is_recorded`.
-  std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
-                   bool is_recorded = false);
+  [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
+                                 const MakeAt& make_at, bool is_recorded = false);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
@@ -45,37 +45,37 @@ class World {
   // What the world looks like, how it moved and what moved it are written into this folder:
   // scene.json, bodies.csv, joints.csv, commands.csv; nothing without a world. Empty on success,
   // else one sentence.
-  std::string OpenRecords(const std::string& folder);
+  [[nodiscard]] std::string OpenRecords(const std::string& folder);
   void FlushRecords();
-  std::string CloseRecords();
+  [[nodiscard]] std::string CloseRecords();
   // After OpenRecords: where bodies are, as often as the files are told, and what goes over
   // channels that are not on DDS, as messages. The sink outlives this.
   void RecordInto(record::MessageSink& sink);
 
   bool present() const { return dynamics_ != nullptr; }
-  std::int64_t progress_ns() const { return progress_ns_; }
+  VirtualTime progress() const { return progress_; }
   // Nothing leaves the dynamics before this.
-  std::int64_t NextOutputNs() const { return next_output_ns_; }
+  VirtualTime NextOutput() const { return next_output_; }
   // When somebody looks at the state next: a sample, an output, a line of the CSV.
-  std::int64_t NextStopNs() const { return next_stop_ns_; }
-  // Advances to the earliest of `limit_ns` and the next stop, and carries out what is due there. No
+  VirtualTime NextStop() const { return next_stop_; }
+  // Advances to the earliest of `limit` and the next stop, and carries out what is due there. No
   // command for an earlier time comes any more. True if something was sent.
-  bool Advance(std::int64_t limit_ns);
-  // Goes on to `to_ns`, at most the next stop, while somebody acts at `now_ns` whose commands are
+  bool Advance(VirtualTime limit);
+  // Goes on to `to`, at most the next stop, while somebody acts at `now` whose commands are
   // still to come. Each is applied at its time.
-  void Lead(std::int64_t now_ns, std::int64_t to_ns);
+  void Lead(VirtualTime now, VirtualTime to);
 
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
   // The addresses of those to which programs send datagrams.
   void NameReceivers(shm::OwnReceivers& receivers) const;
-  // Takes what has arrived there at virtual time `now_ns`; others may still send for times before.
-  void ReceiveCommands(std::size_t index, std::int64_t now_ns);
-  // Applies what has been sent by `now_ns` to where no descriptor tells of it.
-  void ReceiveUntold(std::int64_t now_ns);
-  // Takes what has been written to terminals, at `now_ns`.
+  // Takes what has arrived there at `now`; others may still send for times before.
+  void ReceiveCommands(std::size_t index, VirtualTime now);
+  // Applies what has been sent by `now` to where no descriptor tells of it.
+  void ReceiveUntold(VirtualTime now);
+  // Takes what has been written to terminals, at `now`.
   bool has_terminals() const { return !terminals_.empty(); }
-  void ReceiveFromTerminals(std::int64_t now_ns);
+  void ReceiveFromTerminals(VirtualTime now);
 
   // The files that the robot's programs find under other names, as shm::kAliasesVariable has them.
   std::string AliasesOf(const std::string& robot) const;
@@ -95,10 +95,9 @@ class World {
   void FlushBodies();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
-  bool PassOnSentUntil(std::int64_t ns);
+  bool PassOnSentUntil(VirtualTime time);
   // Commands for earlier times do not come any more.
-  void Settle(std::int64_t ns);
-  std::int64_t settled_ns() const { return dynamics_->Now().ns(); }
+  void Settle(VirtualTime time);
   void ReadDue();
   // When a command acts that was sent at that time: not before what is settled.
   VirtualTime ActsAt(VirtualTime sent, VirtualDuration latency) const;
@@ -106,7 +105,7 @@ class World {
 
   Scenario scenario_;
   std::unique_ptr<Dynamics> dynamics_;
-  std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
+  VirtualTime progress_, next_output_, next_stop_;
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
   Channels channels_;
   std::vector<Inlet*> terminals_;
@@ -115,7 +114,7 @@ class World {
   CommandQueue queue_{commands_};
   std::ofstream csv_;
   std::string csv_path_, csv_text_;  // whole lines, not written yet
-  std::int64_t next_csv_ns_ = 0;
+  VirtualTime next_csv_;
   LinkLines link_lines_;
   JointLines joint_lines_;
   CsvFile joints_csv_;

@@ -9,26 +9,26 @@ void FixedMeter::SetRates(const MeteredThread& thread, const SetCosts& costs,
   grant.ns_per_host_ns_q32 = thread.NsPerHostNsQ32();
   grant.ns_per_tick_q32 = 0;
   grant.check_after_ticks = ~std::uint64_t{0};
-  grant.call_cost_ns = costs.call_ns;
-  grant.allocation_cost_ns = costs.allocation_ns;
+  grant.call_cost_ns = costs.call.ns();
+  grant.allocation_cost_ns = costs.allocation.ns();
 }
 
 std::uint64_t FixedMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bool, bool is_silent) {
-  thread.silent_at_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
+  thread.silent_at = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
   thread.silent_looks = 0;
   thread.is_silent = is_silent;
   return tsc;
 }
 
-std::int64_t FixedMeter::NsToLook(MeteredThread& thread, std::uint64_t, std::int64_t) {
-  return thread.is_silent ? kLookAtSilentNs : kLookNs;
+HostDuration FixedMeter::TimeToLook(MeteredThread& thread, std::uint64_t, ProgramTime) {
+  return thread.is_silent ? kLookAtSilentEvery : kLookEvery;
 }
 
 // Calls and allocations move its clock, whether it comes to its horizon by them or not.
-Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t,
+Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime,
                               const CpuClock&) {
-  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
-  if (std::exchange(thread.silent_at_ns, now_ns) != now_ns) {
+  const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
+  if (std::exchange(thread.silent_at, now) != now) {
     thread.is_silent = false;
     thread.silent_looks = 0;
     return Found::kGoesOn;
@@ -39,9 +39,9 @@ Meter::Found FixedMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int
 }
 
 // The shim charges the calls that it sees, whatever the C library calls for it.
-void FixedMeter::ChargeCall(MeteredThread& thread, std::int64_t cost_ns) {
+void FixedMeter::ChargeCall(MeteredThread& thread, VirtualDuration cost) {
   const std::uint64_t word = thread.page->executed_adjust.load();
-  thread.page->executed_adjust.store(shm::PackAdjust(word, shm::AdjustValue(word) + cost_ns));
+  thread.page->executed_adjust.store(shm::PackAdjust(word, shm::AdjustValue(word) + cost.ns()));
 }
 
 }  // namespace tcs

@@ -10,25 +10,25 @@ namespace tcs {
 
 class FixedMeter : public Meter {
  public:
-  static constexpr std::int64_t kLookNs = 50'000'000;
-  static constexpr int kSilentLooks = 100;                    // until it is taken to spin
-  static constexpr std::int64_t kLookAtSilentNs = 1'000'000;  // from then on
+  static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(50);
+  static constexpr int kSilentLooks = 100;  // until it is taken to spin
+  static constexpr HostDuration kLookAtSilentEvery = HostDuration::Milliseconds(1);  // from then on
 
   void SetRates(const MeteredThread& thread, const SetCosts& costs,
                 ClockGrant& grant) const override;
   std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
                       bool is_silent) override;
-  std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns) override;
-  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+  HostDuration TimeToLook(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon) override;
+  Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
-  bool HasOverslept(std::uint64_t, std::uint64_t, std::int64_t) const override { return false; }
-  std::int64_t TakeOutUntold(MeteredThread&, const shm::ClockReading&, std::uint64_t, std::int64_t,
+  bool HasOverslept(std::uint64_t, std::uint64_t, HostDuration) const override { return false; }
+  HostDuration TakeOutUntold(MeteredThread&, const shm::ClockReading&, std::uint64_t, HostDuration,
                              const CpuClock&) override {
-    return 0;
+    return {};
   }
   void Check(MeteredThread&, std::uint64_t, const CpuClock&) override {}
   void End(MeteredThread&, std::uint64_t, const CpuClock&) override {}
-  void ChargeCall(MeteredThread& thread, std::int64_t cost_ns) override;
+  void ChargeCall(MeteredThread& thread, VirtualDuration cost) override;
 };
 
 }  // namespace tcs

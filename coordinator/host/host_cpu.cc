@@ -66,41 +66,40 @@ void HostCpu::FollowOrigin(HostThread& thread) {
   metered.host_origin_ns += moved_ns;
 }
 
-std::int64_t HostCpu::Uncharged(const HostThread& thread, std::int64_t charged_ns,
-                                const Meter::CpuClock& clock) {
+VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration charged,
+                                   const Meter::CpuClock& clock) {
   const MeteredThread& metered = thread.metered;
-  if (metered.is_ideal) return 0;
+  if (metered.is_ideal) return {};
   const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
-  if (cpu_ns < 0) return 0;
-  return std::max<std::int64_t>(0, metered.ChargeAt(cpu_ns) - charged_ns);
+  if (cpu_ns < 0) return {};
+  return std::max(VirtualDuration(), metered.ChargeAt(cpu_ns) - charged);
 }
 
 shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {
   return shm::ReadClockAt(thread.slot_memory->clock, stop_tsc_);
 }
 
-std::int64_t HostCpu::NsToLook(HostThread& thread, std::int64_t horizon_ns) {
-  return MeterOf(thread).NsToLook(thread.metered, stop_tsc_, horizon_ns);
+HostDuration HostCpu::TimeToLook(HostThread& thread, ProgramTime horizon) {
+  return MeterOf(thread).TimeToLook(thread.metered, stop_tsc_, horizon);
 }
 
-Meter::Found HostCpu::Look(HostThread& thread, std::int64_t horizon_ns,
-                           const Meter::CpuClock& clock) {
-  return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon_ns, clock);
+Meter::Found HostCpu::Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock) {
+  return MeterOf(thread).Look(thread.metered, stop_tsc_, horizon, clock);
 }
 
-std::int64_t HostCpu::TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
-                                    std::int64_t asked_ns, const Meter::CpuClock& clock) {
-  if (!MeterOf(thread).HasOverslept(before.tsc, stop_tsc_, asked_ns) || !thread.HasOwnClock())
-    return 0;
-  return MeterOf(thread).TakeOutUntold(thread.metered, before, stop_tsc_, asked_ns, clock);
+HostDuration HostCpu::TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
+                                    HostDuration asked, const Meter::CpuClock& clock) {
+  if (!MeterOf(thread).HasOverslept(before.tsc, stop_tsc_, asked) || !thread.HasOwnClock())
+    return {};
+  return MeterOf(thread).TakeOutUntold(thread.metered, before, stop_tsc_, asked, clock);
 }
 
 void HostCpu::Check(HostThread& thread, const Meter::CpuClock& clock) {
   MeterOf(thread).Check(thread.metered, stop_tsc_, clock);
 }
 
-void HostCpu::ChargeCall(HostThread& thread, std::int64_t cost_ns) {
-  MeterOf(thread).ChargeCall(thread.metered, cost_ns);
+void HostCpu::ChargeCall(HostThread& thread, VirtualDuration cost) {
+  MeterOf(thread).ChargeCall(thread.metered, cost);
 }
 
 }  // namespace tcs

@@ -70,24 +70,24 @@ class HostCpu {
 
   // For how much real time the coordinator may sleep until it has to look at the thread, whose
   // clock's horizon that is; and what it finds when it has slept for as long.
-  std::int64_t NsToLook(HostThread& thread, std::int64_t horizon_ns);
-  Meter::Found Look(HostThread& thread, std::int64_t horizon_ns, const Meter::CpuClock& clock);
+  HostDuration TimeToLook(HostThread& thread, ProgramTime horizon);
+  Meter::Found Look(HostThread& thread, ProgramTime horizon, const Meter::CpuClock& clock);
 
-  // The coordinator was to sleep for `asked_ns`, from when the thread's clock was at `before` on.
+  // The coordinator was to sleep for `asked`, from when the thread's clock was at `before` on.
   // What was stolen meanwhile, and no clock tells of, is taken out. Returns it.
-  std::int64_t TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
-                             std::int64_t asked_ns, const Meter::CpuClock& clock);
+  HostDuration TakeOutUntold(HostThread& thread, const shm::ClockReading& before,
+                             HostDuration asked, const Meter::CpuClock& clock);
   // Of a thread that ran on though another one was dispatched.
   void Check(HostThread& thread, const Meter::CpuClock& clock);
   // What the thread has moved the origin of its CPU clock by, on its ways out of gates, is its own
   // from now on.
   static void FollowOrigin(HostThread& thread);
-  // What a thread has computed since it was last charged `charged_ns`, by its CPU clock: while it
-  // was not dispatched. In virtual nanoseconds.
-  static std::int64_t Uncharged(const HostThread& thread, std::int64_t charged_ns,
-                                const Meter::CpuClock& clock);
+  // What a thread has computed since it was last charged `charged`, by its CPU clock: while it was
+  // not dispatched.
+  static VirtualDuration Uncharged(const HostThread& thread, VirtualDuration charged,
+                                   const Meter::CpuClock& clock);
   // Of a thread that has stopped in a system call that its shim knows nothing of.
-  void ChargeCall(HostThread& thread, std::int64_t cost_ns);
+  void ChargeCall(HostThread& thread, VirtualDuration cost);
 
  private:
   Meter& MeterOf(const HostThread& thread) {

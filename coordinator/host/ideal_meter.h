@@ -9,17 +9,17 @@ namespace tcs {
 
 class IdealMeter final : public FixedMeter {
  public:
-  static constexpr int kMostLooks = 200;  // kLookNs apart: 10 s
+  static constexpr int kMostLooks = 200;  // kLookEvery apart: 10 s
 
   void SetRates(const MeteredThread& thread, const SetCosts&, ClockGrant& grant) const override {
     FixedMeter::SetRates(thread, {}, grant);
   }
-  Found Look(MeteredThread& thread, std::uint64_t, std::int64_t, const CpuClock&) override {
+  Found Look(MeteredThread& thread, std::uint64_t, ProgramTime, const CpuClock&) override {
     if (!thread.is_silent && ++thread.silent_looks < kMostLooks) return Found::kGoesOn;
     thread.is_silent = true;
     return Found::kIsSilent;
   }
-  void ChargeCall(MeteredThread&, std::int64_t) override {}
+  void ChargeCall(MeteredThread&, VirtualDuration) override {}
 };
 
 }  // namespace tcs

@@ -30,7 +30,7 @@ void MeasuredMeter::SetRates(const MeteredThread& thread, const SetCosts&,
   grant.ns_per_tick_q32 =
       static_cast<std::uint64_t>(static_cast<double>(rate_.ns_per_tick_q32) / thread.speed);
   grant.check_after_ticks =
-      static_cast<std::uint64_t>(static_cast<double>(kCheckAfterNs) * rate_.ticks_per_ns);
+      static_cast<std::uint64_t>(static_cast<double>(kCheckAfter.ns()) * rate_.ticks_per_ns);
   grant.call_cost_ns = grant.allocation_cost_ns = 0;
 }
 
@@ -41,48 +41,49 @@ std::uint64_t MeasuredMeter::Begin(MeteredThread& thread, std::uint64_t tsc, boo
   return tsc + static_cast<std::uint64_t>(switch_costs_.Ns(from_gate) * rate_.ticks_per_ns);
 }
 
-std::int64_t MeasuredMeter::NsToLook(MeteredThread& thread, std::uint64_t tsc,
-                                     std::int64_t horizon_ns) {
-  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
-  const double left_ns = static_cast<double>(horizon_ns - now_ns) * thread.speed;
+HostDuration MeasuredMeter::TimeToLook(MeteredThread& thread, std::uint64_t tsc,
+                                       ProgramTime horizon) {
+  const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
+  const double left_ns = static_cast<double>(PassedBetween(now, horizon).ns()) * thread.speed;
   thread.asked_tsc = tsc;
-  thread.asked_ns = timer_.NsToSleep(left_ns, thread.longest_run_ns);
-  return thread.asked_ns;
+  thread.asked = HostNs(timer_.NsToSleep(left_ns, thread.longest_run.ns()));
+  return thread.asked;
 }
 
-Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+Meter::Found MeasuredMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                                  const CpuClock& clock) {
-  timer_.Expired(thread.asked_ns, static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
+  timer_.Expired(thread.asked.ns(),
+                 static_cast<double>(tsc - thread.asked_tsc) / rate_.ticks_per_ns);
   CheckIfDue(thread, tsc, clock);
-  const std::int64_t now_ns = shm::ReadClockAt(*thread.page, tsc).time_ns;
-  return IsAtHorizon(now_ns, horizon_ns) ? Found::kAtHorizon : Found::kGoesOn;
+  const ProgramTime now = OwnTime(shm::ReadClockAt(*thread.page, tsc).time_ns);
+  return IsAtHorizon(now, horizon) ? Found::kAtHorizon : Found::kGoesOn;
 }
 
 // Had the timer come in time, a look at the TSC is all there is to do.
 bool MeasuredMeter::HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
-                                 std::int64_t asked_ns) const {
-  const double most_ns = static_cast<double>(asked_ns + kMostTimerLatenessNs);
+                                 HostDuration asked) const {
+  const auto most_ns = static_cast<double>(asked.ns() + kMostTimerLatenessNs);
   return tsc - since_tsc > static_cast<std::uint64_t>(most_ns * rate_.ticks_per_ns);
 }
 
-std::int64_t MeasuredMeter::TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                                          std::uint64_t tsc, std::int64_t asked_ns,
+HostDuration MeasuredMeter::TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                                          std::uint64_t tsc, HostDuration asked,
                                           const CpuClock& clock) {
   Check(thread, tsc, clock);  // which tells of most thieves
   shm::ClockPage& page = *thread.page;
   const shm::ClockReading now = shm::ReadClockAt(page, tsc);
   const std::int64_t shown_ns = page.last_shown_ns.load(std::memory_order_relaxed);
-  const std::int64_t stolen_ns =
-      StolenUntold({.counted_ns = thread.HostNs(now.cpu_ns - before.cpu_ns),
-                    .asked_ns = asked_ns,
-                    .usual_ns = thread.longest_run_ns,
-                    .shown_ns = thread.HostNs(shown_ns - before.time_ns)});
-  if (stolen_ns <= 0) return 0;
-  shm::RemoveUntold(page, now, stolen_ns);
+  const HostDuration stolen = HostNs(StolenUntold(
+      {.counted_ns = thread.OnHost(VirtualNs(now.cpu_ns - before.cpu_ns)).ns(),
+       .asked_ns = asked.ns(),
+       .usual_ns = thread.longest_run.ns(),
+       .shown_ns = thread.OnHost(PassedBetween(OwnTime(before.time_ns), OwnTime(shown_ns))).ns()}));
+  if (stolen <= HostDuration()) return {};
+  shm::RemoveUntold(page, now, stolen.ns());
   // The origin has been moved here, not by the thread.
-  thread.page_origin_ns += stolen_ns;
-  thread.host_origin_ns += stolen_ns;
-  return stolen_ns;
+  thread.page_origin_ns += stolen.ns();
+  thread.host_origin_ns += stolen.ns();
+  return stolen;
 }
 
 void MeasuredMeter::Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {

@@ -20,17 +20,15 @@ class MeasuredMeter : public Meter {
                 ClockGrant& grant) const override;
   std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
                       bool is_silent) override;
-  std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns) override;
-  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+  HostDuration TimeToLook(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon) override;
+  Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
-  bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
-                    std::int64_t asked_ns) const override;
-  std::int64_t TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                             std::uint64_t tsc, std::int64_t asked_ns,
-                             const CpuClock& clock) override;
+  bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc, HostDuration asked) const override;
+  HostDuration TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                             std::uint64_t tsc, HostDuration asked, const CpuClock& clock) override;
   void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
   void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
-  void ChargeCall(MeteredThread&, std::int64_t) override {}  // its time is on the clock
+  void ChargeCall(MeteredThread&, VirtualDuration) override {}  // its time is on the clock
 
  private:
   void CheckIfDue(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock);

@@ -16,6 +16,7 @@
 #include "coordinator/host/switch_costs.h"
 #include "shm/clock_page.h"
 #include "shm/layout.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -33,25 +34,28 @@ struct MeteredThread {
   // What the thread's CPU clock said when its charge was 0, moved by what is not charged; -1: not
   // known yet.
   std::int64_t host_origin_ns = -1;
-  std::int64_t page_origin_ns = 0;           // what its page says of that
-  std::int64_t longest_run_ns = 10'000'000;  // the host's, of late
-  std::uint64_t unchecked_ticks = 0;         // of TSC run since its CPU clock was last asked
-  std::uint64_t checked_tsc = 0;             // what its page said of that at its dispatch
-  UncheckedRuns unchecked_runs;              // by the coordinator
-  std::uint64_t asked_tsc = 0;               // when it was last said how long it may run,
-  std::int64_t asked_ns = 0;                 // and how long
-  std::int64_t silent_at_ns = 0;             // its clock when it was last looked at
-  int silent_looks = 0;                      // in a row that have found it there
-  bool is_silent = false;                    // it computes without a call
+  std::int64_t page_origin_ns = 0;                            // what its page says of that
+  HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
+  std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
+  std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch
+  UncheckedRuns unchecked_runs;       // by the coordinator
+  std::uint64_t asked_tsc = 0;        // when it was last said how long it may run,
+  HostDuration asked;                 // and how long
+  ProgramTime silent_at;              // its clock when it was last looked at
+  int silent_looks = 0;               // in a row that have found it there
+  bool is_silent = false;             // it computes without a call
 
-  std::int64_t HostNs(std::int64_t virtual_ns) const {
-    return static_cast<std::int64_t>(static_cast<double>(virtual_ns) * speed);
+  // Host time and virtual time are made of each other here only.
+  HostDuration OnHost(VirtualDuration computed) const {
+    return HostNs(static_cast<std::int64_t>(static_cast<double>(computed.ns()) * speed));
   }
-  std::int64_t VirtualNs(std::int64_t host_ns) const {
-    return shm::MulQ32(host_ns, NsPerHostNsQ32());
+  VirtualDuration OnRobot(HostDuration computed) const {
+    return VirtualNs(shm::MulQ32(computed.ns(), NsPerHostNsQ32()));
   }
   // What it is to be charged in all once its CPU clock says `cpu_ns`.
-  std::int64_t ChargeAt(std::int64_t cpu_ns) const { return VirtualNs(cpu_ns - host_origin_ns); }
+  VirtualDuration ChargeAt(std::int64_t cpu_ns) const {
+    return OnRobot(HostNs(cpu_ns - host_origin_ns));
+  }
   // Virtual nanoseconds per one of the host's, times 2^32.
   std::uint64_t NsPerHostNsQ32() const { return static_cast<std::uint64_t>(4294967296.0 / speed); }
 };
@@ -63,7 +67,7 @@ class Meter {
 
   // What the scenario says that calls and allocations cost.
   struct SetCosts {
-    std::int64_t call_ns = 0, allocation_ns = 0;
+    VirtualDuration call, allocation;
   };
 
   enum class Found {
@@ -84,20 +88,19 @@ class Meter {
                               bool is_silent) = 0;
 
   // For how much real time from `tsc` on the thread need not be looked at.
-  virtual std::int64_t NsToLook(MeteredThread& thread, std::uint64_t tsc,
-                                std::int64_t horizon_ns) = 0;
+  virtual HostDuration TimeToLook(MeteredThread& thread, std::uint64_t tsc,
+                                  ProgramTime horizon) = 0;
   // That is over.
-  virtual Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+  virtual Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                      const CpuClock& clock) = 0;
 
-  // True if the coordinator has slept for so much longer than `asked_ns` that what was stolen
+  // True if the coordinator has slept for so much longer than `asked` that what was stolen
   // meanwhile may be on all of the thread's clocks.
   virtual bool HasOverslept(std::uint64_t since_tsc, std::uint64_t tsc,
-                            std::int64_t asked_ns) const = 0;
-  // Then takes it out. The thread's clock was at `before` when the sleep began. Returns the host's
-  // nanoseconds.
-  virtual std::int64_t TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
-                                     std::uint64_t tsc, std::int64_t asked_ns,
+                            HostDuration asked) const = 0;
+  // Then takes it out, and returns it. The thread's clock was at `before` when the sleep began.
+  virtual HostDuration TakeOutUntold(MeteredThread& thread, const shm::ClockReading& before,
+                                     std::uint64_t tsc, HostDuration asked,
                                      const CpuClock& clock) = 0;
 
   // Takes out of the thread's clock what was stolen until `tsc`, as its CPU clock tells.
@@ -107,7 +110,7 @@ class Meter {
   virtual void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) = 0;
 
   // The thread has made a system call that its shim knows nothing of.
-  virtual void ChargeCall(MeteredThread& thread, std::int64_t cost_ns) = 0;
+  virtual void ChargeCall(MeteredThread& thread, VirtualDuration cost) = 0;
 };
 
 }  // namespace tcs

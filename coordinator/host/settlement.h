@@ -3,62 +3,64 @@
 //
 // A thread's clock counts on while the thread runs, also beyond its horizon, where timers are late;
 // it never shows more than the horizon. So the virtual CPU comes to the horizon at most, and what
-// was executed beyond is a debt, charged first at the next dispatch. Pure; the virtual CPU's
-// nanoseconds.
+// was executed beyond is a debt, charged first at the next dispatch. Pure; all times are the
+// virtual CPU's.
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <optional>
+
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
 // A thread stopped this close before its horizon has reached it: the rest is credit.
-inline constexpr std::int64_t kCreditNs = 20'000;
+inline constexpr VirtualDuration kCredit = VirtualDuration::Microseconds(20);
 // So much a thread computes before its CPU clock is asked what of it was stolen.
-inline constexpr std::int64_t kCheckAfterNs = 100'000;
+inline constexpr HostDuration kCheckAfter = HostDuration::Microseconds(100);
 // Shown too early by what was stolen unnoticed, and stopped early: no more than both.
-inline constexpr std::int64_t kMostCreditNs = kCheckAfterNs + kCreditNs;
+inline constexpr VirtualDuration kMostCredit = VirtualNs(kCheckAfter.ns()) + kCredit;
 
 struct StoppedRun {
-  std::int64_t start_ns = 0;  // the virtual CPU's progress at the dispatch
-  std::int64_t horizon_ns =
-      0;  // as it is now; where others need the thread early, before its start
-  std::int64_t reached_ns = 0;  // by the thread's clock
-  std::int64_t shown_ns = 0;    // the furthest that this clock has shown
+  VirtualTime start;    // the virtual CPU's progress at the dispatch
+  VirtualTime horizon;  // as it is now; where others need the thread early, before its start
+  VirtualTime reached;  // by the thread's clock
+  VirtualTime shown;    // the furthest that this clock has shown
   // When the thread began to notify. None if it did not, and of a yield, which is a system call of
   // the program's natively, too: who spins on it must get on.
-  std::optional<std::int64_t> noted_ns;
-  bool is_preempted = false;   // by the timer, rather than by what it asked for
-  std::int64_t credit_ns = 0;  // that it had at its dispatch
+  std::optional<VirtualTime> noted;
+  bool is_preempted = false;  // by the timer, rather than by what it asked for
+  VirtualDuration credit;     // that it had at its dispatch
 };
 
 struct Settlement {
-  std::int64_t progress_ns = 0;  // of the virtual CPU: the thread's own time from now on
-  std::int64_t debt_ns = 0;      // executed beyond that; negative: credit
-  std::int64_t ours_ns = 0;      // counted, but neither time nor charge of the thread's
+  VirtualTime progress;  // of the virtual CPU: the thread's own time from now on
+  VirtualDuration debt;  // executed beyond that; negative: credit
+  VirtualDuration ours;  // counted, but neither time nor charge of the thread's
 };
 
-constexpr bool IsAtHorizon(std::int64_t now_ns, std::int64_t horizon_ns) {
-  return now_ns >= horizon_ns - kCreditNs;
+// Of two times on one clock.
+template <class Time>
+constexpr bool IsAtHorizon(Time now, Time horizon) {
+  return now >= horizon - kCredit;
 }
 
 constexpr Settlement SettleRun(const StoppedRun& run) {
+  constexpr VirtualDuration kNone;
   Settlement result;
   // What the notification itself takes is ours: neither the thread's clock nor its charge shows it.
-  if (run.noted_ns.has_value() && *run.noted_ns < run.horizon_ns) {
-    const std::int64_t noted_ns = std::max(*run.noted_ns, run.start_ns);
-    result.ours_ns = std::max<std::int64_t>(0, run.reached_ns - noted_ns);
+  if (run.noted.has_value() && *run.noted < run.horizon) {
+    result.ours = std::max(kNone, run.reached - std::max(*run.noted, run.start));
   }
-  const std::int64_t reached_ns = run.reached_ns - result.ours_ns;
+  const VirtualTime reached = run.reached - result.ours;
   // What the clock has shown has happened, even where stolen time was found in it afterwards.
-  result.progress_ns = std::clamp(std::max(reached_ns, run.shown_ns), run.start_ns,
-                                  std::max(run.start_ns, run.horizon_ns));
-  if (run.is_preempted && IsAtHorizon(result.progress_ns, run.horizon_ns)) {
-    result.progress_ns = std::max(result.progress_ns, run.horizon_ns);
+  result.progress =
+      std::clamp(std::max(reached, run.shown), run.start, std::max(run.start, run.horizon));
+  if (run.is_preempted && IsAtHorizon(result.progress, run.horizon)) {
+    result.progress = std::max(result.progress, run.horizon);
   }
-  result.debt_ns = reached_ns - result.progress_ns;
-  if (result.debt_ns < -std::max(kMostCreditNs, run.credit_ns)) result.debt_ns = 0;
+  result.debt = reached - result.progress;
+  if (result.debt < -std::max(kMostCredit, run.credit)) result.debt = kNone;
   return result;
 }
 

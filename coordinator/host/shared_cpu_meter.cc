@@ -10,10 +10,10 @@ std::uint64_t SharedCpuMeter::Begin(MeteredThread& thread, std::uint64_t tsc, bo
   return tsc;
 }
 
-Meter::Found SharedCpuMeter::Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+Meter::Found SharedCpuMeter::Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
                                   const CpuClock& clock) {
   Check(thread, tsc, clock);
-  return MeasuredMeter::Look(thread, tsc, horizon_ns, clock);
+  return MeasuredMeter::Look(thread, tsc, horizon, clock);
 }
 
 void SharedCpuMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {

@@ -17,9 +17,9 @@ class SharedCpuMeter final : public MeasuredMeter {
 
   std::uint64_t Begin(MeteredThread& thread, std::uint64_t tsc, bool from_gate,
                       bool is_silent) override;
-  Found Look(MeteredThread& thread, std::uint64_t tsc, std::int64_t horizon_ns,
+  Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
-  bool HasOverslept(std::uint64_t, std::uint64_t, std::int64_t) const override { return false; }
+  bool HasOverslept(std::uint64_t, std::uint64_t, HostDuration) const override { return false; }
   void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
 };
 

@@ -13,8 +13,8 @@ namespace tcs {
 // `path`, says whether it is STL, OBJ or COLLADA. No other file is opened. By assimp, which may not
 // survive what is in it: call it in a process of its own (in_child.h). Half a sentence where it
 // cannot be read.
-std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const std::string& text,
-                                                                         const std::string& path);
+[[nodiscard]] std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(
+    const std::string& text, const std::string& path);
 
 // Whether that can be: by the end of the file's name.
 bool IsMeshName(const std::string& path);

@@ -150,7 +150,7 @@ int LastAllowedCpu() {
   return cpus.empty() ? 0 : cpus.front();
 }
 
-CpuClaim ClaimCpu(bool waits, std::string* taken) {
+std::variant<CpuClaim, std::string> ClaimCpu(bool waits) {
   std::vector<int> cpus = AllowedCpus();
   if (cpus.size() > 1) cpus.pop_back();
   for (bool said = false;; usleep(kRetryUs)) {
@@ -158,14 +158,11 @@ CpuClaim ClaimCpu(bool waits, std::string* taken) {
       std::optional<UniqueFd> fd = TryToClaim(cpu);
       if (!fd) continue;
       g_shared_folders.clear();
-      return {cpu, std::move(*fd)};
+      return CpuClaim{cpu, std::move(*fd)};
     }
     if (!said) {
       const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);
-      if (!waits) {
-        *taken = who + "; wait for one of them, or run without --no-wait";
-        return {};
-      }
+      if (!waits) return who + "; wait for one of them, or run without --no-wait";
       Say(who + "; waiting for one of them");
     }
     said = true;

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "coordinator/os/unique_fd.h"
 
@@ -28,10 +29,10 @@ void ShareClaimsOfChildren();
 
 // The last CPU that the calling process may use and no other tcsim has claimed; the first one only
 // if there is no other, so that the rest of the machine keeps a CPU. Where all are claimed, waits
-// for one, and says on stderr who has them; or, if it is not to wait, returns that sentence in
-// `taken` instead of a CPU. Claims are locks on the CPU's folder in /sys: nothing is left behind.
-// Where that cannot be opened, the CPU is taken unclaimed.
-CpuClaim ClaimCpu(bool waits, std::string* taken);
+// for one, and says on stderr who has them; or, if it is not to wait, returns that sentence
+// instead. Claims are locks on the CPU's folder in /sys: nothing is left behind. Where that cannot
+// be opened, the CPU is taken unclaimed.
+[[nodiscard]] std::variant<CpuClaim, std::string> ClaimCpu(bool waits);
 
 // Whether a tcsim has claimed it, also this one. False where that cannot be seen. Cheap, and does
 // not sleep: /proc/locks, which says more, is read by stopping everybody's locks.

@@ -4,77 +4,79 @@
 
 namespace tcs {
 
-Pacer::Pacer(double pace, bool stands) : pace_(pace), limit_ns_(stands ? -1 : kForEver) {}
+Pacer::Pacer(double pace, bool stands)
+    : pace_(pace), limit_(stands ? RobotTime(-1) : VirtualTime::Never()) {}
 
-void Pacer::StartFrom(std::int64_t real_ns) {
+void Pacer::StartFrom(HostTime real) {
   has_origin_ = true;
-  origin_real_ns_ = real_ns;
-  origin_ns_ = now_ns_;
-  behind_ns_ = 0;
+  origin_real_ = real;
+  origin_ = now_;
+  behind_ = {};
 }
 
-void Pacer::SetPace(double pace, std::int64_t real_ns) {
+void Pacer::SetPace(double pace, HostTime real) {
   pace_ = pace;
-  StartFrom(real_ns);
+  StartFrom(real);
 }
 
-void Pacer::Stand(std::int64_t real_ns) {
-  limit_ns_ = std::min(limit_ns_, now_ns_);
-  StartFrom(real_ns);
+void Pacer::Stand(HostTime real) {
+  limit_ = std::min(limit_, now_);
+  StartFrom(real);
 }
 
-void Pacer::GoOn(std::int64_t real_ns) {
-  limit_ns_ = kForEver;
-  StartFrom(real_ns);
+void Pacer::GoOn(HostTime real) {
+  limit_ = VirtualTime::Never();
+  StartFrom(real);
 }
 
-void Pacer::StepBy(std::int64_t ns, std::int64_t real_ns) {
-  const std::int64_t from_ns = limit_ns_ == kForEver ? now_ns_ : std::max(limit_ns_, now_ns_);
-  limit_ns_ = from_ns > kForEver - ns ? kForEver - 1 : from_ns + ns;
-  StartFrom(real_ns);
+void Pacer::StepBy(VirtualDuration step, HostTime real) {
+  const VirtualTime from = limit_.IsNever() ? now_ : std::max(limit_, now_);
+  // However long a step is it has an end.
+  limit_ = std::min(AtMostNever(from, step), RobotTime(VirtualTime::Never().ns() - 1));
+  StartFrom(real);
 }
 
 // Since the run asked last it was behind, or stood, as it was then.
-void Pacer::TakeAccount(std::int64_t behind_ns, std::int64_t real_ns) {
-  const std::int64_t passed_ns = real_ns - asked_real_ns_;
-  if (stands_) account_.stood_ns += passed_ns;
-  if (!stands_ && behind_ns_ > kToleranceNs) account_.behind_ns += passed_ns;
-  asked_real_ns_ = real_ns;
-  behind_ns_ = behind_ns;
-  account_.most_ns = std::max(account_.most_ns, behind_ns);
+void Pacer::TakeAccount(HostDuration behind, HostTime real) {
+  const HostDuration passed = real - asked_real_;
+  if (stands_) account_.stood += passed;
+  if (!stands_ && behind_ > kTolerance) account_.behind += passed;
+  asked_real_ = real;
+  behind_ = behind;
+  account_.most = std::max(account_.most, behind);
 }
 
-std::int64_t Pacer::ToWait(std::int64_t next_ns, std::int64_t real_ns) {
+HostDuration Pacer::ToWait(VirtualTime next, HostTime real) {
   if (!has_origin_) {
-    asked_real_ns_ = real_ns;
-    StartFrom(real_ns);
+    asked_real_ = real;
+    StartFrom(real);
   }
   // What would be due later than where it stands waits for the wall clock, too, before it stands.
-  const std::int64_t until_ns = std::min(next_ns, std::max<std::int64_t>(limit_ns_, 0));
-  const double ahead_ns = static_cast<double>(until_ns - origin_ns_);
-  const auto due_real_ns =
-      pace_ > 0 ? origin_real_ns_ + static_cast<std::int64_t>(ahead_ns / pace_) : real_ns;
-  if (real_ns < due_real_ns) {
-    TakeAccount(0, real_ns);
+  const VirtualTime until = std::min(next, std::max(limit_, VirtualTime()));
+  const auto ahead_ns = static_cast<double>((until - origin_).ns());
+  const HostTime due =
+      pace_ > 0 ? origin_real_ + HostNs(static_cast<std::int64_t>(ahead_ns / pace_)) : real;
+  if (real < due) {
+    TakeAccount({}, real);
     stands_ = false;
-    const double passed = static_cast<double>(real_ns - origin_real_ns_) * pace_;
-    now_ns_ = std::max(now_ns_, std::min(until_ns, origin_ns_ + static_cast<std::int64_t>(passed)));
-    return due_real_ns - real_ns;
+    const double passed = static_cast<double>((real - origin_real_).ns()) * pace_;
+    now_ = std::max(now_, std::min(until, origin_ + VirtualNs(static_cast<std::int64_t>(passed))));
+    return due - real;
   }
-  now_ns_ = std::max(now_ns_, until_ns);
-  if (next_ns > limit_ns_) {
-    TakeAccount(0, real_ns);
+  now_ = std::max(now_, until);
+  if (next > limit_) {
+    TakeAccount({}, real);
     stands_ = true;
     return kForEver;
   }
-  TakeAccount(real_ns - due_real_ns, real_ns);
+  TakeAccount(real - due, real);
   stands_ = false;
-  if (const std::int64_t too_much_ns = behind_ns_ - kMostMadeUpNs; too_much_ns > 0) {
-    account_.given_up_ns += too_much_ns;
-    origin_real_ns_ += too_much_ns;
-    behind_ns_ -= too_much_ns;
+  if (const HostDuration too_much = behind_ - kMostMadeUp; too_much > HostDuration()) {
+    account_.given_up += too_much;
+    origin_real_ += too_much;
+    behind_ -= too_much;
   }
-  return 0;
+  return {};
 }
 
 }  // namespace tcs

@@ -24,13 +24,13 @@
 // asked for only when it has changed, and a step reads of most threads nothing but a Glance: these
 // stand close together in memory.
 //
-// Pure: knows threads by number, makes no system call, reads no clock. All times are virtual
-// nanoseconds; INT64_MAX is never.
+// Pure: knows threads by number, makes no system call, reads no clock. All times are the robot's.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +38,7 @@
 #include "coordinator/policy/run_queue.h"
 #include "coordinator/policy/scheduling_parameters.h"
 #include "coordinator/policy/share.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -48,35 +49,35 @@ class RobotScheduler {
   using Turn = RunQueue::Turn;
   static constexpr Thread kNobody = RunQueue::kNobody;
   static constexpr std::uint64_t kEveryCore = RunQueue::kEveryCore;
-  static constexpr std::int64_t kNever = INT64_MAX;
+  static constexpr VirtualTime kNever = VirtualTime::Never();
 
   // What a thread does while it has no core, as whoever keeps its waits knows it.
   struct Wait {
     std::uint32_t process = 0;
-    bool waits = false;                    // else it is ready, or nobody knows what it waits for
-    bool for_input = false;                // what ends its wait may come from elsewhere,
-    bool for_thread = false;               // or from a thread of its own robot
-    bool is_over = false;                  // by time, whatever the time on its robot's cores
-    std::int64_t until_ns = kNever;        // the wait ends by itself
-    std::int64_t own_until_ns = kNever;    // the same, as its process's own clock tells it
-    std::int64_t from_ns = 0;              // once its wait is over, it runs no earlier
-    std::int64_t next_expiry_ns = kNever;  // of its process's timers
+    bool waits = false;                // else it is ready, or nobody knows what it waits for
+    bool for_input = false;            // what ends its wait may come from elsewhere,
+    bool for_thread = false;           // or from a thread of its own robot
+    bool is_over = false;              // by time, whatever the time on its robot's cores
+    VirtualTime until = kNever;        // the wait ends by itself
+    VirtualTime own_until = kNever;    // the same, as its process's own clock tells it
+    VirtualTime from;                  // once its wait is over, it runs no earlier
+    VirtualTime next_expiry = kNever;  // of its process's timers
   };
   using WaitOf = std::function<Wait(Thread)>;
 
   // What the rest of the scheduler tree can still do to a core's threads.
   struct Outlook {
-    std::int64_t input_ns = kNever;          // another core wakes one of them, at the earliest
-    std::int64_t outside_input_ns = kNever;  // one of another robot does
-    std::int64_t output_ns = kNever;         // the dynamics do
+    VirtualTime input = kNever;          // another core wakes one of them, at the earliest
+    VirtualTime outside_input = kNever;  // one of another robot does
+    VirtualTime output = kNever;         // the dynamics do
     // Under set costs a program acts in the instant in which it is woken.
     bool acts_at_once = false;
     bool has_given_way = false;  // the core, to all that can act at the same instant
   };
 
   struct Horizon {
-    std::int64_t run_ns = kNever;
-    std::int64_t idle_ns = 0;  // the thread may sleep that far without asking: nothing else happens
+    VirtualTime run = kNever;
+    VirtualTime idle;  // the thread may sleep that far without asking: nothing else happens
   };
 
   // `wait_of` is asked for threads that were added and not removed, by Assign, once for each
@@ -87,18 +88,18 @@ class RobotScheduler {
         wait_of_(std::move(wait_of)),
         queue_(cores),
         cores_(cores),
-        progress_(cores, 0) {}
+        progress_(cores) {}
 
   // A new thread of a client with that priority, not ready yet.
   void Add(Thread thread, int client_priority);
   void Remove(Thread thread);
   // Its client's: each release has its deadline so much later.
-  void SetClientDeadline(Thread thread, std::int64_t deadline_ns, std::int64_t now_ns);
+  void SetClientDeadline(Thread thread, VirtualDuration deadline, VirtualTime now);
 
   // What threads ask for. Whoever changes parameters or who is blocked on whom has the effective
   // priorities found anew.
   const SchedulingParameters& ParametersOf(Thread thread) const { return At(thread).parameters; }
-  void SetParameters(Thread thread, const SchedulingParameters& parameters, std::int64_t now_ns);
+  void SetParameters(Thread thread, const SchedulingParameters& parameters, VirtualTime now);
   // Admission control: whether the robot's cores can keep the deadlines that it has promised if the
   // thread has these, too. As on Linux a twentieth of the cores is left to others.
   bool Admits(Thread thread, const DeadlineParameters& parameters) const;
@@ -116,48 +117,48 @@ class RobotScheduler {
 
   // The thread is ready, from then on, and keeps its place if it was; it is not any more, or has
   // ended. Either way what it waits for may have changed.
-  void Enqueue(Thread thread, std::int64_t from_ns, bool goes_first);
+  void Enqueue(Thread thread, VirtualTime from, bool goes_first);
   void Dequeue(Thread thread);
   // So may that of one that waits on; the next expiry of that process's timers has changed.
   void WaitChanged(Thread thread);
   void ExpiryChanged(std::uint32_t process);
   // Its wait is over: it has a whole turn before it. If time or another robot has ended the wait,
   // that is a release, and so it is if its deadline is over.
-  void WakeUp(Thread thread, std::int64_t now_ns, bool is_release);
+  void WakeUp(Thread thread, VirtualTime now, bool is_release);
   void Yield(Thread thread);
   // It has slept after it ran for so long, so that what it still runs begins another turn.
-  void SleptSince(Thread thread, std::int64_t ran_ns);
+  void SleptSince(Thread thread, VirtualDuration ran);
 
-  void SetProgress(std::size_t core, std::int64_t ns) { progress_[core] = ns; }
+  void SetProgress(std::size_t core, VirtualTime time) { progress_[core] = time; }
   // Gives each core its next turn, and finds when each acts next; needed after every change.
-  // `own_due_ns`: when the robot itself has something to do.
-  void Assign(std::int64_t own_due_ns);
+  // `own_due`: when the robot itself has something to do.
+  void Assign(VirtualTime own_due);
   const Turn& Next(std::size_t core) const { return queue_.Next(core); }
-  std::int64_t NextActionOf(std::size_t core) const { return cores_[core].next_action_ns; }
+  VirtualTime NextActionOf(std::size_t core) const { return cores_[core].next_action; }
   // Whether a wait has ended by itself by then, or a timer has run out. As last assigned.
-  bool IsAnythingDue(std::int64_t now_ns) const;
+  bool IsAnythingDue(VirtualTime now) const;
 
   // A core's thread is about to run; it has stopped after its core has come so far, and it has used
   // so much of its turn. Its equals get their turn by EndTurn, so that those that are due by then
   // have not waited for another turn of the last one.
   void Dispatch(std::size_t core, Thread thread);
-  void Stop(std::size_t core, std::int64_t advanced_ns, std::int64_t used_ns);
+  void Stop(std::size_t core, VirtualDuration advanced, VirtualDuration used);
   void EndTurn(std::size_t core);
 
-  // How far the thread may run on the core, which is no further than `limit_ns`.
-  Horizon HorizonOf(std::size_t core, Thread thread, std::int64_t limit_ns,
+  // How far the thread may run on the core, which is no further than `limit`.
+  Horizon HorizonOf(std::size_t core, Thread thread, VirtualTime limit,
                     const Outlook& outlook) const;
   // The same where the world stands still while it computes, so that only those that share its
   // process's clock can become due.
-  std::int64_t HorizonWhileWorldStands(std::size_t core, Thread thread) const;
+  VirtualTime HorizonWhileWorldStands(std::size_t core, Thread thread) const;
 
-  // Whether the thread, woken from elsewhere, goes before its equals after another `after_ns` of
+  // Whether the thread, woken from elsewhere, goes before its equals after another `after` of
   // theirs.
-  bool PreemptsOnWakeup(Thread thread, std::int64_t after_ns = 0) const;
-  // How long after `sent_ns` the thread gets a core if what was sent then wakes it, not before
-  // `earliest_ns`: the core may have come further. 0 where it waits for its turn, too.
-  std::int64_t LatenessOf(Thread woken, std::int64_t sent_ns, std::int64_t earliest_ns,
-                          bool goes_first) const;
+  bool PreemptsOnWakeup(Thread thread, VirtualDuration after = {}) const;
+  // How long after `sent` the thread gets a core if what was sent then wakes it, not before
+  // `earliest`: the core may have come further. 0 where it waits for its turn, too.
+  VirtualDuration LatenessOf(Thread woken, VirtualTime sent, VirtualTime earliest,
+                             bool goes_first) const;
 
  private:
   static constexpr Priority kNoPriority = INT64_MIN;
@@ -169,16 +170,16 @@ class RobotScheduler {
     std::uint64_t allowed = kEveryCore;
     Priority inherited = kNoPriority;  // from those that are blocked on it
     Thread blocked_on = kNobody;
-    std::int64_t client_deadline_ns = 0;  // 0: none
-    DeadlineServer server;                // while it has a deadline
-    std::int64_t turn_ns = 0;             // had since its equals last had a turn
-    Wait wait;                            // as last asked for
+    VirtualDuration client_deadline;  // 0: none
+    DeadlineServer server;            // while it has a deadline
+    VirtualDuration turn;             // had since its equals last had a turn
+    Wait wait;                        // as last asked for
   };
   // Of an entity, at the same place.
   struct Glance {
-    Priority priority = 0;         // effective
-    Share share;                   // of what it and its equals have had
-    std::int64_t due_ns = kNever;  // neither its wait nor its process's timer ends before
+    Priority priority = 0;     // effective
+    Share share;               // of what it and its equals have had
+    VirtualTime due = kNever;  // neither its wait nor its process's timer ends before
     std::uint32_t process = 0;
     bool waits = false;
     bool for_others = false;  // for input or another thread, and not for time alone
@@ -186,11 +187,11 @@ class RobotScheduler {
   };
   struct Core {
     Thread running = kNobody;
-    Priority priority = 0;           // of the running one when it began,
-    std::size_t sharing = 0;         // and how many were ready at that
-    std::int64_t charged_to_ns = 0;  // its budget
-    Thread turn_over = kNobody;      // goes behind its equals
-    std::int64_t next_action_ns = kNever;
+    Priority priority = 0;       // of the running one when it began,
+    std::size_t sharing = 0;     // and how many were ready at that
+    VirtualTime charged_to;      // its budget
+    Thread turn_over = kNobody;  // goes behind its equals
+    VirtualTime next_action = kNever;
   };
 
   const Entity* Find(Thread thread) const;
@@ -207,36 +208,36 @@ class RobotScheduler {
 
   static bool HasDeadline(const Entity& entity);
   static Priority OwnPriority(const Entity& entity);
-  Priority PriorityIfWoken(const Entity& entity, std::int64_t now_ns) const;
-  static std::int64_t QuantumOf(const Entity& entity);
-  void StartServer(Entity& entity, std::int64_t now_ns);
-  void ChargeBudget(Core& core, std::int64_t now_ns);
+  Priority PriorityIfWoken(const Entity& entity, VirtualTime now) const;
+  static std::optional<VirtualDuration> QuantumOf(const Entity& entity);
+  void StartServer(Entity& entity, VirtualTime now);
+  void ChargeBudget(Core& core, VirtualTime now);
   void ChargeBudgetOf(Thread thread);
 
   void MarkStale(std::size_t place);
   void Ask(std::size_t place);
   void AskForStaleWaits();
-  std::int64_t FirstDue() const;
-  std::int64_t DueAt(std::int64_t progress_ns) const;
-  std::int64_t TurnEnd(std::size_t core, const Entity& running) const;
-  std::int64_t PastInput(std::size_t core, std::int64_t input_ns, const Outlook& outlook) const;
-  std::int64_t HorizonForInput(std::size_t core, const Entity& running, const Entity& other,
-                               const Wait& wait, const Outlook& outlook) const;
+  VirtualTime FirstDue() const;
+  VirtualTime DueAt(VirtualTime progress) const;
+  VirtualTime TurnEnd(std::size_t core, const Entity& running) const;
+  VirtualTime PastInput(std::size_t core, VirtualTime input, const Outlook& outlook) const;
+  VirtualTime HorizonForInput(std::size_t core, const Entity& running, const Entity& other,
+                              const Wait& wait, const Outlook& outlook) const;
   bool CanPreemptOnWakeup(const Entity& entity) const;
-  bool PreemptsOnWakeup(const Entity& entity, std::int64_t after_ns) const;
-  bool MakesRoom(std::size_t core, const Entity& woken, std::int64_t due_ns) const;
-  void ShareOut(const Core& core, std::int64_t ns);
+  bool PreemptsOnWakeup(const Entity& entity, VirtualDuration after) const;
+  bool MakesRoom(std::size_t core, const Entity& woken, VirtualTime due) const;
+  void ShareOut(const Core& core, VirtualDuration ran);
 
   bool preempts_on_wakeup_;
   WaitOf wait_of_;
   RunQueue queue_;
   std::vector<Core> cores_;
-  std::vector<std::int64_t> progress_;  // of the cores
+  std::vector<VirtualTime> progress_;  // of the cores
   std::vector<Entity> entities_;
   std::vector<Glance> glances_;
-  std::vector<int> places_;    // in entities_, by thread; -1: not here
-  std::vector<Thread> stale_;  // whose waits are to be asked for; may have ended since
-  mutable std::int64_t first_due_ns_ = kNever;  // the least of the glances', if that is known
+  std::vector<int> places_;                 // in entities_, by thread; -1: not here
+  std::vector<Thread> stale_;               // whose waits are to be asked for; may have ended since
+  mutable VirtualTime first_due_ = kNever;  // the least of the glances', if that is known
   mutable bool knows_first_due_ = false;
 };
 

@@ -28,7 +28,7 @@ bool RunQueue::Precedes(const Ready& one, const Ready& other) {
 void RunQueue::Add(const Ready& added) {
   if (const auto found = Find(added.thread); found != ready_.end()) {
     Ready& known = ready_[static_cast<std::size_t>(found - ready_.begin())];
-    known.from_ns = added.from_ns;
+    known.from = added.from;
     known.allowed = added.allowed;
     return;
   }
@@ -75,27 +75,27 @@ bool RunQueue::StaysElsewhere(Thread thread, std::size_t core) const {
   return home != core && turns_[home].thread == kNobody;
 }
 
-void RunQueue::Choose(std::size_t core, std::int64_t progress_ns, bool keep_places) {
+void RunQueue::Choose(std::size_t core, VirtualTime progress, bool keep_places) {
   Turn& turn = turns_[core];
   for (const Ready& ready : ready_) {
     if ((ready.allowed >> (core & 63) & 1) == 0 || HasTurn(ready.thread)) continue;
     if (keep_places && StaysElsewhere(ready.thread, core)) continue;
-    const std::int64_t start = std::max(progress_ns, ready.from_ns);
-    if (start < turn.start_ns) turn = Turn{ready.thread, start};
-    if (start == progress_ns) return;  // nobody can start earlier
+    const VirtualTime start = std::max(progress, ready.from);
+    if (start < turn.start) turn = Turn{ready.thread, start};
+    if (start == progress) return;  // nobody can start earlier
   }
 }
 
-void RunQueue::Assign(const std::vector<std::int64_t>& progress_ns) {
+void RunQueue::Assign(const std::vector<VirtualTime>& progress) {
   std::fill(turns_.begin(), turns_.end(), Turn{});
-  if (turns_.size() == 1) return Choose(0, progress_ns[0], false);
+  if (turns_.size() == 1) return Choose(0, progress[0], false);
   std::vector<std::size_t> cores(turns_.size());
   std::iota(cores.begin(), cores.end(), std::size_t{0});
   std::stable_sort(cores.begin(), cores.end(),
-                   [&](std::size_t a, std::size_t b) { return progress_ns[a] < progress_ns[b]; });
+                   [&](std::size_t a, std::size_t b) { return progress[a] < progress[b]; });
   for (const bool keep_places : {true, false}) {
     for (const std::size_t core : cores) {
-      if (turns_[core].thread == kNobody) Choose(core, progress_ns[core], keep_places);
+      if (turns_[core].thread == kNobody) Choose(core, progress[core], keep_places);
     }
   }
 }
@@ -112,17 +112,17 @@ bool RunQueue::HasWaitingEqual(std::size_t core) const {
 bool RunQueue::YieldsTo(std::size_t core, Priority priority, bool first) const {
   const auto own = Find(turns_[core].thread);
   return own == ready_.end() ||
-         Precedes({.thread = kNobody, .priority = priority, .from_ns = 0, .first = first}, *own);
+         Precedes({.thread = kNobody, .priority = priority, .from = {}, .first = first}, *own);
 }
 
-std::int64_t RunQueue::NextToPrecede(std::size_t core) const {
-  std::int64_t next = INT64_MAX;
+VirtualTime RunQueue::NextToPrecede(std::size_t core) const {
+  VirtualTime next = VirtualTime::Never();
   const auto own = Find(turns_[core].thread);
   if (own == ready_.end()) return next;
   for (const Ready& ready : ready_) {
     if (!Precedes(ready, *own)) break;  // nor does anybody behind it
     if (HasTurn(ready.thread)) continue;
-    if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from_ns);
+    if ((ready.allowed >> (core & 63) & 1) != 0) next = std::min(next, ready.from);
   }
   return next;
 }

@@ -6,12 +6,14 @@
 // The cores advance one after the other, so one may be ahead of another, and a ready thread may
 // have come further than a core: it runs no earlier than that. A thread stays on the core that it
 // runs on while that core has nothing more urgent. Pure: knows threads by number, makes no system
-// call, reads no clock. All times are virtual nanoseconds.
+// call, reads no clock. All times are the robot's.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -26,14 +28,14 @@ class RunQueue {
   struct Ready {
     Thread thread;
     Priority priority;
-    std::int64_t from_ns;                // runs no earlier
+    VirtualTime from;                    // runs no earlier
     std::uint64_t allowed = kEveryCore;  // cores; bit 0 is core 0
     bool first = false;                  // it goes before its equals, until it is rotated
   };
 
   struct Turn {
     Thread thread = kNobody;
-    std::int64_t start_ns = INT64_MAX;
+    VirtualTime start = VirtualTime::Never();
   };
 
   explicit RunQueue(std::size_t cores) : on_(cores, kNobody), turns_(cores) {}
@@ -52,13 +54,13 @@ class RunQueue {
   void Ran(std::size_t core, Thread thread) { on_[core] = thread; }
 
   // Gives each core its next turn, from the progress of each. Needed after every change above.
-  void Assign(const std::vector<std::int64_t>& progress_ns);
+  void Assign(const std::vector<VirtualTime>& progress);
   // As last assigned.
   const Turn& Next(std::size_t core) const { return turns_[core]; }
   // Whether an equal of the core's thread waits for a core.
   bool HasWaitingEqual(std::size_t core) const;
-  // From when on somebody who precedes the core's thread wants a core; INT64_MAX: nobody.
-  std::int64_t NextToPrecede(std::size_t core) const;
+  // From when on somebody who precedes the core's thread wants a core; never: nobody.
+  VirtualTime NextToPrecede(std::size_t core) const;
   // Whether a thread of that priority would take the core from its thread if it became ready now,
   // and went before its equals.
   bool YieldsTo(std::size_t core, Priority priority, bool first = true) const;
@@ -72,7 +74,7 @@ class RunQueue {
   std::vector<Ready>::const_iterator Find(Thread thread) const;
   bool HasTurn(Thread thread) const;
   bool StaysElsewhere(Thread thread, std::size_t core) const;
-  void Choose(std::size_t core, std::int64_t progress_ns, bool keep_places);
+  void Choose(std::size_t core, VirtualTime progress, bool keep_places);
 
   std::vector<Ready> ready_;  // most urgent first, equals in the order of their turns
   std::vector<Thread> on_;    // who ran last on each core and has not waited since

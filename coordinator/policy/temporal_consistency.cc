@@ -4,27 +4,20 @@
 #include <utility>
 
 #include "shm/check.h"
-#include "shm/time_values.h"
 
 namespace tcs {
-
-namespace {
-
-constexpr std::int64_t kNoTimeNs = -1;
-
-}  // namespace
 
 TemporalConsistency::Leaf TemporalConsistency::AddLeaf(int computer) {
   TCS_CHECK(leaves_.empty() || leaves_.back().computer <= computer);
   const auto leaf = static_cast<Leaf>(leaves_.size());
-  leaves_.push_back({computer, 0, shm::kNeverNs, shm::kNeverNs, kNoTimeNs, {}});
+  leaves_.push_back({computer, {}, VirtualTime::Never(), VirtualTime::Never(), {}, {}});
   leaves_.back().rank = RankOf(leaf);
   order_.insert(leaves_.back().rank);
   return leaf;
 }
 
 TemporalConsistency::Rank TemporalConsistency::RankOf(Leaf leaf) const {
-  return {At(leaf).next_ns, HasGivenWay(leaf), leaf != acted_last_, leaf};
+  return {At(leaf).next, HasGivenWay(leaf), leaf != acted_last_, leaf};
 }
 
 // One of its times, or who acted last, has changed.
@@ -40,95 +33,96 @@ void TemporalConsistency::Reorder(Leaf leaf) {
 void TemporalConsistency::FirstActs() {
   const Leaf last = acted_last_;
   acted_last_ = std::get<Leaf>(*order_.begin());
-  leaves_[static_cast<std::size_t>(acted_last_)].gave_way_ns = kNoTimeNs;
+  leaves_[static_cast<std::size_t>(acted_last_)].gave_way.reset();
   Reorder(acted_last_);
   if (last >= 0) Reorder(last);
 }
 
 void TemporalConsistency::GiveWay(Leaf leaf) {
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
-  times.gave_way_ns = times.next_ns;
+  times.gave_way = times.next;
   Reorder(leaf);
 }
 
 bool TemporalConsistency::HasGivenWay(Leaf leaf) const {
-  return At(leaf).gave_way_ns == At(leaf).next_ns;
+  return At(leaf).gave_way == At(leaf).next;
 }
 
-void TemporalConsistency::Update(Leaf leaf, std::int64_t progress_ns, std::int64_t next_ns,
-                                 std::int64_t quiet_ns) {
-  next_ns = std::max(next_ns, EarliestWake());
+void TemporalConsistency::Update(Leaf leaf, VirtualTime progress, VirtualTime next,
+                                 VirtualTime quiet) {
+  next = std::max(next, EarliestWake());
   Times& times = leaves_[static_cast<std::size_t>(leaf)];
-  TCS_CHECK(progress_ns >= times.progress_ns);
-  const bool progressed = times.progress_ns != progress_ns;
-  const bool was_quiet = times.next_ns > times.run_ns;
-  times.progress_ns = progress_ns;
-  times.run_ns = next_ns;
-  times.next_ns = std::max(next_ns, quiet_ns);
-  if (const bool is_quiet = times.next_ns > times.run_ns; is_quiet != was_quiet) {
+  TCS_CHECK(progress >= times.progress);
+  const bool progressed = times.progress != progress;
+  const bool was_quiet = times.next > times.run;
+  times.progress = progress;
+  times.run = next;
+  times.next = std::max(next, quiet);
+  if (const bool is_quiet = times.next > times.run; is_quiet != was_quiet) {
     if (is_quiet) quiet_.push_back(leaf);
     if (was_quiet) std::erase(quiet_, leaf);
   }
   Reorder(leaf);
-  if (progressed) NoteDrift(progress_ns);
+  if (progressed) NoteDrift(progress);
 }
 
-void TemporalConsistency::UpdateDynamics(std::int64_t progress_ns, std::int64_t output_ns) {
+void TemporalConsistency::UpdateDynamics(VirtualTime progress, VirtualTime output) {
   has_dynamics_ = true;
-  dynamics_ns_ = progress_ns;
-  output_ns_ = output_ns;
-  NoteDrift(progress_ns);
+  dynamics_ = progress;
+  output_ = output;
+  NoteDrift(progress);
 }
 
-void TemporalConsistency::NoteDrift(std::int64_t progress_ns) {
-  furthest_ns_ = std::max(furthest_ns_, progress_ns);
-  std::int64_t least = std::min(Least(), LeastRun(-1));
-  if (has_dynamics_) least = std::min(least, dynamics_ns_);
-  if (least != shm::kNeverNs) drift_ns_ = std::max(drift_ns_, progress_ns - least);
+void TemporalConsistency::NoteDrift(VirtualTime progress) {
+  furthest_ = std::max(furthest_, progress);
+  VirtualTime least = std::min(Least(), LeastRun(-1));
+  if (has_dynamics_) least = std::min(least, dynamics_);
+  if (least != VirtualTime::Never()) drift_ = std::max(drift_, progress - least);
 }
 
-std::int64_t TemporalConsistency::Least() const {
-  return order_.empty() ? shm::kNeverNs : std::get<0>(*order_.begin());
+VirtualTime TemporalConsistency::Least() const {
+  return order_.empty() ? VirtualTime::Never() : std::get<0>(*order_.begin());
 }
 
 TemporalConsistency::Leaf TemporalConsistency::First() const {
-  return Least() == shm::kNeverNs ? -1 : std::get<Leaf>(*order_.begin());
+  return Least() == VirtualTime::Never() ? -1 : std::get<Leaf>(*order_.begin());
 }
 
-std::int64_t TemporalConsistency::LeastOther(Leaf leaf) const {
+VirtualTime TemporalConsistency::LeastOther(Leaf leaf) const {
   auto other = order_.begin();
   if (other != order_.end() && std::get<Leaf>(*other) == leaf) ++other;
-  return other == order_.end() ? shm::kNeverNs : std::get<0>(*other);
+  return other == order_.end() ? VirtualTime::Never() : std::get<0>(*other);
 }
 
 // Of the quiet ones.
-std::int64_t TemporalConsistency::LeastRun(Leaf but) const {
-  std::int64_t least = shm::kNeverNs;
+VirtualTime TemporalConsistency::LeastRun(Leaf but) const {
+  VirtualTime least = VirtualTime::Never();
   for (const Leaf leaf : quiet_) {
-    if (leaf != but) least = std::min(least, At(leaf).run_ns);
+    if (leaf != but) least = std::min(least, At(leaf).run);
   }
   return least;
 }
 
-std::int64_t TemporalConsistency::Horizon(Leaf leaf) const {
-  const std::int64_t slowest_ns = std::min(LeastOther(leaf), LeastRun(leaf));
-  return std::min(end_ns_, shm::AddSaturated(slowest_ns, drift_bound_ns_));
+VirtualTime TemporalConsistency::Horizon(Leaf leaf) const {
+  const VirtualTime slowest = std::min(LeastOther(leaf), LeastRun(leaf));
+  return std::min(end_, AtMostNever(slowest, drift_bound_));
 }
 
-std::int64_t TemporalConsistency::DynamicsHorizon() const {
-  return has_dynamics_ ? shm::AddSaturated(dynamics_ns_, drift_bound_ns_) : shm::kNeverNs;
+VirtualTime TemporalConsistency::DynamicsHorizon() const {
+  return has_dynamics_ ? AtMostNever(dynamics_, drift_bound_) : VirtualTime::Never();
 }
 
-std::int64_t TemporalConsistency::BeforeOutput(std::int64_t ns) const {
-  return has_dynamics_ && output_ns_ != shm::kNeverNs ? std::min(ns, output_ns_ - 1) : ns;
+VirtualTime TemporalConsistency::BeforeOutput(VirtualTime time) const {
+  const bool has_output = has_dynamics_ && !output_.IsNever();
+  return has_output ? std::min(time, output_ - VirtualNs(1)) : time;
 }
 
-std::int64_t TemporalConsistency::ReadSafe(Leaf leaf) const {
+VirtualTime TemporalConsistency::ReadSafe(Leaf leaf) const {
   return BeforeOutput(LeastOther(leaf));
 }
 
-std::int64_t TemporalConsistency::LocalReadSafe(Leaf leaf) const {
-  std::int64_t safe = shm::kNeverNs;
+VirtualTime TemporalConsistency::LocalReadSafe(Leaf leaf) const {
+  VirtualTime safe = VirtualTime::Never();
   for (Leaf other = leaf - 1; other >= 0 && At(other).computer == At(leaf).computer; --other) {
     safe = std::min(safe, EarliestActOf(other, leaf));
   }
@@ -140,19 +134,19 @@ std::int64_t TemporalConsistency::LocalReadSafe(Leaf leaf) const {
 }
 
 // While `but` does nothing.
-std::int64_t TemporalConsistency::EarliestActOf(Leaf leaf, Leaf but) const {
-  return std::max(At(leaf).progress_ns, std::min(At(leaf).next_ns, LeastOther(but)));
+VirtualTime TemporalConsistency::EarliestActOf(Leaf leaf, Leaf but) const {
+  return std::max(At(leaf).progress, std::min(At(leaf).next, LeastOther(but)));
 }
 
-std::int64_t TemporalConsistency::NextInputFromOutside(Leaf leaf) const {
+VirtualTime TemporalConsistency::NextInputFromOutside(Leaf leaf) const {
   for (const Rank& rank : order_) {
     if (At(std::get<Leaf>(rank)).computer != At(leaf).computer) return std::get<0>(rank);
   }
-  return shm::kNeverNs;
+  return VirtualTime::Never();
 }
 
-std::int64_t TemporalConsistency::NextOutput() const {
-  return has_dynamics_ ? output_ns_ : shm::kNeverNs;
+VirtualTime TemporalConsistency::NextOutput() const {
+  return has_dynamics_ ? output_ : VirtualTime::Never();
 }
 
 }  // namespace tcs

@@ -20,17 +20,18 @@ std::string NumberedName(const Task& task) {
 
 }  // namespace
 
-Task& Births::AddTask(Process& process, pid_t tid, std::int64_t at_ns) {
+Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
   Task& task = run_.table.AddTask(tid);
   task.process = &process;
   task.parked = false;
   task.metered.speed = process.robot->speed;
   task.metered.is_ideal = process.robot->is_ideal;
-  task.reached_ns = task.activation.release_ns = std::max(at_ns, waker_.EarliestWake());
+  task.ComeTo(std::max(at, waker_.EarliestWake()));
+  task.activation.release_ns = task.reached.ns();
   process.robot->tasks.push_back(&task);
   SchedulerOf(task).Add(task.order, process.priority);
-  if (process.deadline_ns > 0) {
-    SchedulerOf(task).SetClientDeadline(task.order, process.deadline_ns, task.reached_ns);
+  if (process.deadline > VirtualDuration()) {
+    SchedulerOf(task).SetClientDeadline(task.order, process.deadline, task.reached);
   }
   waker_.SetState(task, TaskState::kStarting);
   waker_.Refresh(*process.robot);
@@ -50,44 +51,44 @@ Process& Births::AddProcess(pid_t pid, pid_t parent, Robot& robot) {
   return process;
 }
 
-Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, std::int64_t at_ns) {
+Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, VirtualTime at) {
   Process& process = AddProcess(pid, getpid(), robot);
   process.is_client = true;
   process.client = &process;
   process.spec = &client;
   process.name = client.name;
   process.priority = client.priority;
-  process.deadline_ns = client.deadline.ns();
-  process.call_cost_ns = client.fixed_call_cost.ns();
-  process.allocation_cost_ns = client.fixed_allocation_cost.ns();
+  process.deadline = client.deadline;
+  process.call_cost = client.fixed_call_cost;
+  process.allocation_cost = client.fixed_allocation_cost;
   process.patch_vdso = client.patch_vdso;
   process.dds_endpoints = client.dds == DdsTransport::kEndpoints;
-  Task& task = AddTask(process, pid, at_ns);
-  process.started_at_ns = task.reached_ns;
+  Task& task = AddTask(process, pid, at);
+  process.started_at = task.reached;
   task.row = records_.AddRow(robot.name, client.name);
   return task;
 }
 
-Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns) {
+Task& Births::AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTime at) {
   Process& process = AddProcess(pid, parent, *maker.robot);
   process.client = maker.client;
   process.name = maker.name;
   process.priority = maker.priority;
-  process.deadline_ns = maker.deadline_ns;
-  process.call_cost_ns = maker.call_cost_ns;
-  process.allocation_cost_ns = maker.allocation_cost_ns;
+  process.deadline = maker.deadline;
+  process.call_cost = maker.call_cost;
+  process.allocation_cost = maker.allocation_cost;
   process.patch_vdso = maker.patch_vdso;
   process.dds_endpoints = maker.dds_endpoints;
   process.clock = maker.clock.Fork();
-  Task& task = AddTask(process, pid, at_ns);
+  Task& task = AddTask(process, pid, at);
   task.is_further = true;
   task.row = records_.AddRow(process.robot->name, NumberedName(task));
   return task;
 }
 
-Task& Births::AddThread(Process& process, pid_t tid, std::int64_t at_ns) {
+Task& Births::AddThread(Process& process, pid_t tid, VirtualTime at) {
   ++process.threads;
-  Task& task = AddTask(process, tid, at_ns);
+  Task& task = AddTask(process, tid, at);
   task.is_further = true;
   task.row = records_.AddRow(process.robot->name, NumberedName(task));
   return task;

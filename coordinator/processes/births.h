@@ -26,14 +26,14 @@ class Births {
   // ends of processes (Tag::kProcess, with their indices).
   //
   // A client of the scenario has been started.
-  Task& AddClient(pid_t pid, Robot& robot, const ClientSpec& client, std::int64_t at_ns);
+  Task& AddClient(pid_t pid, Robot& robot, const ClientSpec& client, VirtualTime at);
   // A process that `maker`, or one of its descendants, has made. It is on its robot, and as urgent.
-  Task& AddChild(pid_t pid, pid_t parent, const Process& maker, std::int64_t at_ns);
-  Task& AddThread(Process& process, pid_t tid, std::int64_t at_ns);
+  Task& AddChild(pid_t pid, pid_t parent, const Process& maker, VirtualTime at);
+  Task& AddThread(Process& process, pid_t tid, VirtualTime at);
 
  private:
   Process& AddProcess(pid_t pid, pid_t parent, Robot& robot);
-  Task& AddTask(Process& process, pid_t tid, std::int64_t at_ns);
+  Task& AddTask(Process& process, pid_t tid, VirtualTime at);
 
   RunState& run_;
   Waker& waker_;

@@ -58,7 +58,7 @@ bool Deaths::EndThreadsLostInExec(pid_t pid, Moment moment) {
   const bool by_another = run_.turn.IsIn(*of) && run_.turn.task() != first;
   if (by_another) {
     listeners_.settle(*run_.turn.task());
-    moment.ns = run_.turn.task()->reached_ns;
+    moment.at = run_.turn.task()->reached;
   }
   EndThreadsOf(*of, first, moment);
   of->has_unmanaged_threads = false;
@@ -66,7 +66,7 @@ bool Deaths::EndThreadsLostInExec(pid_t pid, Moment moment) {
   of->ended.NoteChangedClocks();
   // The processor clock under its number is another thread's from now on.
   first->cpu_clock_fd.Reset();
-  first->metered.host_origin_ns = HostClockOf(*first) - first->metered.HostNs(first->charged_ns);
+  first->metered.host_origin_ns = HostClockOf(*first) - first->metered.OnHost(first->charged).ns();
   return true;
 }
 
@@ -75,11 +75,11 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
   if (process.dead) return;
   if (run_.turn.IsIn(process)) {
     listeners_.settle(*run_.turn.task());
-    moment.ns = run_.turn.task()->reached_ns;
+    moment.at = run_.turn.task()->reached;
   }
   process.dead = true;
   run_.table.ProcessEnded(process);
-  process.ended_at_ns = moment.ns;
+  process.ended_at = moment.at;
   EndThreadsOf(process, nullptr, moment);
   UsageBook::Keep(process);
   process.timer_fds.clear();
@@ -88,7 +88,7 @@ void Deaths::ProcessEnded(std::uint32_t index, Moment moment) {
   process.pidfd.Reset();
   if (process.link != nullptr) ended_links_.push_back(std::move(process.link));
   if (Process* parent = run_.table.LivingProcess(process.parent); parent != nullptr) {
-    parent->children_cpu_ns += process.ended.usage().charged_ns + process.children_cpu_ns;
+    parent->children_cpu += VirtualNs(process.ended.usage().charged_ns) + process.children_cpu;
     listeners_.child_has_ended(*parent, process.pid, moment);
   }
   listeners_.process_has_ended(process, moment);

@@ -17,15 +17,14 @@ namespace {
 
 // What real time the grace may take: twice what all virtual CPUs take that compute all through it,
 // and some to begin with. If somebody waits for the end, no more than the guardian allows for.
-constexpr std::int64_t kLeastRealNs = 2'000'000'000, kMostRealIfAskedNs = 6'000'000'000;
+constexpr HostDuration kLeastReal = HostDuration::Seconds(2),
+                       kMostRealIfAsked = HostDuration::Seconds(6);
 constexpr double kMostRealFactor = 2.0;
 
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-
-std::int64_t GraceOf(const Process& process) {
-  if (process.client == nullptr) return ClientSpec{}.stop_grace.ns();
+VirtualDuration GraceOf(const Process& process) {
+  if (process.client == nullptr) return ClientSpec{}.stop_grace;
   const ClientSpec& client = *process.client->spec;
-  return client.stop_signal == SIGKILL ? 0 : client.stop_grace.ns();
+  return client.stop_signal == SIGKILL ? VirtualDuration() : client.stop_grace;
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ int Grace::StopSignalOf(const Process& process) const {
 
 void Grace::Begin() {
   LimitRealTime();
-  run_.latest_ns = run_.grace_began_ns;
+  run_.latest = run_.grace_began;
   for (const Process& process : run_.table.processes()) {
     if (process.dead) continue;
     kill(process.pid, StopSignalOf(process));
@@ -48,36 +47,36 @@ void Grace::Begin() {
     const Process* parent = run_.table.LivingProcess(child.parent);
     kill(pid, parent == nullptr ? SIGTERM : StopSignalOf(*parent));
   }
-  signalled_({.ns = run_.grace_began_ns, .from_outside = true});
+  signalled_({.at = run_.grace_began, .from_outside = true});
 }
 
 bool Grace::GoOnToNextKill() {
   if (run_.table.living() == 0 || IsOver()) return false;
-  std::int64_t next_ns = shm::kNeverNs;
+  VirtualTime next = VirtualTime::Never();
   for (const Process& process : run_.table.processes()) {
-    if (!process.dead && !process.killed) next_ns = std::min(next_ns, KillTimeOf(process));
+    if (!process.dead && !process.killed) next = std::min(next, KillTimeOf(process));
   }
-  if (next_ns == shm::kNeverNs) return false;
-  run_.end_ns = next_ns;
-  run_.root.EndAt(next_ns);
+  if (next.IsNever()) return false;
+  run_.end = next;
+  run_.root.EndAt(next);
   return true;
 }
 
 void Grace::LimitRealTime() {
-  std::int64_t longest_ns = 0;
+  VirtualDuration longest;
   for (const Process& process : run_.table.processes()) {
-    if (!process.dead) longest_ns = std::max(longest_ns, GraceOf(process));
+    if (!process.dead) longest = std::max(longest, GraceOf(process));
   }
   double speed = 0;
   for (const Robot& robot : run_.robots) {
     speed += robot.speed * static_cast<double>(robot.cpus.size());
   }
-  const double computing_ns = kMostRealFactor * speed * static_cast<double>(longest_ns);
-  std::int64_t limit_ns = kLeastRealNs + static_cast<std::int64_t>(std::min(computing_ns, 1e18));
-  if (run_.stop.asked()) limit_ns = std::min(limit_ns, kMostRealIfAskedNs);
+  const double computing_ns = kMostRealFactor * speed * static_cast<double>(longest.ns());
+  HostDuration limit = kLeastReal + HostNs(static_cast<std::int64_t>(std::min(computing_ns, 1e18)));
+  if (run_.stop.asked()) limit = std::min(limit, kMostRealIfAsked);
   timer_.Reset(timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK));
   itimerspec when{};
-  when.it_value = shm::ToTimespec(limit_ns);
+  when.it_value = shm::ToTimespec(limit.ns());
   timerfd_settime(timer_.get(), 0, &when, nullptr);
   reactor_.Add(timer_.get(), EPOLLIN, {Tag::kGraceRanOut});
 }
@@ -87,20 +86,20 @@ void Grace::RanOut() {
   ran_out_ = true;
 }
 
-std::int64_t Grace::KillTimeOf(const Process& process) const {
-  return shm::AddSaturated(run_.grace_began_ns, GraceOf(process));
+VirtualTime Grace::KillTimeOf(const Process& process) const {
+  return AtMostNever(run_.grace_began, GraceOf(process));
 }
 
 void Grace::KillOverdue() {
   if (run_.table.living() == 0 || IsOver()) return;
-  run_.latest_ns = run_.end_ns;
+  run_.latest = run_.end;
   for (Process& process : run_.table.processes()) {
-    if (process.dead || process.killed || KillTimeOf(process) > run_.end_ns) continue;
+    if (process.dead || process.killed || KillTimeOf(process) > run_.end) continue;
     WarnOfKill(process, "its stop_grace");
     process.killed = true;
     kill(process.pid, SIGKILL);
   }
-  signalled_({run_.end_ns});
+  signalled_({run_.end});
 }
 
 // If there was no time for their graces: all that is left is killed.
@@ -112,11 +111,12 @@ void Grace::WarnOfThoseLeft() {
 }
 
 void Grace::WarnOfKill(const Process& process, const std::string& within) {
-  if (process.dead || process.killed || !process.is_client || GraceOf(process) == 0) return;
+  if (process.dead || process.killed || !process.is_client || GraceOf(process) == VirtualDuration())
+    return;
   run_.Warn(fmt::format(
       "{} was killed: after SIG{} it did not end within {} ({:.3f} s), and what it had "
       "not written is lost",
-      process.name, sigabbrev_np(StopSignalOf(process)), within, Seconds(GraceOf(process))));
+      process.name, sigabbrev_np(StopSignalOf(process)), within, GraceOf(process).seconds()));
 }
 
 }  // namespace tcs

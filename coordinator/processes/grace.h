@@ -36,7 +36,7 @@ class Grace {
         unknown_children_(unknown_children),
         signalled_(std::move(signalled)) {}
 
-  // RunState::grace_began_ns is set.
+  // RunState::grace_began is set.
   void Begin();
   // Sets the run's end to when the next one is to be killed. False if nobody is: all have ended, or
   // have been killed, or the grace is over.
@@ -51,7 +51,7 @@ class Grace {
  private:
   void LimitRealTime();
   int StopSignalOf(const Process& process) const;
-  std::int64_t KillTimeOf(const Process& process) const;
+  VirtualTime KillTimeOf(const Process& process) const;
   void WarnOfKill(const Process& process, const std::string& within);
 
   RunState& run_;

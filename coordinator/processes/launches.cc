@@ -49,22 +49,23 @@ std::string Launches::Begin() {
   std::size_t number = 0;
   for (const RobotSpec& spec : run_.scenario.robots) {
     for (const ClientSpec& client : spec.clients) {
-      const std::int64_t start_ns = client.after.empty() ? client.start.ns() : shm::kNeverNs;
-      launches_.push_back({&client, &*robot, number, start_ns, nullptr});
+      const VirtualTime start =
+          client.after.empty() ? VirtualTime() + client.start : VirtualTime::Never();
+      launches_.push_back({&client, &*robot, number, start, nullptr});
     }
     ++robot;
     ++number;
   }
   for (Robot& each : run_.robots) FindNext(each);
-  for (Robot& each : run_.robots) StartDue(each, 0);
+  for (Robot& each : run_.robots) StartDue(each, {});
   return run_.report.error;
 }
 
-void Launches::StartDue(Robot& robot, std::int64_t now_ns) {
-  if (robot.next_launch_ns > now_ns) return;
+void Launches::StartDue(Robot& robot, VirtualTime now) {
+  if (robot.next_launch > now) return;
   for (Launch& launch : launches_) {
-    if (launch.robot != &robot || launch.process != nullptr || launch.start_ns > now_ns) continue;
-    if (std::string error = Start(launch, now_ns); !error.empty() && run_.report.error.empty()) {
+    if (launch.robot != &robot || launch.process != nullptr || launch.start > now) continue;
+    if (std::string error = Start(launch, now); !error.empty() && run_.report.error.empty()) {
       run_.report.error = std::move(error);
       return;
     }
@@ -73,36 +74,36 @@ void Launches::StartDue(Robot& robot, std::int64_t now_ns) {
 }
 
 void Launches::FindNext(Robot& robot) {
-  robot.next_launch_ns = shm::kNeverNs;
+  robot.next_launch = VirtualTime::Never();
   for (const Launch& launch : launches_) {
     if (launch.robot != &robot || launch.process != nullptr) continue;
-    robot.next_launch_ns = std::min(robot.next_launch_ns, launch.start_ns);
+    robot.next_launch = std::min(robot.next_launch, launch.start);
   }
   waker_.Refresh(robot);
 }
 
 bool Launches::AreAhead() const {
   return std::any_of(run_.robots.begin(), run_.robots.end(),
-                     [this](const Robot& robot) { return robot.next_launch_ns < run_.end_ns; });
+                     [this](const Robot& robot) { return robot.next_launch < run_.end; });
 }
 
 void Launches::ClientHasEnded(const Process& client) {
   if (run_.IsInGrace()) return;
   for (Launch& launch : launches_) {
     if (launch.spec->after != client.name || launch.process != nullptr) continue;
-    launch.start_ns = std::max(launch.spec->start.ns(), client.ended_at_ns);
+    launch.start = std::max(VirtualTime() + launch.spec->start, *client.ended_at);
     FindNext(*launch.robot);
   }
 }
 
 void Launches::Stop() {
   for (Robot& robot : run_.robots) {
-    robot.next_launch_ns = shm::kNeverNs;
+    robot.next_launch = VirtualTime::Never();
     waker_.Refresh(robot);
   }
 }
 
-std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
+std::string Launches::Start(Launch& launch, VirtualTime at) {
   const ClientSpec& client = *launch.spec;
   SpawnRequest request = RequestFor(client, *launch.robot, run_.options);
   request.guarded = guarded_;
@@ -126,7 +127,7 @@ std::string Launches::Start(Launch& launch, std::int64_t at_ns) {
     run_.Warn("futex calls cannot be trapped here (" + std::string(strerror(errno)) +
               "): threads wait for each other in real time");
   }
-  launch.process = births_.AddClient(spawned.pid, *launch.robot, client, at_ns).process;
+  launch.process = births_.AddClient(spawned.pid, *launch.robot, client, at).process;
   sockets_.AssignTo(*launch.process);
   return {};
 }

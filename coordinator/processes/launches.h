@@ -1,6 +1,6 @@
 // When the clients of a scenario start: at the run's beginning, at a virtual time, or once another
 // one has ended. Until then that time is one at which their robot's idle core acts
-// (Robot::next_launch_ns).
+// (Robot::next_launch).
 //
 // For the coordinator's thread only. Times are virtual nanoseconds; errors are one sentence.
 #pragma once
@@ -27,9 +27,9 @@ class Launches {
   struct Launch {
     const ClientSpec* spec;
     Robot* robot;
-    std::size_t number;     // of the robot
-    std::int64_t start_ns;  // never: it waits for another one to end
-    Process* process;       // once started
+    std::size_t number;  // of the robot
+    VirtualTime start;   // never: it waits for another one to end
+    Process* process;    // once started
   };
 
   // The processes in `guarded` are tcsim's own. All of these outlive this.
@@ -49,7 +49,7 @@ class Launches {
   // success.
   [[nodiscard]] std::string Begin();
   // Starts those of the robot that are due. An error ends the run.
-  void StartDue(Robot& robot, std::int64_t now_ns);
+  void StartDue(Robot& robot, VirtualTime now);
   // Those that wait for the client to end, however it has ended, are started now, or later if they
   // are to.
   void ClientHasEnded(const Process& client);
@@ -62,7 +62,7 @@ class Launches {
   const std::vector<Launch>& all() const { return launches_; }
 
  private:
-  std::string Start(Launch& launch, std::int64_t at_ns);
+  [[nodiscard]] std::string Start(Launch& launch, VirtualTime at);
   void FindNext(Robot& robot);
 
   RunState& run_;

@@ -117,7 +117,7 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
   task.metered.page = &task.slot_memory->clock;
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);
   if (hello.tid == hello.pid) starts_anew_(process, moment);
-  PlaceAtGate(task, moment.ns);
+  PlaceAtGate(task, moment.at);
   const int fds[shm::kMostAttachFds] = {memory_fd_, process.link->memory_fd(),
                                         process.link->notify_fd(), porters_end.get()};
   const std::size_t count = !wants_all ? 0 : porters_end ? 4 : 3;
@@ -134,11 +134,11 @@ Task& Registration::TaskFor(pid_t pid, pid_t tid, Process& client, Moment moment
     parts_.deaths.End(*known, moment);  // its number is another's now
   }
   if (Process* known = run_.table.LivingProcess(pid); known != nullptr) {
-    return parts_.births.AddThread(*known, tid, moment.ns);
+    return parts_.births.AddThread(*known, tid, moment.at);
   }
   const pid_t parent_pid = ParentOf(pid);
   const Process* parent = run_.table.LivingProcess(parent_pid);
-  return parts_.births.AddChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.ns);
+  return parts_.births.AddChild(pid, parent_pid, parent != nullptr ? *parent : client, moment.at);
 }
 
 void Registration::GiveDdsArea(int connection, pid_t pid) {
@@ -167,7 +167,7 @@ UniqueFd Registration::GivePorter(Process& process) {
 }
 
 // Ready for its first dispatch; or for the first of another program.
-void Registration::PlaceAtGate(Task& task, std::int64_t at_ns) {
+void Registration::PlaceAtGate(Task& task, VirtualTime at) {
   shm::ThreadSlot& slot = SlotOf(task);
   slot.pid = task.process->pid;
   slot.tid = task.tid;
@@ -185,7 +185,7 @@ void Registration::PlaceAtGate(Task& task, std::int64_t at_ns) {
   task.early_trap.reset();
   task.trap_id = 0;
   task.notified_early = false;
-  task.reached_ns = std::max({task.reached_ns, at_ns, parts_.waker.EarliestWake()});
+  task.ComeTo(std::max({task.reached, at, parts_.waker.EarliestWake()}));
   parts_.waker.SetState(task, TaskState::kReady);
   task.parked = true;
   task.reason = shm::WakeReason::kGo;

@@ -73,7 +73,7 @@ class Registration {
   void GiveDdsArea(int connection, pid_t pid);
   void Connect(Process& process);
   UniqueFd GivePorter(Process& process);
-  void PlaceAtGate(Task& task, std::int64_t at_ns);
+  void PlaceAtGate(Task& task, VirtualTime at);
 
   const Parts parts_;
   RunState& run_;

@@ -44,7 +44,7 @@ void RunRecords::Flush() {
 }
 
 std::string RunRecords::Close() {
-  output_.LookAt(run_.latest_ns);
+  output_.LookAt(run_.latest.ns());
   const std::string errors[] = {schedule_.Close(), activations_.Close(), world_.CloseRecords(),
                                 output_.Close()};
   for (const std::string& error : errors) {
@@ -53,10 +53,11 @@ std::string RunRecords::Close() {
   return {};
 }
 
-void RunRecords::Ran(const Task& task, Span shown, Span world, std::uint64_t until_tsc) {
+void RunRecords::Ran(const Task& task, ShownSpan shown, WorldSpan world, std::uint64_t until_tsc) {
   const std::uint64_t since_tsc = std::exchange(run_.turn.recorded_tsc, until_tsc);
-  schedule_.Slice(task.row, shown, world, {since_tsc, until_tsc});
-  output_.LookAt(world.end_ns);
+  schedule_.Slice(task.row, {shown.start.ns(), shown.end.ns()}, {world.start.ns(), world.end.ns()},
+                  {since_tsc, until_tsc});
+  output_.LookAt(world.end.ns());
 }
 
 }  // namespace tcs

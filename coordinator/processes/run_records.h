@@ -19,7 +19,13 @@ namespace tcs {
 
 class RunRecords {
  public:
-  using Span = ScheduleRecords::Span;
+  // On the clock of who ran, and on the world's, which may stand still meanwhile.
+  struct ShownSpan {
+    ProgramTime start, end;
+  };
+  struct WorldSpan {
+    VirtualTime start, end;
+  };
   using TscSpan = ScheduleRecords::TscSpan;
 
   RunRecords(RunState& run, World& world, Activations& activations)
@@ -38,13 +44,16 @@ class RunRecords {
     return schedule_.AddRow(group, name);
   }
   // The running thread has stopped at `until_tsc`. It may be settled again in the same turn.
-  void Ran(const Task& task, Span shown, Span world, std::uint64_t until_tsc);
+  void Ran(const Task& task, ShownSpan shown, WorldSpan world, std::uint64_t until_tsc);
   // The dynamics were integrated.
-  void Integrated(Span span, TscSpan real) { schedule_.Slice(world_row_, span, span, real); }
-  void SentSensors(std::int64_t at_ns) { schedule_.Instant(world_row_, "sensors", at_ns); }
+  void Integrated(WorldSpan span, TscSpan real) {
+    const ScheduleRecords::Span both{span.start.ns(), span.end.ns()};
+    schedule_.Slice(world_row_, both, both, real);
+  }
+  void SentSensors(VirtualTime at) { schedule_.Instant(world_row_, "sensors", at.ns()); }
 
  private:
-  std::string OpenFiles();
+  [[nodiscard]] std::string OpenFiles();
 
   RunState& run_;
   World& world_;

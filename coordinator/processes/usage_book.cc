@@ -17,16 +17,16 @@ std::int64_t HostCpuOf(Task& task) {
 
 }  // namespace
 
-std::int64_t UsageBook::ChargedTo(const Process& process) {
-  std::int64_t charged = process.ended.usage().charged_ns;
+VirtualDuration UsageBook::ChargedTo(const Process& process) {
+  VirtualDuration charged = VirtualNs(process.ended.usage().charged_ns);
   for (const Task* task : process.robot->tasks) {
-    if (task->process == &process) charged += task->charged_ns;
+    if (task->process == &process) charged += task->charged;
   }
   return charged;
 }
 
-std::int64_t UsageBook::ChargedToAllOf(const Process& client) const {
-  std::int64_t charged = client.descendants.charged_ns;
+VirtualDuration UsageBook::ChargedToAllOf(const Process& client) const {
+  VirtualDuration charged = VirtualNs(client.descendants.charged_ns);
   for (const Process& process : table_.processes()) {
     if (process.client != &client || (process.dead && !process.is_client)) continue;
     charged += ChargedTo(process);
@@ -38,7 +38,7 @@ Usage UsageBook::UsageOf(const Process& process) const {
   Usage usage = process.ended.usage();
   for (Task* task : process.robot->tasks) {
     if (task->process != &process || task->slot < 0) continue;
-    usage += {.charged_ns = task->charged_ns,
+    usage += {.charged_ns = task->charged.ns(),
               .host_cpu_ns = HostCpuOf(*task),
               .stolen_ns = check_.StolenOf(*task),
               .activations = task->activations,
@@ -60,7 +60,7 @@ Usage UsageBook::UsageOfAll(const Process& client) const {
 void UsageBook::Keep(Task& ended) const {
   Process& process = *ended.process;
   const Usage usage{
-      .charged_ns = ended.charged_ns,
+      .charged_ns = ended.charged.ns(),
       .stolen_ns = ended.slot < 0 ? 0 : check_.StolenOf(ended),
       .activations = ended.activations,
       .work = ended.work,
@@ -69,8 +69,7 @@ void UsageBook::Keep(Task& ended) const {
     process.ended.Add(usage, 0, 0, 0);
     return;
   }
-  const auto fallback_ns =
-      static_cast<std::int64_t>(static_cast<double>(ended.charged_ns) * process.robot->speed);
+  const std::int64_t fallback_ns = ended.metered.OnHost(ended.charged).ns();
   process.ended.Add(usage, HostClockOf(ended), ended.metered.host_origin_ns, fallback_ns);
 }
 

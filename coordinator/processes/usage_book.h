@@ -17,9 +17,9 @@ class UsageBook {
   UsageBook(const TaskTable& table, const SlotCheck& check) : table_(table), check_(check) {}
 
   // Virtual nanoseconds of its threads, those that have ended among them.
-  static std::int64_t ChargedTo(const Process& process);
+  static VirtualDuration ChargedTo(const Process& process);
   // With its descendants.
-  std::int64_t ChargedToAllOf(const Process& client) const;
+  VirtualDuration ChargedToAllOf(const Process& client) const;
   Usage UsageOfAll(const Process& client) const;
 
   // The thread ends: what it has had goes to its process.

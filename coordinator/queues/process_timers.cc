@@ -17,7 +17,7 @@ namespace {
 
 using shm::TimerClock;
 
-constexpr std::int64_t kLeastCpuNs = 1'000;
+constexpr VirtualDuration kLeastCpu = VirtualDuration::Microseconds(1);
 // So often, at most, a running thread is stopped for a timer of a short interval.
 constexpr std::int64_t kLookNs = shm::kShortIntervalNs;
 
@@ -50,8 +50,8 @@ bool ProcessTimers::Timer::IsShort() const {
   return setting.interval_ns > 0 && setting.interval_ns < shm::kShortIntervalNs;
 }
 
-std::int64_t ProcessTimers::Timer::NextOnVirtualCpu() const {
-  return setting.next_ns == shm::kNeverNs ? shm::kNeverNs : setting.next_ns - lead.ns();
+VirtualTime ProcessTimers::Timer::NextOnVirtualCpu() const {
+  return RobotTimeOf(OwnTime(setting.next_ns), lead);
 }
 
 std::int64_t ProcessTimers::Timer::CpuTimeLeft(std::int64_t used_ns) const {
@@ -128,90 +128,92 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   FindNext();
 }
 
-void ProcessTimers::FindNext(std::int64_t earliest_ns) {
-  const std::int64_t before_ns = std::exchange(next_expiry_ns_, shm::kNeverNs);
+void ProcessTimers::FindNext(VirtualTime earliest) {
+  const VirtualTime before = std::exchange(next_expiry_, VirtualTime::Never());
   has_cpu_timers_ = false;
   for (const auto& [id, timer] : timers_) {
     if (!timer.IsArmed()) continue;
     if (timer.IsOnCpuTime()) {
       has_cpu_timers_ = true;
     } else if (!timer.rests) {
-      next_expiry_ns_ = std::min(next_expiry_ns_, timer.NextOnVirtualCpu());
+      next_expiry_ = std::min(next_expiry_, timer.NextOnVirtualCpu());
     }
   }
-  next_expiry_ns_ = std::max(next_expiry_ns_, earliest_ns);
-  if (next_expiry_ns_ != before_ns && listener_) listener_();
+  next_expiry_ = std::max(next_expiry_, earliest);
+  if (next_expiry_ != before && listener_) listener_();
 }
 
-std::vector<ProcessTimers::RanOut> ProcessTimers::Expire(std::int64_t now_ns) {
+std::vector<ProcessTimers::RanOut> ProcessTimers::Expire(VirtualTime now) {
   std::vector<RanOut> ran_out;
   for (auto& [id, timer] : timers_) {
     if (timer.IsOnCpuTime()) continue;
-    const std::int64_t clock_ns = now_ns + timer.lead.ns();
-    const std::int64_t count = timer.TakeExpirations(clock_ns);
+    const ProgramTime shown = OwnTimeOf(now, timer.lead);
+    const std::int64_t count = timer.TakeExpirations(shown.ns());
     if (count == 0) continue;
     if (timer.IsShort()) {
       timer.rests = has_resting_timers_ = true;
-      timer.seen_ns = clock_ns;
+      timer.seen_ns = shown.ns();
     }
     Signal(id, timer, count);
-    ran_out.push_back({id, count, clock_ns, timer.setting.interval_ns > 0});
+    ran_out.push_back({id, count, shown, timer.setting.interval_ns > 0});
   }
   FindNext();
   return ran_out;
 }
 
-bool ProcessTimers::IsBehind(Id id, std::int64_t now_ns) const {
+bool ProcessTimers::IsBehind(Id id, VirtualTime now) const {
   const Timer* timer = Find(id);
   return timer != nullptr && timer->IsShort() && !timer->IsOnCpuTime() && timer->IsArmed() &&
-         timer->NextOnVirtualCpu() <= now_ns;
+         timer->NextOnVirtualCpu() <= now;
 }
 
-std::optional<std::int64_t> ProcessTimers::CpuClockOf(const Timer& timer, const CpuUsed& used) {
-  if (timer.kind.clock == TimerClock::kProcessCpu) return used.process_ns;
-  return timer.kind.clock_tid == used.tid ? std::optional(used.thread_ns) : std::nullopt;
+std::optional<VirtualDuration> ProcessTimers::CpuClockOf(const Timer& timer, const CpuUsed& used) {
+  if (timer.kind.clock == TimerClock::kProcessCpu) return used.process;
+  return timer.kind.clock_tid == used.tid ? std::optional(used.thread) : std::nullopt;
 }
 
-std::int64_t ProcessTimers::CpuTimeToExpiry(const CpuUsed& used) const {
-  if (!has_cpu_timers_) return shm::kNeverNs;
-  std::int64_t left = shm::kNeverNs;
+std::optional<VirtualDuration> ProcessTimers::CpuTimeToExpiry(const CpuUsed& used) const {
+  std::optional<VirtualDuration> left;
   for (const auto& [id, timer] : timers_) {
     if (!timer.IsArmed() || !timer.IsOnCpuTime()) continue;
-    const auto clock_ns = CpuClockOf(timer, used);
-    if (clock_ns.has_value()) left = std::min(left, timer.CpuTimeLeft(*clock_ns));
+    const auto clock = CpuClockOf(timer, used);
+    if (!clock.has_value()) continue;
+    const VirtualDuration its = std::max(kLeastCpu, VirtualNs(timer.CpuTimeLeft(clock->ns())));
+    left = std::min(left.value_or(its), its);
   }
-  return std::max(kLeastCpuNs, left);
+  return left;
 }
 
 std::vector<ProcessTimers::RanOut> ProcessTimers::ExpireCpu(const CpuUsed& used) {
   std::vector<RanOut> ran_out;
   for (auto& [id, timer] : timers_) {
     if (!timer.IsOnCpuTime()) continue;
-    const auto clock_ns = CpuClockOf(timer, used);
-    const std::int64_t count = clock_ns.has_value() ? timer.TakeExpirations(*clock_ns) : 0;
+    const auto clock = CpuClockOf(timer, used);
+    const std::int64_t count = clock.has_value() ? timer.TakeExpirations(clock->ns()) : 0;
     if (count == 0) continue;
-    timer.seen_ns = *clock_ns;
+    timer.seen_ns = clock->ns();
     Signal(id, timer, count);
-    ran_out.push_back({id, count, *clock_ns, timer.setting.interval_ns > 0});
+    ran_out.push_back({id, count, std::nullopt, timer.setting.interval_ns > 0});
   }
   FindNext();
   return ran_out;
 }
 
-void ProcessTimers::EndRests(std::int64_t now_ns) {
+void ProcessTimers::EndRests(VirtualTime now) {
   if (!std::exchange(has_resting_timers_, false)) return;
   for (auto& [id, timer] : timers_) timer.rests = false;
   // What has run out meanwhile is made up now, and not on a core that is still behind.
-  FindNext(now_ns);
+  FindNext(now);
 }
 
-std::int64_t ProcessTimers::NextLook() const {
-  std::int64_t next_ns = shm::kNeverNs;
-  if (!has_resting_timers_) return next_ns;
+VirtualTime ProcessTimers::NextLook() const {
+  VirtualTime next = VirtualTime::Never();
+  if (!has_resting_timers_) return next;
   for (const auto& [id, timer] : timers_) {
-    if (timer.rests) next_ns = std::min(next_ns, timer.seen_ns + kLookNs - timer.lead.ns());
+    if (!timer.rests) continue;
+    next = std::min(next, RobotTimeOf(OwnTime(timer.seen_ns + kLookNs), timer.lead));
   }
-  return next_ns;
+  return next;
 }
 
 void ProcessTimers::Signal(Id id, Timer& timer, std::int64_t count) {
@@ -260,11 +262,11 @@ void ProcessTimers::Accept(Id id) {
   if (timer != nullptr && timer->is_signal_underway) timer->Accept();
 }
 
-void ProcessTimers::AcceptAt(Id id, std::int64_t now_ns) {
+void ProcessTimers::AcceptAt(Id id, VirtualTime now) {
   Timer* timer = Find(id);
   if (timer == nullptr || !timer->is_signal_underway) return;
   if (!timer->IsOnCpuTime()) {
-    timer->AddOverruns(timer->TakeExpirations(now_ns + timer->lead.ns()));
+    timer->AddOverruns(timer->TakeExpirations(OwnTimeOf(now, timer->lead).ns()));
   }
   timer->Accept();
   FindNext();

@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "shm/layout.h"
-#include "shm/virtual_time.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -57,14 +57,14 @@ class ProcessTimers {
   struct RanOut {
     Id id;
     std::int64_t count;
-    std::int64_t clock_ns;  // what its clock has come to
+    std::optional<ProgramTime> shown;  // what its process's clock shows; none: it is on CPU time
     bool is_periodic;
   };
   // Processor time used, by the process and one of its threads.
   struct CpuUsed {
-    std::int64_t process_ns;
+    VirtualDuration process;
     pid_t tid;
-    std::int64_t thread_ns;
+    VirtualDuration thread;
   };
   struct SentSignal {
     Id timer_id;
@@ -88,24 +88,24 @@ class ProcessTimers {
   // What it was set to, and its signal's overruns, are forgotten; a signal on its way is not.
   void Set(Id id, Setting setting, VirtualDuration lead);
 
-  // On the process's clock: when the next one runs out, shm::kNeverNs for never.
-  std::int64_t NextExpiry() const { return next_expiry_ns_; }
+  // When the next one on the process's clock runs out.
+  VirtualTime NextExpiry() const { return next_expiry_; }
   // Whoever keeps it is told when it has become another one.
   void TellOfNextExpiry(std::function<void()> listener) { listener_ = std::move(listener); }
-  std::vector<RanOut> Expire(std::int64_t now_ns);
+  std::vector<RanOut> Expire(VirtualTime now);
   // Whether it is of a short interval and has run out by then: whoever is to see it calls Expire.
-  bool IsBehind(Id id, std::int64_t now_ns) const;
+  bool IsBehind(Id id, VirtualTime now) const;
 
   // On processor time: what may still be used before the next one runs out, at least 1 us, as what
-  // has run out already is found when the thread has run; shm::kNeverNs for any amount.
+  // has run out already is found when the thread has run; none: any amount.
   bool HasCpuTimers() const { return has_cpu_timers_; }
-  std::int64_t CpuTimeToExpiry(const CpuUsed& used) const;
+  std::optional<VirtualDuration> CpuTimeToExpiry(const CpuUsed& used) const;
   std::vector<RanOut> ExpireCpu(const CpuUsed& used);
 
   // A thread of the process has run until then: it may have read a timer, or handled its signal.
-  void EndRests(std::int64_t now_ns);
+  void EndRests(VirtualTime now);
   // How far a thread of the process may run before those that rest are looked at again.
-  std::int64_t NextLook() const;
+  VirtualTime NextLook() const;
 
   // Signals that are to be sent, in the order in which they came about: takes them all. Each is
   // either sent or given back.
@@ -117,7 +117,7 @@ class ProcessTimers {
   std::vector<SentSignal> SentSignals() const;
   void Accept(Id id);
   // The same by who has just accepted it: what has run out by now is the accepted signal's.
-  void AcceptAt(Id id, std::int64_t now_ns);
+  void AcceptAt(Id id, VirtualTime now);
   // Of the signal accepted last.
   std::int64_t Overruns(Id id) const;
 
@@ -136,7 +136,7 @@ class ProcessTimers {
     bool IsArmed() const { return setting.next_ns != 0; }
     bool IsOnCpuTime() const { return kind.clock != shm::TimerClock::kTime; }
     bool IsShort() const;
-    std::int64_t NextOnVirtualCpu() const;
+    VirtualTime NextOnVirtualCpu() const;
     std::int64_t TakeExpirations(std::int64_t clock_ns);
     std::int64_t CpuTimeLeft(std::int64_t used_ns) const;
     void AddOverruns(std::int64_t count);
@@ -144,17 +144,17 @@ class ProcessTimers {
   };
 
   // What its clock shows, none if that is another thread's.
-  static std::optional<std::int64_t> CpuClockOf(const Timer& timer, const CpuUsed& used);
+  static std::optional<VirtualDuration> CpuClockOf(const Timer& timer, const CpuUsed& used);
   const Timer* Find(Id id) const;
   Timer* Find(Id id);
   bool IsUnsent(Id id) const;
   void Signal(Id id, Timer& timer, std::int64_t count);
-  void FindNext(std::int64_t earliest_ns = 0);
+  void FindNext(VirtualTime earliest = {});
 
   std::map<Id, Timer> timers_;
   Id next_id_ = shm::kFirstTimerId;
   std::vector<TimerSignal> signals_;
-  std::int64_t next_expiry_ns_ = shm::kNeverNs;
+  VirtualTime next_expiry_ = VirtualTime::Never();
   std::function<void()> listener_;
   bool has_cpu_timers_ = false;
   bool has_resting_timers_ = false;

@@ -15,7 +15,7 @@ bool IsTakingSamples(const Process& process) {
 ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
   if (task.Awaits<awaited::Messages>() != nullptr) return ReleaseCause::kInput;
   if (reason == shm::WakeReason::kDeadline) return ReleaseCause::kTime;
-  if (task.process->expired_ns != shm::kNeverNs) return ReleaseCause::kTime;
+  if (!task.process->expired.IsNever()) return ReleaseCause::kTime;
   if (reason == shm::WakeReason::kSignal) return ReleaseCause::kSignal;
   if (task.Awaits<awaited::Futex>() != nullptr) {
     return IsTakingSamples(*task.process) ? ReleaseCause::kInput : ReleaseCause::kThread;
@@ -26,28 +26,28 @@ ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
 
 }  // namespace
 
-void Activations::Released(Task& task, shm::WakeReason reason, std::int64_t at_ns) const {
+void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at) const {
   Process& process = *task.process;
   Activation& activation = task.activation;
   activation.cause = CauseOf(task, reason);
   const bool by_deadline = reason == shm::WakeReason::kDeadline;
-  const std::int64_t due_ns = by_deadline ? task.wait->deadline_ns : process.expired_ns;
-  activation.release_ns = std::min(at_ns, due_ns);
+  const VirtualTime due = by_deadline ? task.wait->deadline : process.expired;
+  activation.release_ns = std::min(at, due).ns();
   // A program's clock does not go back to the world's.
   if (has_own_clocks_)
     activation.release_ns = std::max(activation.release_ns, process.clock.shown().ns());
   activation.start_ns = -1;
-  activation.charged_ns = std::max(activation.charged_ns, task.charged_ns);
+  activation.charged_ns = std::max(activation.charged_ns, task.charged.ns());
   if (task.slot >= 0) shm::NoteWoken(task.slot_memory->receipts);
 }
 
 // It did not wait, and is at its next activation all the same (shm/receipts.h).
-void Activations::Next(Task& task, std::int64_t now_ns, std::int64_t charged_ns,
+void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
                        const shm::WorkCounts& work, bool of_timer) {
   Activation& activation = task.activation;
   if (activation.start_ns < 0) activation.start_ns = activation.release_ns;
-  now_ns = std::max(now_ns, activation.start_ns);
-  charged_ns = std::max(charged_ns, activation.charged_ns);
+  const std::int64_t now_ns = std::max(now.ns(), activation.start_ns);
+  const std::int64_t charged_ns = std::max(charged.ns(), activation.charged_ns);
   log_.Write(task.process->name, task.is_further ? task.order : 0, activation, now_ns, charged_ns,
              work);
   ++task.activations;
@@ -55,30 +55,31 @@ void Activations::Next(Task& task, std::int64_t now_ns, std::int64_t charged_ns,
                 work};
 }
 
-void Activations::TakeReceipts(Task& task, std::int64_t now_ns) {
+void Activations::TakeReceipts(Task& task, ProgramTime now) {
   shm::Receipts& receipts = task.slot_memory->receipts;
   const std::uint32_t count = std::min(receipts.count.load(), shm::Receipts::kMost);
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::Receipts::Entry entry = receipts.entries[i];
-    Next(task, std::min(entry.time_ns, now_ns), std::min(entry.cpu_ns, task.charged_ns),
-         WithTrapped(task, entry.work), entry.of == shm::Receipts::Of::kTimer);
+    Next(task, std::min(OwnTime(entry.time_ns), now),
+         std::min(VirtualNs(entry.cpu_ns), task.charged), WithTrapped(task, entry.work),
+         entry.of == shm::Receipts::Of::kTimer);
   }
   receipts.count.store(0);
 }
 
 void Activations::ReceivedRaw(Task& task, bool of_timer) {
-  if (task.slot < 0 || !shm::NoteReceived(task.slot_memory->receipts, task.charged_ns)) return;
-  Next(task, OwnNow(task).ns(), task.charged_ns, task.work, of_timer);
+  if (task.slot < 0 || !shm::NoteReceived(task.slot_memory->receipts, task.charged.ns())) return;
+  Next(task, OwnNow(task), task.charged, task.work, of_timer);
 }
 
 void Activations::Idles(Task& task) {
   const std::int64_t now = OwnNow(task).ns();
-  task.process->expired_ns = shm::kNeverNs;
+  task.process->expired = VirtualTime::Never();
   if (task.slot < 0) return;  // it never began
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
   // What a switch takes is an estimate: one shorter than it gives back what was charged too much.
   // No activation is charged less than nothing for that; those that follow are charged less.
-  const std::int64_t charged = std::max(task.charged_ns, task.activation.charged_ns);
+  const std::int64_t charged = std::max(task.charged.ns(), task.activation.charged_ns);
   log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
              std::max(now, task.activation.start_ns), charged, task.work);
   task.activation.charged_ns = charged;

@@ -30,16 +30,16 @@ class Activations {
 
   // The thread's wait, which it is still in, ends for that reason. What was due before its robot
   // could look at it was due then.
-  void Released(Task& task, shm::WakeReason reason, std::int64_t at_ns) const;
+  void Released(Task& task, shm::WakeReason reason, VirtualTime at) const;
   // It waits again, or has ended.
   void Idles(Task& task);
-  // What it has received since its dispatch without having waited, up to `now_ns` on its clock.
-  void TakeReceipts(Task& task, std::int64_t now_ns);
+  // What it has received since its dispatch without having waited, up to `now` on its clock.
+  void TakeReceipts(Task& task, ProgramTime now);
   // The same of a call that the kernel is to carry out, and that finds something there.
   void ReceivedRaw(Task& task, bool of_timer);
 
  private:
-  void Next(Task& task, std::int64_t now_ns, std::int64_t charged_ns, const shm::WorkCounts& work,
+  void Next(Task& task, ProgramTime now, VirtualDuration charged, const shm::WorkCounts& work,
             bool of_timer);
 
   const bool has_own_clocks_;

@@ -1,12 +1,12 @@
 // When something happens to a thread, and whose doing it is. Whoever wakes somebody says it.
 #pragma once
 
-#include <cstdint>
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
 struct Moment {
-  std::int64_t ns = 0;        // virtual time of the robots
+  VirtualTime at;             // of the robots
   bool from_outside = false;  // time or the world brings it about, not another thread
 };
 

@@ -12,11 +12,11 @@ ProgramClock ProgramClock::Fork() const {
 }
 
 ProgramTime ProgramClock::At(VirtualTime robot, VirtualDuration lead) {
-  return robot.IsNever() ? ProgramTime::Never() : OwnTime((robot + lead).ns());
+  return OwnTimeOf(robot, lead);
 }
 
 VirtualTime ProgramClock::RobotTimeOf(ProgramTime own) const {
-  return own.IsNever() ? VirtualTime::Never() : RobotTime(own.ns()) - lead_;
+  return tcs::RobotTimeOf(own, lead_);
 }
 
 void ProgramClock::ComeTo(ProgramTime own) { shown_ = std::max(shown_, own); }

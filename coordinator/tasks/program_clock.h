@@ -3,24 +3,14 @@
 // program computes, and only the program's own clock goes on; while the program waits, the world
 // catches up. The clock never goes back, nor behind the end of a wait that is over by time.
 //
-// The two kinds of time are different types, and this class alone makes one of the other.
+// The two kinds of time are different types (shm/time_kinds.h).
 //
 // Pure: makes no system call. Not thread-safe.
 #pragma once
 
-#include <cstdint>
-
-#include "shm/virtual_time.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
-
-struct ProgramTimeTag;
-using ProgramTime = Instant<ProgramTimeTag>;
-
-// Of the numbers in shared memory, in system calls and in files: whose they are, nobody but the
-// reader knows.
-constexpr VirtualTime RobotTime(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
-constexpr ProgramTime OwnTime(std::int64_t ns) { return ProgramTime::FromNanoseconds(ns); }
 
 class ProgramClock {
  public:

@@ -55,12 +55,12 @@ bool Reactor::Modify(int fd, std::uint32_t events, const Subject& subject) {
 
 void Reactor::Remove(int fd) { epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, fd, nullptr); }
 
-std::size_t Reactor::Wait(std::int64_t timeout_ns) {
+std::size_t Reactor::Wait(HostDuration timeout) {
   TCS_CHECK(!is_handling_);
   epoll_event events[kAtOnce];
-  const timespec timeout = shm::ToTimespec(timeout_ns);
+  const timespec at_most = shm::ToTimespec(timeout.ns());
   const int found = epoll_pwait2(epoll_.get(), events, static_cast<int>(kAtOnce),
-                                 timeout_ns < 0 ? nullptr : &timeout, nullptr);
+                                 timeout < HostDuration() ? nullptr : &at_most, nullptr);
   count_ = found < 0 ? 0 : static_cast<std::size_t>(found);
   for (std::size_t i = 0; i < count_; ++i) {
     queue_[i] = {Unpacked(events[i].data.u64), events[i].events};

@@ -69,9 +69,9 @@ class Reactor {
   // Nothing happens if it is not there.
   void Remove(int fd);
 
-  // Waits until there is an event, at most so long in real time (negative: without limit), and
+  // Waits until there is an event, at most so long (negative: without limit), and
   // queues what there is. Returns the number of events.
-  std::size_t Wait(std::int64_t timeout_ns);
+  std::size_t Wait(HostDuration timeout);
   // True if the kernel may have more at this instant than the last wait took.
   bool IsFull() const { return is_full_; }
   // True if something has come since that the next wait takes.

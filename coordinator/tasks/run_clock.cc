@@ -8,6 +8,8 @@
 
 namespace tcs {
 
+HostTime RunClock::Now() { return HostTime::FromNanoseconds(HostClockNs(CLOCK_MONOTONIC)); }
+
 void RunClock::Calibrate() {
   rate_.ns_per_tick_q32 = CalibrateTsc();
   rate_.ticks_per_ns = 4294967296.0 / static_cast<double>(rate_.ns_per_tick_q32);

@@ -12,6 +12,9 @@ namespace tcs {
 
 class RunClock {
  public:
+  // CLOCK_MONOTONIC.
+  static HostTime Now();
+
   // Measures the TSC, which takes a moment: once, before the run.
   void Calibrate();
   // The run begins now.

@@ -11,8 +11,8 @@ RunState::RunState(const Scenario& its_scenario, const RunOptions& its_options, 
       gates_only(only_gates || with_porters),
       has_porters(with_porters),
       table([](pid_t pid) { return ThreadState(pid) != 'Z'; }),
-      root(scenario.drift_bound.ns(), scenario.duration.ns()),
-      end_ns(scenario.duration.ns()) {}
+      root(scenario.drift_bound, VirtualTime() + scenario.duration),
+      end(VirtualTime() + scenario.duration) {}
 
 void RunState::Warn(const std::string& text) {
   if (std::ranges::find(report.warnings, text) != report.warnings.end()) return;
@@ -20,20 +20,21 @@ void RunState::Warn(const std::string& text) {
   if (options.on_warning) options.on_warning(text);
 }
 
-std::int64_t RunState::ChargeAsDebt(Task& task, std::int64_t ns) {
-  task.charged_ns += ns;
-  task.debt_ns += ns;
-  const std::int64_t host_ns = task.metered.HostNs(ns);
-  report.client_ns += host_ns;
-  return host_ns;
+HostDuration RunState::ChargeAsDebt(Task& task, VirtualDuration computed) {
+  task.charged += computed;
+  task.debt += computed;
+  const HostDuration host = task.metered.OnHost(computed);
+  report.client_ns += host.ns();
+  return host;
 }
 
-std::int64_t RunState::WrittenAt() const {
+VirtualTime RunState::WrittenAt() const {
   const Task& task = *turn.task();
-  const std::int64_t start = task.cpu->progress_ns;
+  const VirtualTime start = task.cpu->progress;
   if (task.slot < 0 || IsCallback()) return start;
-  const std::int64_t shown = SlotOf(task).clock.last_shown_ns.load();
-  return std::clamp(shown, start, std::max(start, turn.horizon_ns()));
+  // Programs have no clocks of their own here.
+  const VirtualTime shown = RobotTime(SlotOf(task).clock.last_shown_ns.load());
+  return std::clamp(shown, start, std::max(start, turn.horizon()));
 }
 
 }  // namespace tcs

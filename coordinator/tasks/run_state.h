@@ -2,7 +2,7 @@
 // what it is to report. Plain data, and what follows from it alone; what happens to it is the
 // parts' business.
 //
-// For the coordinator's thread only. All times are virtual nanoseconds.
+// For the coordinator's thread only.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 #include "coordinator/tasks/task_table.h"
 #include "coordinator/tasks/turn.h"
 #include "shm/layout.h"
-#include "shm/virtual_time.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -40,33 +40,33 @@ struct RunState {
   double ticks_per_ns = 1.0;         // of the TSC
   shm::RunHeader* header = nullptr;  // which all clients can read; null before the set-up
 
-  std::int64_t end_ns;
+  VirtualTime end;
   // When the last thing has happened, and when happens what comes from elsewhere while nobody acts.
-  std::int64_t latest_ns = 0;
+  VirtualTime latest;
   VirtualDuration most_lead;           // of all programs' clocks
   bool had_unmanaged_threads = false;  // some process, at some time
   StopRequest stop;
-  std::int64_t grace_began_ns = shm::kNeverNs;
+  VirtualTime grace_began = VirtualTime::Never();
 
   bool IsFixed() const { return options.accounting == shm::Accounting::kFixed; }
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
   // Without levels a thread that computes is told by a signal to stop.
   bool Preempts() const { return gates_only && !IsFixed(); }
-  bool IsInGrace() const { return grace_began_ns != shm::kNeverNs; }
+  bool IsInGrace() const { return !grace_began.IsNever(); }
 
   // What the thread has computed outside of a turn it is charged at once, and passes in its turns.
   // Returns it as the host's.
-  std::int64_t ChargeAsDebt(Task& task, std::int64_t ns);
+  HostDuration ChargeAsDebt(Task& task, VirtualDuration computed);
 
   // The furthest that two leaves, or a program's clock and the world, have been apart.
-  std::int64_t DriftNs() const { return std::max(root.drift_ns(), most_lead.ns()); }
+  VirtualDuration Drift() const { return std::max(root.drift(), most_lead); }
 
   // Each sentence once.
   void Warn(const std::string& text);
 
   // The virtual time of what the running thread has just done to others: the time that its clock
   // showed when it held for the write.
-  std::int64_t WrittenAt() const;
+  VirtualTime WrittenAt() const;
 };
 
 inline shm::ThreadSlot& SlotOf(const Task& task) { return *task.slot_memory; }

@@ -28,7 +28,7 @@
 #include "coordinator/trace/activation_log.h"
 #include "shm/check.h"
 #include "shm/layout.h"
-#include "shm/virtual_time.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -46,8 +46,9 @@ struct Task : HostThread {
   int slot = -1;              // -1: it has not registered yet
   int order = 0;              // of registration; its number in the scheduling policies
   TaskState state = TaskState::kStarting;
-  // The virtual time that it has come to: of its last stop, or of what has made it ready since.
-  std::int64_t reached_ns = 0;
+  // What it has come to: the time of its last stop, or of what has made it ready since. Changed by
+  // ComeTo only.
+  VirtualTime reached;
   shm::NotificationKind hold = shm::NotificationKind::kNone;  // kRead or kWrite while kHolding
   std::optional<Wait> wait;                                   // while kWaiting
   VirtualDuration lead;              // of its process's clock when it last stopped
@@ -55,7 +56,7 @@ struct Task : HostThread {
   std::uint64_t fds_order = 0;       // of waiting for descriptors, over several attempts
   bool passes_on = false;            // others were passed over for it (one_waiter.cc)
   bool is_deliverer = false;         // of DDS messages, to its process
-  std::int64_t messages_until_ns = -1;  // those due by then are for its next dispatch; -1: none
+  std::optional<VirtualTime> messages_until;  // those due by then are for its next dispatch
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
@@ -65,23 +66,23 @@ struct Task : HostThread {
   bool is_brief = false;                  // it runs for that call only,
   bool brief_done = false;                // as has been seen,
   std::uint64_t brief_id = 0;             // by which it was trapped; 0: it is making it,
-  std::int64_t brief_until_ns = 0;        // until then on its host's clock
+  HostDuration brief_until;               // until its CPU clock shows that
   bool expects_kernel = false;            // in its next call the kernel may hold it
   TrappedCall trapped_call;               // the last but futex calls
   // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
   std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;
   std::int64_t reply[2] = {0, 0};
-  std::int64_t debt_ns = 0;  // executed beyond a horizon, charged first at the next dispatch
-  int used_up = 0;           // dispatches in a row that ended at their horizon: it is computing
-  std::int64_t charged_ns = 0;
+  VirtualDuration debt;  // executed beyond a horizon, charged first at the next dispatch
+  int used_up = 0;       // dispatches in a row that ended at their horizon: it is computing
+  VirtualDuration charged;
   bool is_cut_off = false;  // it has been told that its connection is not there any more
   UniqueFd cpu_clock_fd;    // where its CPU clock is read, if it is not its process's
   int yields = 0;           // since it last looked whether unknown children wait for theirs
   bool owes_ahead = false;  // has computed ahead what it has not paid yet (computing_ahead.h),
   static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on
   int ahead_after = kComputes;         // so it is sent to compute ahead once that is so much
-  std::int64_t ahead_from_ns = 0;      // from that charge on
+  VirtualDuration ahead_from;          // from that charge on
   bool spins = false;                  // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   bool executes = false;        // another program, perhaps: it has no handlers there
@@ -93,6 +94,11 @@ struct Task : HostThread {
   Activation activation;    // this one, while it does not wait
   bool is_further = false;  // not the first thread of a client
   int row = 0;              // in the schedule trace and the log of dispatches
+
+  void ComeTo(VirtualTime time) {
+    TCS_CHECK(time >= reached);
+    reached = time;
+  }
 
   // What it waits for, if that is of this kind.
   template <class Kind>
@@ -122,17 +128,17 @@ struct Process {
   Robot* robot = nullptr;
   std::string name;
   int priority = 0;
-  std::int64_t deadline_ns = 0;  // its client's, under scheduler: edf; 0: none
-  std::int64_t call_cost_ns = 0, allocation_cost_ns = 0;
+  VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
+  VirtualDuration call_cost, allocation_cost;
   bool patch_vdso = false, dds_endpoints = false;
   ProgramClock clock;
   ProcessTimers timers;
   std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id
   // When one last ran out, as the virtual CPU's time, while nobody has come to wait since.
-  std::int64_t expired_ns = shm::kNeverNs;
+  VirtualTime expired = VirtualTime::Never();
   EndedThreads ended;  // and how many periodic expiries found nobody waiting
   Usage descendants;   // of processes that have ended and descended from this client
-  std::int64_t children_cpu_ns = 0;
+  VirtualDuration children_cpu;
   std::int64_t children_changed = 0;  // how often one ended, stopped or went on
   bool stopped = false;               // by a signal, when last looked at
   // As long as its parent may not have been told.
@@ -149,18 +155,20 @@ struct Process {
   bool has_unmanaged_threads = false;  // threads that never will
   bool is_client = false;              // named in the scenario, rather than a child of one
   int wait_status = 0;                 // once dead, of the coordinator's own children
-  std::int64_t started_at_ns = 0, ended_at_ns = -1;
+  VirtualTime started_at;
+  std::optional<VirtualTime> ended_at;
 };
 
 struct VirtualCpu {
   Robot* robot = nullptr;
   std::uint32_t core = 0;
-  std::int64_t progress_ns = 0;  // changed by ComeTo only
+  VirtualTime progress;  // changed by ComeTo only
   TemporalConsistency::Leaf leaf = -1;
-  // Of an ideal robot's: where it has been standing since when, of real time.
-  std::int64_t stands_at_ns = -1, stands_since_ns = 0;
+  // Of an ideal robot's: where it has been standing, and since when.
+  std::optional<VirtualTime> stands_at;
+  HostTime stands_since;
 
-  void ComeTo(std::int64_t ns);
+  void ComeTo(VirtualTime time);
 };
 
 struct Robot {
@@ -173,22 +181,20 @@ struct Robot {
   bool is_ideal = false;     // its threads are charged nothing
   bool is_reached = false;   // nothing is local to it any more (calls/local_sockets.h)
   RobotScheduler scheduler;
-  std::int64_t next_launch_ns = shm::kNeverNs;  // when the next client of its starts
-  std::vector<VirtualCpu*> cpus;                // by core
-  std::vector<Task*> tasks;                     // the living
+  VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
+  std::vector<VirtualCpu*> cpus;                   // by core
+  std::vector<Task*> tasks;                        // the living
   bool keeps_timer_signals =
       false;  // some of its processes' timers' wait to be sent (TimerSignals)
 };
 
 // What its process's clock shows where the thread is.
-inline ProgramTime OwnNow(const Task& task) {
-  return task.process->clock.At(RobotTime(task.reached_ns));
-}
+inline ProgramTime OwnNow(const Task& task) { return task.process->clock.At(task.reached); }
 
-inline void VirtualCpu::ComeTo(std::int64_t ns) {
-  TCS_CHECK(ns >= progress_ns);
-  progress_ns = ns;
-  robot->scheduler.SetProgress(core, ns);
+inline void VirtualCpu::ComeTo(VirtualTime time) {
+  TCS_CHECK(time >= progress);
+  progress = time;
+  robot->scheduler.SetProgress(core, time);
 }
 
 }  // namespace tcs

@@ -15,10 +15,10 @@ namespace tcs {
 class Turn {
  public:
   // What is known of the turn before stays until the next one begins.
-  void Begin(Task& task, std::int64_t horizon_ns) {
+  void Begin(Task& task, VirtualTime horizon) {
     *this = {};
     task_ = &task;
-    horizon_ns_ = horizon_ns;
+    horizon_ = horizon;
   }
   void End() { task_ = nullptr; }
 
@@ -32,8 +32,8 @@ class Turn {
   bool HasClock() const { return lasts() && task_->slot >= 0; }
 
   // How far the thread may come, as its virtual CPU's time.
-  std::int64_t horizon_ns() const { return horizon_ns_; }
-  void LimitTo(std::int64_t horizon_ns) { horizon_ns_ = std::min(horizon_ns_, horizon_ns); }
+  VirtualTime horizon() const { return horizon_; }
+  void LimitTo(VirtualTime horizon) { horizon_ = std::min(horizon_, horizon); }
 
   // Why the thread was stopped. It has said what it wants, either way; or its time was over, which
   // is also so where it only has to be looked at, and then it goes on.
@@ -49,7 +49,7 @@ class Turn {
 
  private:
   Task* task_ = nullptr;
-  std::int64_t horizon_ns_ = 0;
+  VirtualTime horizon_;
 };
 
 }  // namespace tcs

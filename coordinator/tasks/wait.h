@@ -5,7 +5,7 @@
 // Nothing combines but what is here: every wait may end by its deadline, and a wait for descriptors
 // may also end by a signal (ppoll and its kin with a mask; a read of a signalfd).
 //
-// Pure: threads are numbers (Task::order), times are virtual nanoseconds. Not thread-safe.
+// Pure: threads are numbers (Task::order), times are their robots'. Not thread-safe.
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/queues/wait_queues.h"
-#include "shm/time_values.h"
+#include "shm/time_kinds.h"
 
 namespace tcs {
 
@@ -103,7 +103,7 @@ struct Wait {
                             awaited::Deliverer, awaited::Room, awaited::OthersRun>;
 
   What what;
-  std::int64_t deadline_ns = shm::kNeverNs;
+  VirtualTime deadline = VirtualTime::Never();
   bool is_in_trapped_call = false;  // whose result its end decides
 
   template <class Kind>

@@ -27,52 +27,49 @@ void Waker::SetState(Task& task, TaskState state, bool goes_first) {
   // A deliverer that waits for something else must not be waited for: it may need what those hold.
   if (task.is_deliverer && !IsRunnable(task) && task.Awaits<awaited::Messages>() == nullptr) {
     const bool runs = run_.turn.IsOf(task);
-    listeners_.deliverer_is_held_up(*task.process, {runs ? run_.WrittenAt() : task.reached_ns});
+    listeners_.deliverer_is_held_up(*task.process, {runs ? run_.WrittenAt() : task.reached});
   }
 }
 
 void Waker::Requeue(Task& task, bool goes_first) {
   if (IsRunnable(task)) {
-    SchedulerOf(task).Enqueue(task.order, task.reached_ns, goes_first);
+    SchedulerOf(task).Enqueue(task.order, task.reached, goes_first);
   } else {
     SchedulerOf(task).Dequeue(task.order);
   }
 }
 
 void Waker::Refresh(Robot& robot) {
-  robot.scheduler.Assign(robot.next_launch_ns);
+  robot.scheduler.Assign(robot.next_launch);
   for (const VirtualCpu* cpu : robot.cpus) {
-    const std::int64_t quiet_ns =
-        listeners_.does_nothing_before ? listeners_.does_nothing_before(*cpu) : 0;
-    run_.root.Update(cpu->leaf, cpu->progress_ns, robot.scheduler.NextActionOf(cpu->core),
-                     quiet_ns);
+    const VirtualTime quiet =
+        listeners_.does_nothing_before ? listeners_.does_nothing_before(*cpu) : VirtualTime();
+    run_.root.Update(cpu->leaf, cpu->progress, robot.scheduler.NextActionOf(cpu->core), quiet);
   }
 }
 
-bool Waker::HasRunOut(const Task& task, std::int64_t now_ns) const {
+bool Waker::HasRunOut(const Task& task, VirtualTime now) const {
   if (!task.wait.has_value()) return false;
-  const std::int64_t deadline_ns = task.wait->deadline_ns;
-  if (deadline_ns <= now_ns) return true;
+  if (task.wait->deadline <= now) return true;
   return run_.IsCallback() && OwnDeadlineOf(task) <= task.process->clock.shown();
 }
 
 ProgramTime Waker::OwnDeadlineOf(const Task& task) {
-  return ProgramClock::At(RobotTime(task.wait->deadline_ns), task.lead);
+  return ProgramClock::At(task.wait->deadline, task.lead);
 }
 
 RobotScheduler::Wait Waker::WaitOf(const Task& task) const {
   const Process& process = *task.process;
-  RobotScheduler::Wait wait{.process = process.index,
-                            .next_expiry_ns = process.timers.NextExpiry()};
+  RobotScheduler::Wait wait{.process = process.index, .next_expiry = process.timers.NextExpiry()};
   wait.waits = task.wait.has_value() && task.Awaits<awaited::OthersRun>() == nullptr;
   if (!wait.waits) return wait;
   wait.for_input = IsForInput(*task.wait);
   wait.for_thread = task.Awaits<awaited::Futex>() != nullptr;
-  wait.from_ns = task.reached_ns;
-  wait.until_ns = task.wait->deadline_ns;
-  if (run_.IsCallback() && wait.until_ns != shm::kNeverNs) {
-    wait.is_over = HasRunOut(task, 0);
-    wait.own_until_ns = process.clock.RobotTimeOf(OwnDeadlineOf(task)).ns();
+  wait.from = task.reached;
+  wait.until = task.wait->deadline;
+  if (run_.IsCallback() && !task.wait->deadline.IsNever()) {
+    wait.is_over = HasRunOut(task, VirtualTime());
+    wait.own_until = process.clock.RobotTimeOf(OwnDeadlineOf(task));
   }
   return wait;
 }
@@ -80,9 +77,9 @@ RobotScheduler::Wait Waker::WaitOf(const Task& task) const {
 bool Waker::IsSafe(const Task& task) const {
   if (task.state != TaskState::kHolding) return true;
   const VirtualCpu& cpu = *task.cpu;
-  return cpu.progress_ns <= (task.hold == shm::NotificationKind::kRead
-                                 ? run_.root.ReadSafe(cpu.leaf)
-                                 : run_.root.WriteSafe(cpu.leaf));
+  return cpu.progress <= (task.hold == shm::NotificationKind::kRead
+                              ? run_.root.ReadSafe(cpu.leaf)
+                              : run_.root.WriteSafe(cpu.leaf));
 }
 
 void Waker::Hold(Task& task, shm::NotificationKind for_what) {
@@ -123,24 +120,22 @@ void Waker::Wake(Task& task, shm::WakeReason reason, Moment moment) {
   const bool outside =
       moment.from_outside || (run_.turn.lasts() && !run_.turn.IsOn(*task.process->robot));
   const bool goes_first = outside && waited && SchedulerOf(task).PreemptsOnWakeup(task.order);
-  if (outside && reads && !for_messages) NoteLateness(task, moment.ns, goes_first);
+  if (outside && reads && !for_messages) NoteLateness(task, moment.at, goes_first);
   if (waited) {
     ++task.activations;
-    activations_.Released(task, reason, moment.ns);
-    task.debt_ns = std::max<std::int64_t>(0, task.debt_ns);  // credit ends with the activation
+    activations_.Released(task, reason, moment.at);
+    task.debt = std::max(VirtualDuration(), task.debt);  // credit ends with the activation
   }
-  task.reached_ns = std::max({task.reached_ns, moment.ns, EarliestWake()});
+  task.ComeTo(std::max({task.reached, moment.at, EarliestWake()}));
   if (waited) {
     // Where somebody more urgent ran on, the kernel's timer would still have been in time.
     const bool timed = reason == shm::WakeReason::kDeadline;
-    const std::int64_t released_ns =
-        timed ? std::min(task.wait->deadline_ns, task.reached_ns) : task.reached_ns;
-    SchedulerOf(task).WakeUp(task.order, released_ns, outside);
+    const VirtualTime released = timed ? std::min(task.wait->deadline, task.reached) : task.reached;
+    SchedulerOf(task).WakeUp(task.order, released, outside);
   }
   // Others may have come further: what is due later than its own time it gets then.
   if (for_messages) {
-    task.messages_until_ns =
-        reason == shm::WakeReason::kDeadline ? task.wait->deadline_ns : task.reached_ns;
+    task.messages_until = reason == shm::WakeReason::kDeadline ? task.wait->deadline : task.reached;
   }
   if (waited && task.wait->is_in_trapped_call) listeners_.ends_in_trapped_call(task, reason);
   Leave(task);
@@ -151,21 +146,21 @@ void Waker::Wake(Task& task, shm::WakeReason reason, Moment moment) {
   Refresh(*task.process->robot);
 }
 
-std::int64_t Waker::EarliestWake() const {
-  if (run_.IsCallback()) return 0;
-  std::int64_t earliest = run_.root.EarliestWake();
+VirtualTime Waker::EarliestWake() const {
+  if (run_.IsCallback()) return {};
+  VirtualTime earliest = run_.root.EarliestWake();
   if (run_.turn.lasts()) {
-    earliest = std::max(earliest, run_.WrittenAt() - run_.scenario.drift_bound.ns());
+    earliest = std::max(earliest, run_.WrittenAt() - run_.scenario.drift_bound);
   }
   return earliest;
 }
 
-void Waker::NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first) {
+void Waker::NoteLateness(const Task& woken, VirtualTime sent, bool goes_first) {
   if (run_.IsCallback()) return;
-  sent_ns = std::max(sent_ns, woken.reached_ns);  // since then it has waited
-  const std::int64_t late_ns =
-      SchedulerOf(woken).LatenessOf(woken.order, sent_ns, EarliestWake(), goes_first);
-  run_.report.lateness_ns = std::max(run_.report.lateness_ns, late_ns);
+  sent = std::max(sent, woken.reached);  // since then it has waited
+  const VirtualDuration late =
+      SchedulerOf(woken).LatenessOf(woken.order, sent, EarliestWake(), goes_first);
+  run_.report.lateness_ns = std::max(run_.report.lateness_ns, late.ns());
 }
 
 }  // namespace tcs

@@ -30,7 +30,7 @@ class Waker {
     // A deliverer of DDS messages is held up by something else.
     std::function<void(const Process&, Moment)> deliverer_is_held_up;
     // The virtual CPU does nothing before that time, though it has a turn; may be null.
-    std::function<std::int64_t(const VirtualCpu&)> does_nothing_before;
+    std::function<VirtualTime(const VirtualCpu&)> does_nothing_before;
   };
 
   Waker(RunState& run, Activations& activations) : run_(run), activations_(activations) {}
@@ -61,17 +61,17 @@ class Waker {
   bool IsSafe(const Task& task) const;
   // Whether a wait is over by time: the world's, or, where others of its process compute while the
   // world stands still, that of the process's own clock.
-  bool HasRunOut(const Task& task, std::int64_t now_ns) const;
+  bool HasRunOut(const Task& task, VirtualTime now) const;
   // When the thread's wait is over, as its process's clock tells it.
   static ProgramTime OwnDeadlineOf(const Task& task);
   // What its robot's scheduler is to know of it.
   RobotScheduler::Wait WaitOf(const Task& task) const;
   // What arrives later than the drift bound allows for (the kernel may take its time) is seen when
   // that is over, not in the past of those who have gone on.
-  std::int64_t EarliestWake() const;
-  // What was sent at `sent_ns` wakes a thread. The core that it runs on at once may have come
+  VirtualTime EarliestWake() const;
+  // What was sent at `sent` wakes a thread. The core that it runs on at once may have come
   // further.
-  void NoteLateness(const Task& woken, std::int64_t sent_ns, bool goes_first);
+  void NoteLateness(const Task& woken, VirtualTime sent, bool goes_first);
 
   // The world waits for what is written to terminals, as long as the run lasts.
   void AwaitTerminals() {

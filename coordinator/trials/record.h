@@ -21,7 +21,7 @@ std::string HashOfFile(const std::string& path);
 
 std::string ToJson(const TrialsRecord& record);
 // The record, or what is wrong with the text.
-std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text);
+[[nodiscard]] std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text);
 
 // What determines a trial's outcome and differs, as the end of a sentence: "was made with --sync
 // consistent, not callback"; empty if the trials of both belong together. More or fewer trials,

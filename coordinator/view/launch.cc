@@ -91,12 +91,11 @@ std::string TakeViewAddress(const std::string& text, ViewRequest* request) {
   return inet_pton(family, request->address.c_str(), &any) == 1 ? std::string() : mistake;
 }
 
-std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* error) {
+std::variant<std::unique_ptr<ViewLink>, std::string> StartView(const ViewRequest& request) {
   SharedMemory memory = MakeSharedMemory("tcs-view", sizeof(ControlPage));
   std::optional<Pipe> ready = Pipe::Make();
   if (!memory.fd || !ready) {
-    *error = fmt::format("the server of the page cannot be started: {}", strerror(errno));
-    return nullptr;
+    return fmt::format("the server of the page cannot be started: {}", strerror(errno));
   }
   auto* page = new (memory.at) ControlPage{};
   std::vector<std::string> words{request.server,          request.folder,
@@ -108,18 +107,16 @@ std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* err
   const pid_t parent = getpid(), server = fork();
   if (server == 0) Become(argv, memory.fd.get(), ready->write_end.get(), parent);
   if (server < 0) {
-    *error = fmt::format("the server of the page cannot be started: {}", strerror(errno));
-    return nullptr;
+    return fmt::format("the server of the page cannot be started: {}", strerror(errno));
   }
   ready->write_end.Reset();
   // Where it listens, or after an exclamation mark why it does not.
   const std::string said = ReadAll(ready->read_end.get());
   if (said.empty() || said[0] == '!') {
     waitpid(server, nullptr, 0);
-    *error = said.empty()
-                 ? "the server of the page has died; this is a fault of tcsim, please report it"
-                 : said.substr(1);
-    return nullptr;
+    return said.empty()
+               ? "the server of the page has died; this is a fault of tcsim, please report it"
+               : said.substr(1);
   }
   return std::make_unique<ViewLink>(page, UniqueFd(OpenPidfd(server)), said);
 }

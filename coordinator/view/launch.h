@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 
 #include "coordinator/view/view_link.h"
 
@@ -19,8 +20,9 @@ struct ViewRequest {
 // success, else one sentence.
 [[nodiscard]] std::string TakeViewAddress(const std::string& text, ViewRequest* request);
 
-// Waits until the server can be reached. Null: `error` says in a sentence what is in the way. The
-// server ends with the thread that calls this; call it before there are threads.
-std::unique_ptr<ViewLink> StartView(const ViewRequest& request, std::string* error);
+// Waits until the server can be reached; or says in a sentence what is in the way. The server ends
+// with the thread that calls this; call it before there are threads.
+[[nodiscard]] std::variant<std::unique_ptr<ViewLink>, std::string> StartView(
+    const ViewRequest& request);
 
 }  // namespace tcs

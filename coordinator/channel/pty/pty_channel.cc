@@ -168,31 +168,29 @@ class PtyChannels::DeviceInlet final : public Inlet {
 PtyChannels::PtyChannels() = default;
 PtyChannels::~PtyChannels() = default;
 
-PtyChannels::Device* PtyChannels::Find(const SerialPort& port, std::string* error) {
+std::variant<PtyChannels::Device*, std::string> PtyChannels::Find(const SerialPort& port) {
   std::unique_ptr<Device>& device = devices_[{port.robot, port.path}];
   if (device != nullptr) return device.get();
   auto terminal = Terminal::Open(port.baud);
   if (const auto* why = std::get_if<std::string>(&terminal)) {
-    *error = fmt::format("no terminal can be made for {} of {}: {}", port.path, port.robot, *why);
-    return nullptr;
+    return fmt::format("no terminal can be made for {} of {}: {}", port.path, port.robot, *why);
   }
   device = std::make_unique<Device>(std::move(std::get<Terminal>(terminal)), port);
   return device.get();
 }
 
 Opened<Outlet> PtyChannels::OutletOn(const SerialPort& port, const SensorChannelSpec& spec) {
-  std::string error;
-  Device* device = Find(port, &error);
-  if (device == nullptr) return error;
-  return std::make_unique<DeviceOutlet>(*device, spec);
+  const auto found = Find(port);
+  if (const auto* why = std::get_if<std::string>(&found)) return *why;
+  return std::make_unique<DeviceOutlet>(*std::get<Device*>(found), spec);
 }
 
 Opened<Inlet> PtyChannels::InletOn(const SerialPort& port, std::size_t channel) {
-  std::string error;
-  Device* device = Find(port, &error);
-  if (device == nullptr) return error;
-  device->takes_commands = true;
-  return std::make_unique<DeviceInlet>(*device, channel);
+  const auto found = Find(port);
+  if (const auto* why = std::get_if<std::string>(&found)) return *why;
+  Device& device = *std::get<Device*>(found);
+  device.takes_commands = true;
+  return std::make_unique<DeviceInlet>(device, channel);
 }
 
 std::vector<std::unique_ptr<Inlet>> PtyChannels::OtherInlets() const {

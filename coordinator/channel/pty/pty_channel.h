@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "coordinator/channel/channel.h"
@@ -39,8 +40,8 @@ class PtyChannels final : public Transport {
   class Device;
   class DeviceOutlet;
   class DeviceInlet;
-  // Null: `error` is set.
-  Device* Find(const SerialPort& port, std::string* error);
+  // Or one sentence.
+  [[nodiscard]] std::variant<Device*, std::string> Find(const SerialPort& port);
 
   std::map<std::pair<std::string, std::string>, std::unique_ptr<Device>> devices_;
 };

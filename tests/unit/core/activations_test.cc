@@ -11,7 +11,10 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1);
+
+constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
+constexpr ProgramTime OwnAt(VirtualDuration since_start) { return ProgramTime() + since_start; }
 
 // A thread that has registered, and never runs.
 class ActivationsTest : public testing::Test {
@@ -26,17 +29,17 @@ class ActivationsTest : public testing::Test {
   ~ActivationsTest() override { unlink(path_.c_str()); }
 
   template <class What>
-  void WaitsFor(std::int64_t deadline_ns = shm::kNeverNs) {
+  void WaitsFor(VirtualTime deadline = VirtualTime::Never()) {
     Wait& wait = task_.wait.emplace();
     wait.what.emplace<What>();
-    wait.deadline_ns = deadline_ns;
+    wait.deadline = deadline;
   }
-  // It runs from then on, and comes to a wait at `end_ns`.
-  void Runs(std::int64_t start_ns, std::int64_t end_ns, std::int64_t charged_ns) {
+  // It runs from then on, and comes to a wait at `end`.
+  void Runs(VirtualDuration start, VirtualDuration end, VirtualDuration charged) {
     task_.wait.reset();
-    task_.activation.start_ns = start_ns;
-    task_.reached_ns = end_ns;
-    task_.charged_ns += charged_ns;
+    task_.activation.start_ns = start.ns();
+    task_.reached = At(end);
+    task_.charged += charged;
     activations_.Idles(task_);
   }
   std::vector<std::string> Lines() {
@@ -57,22 +60,22 @@ class ActivationsTest : public testing::Test {
 };
 
 TEST_F(ActivationsTest, WhatWasDueBeforeItWasLookedAtWasDueThen) {
-  WaitsFor<awaited::Time>(10 * kMs);
-  activations_.Released(task_, shm::WakeReason::kDeadline, 12 * kMs);
+  WaitsFor<awaited::Time>(At(10 * kMs));
+  activations_.Released(task_, shm::WakeReason::kDeadline, At(12 * kMs));
   Runs(12 * kMs, 15 * kMs, 3 * kMs);
   EXPECT_EQ(Lines(), std::vector<std::string>{"planner,0,time,10000000,12000000,15000000,3000000"});
 }
 
 TEST_F(ActivationsTest, TheCauseIsWhatTheWaitWasFor) {
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, 1 * kMs);
-  Runs(1 * kMs, 2 * kMs, 0);
+  activations_.Released(task_, shm::WakeReason::kGo, At(1 * kMs));
+  Runs(1 * kMs, 2 * kMs, {});
   WaitsFor<awaited::Futex>();
-  activations_.Released(task_, shm::WakeReason::kGo, 3 * kMs);
-  Runs(3 * kMs, 4 * kMs, 0);
+  activations_.Released(task_, shm::WakeReason::kGo, At(3 * kMs));
+  Runs(3 * kMs, 4 * kMs, {});
   WaitsFor<awaited::Child>();
-  activations_.Released(task_, shm::WakeReason::kGo, 5 * kMs);
-  Runs(5 * kMs, 6 * kMs, 0);
+  activations_.Released(task_, shm::WakeReason::kGo, At(5 * kMs));
+  Runs(5 * kMs, 6 * kMs, {});
   EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,input,1000000,1000000,2000000,0",
                                                "planner,0,thread,3000000,3000000,4000000,0",
                                                "planner,0,child,5000000,5000000,6000000,0"}));
@@ -80,19 +83,19 @@ TEST_F(ActivationsTest, TheCauseIsWhatTheWaitWasFor) {
 
 TEST_F(ActivationsTest, WhoNeverRegisteredHasNone) {
   task_.slot = -1;
-  Runs(1 * kMs, 2 * kMs, 0);
+  Runs(1 * kMs, 2 * kMs, {});
   EXPECT_TRUE(Lines().empty());
 }
 
 TEST_F(ActivationsTest, NoneIsChargedLessThanNothing) {
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, 0);
-  Runs(0, 1 * kMs, 5 * kMs);
+  activations_.Released(task_, shm::WakeReason::kGo, At(0));
+  Runs({}, 1 * kMs, 5 * kMs);
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, 2 * kMs);
-  Runs(2 * kMs, 3 * kMs, -1 * kMs);
+  activations_.Released(task_, shm::WakeReason::kGo, At(2 * kMs));
+  Runs(2 * kMs, 3 * kMs, -kMs);
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, 4 * kMs);
+  activations_.Released(task_, shm::WakeReason::kGo, At(4 * kMs));
   Runs(4 * kMs, 5 * kMs, 3 * kMs);
   EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,input,0,0,1000000,5000000",
                                                "planner,0,input,2000000,2000000,3000000,0",
@@ -100,16 +103,18 @@ TEST_F(ActivationsTest, NoneIsChargedLessThanNothing) {
 }
 
 TEST_F(ActivationsTest, WhatWasReceivedWithoutWaitingBeginsTheNextOne) {
-  task_.activation.release_ns = task_.activation.start_ns = 1 * kMs;
-  task_.charged_ns = 9 * kMs;
+  task_.activation.release_ns = task_.activation.start_ns = kMs.ns();
+  task_.charged = 9 * kMs;
   shm::Receipts& receipts = slot_->receipts;
-  receipts.entries[0] = {.time_ns = 4 * kMs, .cpu_ns = 3 * kMs, .of = shm::Receipts::Of::kMessage};
-  receipts.entries[1] = {.time_ns = 7 * kMs, .cpu_ns = 6 * kMs, .of = shm::Receipts::Of::kTimer};
+  receipts.entries[0] = {
+      .time_ns = (4 * kMs).ns(), .cpu_ns = (3 * kMs).ns(), .of = shm::Receipts::Of::kMessage};
+  receipts.entries[1] = {
+      .time_ns = (7 * kMs).ns(), .cpu_ns = (6 * kMs).ns(), .of = shm::Receipts::Of::kTimer};
   receipts.count = 2;
-  activations_.TakeReceipts(task_, 10 * kMs);
+  activations_.TakeReceipts(task_, OwnAt(10 * kMs));
   EXPECT_EQ(receipts.count, 0u);
   EXPECT_EQ(task_.activations, 2);
-  task_.reached_ns = 10 * kMs;
+  task_.reached = At(10 * kMs);
   activations_.Idles(task_);
   EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,start,1000000,1000000,4000000,3000000",
                                                "planner,0,input,4000000,4000000,7000000,3000000",
@@ -117,20 +122,20 @@ TEST_F(ActivationsTest, WhatWasReceivedWithoutWaitingBeginsTheNextOne) {
 }
 
 TEST_F(ActivationsTest, ReceiptsAreNotBelievedBeyondWhatTheThreadCanHaveHad) {
-  task_.activation.release_ns = task_.activation.start_ns = 1 * kMs;
-  task_.charged_ns = 2 * kMs;
-  slot_->receipts.entries[0] = {.time_ns = 900 * kMs, .cpu_ns = 800 * kMs};
+  task_.activation.release_ns = task_.activation.start_ns = kMs.ns();
+  task_.charged = 2 * kMs;
+  slot_->receipts.entries[0] = {.time_ns = (900 * kMs).ns(), .cpu_ns = (800 * kMs).ns()};
   slot_->receipts.count = ~0u;
-  activations_.TakeReceipts(task_, 3 * kMs);
+  activations_.TakeReceipts(task_, OwnAt(3 * kMs));
   EXPECT_EQ(Lines().front(), "planner,0,start,1000000,1000000,3000000,2000000");
 }
 
 TEST_F(ActivationsTest, AClockThatIsAheadOfTheWorldsDoesNotGoBack) {
   Activations own(true);
-  process_.clock.ComeTo(OwnTime(30 * kMs));
+  process_.clock.ComeTo(OwnAt(30 * kMs));
   WaitsFor<awaited::Descriptors>();
-  own.Released(task_, shm::WakeReason::kGo, 10 * kMs);
-  EXPECT_EQ(task_.activation.release_ns, 30 * kMs);
+  own.Released(task_, shm::WakeReason::kGo, At(10 * kMs));
+  EXPECT_EQ(task_.activation.release_ns, (30 * kMs).ns());
 }
 
 }  // namespace

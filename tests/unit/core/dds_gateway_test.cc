@@ -49,7 +49,7 @@ class DdsGatewayTest : public testing::Test {
   void Notify(Task& task, Kind kind) {
     shm::Notification note{};
     note.kind = kind;
-    dds_.Handle(task, note, shm::kNeverNs);
+    dds_.Handle(task, note, VirtualTime::Never());
   }
 
   std::unique_ptr<shm::RunHeader> header_ = std::make_unique<shm::RunHeader>();
@@ -79,7 +79,7 @@ TEST_F(DdsGatewayTest, TheThreadThatWaitsForMessagesIsTheDeliverer) {
   Notify(*deliverer_, Kind::kDdsWait);
   EXPECT_EQ(process_->deliverer, deliverer_);
   ASSERT_NE(deliverer_->Awaits<awaited::Messages>(), nullptr);
-  EXPECT_EQ(deliverer_->wait->deadline_ns, shm::kNeverNs);  // nothing was sent to it
+  EXPECT_TRUE(deliverer_->wait->deadline.IsNever());  // nothing was sent to it
 }
 
 TEST_F(DdsGatewayTest, NobodyWaitsForADelivererThatHasNothingToHandOver) {

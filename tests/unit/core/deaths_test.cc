@@ -8,7 +8,9 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1);
+
+constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 class NoExecutor : public Executor {
  public:
@@ -62,7 +64,7 @@ class DeathsTest : public testing::Test {
     Task& task = run_.table.AddTask(tid);
     task.process = &process;
     ++process.threads;
-    task.charged_ns = 5 * kMs;
+    task.charged = 5 * kMs;
     robot_.tasks.push_back(&task);
     robot_.scheduler.Add(task.order, 0);
   }
@@ -100,23 +102,23 @@ TEST_F(DeathsTest, WhatAThreadWasChargedStaysItsProcesses) {
 }
 
 TEST_F(DeathsTest, AProcessEndsWithAllItsThreadsAndThenItsParentIsTold) {
-  deaths_.ProcessEnded(child_->index, {7 * kMs});
+  deaths_.ProcessEnded(child_->index, {At(7 * kMs)});
   EXPECT_EQ(happened_, (std::vector<std::string>{"ends 2", "has ended 2", "wake for 2", "child 2",
                                                  "process 2"}));
   EXPECT_TRUE(child_->dead);
-  EXPECT_EQ(child_->ended_at_ns, 7 * kMs);
-  EXPECT_EQ(client_->children_cpu_ns, 5 * kMs);
+  EXPECT_EQ(child_->ended_at, At(7 * kMs));
+  EXPECT_EQ(client_->children_cpu, 5 * kMs);
   // What it was charged is its client's from now on.
-  EXPECT_EQ(client_->descendants.charged_ns, 5 * kMs);
+  EXPECT_EQ(client_->descendants.charged_ns, (5 * kMs).ns());
   EXPECT_EQ(usage_.ChargedToAllOf(*client_), 15 * kMs);
 }
 
 TEST_F(DeathsTest, AProcessEndsOnce) {
-  deaths_.ProcessEnded(child_->index, {7 * kMs});
+  deaths_.ProcessEnded(child_->index, {At(7 * kMs)});
   happened_.clear();
-  deaths_.ProcessEnded(child_->index, {9 * kMs});
+  deaths_.ProcessEnded(child_->index, {At(9 * kMs)});
   EXPECT_TRUE(happened_.empty());
-  EXPECT_EQ(child_->ended_at_ns, 7 * kMs);
+  EXPECT_EQ(child_->ended_at, At(7 * kMs));
 }
 
 }  // namespace

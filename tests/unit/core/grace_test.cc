@@ -6,7 +6,9 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr VirtualDuration kSecond = VirtualDuration::Seconds(1);
+
+constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 // Three clients live when the grace begins, at 10 s. No signal is sent: they are no processes.
 class GraceTest : public testing::Test {
@@ -15,15 +17,15 @@ class GraceTest : public testing::Test {
     ClientSpec spec;
     Process* process = nullptr;
   };
-  void Add(Living& client, std::int64_t grace_ns) {
-    client.spec.stop_grace = VirtualDuration::Nanoseconds(grace_ns);
+  void Add(Living& client, VirtualDuration grace) {
+    client.spec.stop_grace = grace;
     client.process = &run_.table.AddProcess(next_pid_);
     client.process->client = client.process;
     client.process->spec = &client.spec;
     run_.table.AddTask(next_pid_++).process = client.process;
   }
   void SetUp() override {
-    run_.grace_began_ns = 10 * kSecond;
+    run_.grace_began = At(10 * kSecond);
     Add(slow_, 3 * kSecond);
     Add(quick_, kSecond);
   }
@@ -39,10 +41,10 @@ class GraceTest : public testing::Test {
 
 TEST_F(GraceTest, TheRunGoesOnFromOneClientsKillToTheNextOnes) {
   ASSERT_TRUE(grace_.GoOnToNextKill());
-  EXPECT_EQ(run_.end_ns, 11 * kSecond);
+  EXPECT_EQ(run_.end, At(11 * kSecond));
   quick_.process->killed = true;
   ASSERT_TRUE(grace_.GoOnToNextKill());
-  EXPECT_EQ(run_.end_ns, 13 * kSecond);
+  EXPECT_EQ(run_.end, At(13 * kSecond));
   slow_.process->dead = true;
   EXPECT_FALSE(grace_.GoOnToNextKill());
 }
@@ -50,7 +52,7 @@ TEST_F(GraceTest, TheRunGoesOnFromOneClientsKillToTheNextOnes) {
 TEST_F(GraceTest, OneThatIsStoppedByAKillHasNone) {
   slow_.spec.stop_signal = SIGKILL;
   ASSERT_TRUE(grace_.GoOnToNextKill());
-  EXPECT_EQ(run_.end_ns, 10 * kSecond);
+  EXPECT_EQ(run_.end, At(10 * kSecond));
 }
 
 TEST_F(GraceTest, IsOverWhenNoRealTimeIsLeft) {

@@ -5,15 +5,17 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr VirtualDuration kSecond = VirtualDuration::Seconds(1);
+
+constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 // One robot, and a run of 60 s.
 class LaunchesTest : public testing::Test {
  protected:
-  static ClientSpec Client(const std::string& name, std::int64_t start_ns, std::string after = {}) {
+  static ClientSpec Client(const std::string& name, VirtualDuration start, std::string after = {}) {
     ClientSpec client;
     client.name = name;
-    client.start = VirtualDuration::Nanoseconds(start_ns);
+    client.start = start;
     client.after = std::move(after);
     return client;
   }
@@ -22,11 +24,11 @@ class LaunchesTest : public testing::Test {
     Scenario scenario;
     RobotSpec& robot = scenario.robots.emplace_back();
     robot.clients = {Client("early", 5 * kSecond), Client("late", 70 * kSecond),
-                     Client("next", 0, "early"), Client("much later", 20 * kSecond, "early")};
+                     Client("next", {}, "early"), Client("much later", 20 * kSecond, "early")};
     return scenario;
   }
   void SetUp() override {
-    run_.end_ns = 60 * kSecond;
+    run_.end = At(60 * kSecond);
     run_.robots.emplace_back("robot", 1.0,
                              RobotScheduler(1, true, [](int) { return RobotScheduler::Wait{}; }));
     ended_.name = "early";
@@ -51,30 +53,30 @@ class LaunchesTest : public testing::Test {
 
 TEST_F(LaunchesTest, TheRobotActsAtTheTimeOfItsNextLaunch) {
   EXPECT_EQ(launches_.Begin(), "");
-  EXPECT_EQ(robot().next_launch_ns, 5 * kSecond);
+  EXPECT_EQ(robot().next_launch, At(5 * kSecond));
   EXPECT_TRUE(launches_.AreAhead());
 }
 
 TEST_F(LaunchesTest, NothingIsAheadThatIsToStartAfterTheRunsEnd) {
   EXPECT_EQ(launches_.Begin(), "");
-  run_.end_ns = 5 * kSecond;
+  run_.end = At(5 * kSecond);
   EXPECT_FALSE(launches_.AreAhead());
 }
 
 TEST_F(LaunchesTest, WhoWaitsForAnotherOneStartsWhenThatHasEndedButNotBeforeItIsTo) {
   EXPECT_EQ(launches_.Begin(), "");
-  ended_.ended_at_ns = 3 * kSecond;
+  ended_.ended_at = At(3 * kSecond);
   launches_.ClientHasEnded(ended_);
-  EXPECT_EQ(robot().next_launch_ns, 3 * kSecond);
-  EXPECT_EQ(launches_.all()[2].start_ns, 3 * kSecond);
-  EXPECT_EQ(launches_.all()[3].start_ns, 20 * kSecond);
+  EXPECT_EQ(robot().next_launch, At(3 * kSecond));
+  EXPECT_EQ(launches_.all()[2].start, At(3 * kSecond));
+  EXPECT_EQ(launches_.all()[3].start, At(20 * kSecond));
 }
 
 TEST_F(LaunchesTest, NobodyStartsInTheGrace) {
   EXPECT_EQ(launches_.Begin(), "");
-  run_.grace_began_ns = 4 * kSecond;
+  run_.grace_began = At(4 * kSecond);
   launches_.Stop();
-  ended_.ended_at_ns = 4 * kSecond;
+  ended_.ended_at = At(4 * kSecond);
   launches_.ClientHasEnded(ended_);
   EXPECT_FALSE(launches_.AreAhead());
 }

@@ -34,12 +34,12 @@ class Source {
 struct Seen {
   Subject subject;
   std::uint32_t events;
-  std::int64_t at_ns;
+  VirtualTime at;
 };
 
 Reactor::Handler Noting(std::vector<Seen>* seen, Reactor::Found found = {}) {
   return [seen, found](const Subject& subject, std::uint32_t events, Moment moment) {
-    seen->push_back({subject, events, moment.ns});
+    seen->push_back({subject, events, moment.at});
     return found;
   };
 }
@@ -53,13 +53,13 @@ TEST(Reactor, HandsEventsToTheHandlerOfTheirKindAtTheMoment) {
   const Subject pipe{Tag::kPipe, 7}, wait{Tag::kAwaited, 0xffffffff, 0xabcdef};
   ASSERT_TRUE(reactor.Add(one.fd(), EPOLLIN, pipe));
   ASSERT_TRUE(reactor.Add(other.fd(), EPOLLIN | EPOLLONESHOT, wait));
-  EXPECT_EQ(reactor.Wait(0), 2u);
+  EXPECT_EQ(reactor.Wait(HostNs(0)), 2u);
   EXPECT_FALSE(reactor.IsFull());
-  reactor.Handle({.ns = 42});
+  reactor.Handle({.at = RobotTime(42)});
   ASSERT_EQ(pipes.size(), 1u);
   EXPECT_EQ(pipes[0].subject, pipe);
   EXPECT_EQ(pipes[0].events, static_cast<std::uint32_t>(EPOLLIN));
-  EXPECT_EQ(pipes[0].at_ns, 42);
+  EXPECT_EQ(pipes[0].at, RobotTime(42));
   ASSERT_EQ(awaited.size(), 1u);
   EXPECT_EQ(awaited[0].subject, wait);
 }
@@ -70,12 +70,12 @@ TEST(Reactor, AnEventIsHandledOnce) {
   reactor.On(Tag::kPipe, Noting(&seen));
   const Source source;
   ASSERT_TRUE(reactor.Add(source.fd(), EPOLLIN, {Tag::kPipe}));
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   reactor.Handle({});
   reactor.Handle({});
   EXPECT_EQ(seen.size(), 1u);
   source.Clear();
-  EXPECT_EQ(reactor.Wait(0), 0u);
+  EXPECT_EQ(reactor.Wait(HostNs(0)), 0u);
 }
 
 TEST(Reactor, WhatHandlersFindAddsUp) {
@@ -86,7 +86,7 @@ TEST(Reactor, WhatHandlersFindAddsUp) {
   const Source one, other;
   reactor.Add(one.fd(), EPOLLIN, {Tag::kPipe});
   reactor.Add(other.fd(), EPOLLIN, {Tag::kDetector});
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   const Reactor::Found found = reactor.Handle({});
   EXPECT_TRUE(found.stops_running);
   EXPECT_TRUE(found.blocks_running);
@@ -102,17 +102,17 @@ TEST(Reactor, ModifiesWhatIsThereOnly) {
   EXPECT_FALSE(reactor.Modify(source.fd(), EPOLLIN, {Tag::kAwaited, 1, 1}));
   EXPECT_TRUE(reactor.Add(source.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kAwaited, 1, 1}));
   EXPECT_FALSE(reactor.Add(source.fd(), EPOLLIN, {Tag::kAwaited, 1, 1}));
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   reactor.Handle({});
-  EXPECT_EQ(reactor.Wait(0), 0u);  // once only
+  EXPECT_EQ(reactor.Wait(HostNs(0)), 0u);  // once only
   EXPECT_TRUE(reactor.Modify(source.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kAwaited, 1, 2}));
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   reactor.Handle({});
   ASSERT_EQ(seen.size(), 2u);
   EXPECT_EQ(seen[1].subject.number, 2u);
   reactor.Remove(source.fd());
   reactor.Remove(source.fd());
-  EXPECT_EQ(reactor.Wait(0), 0u);
+  EXPECT_EQ(reactor.Wait(HostNs(0)), 0u);
 }
 
 TEST(Reactor, SaysWhetherThereMayBeMore) {
@@ -124,10 +124,10 @@ TEST(Reactor, SaysWhetherThereMayBeMore) {
     sources.push_back(std::make_unique<Source>());
     ASSERT_TRUE(reactor.Add(sources.back()->fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, i}));
   }
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   EXPECT_TRUE(reactor.IsFull());
   reactor.Handle({});
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   EXPECT_FALSE(reactor.IsFull());
   reactor.Handle({});
   ASSERT_EQ(seen.size(), 100u);
@@ -144,7 +144,7 @@ TEST(Reactor, SaysWhetherSomethingHasComeSince) {
   EXPECT_FALSE(reactor.HasMore());
   ASSERT_TRUE(reactor.Add(first.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, 1}));
   EXPECT_TRUE(reactor.HasMore());
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   EXPECT_FALSE(reactor.HasMore());
   const Source second;
   ASSERT_TRUE(reactor.Add(second.fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, 2}));
@@ -167,7 +167,7 @@ TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
   source.Fire();
   reactor.Wait(-1);
   reactor.Handle({});
-  EXPECT_EQ(reactor.Wait(0), 0u);
+  EXPECT_EQ(reactor.Wait(HostNs(0)), 0u);
   EXPECT_EQ(handled, 1);
 }
 
@@ -175,11 +175,11 @@ TEST(ReactorDeathTest, WaitingInAHandlerIsABug) {
   Reactor reactor;
   const Source source;
   reactor.On(Tag::kPipe, [&](const Subject&, std::uint32_t, Moment) {
-    reactor.Wait(0);
+    reactor.Wait(HostNs(0));
     return Reactor::Found{};
   });
   reactor.Add(source.fd(), EPOLLIN, {Tag::kPipe});
-  reactor.Wait(0);
+  reactor.Wait(HostNs(0));
   EXPECT_DEATH(reactor.Handle({}), "!is_handling_ does not hold");
 }
 

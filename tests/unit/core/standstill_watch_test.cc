@@ -8,8 +8,12 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kPatience = StandstillWatch::kPatienceNs;
+constexpr HostDuration kPatience = StandstillWatch::kPatience,
+                       kHostSecond = HostDuration::Seconds(1);
+constexpr VirtualTime kOneSecond = VirtualTime() + VirtualDuration::Seconds(1),
+                      kTwoSeconds = VirtualTime() + VirtualDuration::Seconds(2);
+
+constexpr HostTime At(HostDuration since_start) { return HostTime() + since_start; }
 
 class StandstillWatchTest : public testing::Test {
  protected:
@@ -44,24 +48,24 @@ class StandstillWatchTest : public testing::Test {
 
 TEST_F(StandstillWatchTest, SaysOnceWhatIsWaitedForWhenPatienceIsOver) {
   AddClient("planner");
-  watch_.Look(kSecond, 2 * kSecond);
-  watch_.Look(kSecond + kPatience - 1, 2 * kSecond);
+  watch_.Look(At(kHostSecond), kTwoSeconds);
+  watch_.Look(At(kHostSecond + kPatience - HostNs(1)), kTwoSeconds);
   EXPECT_TRUE(told_.empty());
-  watch_.Look(kSecond + kPatience, 2 * kSecond);
+  watch_.Look(At(kHostSecond + kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0],
             "virtual time has stood still at 2.000 s for 5 s: nothing can happen any more but from "
             "outside; planner waits for DDS messages; Ctrl-C ends the run");
-  watch_.Look(kSecond + 3 * kPatience, 2 * kSecond);
+  watch_.Look(At(kHostSecond + 3 * kPatience), kTwoSeconds);
   EXPECT_EQ(told_.size(), 1u);
 }
 
 TEST_F(StandstillWatchTest, SaysNothingWhileTimeGoesOnOrThreadsAreDispatched) {
   AddClient("planner");
-  watch_.Look(0, 0);
-  watch_.Look(kPatience, 1);
+  watch_.Look(At({}), {});
+  watch_.Look(At(kPatience), RobotTime(1));
   ++run_.report.switches;
-  watch_.Look(2 * kPatience, 1);
+  watch_.Look(At(2 * kPatience), RobotTime(1));
   EXPECT_TRUE(told_.empty());
 }
 
@@ -69,13 +73,13 @@ TEST_F(StandstillWatchTest, WhatAClientHasLeftIsSaidOnlyOfProgramsThatRunForAsLo
   AddClient("tool").dead = true;
   Process& left = run_.table.AddProcess(1);
   left.robot = &robot_;
-  run_.end_ns = 60 * kSecond;
-  watch_.Look(0, 0);
-  watch_.Look(kPatience, kSecond);
+  run_.end = VirtualTime() + VirtualDuration::Seconds(60);
+  watch_.Look(At({}), {});
+  watch_.Look(At(kPatience), kOneSecond);
   EXPECT_TRUE(told_.empty());
-  run_.end_ns = shm::kNeverNs;
-  watch_.Look(kPatience, kSecond);
-  watch_.Look(2 * kPatience, 2 * kSecond);
+  run_.end = VirtualTime::Never();
+  watch_.Look(At(kPatience), kOneSecond);
+  watch_.Look(At(2 * kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0].find("tool has ended; the run goes on for what it has left: "), 0u);
 }

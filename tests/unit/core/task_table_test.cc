@@ -65,13 +65,13 @@ TEST_F(TaskTableTest, WhoHasJustEndedKeepsItsPlace) {
 
 TEST_F(TaskTableTest, APlaceIsHadAgainAsNew) {
   Task& task = table_.AddTask(10);
-  task.charged_ns = 5;
+  task.charged = VirtualNs(5);
   table_.TaskEnded(task);
   PassThreads(static_cast<int>(TaskTable::kKeptAfterEnd));
   EXPECT_EQ(&table_.AddTask(11), &task);
   EXPECT_EQ(task.tid, 11);
   EXPECT_EQ(task.order, 0);
-  EXPECT_EQ(task.charged_ns, 0);
+  EXPECT_EQ(task.charged, VirtualDuration());
 }
 
 TEST_F(TaskTableTest, ThousandsThatComeAndGoTakeNoMoreRoom) {

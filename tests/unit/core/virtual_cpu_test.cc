@@ -10,10 +10,10 @@ TEST(VirtualCpu, ComesFurtherOnly) {
                 return RobotScheduler::Wait{};
               }));
   VirtualCpu cpu{.robot = &robot};
-  cpu.ComeTo(500);
-  cpu.ComeTo(500);
-  EXPECT_EQ(cpu.progress_ns, 500);
-  EXPECT_DEATH(cpu.ComeTo(499), "a bug in tcs");
+  cpu.ComeTo(RobotTime(500));
+  cpu.ComeTo(RobotTime(500));
+  EXPECT_EQ(cpu.progress, RobotTime(500));
+  EXPECT_DEATH(cpu.ComeTo(RobotTime(499)), "a bug in tcs");
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ TEST(Wait, InputEndsThoseThatOthersCanEnd) {
 }
 
 TEST(Wait, EndsByTimeOnlyWhereItHasADeadline) {
-  EXPECT_EQ(Wait{awaited::Time{}}.deadline_ns, shm::kNeverNs);
-  EXPECT_EQ((Wait{awaited::Time{}, 7}).deadline_ns, 7);
+  EXPECT_TRUE(Wait{awaited::Time{}}.deadline.IsNever());
+  EXPECT_EQ((Wait{awaited::Time{}, RobotTime(7)}).deadline, RobotTime(7));
 }
 
 TEST(Wait, SignalsEndThoseThatAcceptThemAndThoseForDescriptorsWithAMask) {

@@ -7,14 +7,14 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kStart = 50 * kMs;
-constexpr std::int64_t kFar = kStart + 1000 * kMs;
+constexpr ProgramTime kFar = OwnTime(kStart + 1000 * kMs);
 
 class FixedMeterTest : public testing::Test {
  protected:
   FixedMeterTest() {
     thread_.page = &page_;
     grant_.base_time_ns = kStart;
-    meter_.SetRates(thread_, {.call_ns = 1000, .allocation_ns = 100}, grant_);
+    meter_.SetRates(thread_, {.call = VirtualNs(1000), .allocation = VirtualNs(100)}, grant_);
     grant_.WriteTo(page_);
     page_.base_tsc = meter_.Begin(thread_, 0, true, false);
   }
@@ -25,7 +25,7 @@ class FixedMeterTest : public testing::Test {
     Meter::Found found = Meter::Found::kGoesOn;
     for (int i = 0; i < times && found == Meter::Found::kGoesOn; ++i) {
       tsc_ += 1'000'000;
-      meter_.NsToLook(thread_, tsc_, kFar);
+      meter_.TimeToLook(thread_, tsc_, kFar);
       found = meter_.Look(thread_, tsc_, kFar, clock_);
     }
     return found;
@@ -59,14 +59,14 @@ TEST_F(FixedMeterTest, TheShimChargesCallsAndAllocations) {
 
 TEST_F(FixedMeterTest, ACallThatTheShimDoesNotSeeCostsTheSame) {
   page_.executed_adjust = shm::PackAdjust(std::uint64_t{7} << shm::kAdjustBits, 300);
-  meter_.ChargeCall(thread_, 1000);
+  meter_.ChargeCall(thread_, VirtualNs(1000));
   EXPECT_EQ(Clock(), kStart + 1300);
   EXPECT_EQ(shm::DispatchNumber(page_.executed_adjust.load()), 7);
 }
 
 TEST_F(FixedMeterTest, NoSleepOfTheCoordinatorsIsTooLong) {
-  EXPECT_FALSE(meter_.HasOverslept(0, ~std::uint64_t{0}, 1));
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, {}, tsc_, 1, clock_), 0);
+  EXPECT_FALSE(meter_.HasOverslept(0, ~std::uint64_t{0}, HostNs(1)));
+  EXPECT_EQ(meter_.TakeOutUntold(thread_, {}, tsc_, HostNs(1), clock_), HostDuration());
 }
 
 TEST_F(FixedMeterTest, WhoComputesForLongWithoutACallIsSilent) {
@@ -83,11 +83,11 @@ TEST_F(FixedMeterTest, AnyCallBreaksTheSilence) {
 
 TEST_F(FixedMeterTest, WhoWasSilentIsLookedAtSoonAndOftenUntilItMakesACall) {
   meter_.Begin(thread_, tsc_, false, true);
-  EXPECT_EQ(meter_.NsToLook(thread_, tsc_, kFar), FixedMeter::kLookAtSilentNs);
+  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), FixedMeter::kLookAtSilentEvery);
   EXPECT_EQ(LookTimes(1), Meter::Found::kIsSilent);
   page_.executed_adjust += 1000;
   EXPECT_EQ(LookTimes(1), Meter::Found::kGoesOn);
-  EXPECT_EQ(meter_.NsToLook(thread_, tsc_, kFar), FixedMeter::kLookNs);
+  EXPECT_EQ(meter_.TimeToLook(thread_, tsc_, kFar), FixedMeter::kLookEvery);
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(HostCpuTest, AClockThatItsProcessHasOverwrittenIsNotReckonedWith) {
   slot_.clock.horizon_ns = 1;
   EXPECT_FALSE(thread_.HasOwnClock());
   const std::uint64_t word = slot_.clock.executed_adjust.load();
-  EXPECT_EQ(cpu_.TakeOutUntold(thread_, long_ago, kMs, clock_), 0);
+  EXPECT_EQ(cpu_.TakeOutUntold(thread_, long_ago, HostNs(kMs), clock_), HostDuration());
   EXPECT_EQ(slot_.clock.executed_adjust.load(), word);
 }
 
@@ -140,7 +140,7 @@ TEST_F(HostCpuTest, AnIdealThreadsClockStandsWhileItComputes) {
   cpu_.Start(thread_, false);
   shm::ClockReading read = shm::ReadClockAt(slot_.clock, __rdtsc() + 1'000'000'000);
   EXPECT_EQ(read.time_ns, 50 * kMs);
-  cpu_.ChargeCall(thread_, 3 * kMs);
+  cpu_.ChargeCall(thread_, VirtualNs(3 * kMs));
   read = shm::ReadClockAt(slot_.clock, __rdtsc());
   EXPECT_EQ(read.time_ns, 50 * kMs);
 }

@@ -53,16 +53,17 @@ TEST_F(MeasuredMeterTest, OnASlowComputerComputingTakesLonger) {
   thread_.speed = 0.5;
   Dispatch(kBegun);
   EXPECT_EQ(ClockAt(kBegun + 3 * kTicksPerMs), kStart + 6 * kMs);
-  EXPECT_EQ(thread_.HostNs(6 * kMs), 3 * kMs);
+  EXPECT_EQ(thread_.OnHost(VirtualNs(6 * kMs)), HostNs(3 * kMs));
+  EXPECT_EQ(thread_.OnRobot(HostNs(3 * kMs)), VirtualNs(6 * kMs));
 }
 
 TEST_F(MeasuredMeterTest, CallsAndAllocationsCostWhatTheyTake) {
   grant_.call_cost_ns = 1;
-  meter_.SetRates(thread_, {.call_ns = 1000, .allocation_ns = 100}, grant_);
+  meter_.SetRates(thread_, {.call = VirtualNs(1000), .allocation = VirtualNs(100)}, grant_);
   EXPECT_EQ(grant_.call_cost_ns, 0);
   EXPECT_EQ(grant_.allocation_cost_ns, 0);
   Dispatch(kBegun);
-  meter_.ChargeCall(thread_, 1000);
+  meter_.ChargeCall(thread_, VirtualNs(1000));
   EXPECT_EQ(ClockAt(kBegun), kStart);
 }
 
@@ -116,7 +117,7 @@ TEST_F(MeasuredMeterTest, WhatTheThreadFoundItselfIsNoSwitch) {
 
 TEST_F(MeasuredMeterTest, IsLookedAtShortlyBeforeItsHorizon) {
   Dispatch(kBegun);
-  const std::int64_t ns = meter_.NsToLook(thread_, kBegun, kStart + kMs);
+  const std::int64_t ns = meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + kMs)).ns();
   EXPECT_LT(ns, kMs);
   EXPECT_GT(ns, kMs - 50 * kUs);
 }
@@ -124,16 +125,16 @@ TEST_F(MeasuredMeterTest, IsLookedAtShortlyBeforeItsHorizon) {
 TEST_F(MeasuredMeterTest, AtItsHorizonItHasToStop) {
   Dispatch(kBegun);
   host_cpu_ns_ += kMs;
-  meter_.NsToLook(thread_, kBegun, kStart + kMs);
-  EXPECT_EQ(meter_.Look(thread_, kBegun + kTicksPerMs, kStart + kMs, clock_),
+  meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + kMs));
+  EXPECT_EQ(meter_.Look(thread_, kBegun + kTicksPerMs, OwnTime(kStart + kMs), clock_),
             Meter::Found::kAtHorizon);
 }
 
 TEST_F(MeasuredMeterTest, AThreadThatWasStolenFromHasNotComeToItsHorizon) {
   Dispatch(kBegun);
   host_cpu_ns_ += kMs / 2;
-  meter_.NsToLook(thread_, kBegun, kStart + kMs);
-  EXPECT_EQ(meter_.Look(thread_, kBegun + kTicksPerMs, kStart + kMs, clock_),
+  meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + kMs));
+  EXPECT_EQ(meter_.Look(thread_, kBegun + kTicksPerMs, OwnTime(kStart + kMs), clock_),
             Meter::Found::kGoesOn);
   EXPECT_EQ(asked_, 1);
 }
@@ -162,21 +163,22 @@ TEST_F(MeasuredMeterTest, WhatItFindsStolenItMayTakeOut) {
 TEST_F(MeasuredMeterTest, LearnsHowLateTimersAre) {
   Dispatch(kBegun);
   page_.check_after_ticks = ~std::uint64_t{0};  // nothing is stolen
-  const std::int64_t first_ns = meter_.NsToLook(thread_, kBegun, kStart + 2 * kMs);
+  const std::int64_t first_ns = meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + 2 * kMs)).ns();
   for (int i = 0; i < 100; ++i) {
-    const std::int64_t ns = meter_.NsToLook(thread_, kBegun, kStart + 2 * kMs);
+    const std::int64_t ns = meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + 2 * kMs)).ns();
     const auto late = static_cast<std::uint64_t>(2 * (ns + 40 * kUs));
-    meter_.Look(thread_, kBegun + late, kStart + 2 * kMs, clock_);
+    meter_.Look(thread_, kBegun + late, OwnTime(kStart + 2 * kMs), clock_);
   }
-  EXPECT_NEAR(static_cast<double>(meter_.NsToLook(thread_, kBegun, kStart + 2 * kMs)),
-              static_cast<double>(first_ns - 35 * kUs), kUs);
+  EXPECT_NEAR(
+      static_cast<double>(meter_.TimeToLook(thread_, kBegun, OwnTime(kStart + 2 * kMs)).ns()),
+      static_cast<double>(first_ns - 35 * kUs), kUs);
 }
 
 TEST_F(MeasuredMeterTest, OverSleepingTellsOfTheftsThatNoClockTellsOf) {
   Dispatch(kBegun);
-  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 4 * kTicksPerMs, 4 * kMs));
-  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 5 * kTicksPerMs, 4 * kMs));
-  EXPECT_TRUE(meter_.HasOverslept(kBegun, kBegun + 50 * kTicksPerMs, 4 * kMs));
+  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 4 * kTicksPerMs, HostNs(4 * kMs)));
+  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 5 * kTicksPerMs, HostNs(4 * kMs)));
+  EXPECT_TRUE(meter_.HasOverslept(kBegun, kBegun + 50 * kTicksPerMs, HostNs(4 * kMs)));
 }
 
 // The host counts as the thread's what the hypervisor had: all clocks have 50 ms, the timer was to
@@ -187,7 +189,7 @@ TEST_F(MeasuredMeterTest, WhatNoClockTellsIsTakenOutOfAll) {
   const shm::ClockReading before = ReadClockAt(page_, kBegun);
   const std::int64_t origin_ns = thread_.host_origin_ns;
   host_cpu_ns_ += 50 * kMs;
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, 4 * kMs, clock_), 46 * kMs);
+  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, HostNs(4 * kMs), clock_), HostNs(46 * kMs));
   EXPECT_EQ(ClockAt(tsc), kStart + 4 * kMs);
   EXPECT_EQ(thread_.host_origin_ns, origin_ns + 46 * kMs);
   EXPECT_EQ(thread_.page_origin_ns, page_.host_cpu_origin_ns);
@@ -200,7 +202,7 @@ TEST_F(MeasuredMeterTest, WhatTheCpuClockTellsIsNotTakenOutTwice) {
   const std::uint64_t tsc = kBegun + 50 * kTicksPerMs;
   const shm::ClockReading before = ReadClockAt(page_, kBegun);
   host_cpu_ns_ += 3 * kMs;
-  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, 4 * kMs, clock_), 0);
+  EXPECT_EQ(meter_.TakeOutUntold(thread_, before, tsc, HostNs(4 * kMs), clock_), HostNs(0));
   EXPECT_EQ(ClockAt(tsc), kStart + 3 * kMs);
 }
 

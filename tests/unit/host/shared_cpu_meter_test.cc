@@ -40,10 +40,11 @@ TEST_F(SharedCpuMeterTest, AThreadAsksItsCpuClockAtItsFirstLook) {
 TEST_F(SharedCpuMeterTest, AThreadThatOthersKeptFromComputingIsNotAtItsHorizon) {
   host_cpu_ns_ += kMs;
   const std::uint64_t late = kBegun + 20 * kTicksPerMs;
-  EXPECT_EQ(meter_.Look(thread_, late, kHorizon, clock_), Meter::Found::kGoesOn);
+  EXPECT_EQ(meter_.Look(thread_, late, OwnTime(kHorizon), clock_), Meter::Found::kGoesOn);
   EXPECT_EQ(ClockAt(late), kStart + kMs);
   host_cpu_ns_ += 4 * kMs;
-  EXPECT_EQ(meter_.Look(thread_, late + kTicksPerMs, kHorizon, clock_), Meter::Found::kAtHorizon);
+  EXPECT_EQ(meter_.Look(thread_, late + kTicksPerMs, OwnTime(kHorizon), clock_),
+            Meter::Found::kAtHorizon);
 }
 
 TEST_F(SharedCpuMeterTest, EachEndAsksHoweverShortTheRunWas) {
@@ -55,7 +56,7 @@ TEST_F(SharedCpuMeterTest, EachEndAsksHoweverShortTheRunWas) {
 
 // It may have computed on.
 TEST_F(SharedCpuMeterTest, ALateTimerTellsOfNoTheft) {
-  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 1'000 * kTicksPerMs, kMs));
+  EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 1'000 * kTicksPerMs, HostNs(kMs)));
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ class Strays : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!WhyNoRealTime().empty()) GTEST_SKIP() << WhyNoRealTime();
-    std::string taken;
-    claim_ = ClaimCpu(true, &taken);  // nobody else's threads are lowered
-    ASSERT_GE(claim_.cpu, 0) << taken;
+    auto claim = ClaimCpu(true);  // nobody else's threads are lowered
+    ASSERT_TRUE(std::holds_alternative<CpuClaim>(claim)) << std::get<std::string>(claim);
+    claim_ = std::move(std::get<CpuClaim>(claim));
   }
   void TearDown() override {
     for (const pid_t pid : made_) {

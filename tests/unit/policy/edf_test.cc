@@ -35,24 +35,25 @@ TEST_P(DeadlineHorizon, IsWhereAnEarlierDeadlineBegins) {
   robot.AddReady(kOne, GetParam().running);
   robot.Add(kTwo, GetParam().other);
   robot.Sleep(kTwo, GetParam().wait);
-  EXPECT_EQ(robot.Horizon({.input_ns = 3 * kMilli, .acts_at_once = true}), GetParam().horizon_ns);
+  EXPECT_EQ(robot.Horizon({.input = RobotTime(3 * kMilli), .acts_at_once = true}),
+            GetParam().horizon_ns);
 }
 
 const Case kCases[] = {
     {"AnEarlierOneWakes",
      Deadline(8 * kMilli, 20 * kMilli),
      Deadline(kMilli, 10 * kMilli),
-     {.until_ns = 4 * kMilli},
+     {.until = RobotTime(4 * kMilli)},
      4 * kMilli},
     {"ALaterOneWakes",
      Deadline(8 * kMilli, 20 * kMilli),
      Deadline(kMilli, 10 * kMilli),
-     {.until_ns = 12 * kMilli},
+     {.until = RobotTime(12 * kMilli)},
      8 * kMilli},
     {"AnEqualOneWakes",
      Deadline(8 * kMilli, 20 * kMilli),
      Deadline(kMilli, 16 * kMilli),
-     {.until_ns = 4 * kMilli},
+     {.until = RobotTime(4 * kMilli)},
      8 * kMilli},
     {"AnEarlierOneReads",
      Deadline(8 * kMilli, 20 * kMilli),
@@ -67,11 +68,19 @@ const Case kCases[] = {
     {"ALaterOnesTimerIsInTime",
      Deadline(8 * kMilli, 20 * kMilli),
      Deadline(kMilli, 18 * kMilli),
-     {.next_expiry_ns = 4 * kMilli},
+     {.next_expiry = RobotTime(4 * kMilli)},
      4 * kMilli},
-    {"FifoWakes", Deadline(8 * kMilli, 20 * kMilli), kFifo, {.until_ns = kMilli}, 8 * kMilli},
-    {"FifoIsPreempted", kFifo, Deadline(kMilli, 10 * kMilli), {.until_ns = kMilli}, kMilli},
-    {"OrdinaryIsPreempted", kOrdinary, Deadline(kMilli, 10 * kMilli), {.until_ns = kMilli}, kMilli},
+    {"FifoWakes",
+     Deadline(8 * kMilli, 20 * kMilli),
+     kFifo,
+     {.until = RobotTime(kMilli)},
+     8 * kMilli},
+    {"FifoIsPreempted", kFifo, Deadline(kMilli, 10 * kMilli), {.until = RobotTime(kMilli)}, kMilli},
+    {"OrdinaryIsPreempted",
+     kOrdinary,
+     Deadline(kMilli, 10 * kMilli),
+     {.until = RobotTime(kMilli)},
+     kMilli},
 };
 
 INSTANTIATE_TEST_SUITE_P(Where, DeadlineHorizon, testing::ValuesIn(kCases),
@@ -94,13 +103,13 @@ TEST(EarliestDeadlineFirst, AClientsReleasesAreOrderedByTheirDeadlines) {
   SimulatedRobot robot;
   robot.Add(kOne, {}, 99);
   robot.Add(kTwo);
-  robot.scheduler.SetClientDeadline(kOne, 10 * kMilli, 0);
-  robot.scheduler.SetClientDeadline(kTwo, 7 * kMilli, 0);
+  robot.scheduler.SetClientDeadline(kOne, VirtualNs(10 * kMilli), RobotTime(0));
+  robot.scheduler.SetClientDeadline(kTwo, VirtualNs(7 * kMilli), RobotTime(0));
   robot.Wake(kOne, 0, false);
   robot.Wake(kTwo, 2 * kMilli, false);
   robot.ComeTo(0, 2 * kMilli);
   EXPECT_EQ(robot.Next(), kTwo) << "9 ms are before 10 ms, whatever the priorities";
-  robot.Sleep(kTwo, {.until_ns = 4 * kMilli});
+  robot.Sleep(kTwo, {.until = RobotTime(4 * kMilli)});
   EXPECT_EQ(robot.Next(), kOne);
   EXPECT_EQ(robot.Horizon(), kNever) << "the next deadline is at 11 ms";
 }
@@ -108,11 +117,11 @@ TEST(EarliestDeadlineFirst, AClientsReleasesAreOrderedByTheirDeadlines) {
 TEST(EarliestDeadlineFirst, WhatItsOwnRobotWakesKeepsItsDeadline) {
   SimulatedRobot robot;
   robot.Add(kOne);
-  robot.scheduler.SetClientDeadline(kOne, 10 * kMilli, 0);
+  robot.scheduler.SetClientDeadline(kOne, VirtualNs(10 * kMilli), RobotTime(0));
   const RobotScheduler::Priority before = robot.scheduler.PriorityOf(kOne);
-  robot.scheduler.WakeUp(kOne, 4 * kMilli, false);
+  robot.scheduler.WakeUp(kOne, RobotTime(4 * kMilli), false);
   EXPECT_EQ(robot.scheduler.PriorityOf(kOne), before);
-  robot.scheduler.WakeUp(kOne, 4 * kMilli, true);
+  robot.scheduler.WakeUp(kOne, RobotTime(4 * kMilli), true);
   EXPECT_LT(robot.scheduler.PriorityOf(kOne), before);
 }
 
@@ -125,7 +134,7 @@ TEST(EarliestDeadlineFirst, ADeadlineIsInherited) {
   EXPECT_EQ(robot.Next(), 3);
   robot.scheduler.SetBlockedOn(kTwo, kOne);
   EXPECT_TRUE(robot.scheduler.FindEffectivePriority(kOne));
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), kOne);
 }
 

@@ -22,13 +22,17 @@ constexpr std::int64_t kNow = 10 * kMilli, kHad = 300 * kMicro;
 constexpr std::int64_t kTurnEnd = kNow + kMilli - kHad, kGrain = 100 * kMicro;
 constexpr std::int64_t kSoon = kNow + 50 * kMicro, kLater = kNow + 5 * kMilli;
 constexpr Outlook kNothing{};
-constexpr Outlook kMeasuredInput{.input_ns = kSoon, .outside_input_ns = kSoon};
-constexpr Outlook kFixedInput{.input_ns = kSoon, .outside_input_ns = kSoon, .acts_at_once = true};
-constexpr Outlook kInputNow{.input_ns = kNow, .outside_input_ns = kNow, .acts_at_once = true};
-constexpr Outlook kGivenWay{
-    .input_ns = kNow, .outside_input_ns = kNow, .acts_at_once = true, .has_given_way = true};
-constexpr Outlook kOwnRobotsInput{.input_ns = kSoon, .acts_at_once = true};
-constexpr Outlook kSensor{.output_ns = kSoon};
+constexpr Outlook kMeasuredInput{.input = RobotTime(kSoon), .outside_input = RobotTime(kSoon)};
+constexpr Outlook kFixedInput{
+    .input = RobotTime(kSoon), .outside_input = RobotTime(kSoon), .acts_at_once = true};
+constexpr Outlook kInputNow{
+    .input = RobotTime(kNow), .outside_input = RobotTime(kNow), .acts_at_once = true};
+constexpr Outlook kGivenWay{.input = RobotTime(kNow),
+                            .outside_input = RobotTime(kNow),
+                            .acts_at_once = true,
+                            .has_given_way = true};
+constexpr Outlook kOwnRobotsInput{.input = RobotTime(kSoon), .acts_at_once = true};
+constexpr Outlook kSensor{.output = RobotTime(kSoon)};
 
 struct Case {
   const char* name;
@@ -55,9 +59,9 @@ TEST_P(Horizon, IsTheFirstInstantAtWhichTheOtherCouldTakeTheCore) {
   EXPECT_EQ(robot.Horizon(test.outlook), test.horizon_ns);
 }
 
-constexpr Wait kSleepsShort{.until_ns = kSoon}, kSleepsLong{.until_ns = kLater},
-    kForever{.until_ns = kNever}, kTimer{.next_expiry_ns = kSoon}, kReads{.for_input = true},
-    kFutex{.for_thread = true};
+constexpr Wait kSleepsShort{.until = RobotTime(kSoon)}, kSleepsLong{.until = RobotTime(kLater)},
+    kForever{.until = RobotTime(kNever)}, kTimer{.next_expiry = RobotTime(kSoon)},
+    kReads{.for_input = true}, kFutex{.for_thread = true};
 
 const Case kCases[] = {
     // Somebody who is more urgent.
@@ -131,7 +135,7 @@ TEST(HorizonOf, OnSeveralCoresTheOthersMayWakeAnUrgentThread) {
   robot.AddReady(kRunning);
   robot.Add(kOther, kFifo50);
   robot.Sleep(kOther, kFutex);
-  EXPECT_EQ(robot.Horizon({.input_ns = kSoon, .acts_at_once = true}), kSoon);
+  EXPECT_EQ(robot.Horizon({.input = RobotTime(kSoon), .acts_at_once = true}), kSoon);
 }
 
 TEST(HorizonOf, ASleeperMayNotTakeACoreThatItIsNotAllowedOn) {
@@ -142,7 +146,7 @@ TEST(HorizonOf, ASleeperMayNotTakeACoreThatItIsNotAllowedOn) {
   ASSERT_TRUE(robot.scheduler.SetCores(kOther, 2));
   robot.Run(300 * kMicro, 0);
   robot.Run(300 * kMicro, 1);
-  robot.Sleep(kOther, {.until_ns = 900 * kMicro});
+  robot.Sleep(kOther, {.until = RobotTime(900 * kMicro)});
   EXPECT_EQ(robot.Horizon({}, 0), kNever);
   EXPECT_EQ(robot.Horizon({}, 1), 900 * kMicro);
 }
@@ -154,7 +158,7 @@ TEST(HorizonOf, OfSeveralCoresTheOneThatIsThereLastMakesRoom) {
   robot.Add(kOther);
   robot.Run(100 * kMicro, 0);
   robot.Run(100 * kMicro, 1);
-  robot.Sleep(kOther, {.until_ns = 200 * kMicro});
+  robot.Sleep(kOther, {.until = RobotTime(200 * kMicro)});
   EXPECT_EQ(robot.Horizon({}, 0), kNever) << "the other core can";
   robot.Run(200 * kMicro, 0);
   EXPECT_EQ(robot.Horizon({}, 1), 200 * kMicro);
@@ -163,13 +167,13 @@ TEST(HorizonOf, OfSeveralCoresTheOneThatIsThereLastMakesRoom) {
 TEST(HorizonOf, AThreadThatIsAloneMaySleepUntilSomethingHappens) {
   SimulatedRobot robot;
   robot.AddReady(kRunning);
-  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, kLater);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, RobotTime(kLater), {}).idle.ns(), kLater);
   robot.Add(kOther, kIdle);
   robot.Sleep(kOther, kSleepsShort);
-  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).run_ns, kLater);
-  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, kSoon);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, RobotTime(kLater), {}).run.ns(), kLater);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, RobotTime(kLater), {}).idle.ns(), kSoon);
   robot.Wake(kOther, 0, false);
-  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).idle_ns, 0);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, RobotTime(kLater), {}).idle.ns(), 0);
 }
 
 TEST(HorizonOf, AThreadThatEndsWhileItRunsHasNoHorizonButItsLimit) {
@@ -177,10 +181,10 @@ TEST(HorizonOf, AThreadThatEndsWhileItRunsHasNoHorizonButItsLimit) {
   robot.AddReady(kRunning);
   robot.scheduler.Dispatch(0, kRunning);
   robot.scheduler.Remove(kRunning);
-  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, kLater, {}).run_ns, kLater);
-  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kNever);
-  robot.scheduler.Stop(0, kMilli, kMilli);
-  robot.scheduler.Assign(kNever);
+  EXPECT_EQ(robot.scheduler.HorizonOf(0, kRunning, RobotTime(kLater), {}).run.ns(), kLater);
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning).ns(), kNever);
+  robot.scheduler.Stop(0, VirtualNs(kMilli), VirtualNs(kMilli));
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), RobotScheduler::kNobody);
 }
 
@@ -192,33 +196,33 @@ TEST(HorizonOf, AmongManyIsTheLeastOfThoseBesideEachOfThem) {
   };
   const auto some_time = [&] { return any(3) == 0 ? kNever : any(3'000) * kMicro; };
   for (int round = 0; round < 300; ++round) {
-    const RobotScheduler::Outlook outlook{.input_ns = some_time(),
-                                          .outside_input_ns = kNever,
-                                          .output_ns = some_time(),
+    const RobotScheduler::Outlook outlook{.input = RobotTime(some_time()),
+                                          .outside_input = RobotTime(kNever),
+                                          .output = RobotTime(some_time()),
                                           .acts_at_once = any(2) == 0};
     const std::int64_t limit = some_time();
     SimulatedRobot all;
     all.AddReady(kRunning);
-    RobotScheduler::Horizon least{.run_ns = limit, .idle_ns = limit};
+    RobotScheduler::Horizon least{.run = RobotTime(limit), .idle = RobotTime(limit)};
     for (int thread = kRunning + 1; thread <= kRunning + 20; ++thread) {
       const SchedulingParameters parameters = any(3) == 0 ? kFifo50 : SchedulingParameters{};
       const RobotScheduler::Wait wait{.for_input = any(3) == 0,
                                       .for_thread = any(3) == 0,
-                                      .until_ns = some_time(),
-                                      .next_expiry_ns = some_time()};
+                                      .until = RobotTime(some_time()),
+                                      .next_expiry = RobotTime(some_time())};
       SimulatedRobot alone;
       alone.AddReady(kRunning);
       for (SimulatedRobot* robot : {&all, &alone}) {
         robot->Add(thread, parameters);
         robot->Sleep(thread, wait);
       }
-      const auto beside = alone.scheduler.HorizonOf(0, kRunning, limit, outlook);
-      least.run_ns = std::min(least.run_ns, beside.run_ns);
-      least.idle_ns = std::min(least.idle_ns, beside.idle_ns);
+      const auto beside = alone.scheduler.HorizonOf(0, kRunning, RobotTime(limit), outlook);
+      least.run = std::min(least.run, beside.run);
+      least.idle = std::min(least.idle, beside.idle);
     }
-    const auto horizon = all.scheduler.HorizonOf(0, kRunning, limit, outlook);
-    EXPECT_EQ(horizon.run_ns, least.run_ns);
-    EXPECT_EQ(horizon.idle_ns, least.idle_ns);
+    const auto horizon = all.scheduler.HorizonOf(0, kRunning, RobotTime(limit), outlook);
+    EXPECT_EQ(horizon.run, least.run);
+    EXPECT_EQ(horizon.idle, least.idle);
   }
 }
 
@@ -226,21 +230,21 @@ TEST(HorizonWhileWorldStands, OnlyThreadsOfTheSameProcessBecomeDue) {
   SimulatedRobot robot(1, false);
   robot.AddReady(kRunning);
   robot.Add(kOther, kFifo50);
-  robot.Sleep(kOther, {.own_until_ns = kSoon});
-  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kNever);
+  robot.Sleep(kOther, {.own_until = RobotTime(kSoon)});
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning).ns(), kNever);
   robot.waits[kOther].process = robot.waits[kRunning].process;
-  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kSoon);
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning).ns(), kSoon);
 }
 
 TEST(HorizonWhileWorldStands, AnEqualHasTheNextTurn) {
   SimulatedRobot robot(1, false);
   robot.AddReady(kRunning);
   robot.Add(kOther);
-  robot.Sleep(kOther, {.own_until_ns = kSoon});
+  robot.Sleep(kOther, {.own_until = RobotTime(kSoon)});
   robot.waits[kOther].process = robot.waits[kRunning].process;
-  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kSoon);
-  robot.waits[kOther].own_until_ns = 200 * kMicro;
-  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning), kMilli);
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning).ns(), kSoon);
+  robot.waits[kOther].own_until = RobotTime(200 * kMicro);
+  EXPECT_EQ(robot.scheduler.HorizonWhileWorldStands(0, kRunning).ns(), kMilli);
 }
 
 }  // namespace

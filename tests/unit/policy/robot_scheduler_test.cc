@@ -150,11 +150,11 @@ TEST(RobotScheduler, ASleepBeginsAnotherTurn) {
   robot.AddReady(kOne);
   robot.AddReady(kTwo);
   robot.scheduler.Dispatch(0, kOne);
-  robot.scheduler.SleptSince(kOne, kMilli);
+  robot.scheduler.SleptSince(kOne, VirtualNs(kMilli));
   robot.ComeTo(0, kMilli);
-  robot.scheduler.Stop(0, kMilli, kMilli);
+  robot.scheduler.Stop(0, VirtualNs(kMilli), VirtualNs(kMilli));
   robot.scheduler.EndTurn(0);
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), kOne);
   EXPECT_EQ(robot.Horizon(), 2 * kMilli);
 }
@@ -186,11 +186,11 @@ TEST_P(PriorityInheritance, ReachesTheEndOfTheChain) {
   robot.Sleep(kOne, {});
   robot.scheduler.SetBlockedOn(kOne, kTwo);
   robot.scheduler.FindEffectivePriority(kTwo);
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), test.runs);
   robot.scheduler.SetBlockedOn(kTwo, kNobody);
   robot.scheduler.FindEffectivePriority(kThree);
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), test.three.priority > 55 ? kThree : kFourth) << "it lost what it got";
 }
 
@@ -234,7 +234,7 @@ TEST(RobotScheduler, AChildHasItsCreatorsParametersUnlessTheyAreReset) {
   EXPECT_EQ(robot.scheduler.ParametersOf(kTwo).policy, SCHED_FIFO);
   EXPECT_EQ(robot.scheduler.CoresOf(kTwo), 2u);
   robot.scheduler.SetParameters(kOne,
-                                {.policy = SCHED_FIFO, .priority = 50, .resets_on_fork = true}, 0);
+                                {.policy = SCHED_FIFO, .priority = 50, .resets_on_fork = true}, {});
   robot.Add(kThree);
   robot.scheduler.Inherit(kThree, kOne);
   EXPECT_EQ(robot.scheduler.ParametersOf(kThree).policy, SCHED_OTHER);
@@ -247,7 +247,7 @@ TEST(RobotScheduler, AReadyThreadLeavesACoreThatItIsNotAllowedOnAnyMore) {
   EXPECT_EQ(robot.Next(0), kOne);
   EXPECT_FALSE(robot.scheduler.SetCores(kOne, 4)) << "the robot has no such core";
   ASSERT_TRUE(robot.scheduler.SetCores(kOne, 2));
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(0), kNobody);
   EXPECT_EQ(robot.Next(1), kOne);
 }
@@ -257,21 +257,21 @@ TEST(RobotScheduler, TheLeastAdvancedIdleCoreActsWhenAWaitIsOver) {
   robot.Add(kOne);
   robot.ComeTo(0, 300);
   robot.ComeTo(1, 200);
-  robot.Sleep(kOne, {.until_ns = 700});
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), kNever);
-  EXPECT_EQ(robot.scheduler.NextActionOf(1), 700);
-  robot.scheduler.Assign(500);
-  EXPECT_EQ(robot.scheduler.NextActionOf(1), 500) << "the robot's own";
+  robot.Sleep(kOne, {.until = RobotTime(700)});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), kNever);
+  EXPECT_EQ(robot.scheduler.NextActionOf(1).ns(), 700);
+  robot.scheduler.Assign(RobotTime(500));
+  EXPECT_EQ(robot.scheduler.NextActionOf(1).ns(), 500) << "the robot's own";
   robot.ComeTo(1, 800);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 700);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 700);
 }
 
 TEST(RobotScheduler, ACoreThatActsNowNeedsNoOther) {
   SimulatedRobot robot;
   robot.AddReady(kOne);
   robot.Add(kTwo);
-  robot.Sleep(kTwo, {.until_ns = 700});
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 0);
+  robot.Sleep(kTwo, {.until = RobotTime(700)});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 0);
 }
 
 TEST(RobotScheduler, AWokenThreadIsAsLateAsTheCoreThatItTakes) {
@@ -280,9 +280,9 @@ TEST(RobotScheduler, AWokenThreadIsAsLateAsTheCoreThatItTakes) {
   robot.Add(kOne, kFifo50);
   robot.Sleep(kOne, {});
   robot.ComeTo(0, 900);
-  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, 700, 0, false), 200);
-  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, 1000, 0, false), 0);
-  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, 700, 950, false), 250);
+  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, RobotTime(700), RobotTime(0), false).ns(), 200);
+  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, RobotTime(1000), RobotTime(0), false).ns(), 0);
+  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, RobotTime(700), RobotTime(950), false).ns(), 250);
 }
 
 TEST(RobotScheduler, WhoWaitsForItsTurnIsNotLate) {
@@ -291,18 +291,18 @@ TEST(RobotScheduler, WhoWaitsForItsTurnIsNotLate) {
   robot.Add(kOne);
   robot.Sleep(kOne, {});
   robot.ComeTo(0, 900);
-  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, 700, 0, false), 0);
+  EXPECT_EQ(robot.scheduler.LatenessOf(kOne, RobotTime(700), RobotTime(0), false).ns(), 0);
 }
 
 TEST(RobotScheduler, ThreadNumbersAreUsedAgain) {
   SimulatedRobot robot;
   for (const int thread : {kOne, kTwo, kThree}) robot.AddReady(thread);
   robot.scheduler.Remove(kOne);
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), kTwo);
   robot.Add(kOne, kFifo60);
-  robot.scheduler.Enqueue(kOne, 0, false);
-  robot.scheduler.Assign(kNever);
+  robot.scheduler.Enqueue(kOne, RobotTime(0), false);
+  robot.scheduler.Assign(RobotTime(kNever));
   EXPECT_EQ(robot.Next(), kOne);
   EXPECT_EQ(robot.scheduler.ParametersOf(kThree).policy, SCHED_OTHER);
 }
@@ -312,7 +312,7 @@ TEST(RobotScheduler, AsksWhatAThreadWaitsForOnlyWhenThatHasChanged) {
   robot.AddReady(0);
   for (int thread = 1; thread <= 100; ++thread) {
     robot.Add(thread);
-    robot.Sleep(thread, {.until_ns = 10 * kMilli});
+    robot.Sleep(thread, {.until = RobotTime(10 * kMilli)});
   }
   const int before = robot.asked;
   robot.Run(100 * kMicro);
@@ -323,49 +323,49 @@ TEST(RobotScheduler, AsksWhatAThreadWaitsForOnlyWhenThatHasChanged) {
 TEST(RobotScheduler, WhereTheWorldStandsItAsksEachTime) {
   SimulatedRobot robot(1, false);
   robot.Add(0);
-  robot.Sleep(0, {.until_ns = 10 * kMilli});
+  robot.Sleep(0, {.until = RobotTime(10 * kMilli)});
   robot.waits[0].is_over = true;
-  robot.scheduler.Assign(kNever);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 0);
+  robot.scheduler.Assign(RobotTime(kNever));
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 0);
 }
 
 TEST(RobotScheduler, TheNextActionIsTheFirstEndOfAWaitOrOfATimer) {
   SimulatedRobot robot;
   for (const int thread : {0, 1, 2}) robot.Add(thread);
-  robot.Sleep(0, {.until_ns = 5 * kMilli});
-  robot.Sleep(1, {.until_ns = 3 * kMilli});
-  robot.Sleep(2, {.until_ns = 9 * kMilli});
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 3 * kMilli);
-  EXPECT_FALSE(robot.scheduler.IsAnythingDue(3 * kMilli - 1));
-  EXPECT_TRUE(robot.scheduler.IsAnythingDue(3 * kMilli));
+  robot.Sleep(0, {.until = RobotTime(5 * kMilli)});
+  robot.Sleep(1, {.until = RobotTime(3 * kMilli)});
+  robot.Sleep(2, {.until = RobotTime(9 * kMilli)});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 3 * kMilli);
+  EXPECT_FALSE(robot.scheduler.IsAnythingDue(RobotTime(3 * kMilli - 1)));
+  EXPECT_TRUE(robot.scheduler.IsAnythingDue(RobotTime(3 * kMilli)));
   robot.SetExpiry(2, 2 * kMilli);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 2 * kMilli);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 2 * kMilli);
   robot.SetExpiry(2, kNever);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 3 * kMilli);
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 3 * kMilli);
   // Later than before: the first is another one's.
-  robot.Sleep(1, {.until_ns = 8 * kMilli});
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 5 * kMilli);
+  robot.Sleep(1, {.until = RobotTime(8 * kMilli)});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 5 * kMilli);
   robot.scheduler.Remove(0);
-  robot.scheduler.Assign(kNever);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), 8 * kMilli);
-  EXPECT_FALSE(robot.scheduler.IsAnythingDue(5 * kMilli));
+  robot.scheduler.Assign(RobotTime(kNever));
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 8 * kMilli);
+  EXPECT_FALSE(robot.scheduler.IsAnythingDue(RobotTime(5 * kMilli)));
   robot.scheduler.Dequeue(0);  // it has ended already
 }
 
 TEST(RobotScheduler, AWaitWhoseDeadlineHasChangedCountsOnceThatIsSaid) {
   SimulatedRobot robot;
   robot.Add(0);
-  robot.Sleep(0, {.until_ns = 5 * kMilli});
-  robot.waits[0].until_ns = kMilli;
+  robot.Sleep(0, {.until = RobotTime(5 * kMilli)});
+  robot.waits[0].until = RobotTime(kMilli);
   robot.scheduler.WaitChanged(0);
-  EXPECT_TRUE(robot.scheduler.IsAnythingDue(0));  // nobody knows before the next Assign
-  robot.scheduler.Assign(kNever);
-  EXPECT_EQ(robot.scheduler.NextActionOf(0), kMilli);
+  EXPECT_TRUE(robot.scheduler.IsAnythingDue(RobotTime(0)));  // nobody knows before the next Assign
+  robot.scheduler.Assign(RobotTime(kNever));
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), kMilli);
 }
 
 TEST(RobotSchedulerDeathTest, AThreadThatWasNotAddedIsABug) {
   SimulatedRobot robot;
-  EXPECT_DEATH(robot.scheduler.Enqueue(kOne, 0, false), "a bug in tcs");
+  EXPECT_DEATH(robot.scheduler.Enqueue(kOne, RobotTime(0), false), "a bug in tcs");
 }
 
 }  // namespace

@@ -10,20 +10,20 @@ constexpr int kNobody = RunQueue::kNobody;
 constexpr std::int64_t kNever = INT64_MAX;
 
 RunQueue::Thread FirstOfOneCore(RunQueue& robot) {
-  robot.Assign({0});
+  robot.Assign({RobotTime(0)});
   return robot.Next(0).thread;
 }
 
 TEST(RunQueue, NobodyRunsWhereNobodyIsReady) {
   RunQueue robot(1);
   EXPECT_EQ(FirstOfOneCore(robot), kNobody);
-  EXPECT_EQ(robot.Next(0).start_ns, kNever);
+  EXPECT_EQ(robot.Next(0).start.ns(), kNever);
 }
 
 TEST(RunQueue, TheMostUrgentRunsWheneverItBecameReady) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
-  robot.Add({kController, 80, 0});
+  robot.Add({kPlanner, 10, RobotTime(0)});
+  robot.Add({kController, 80, RobotTime(0)});
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   robot.Remove(kController);
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
@@ -31,17 +31,17 @@ TEST(RunQueue, TheMostUrgentRunsWheneverItBecameReady) {
 
 TEST(RunQueue, AmongEqualsTheFirstReadyKeepsRunning) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 0});
+  robot.Add({kPlanner, 10, RobotTime(0)});
+  robot.Add({kLogger, 10, RobotTime(0)});
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner);
   EXPECT_TRUE(robot.HasWaitingEqual(0));
-  robot.Add({kPlanner, 10, 0});
+  robot.Add({kPlanner, 10, RobotTime(0)});
   EXPECT_EQ(FirstOfOneCore(robot), kPlanner) << "being ready twice must not cost its turn";
 }
 
 TEST(RunQueue, EqualsTakeTurnsWhenRotated) {
   RunQueue robot(1);
-  for (const int thread : {kPlanner, kLogger, kController}) robot.Add({thread, 10, 0});
+  for (const int thread : {kPlanner, kLogger, kController}) robot.Add({thread, 10, RobotTime(0)});
   for (const int turn : {kPlanner, kLogger, kController, kPlanner, kLogger}) {
     EXPECT_EQ(FirstOfOneCore(robot), turn);
     robot.Rotate(turn);
@@ -50,8 +50,8 @@ TEST(RunQueue, EqualsTakeTurnsWhenRotated) {
 
 TEST(RunQueue, RotatingDoesNotPassLessUrgentOnes) {
   RunQueue robot(1);
-  robot.Add({kController, 80, 0});
-  robot.Add({kPlanner, 10, 0});
+  robot.Add({kController, 80, RobotTime(0)});
+  robot.Add({kPlanner, 10, RobotTime(0)});
   robot.Rotate(kController);
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   EXPECT_FALSE(robot.HasWaitingEqual(0));
@@ -59,8 +59,8 @@ TEST(RunQueue, RotatingDoesNotPassLessUrgentOnes) {
 
 TEST(RunQueue, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
+  robot.Add({kPlanner, 10, RobotTime(0)});
+  robot.Add({kLogger, 10, RobotTime(0), RunQueue::kEveryCore, true});
   EXPECT_EQ(FirstOfOneCore(robot), kLogger);
   EXPECT_FALSE(robot.YieldsTo(0, 10)) << "one that goes first, too, waits for its turn";
   robot.Rotate(kLogger);
@@ -72,9 +72,9 @@ TEST(RunQueue, WhoGoesFirstPrecedesItsEqualsUntilItIsRotated) {
 
 TEST(RunQueue, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
-  robot.Add({kController, 10, 0, RunQueue::kEveryCore, true});
+  robot.Add({kPlanner, 10, RobotTime(0)});
+  robot.Add({kLogger, 10, RobotTime(0), RunQueue::kEveryCore, true});
+  robot.Add({kController, 10, RobotTime(0), RunQueue::kEveryCore, true});
   for (const int turn : {kLogger, kController, kPlanner}) {
     EXPECT_EQ(FirstOfOneCore(robot), turn);
     robot.Remove(turn);
@@ -83,28 +83,28 @@ TEST(RunQueue, ThoseWhoGoFirstDoSoInTheOrderOfTheirWaking) {
 
 TEST(RunQueue, WhoGoesFirstPrecedesNobodyMoreUrgent) {
   RunQueue robot(1);
-  robot.Add({kController, 80, 0});
-  robot.Add({kLogger, 10, 0, RunQueue::kEveryCore, true});
+  robot.Add({kController, 80, RobotTime(0)});
+  robot.Add({kLogger, 10, RobotTime(0), RunQueue::kEveryCore, true});
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   EXPECT_FALSE(robot.YieldsTo(0, 10));
-  EXPECT_EQ(robot.NextToPrecede(0), kNever);
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNever);
 }
 
 TEST(RunQueue, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
-  robot.Add({kLogger, 10, 700, RunQueue::kEveryCore, true});
-  robot.Assign({300});
+  robot.Add({kPlanner, 10, RobotTime(0)});
+  robot.Add({kLogger, 10, RobotTime(700), RunQueue::kEveryCore, true});
+  robot.Assign({RobotTime(300)});
   EXPECT_EQ(robot.Next(0).thread, kPlanner);
-  EXPECT_EQ(robot.NextToPrecede(0), 700);
-  robot.Assign({700});
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), 700);
+  robot.Assign({RobotTime(700)});
   EXPECT_EQ(robot.Next(0).thread, kLogger);
 }
 
 TEST(RunQueue, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
   RunQueue robot(1);
-  robot.Add({kController, 80, 0});
-  robot.Add({kPlanner, 10, 0});
+  robot.Add({kController, 80, RobotTime(0)});
+  robot.Add({kPlanner, 10, RobotTime(0)});
   robot.SetPriority(kPlanner, 80);
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   robot.SetPriority(kController, 5);
@@ -115,85 +115,85 @@ TEST(RunQueue, AThreadWhosePriorityChangesMovesBehindItsNewEquals) {
 
 TEST(RunQueue, RemovingOneThatIsNotReadyChangesNothing) {
   RunQueue robot(1);
-  robot.Add({kPlanner, 10, 0});
+  robot.Add({kPlanner, 10, RobotTime(0)});
   robot.Remove(kLogger);
   EXPECT_EQ(robot.size(), 1u);
 }
 
 TEST(RunQueue, AThreadRunsNoEarlierThanItHasCome) {
   RunQueue robot(1);
-  robot.Add({kController, 80, 600});
-  robot.Add({kPlanner, 10, 500});
-  robot.Assign({500});
+  robot.Add({kController, 80, RobotTime(600)});
+  robot.Add({kPlanner, 10, RobotTime(500)});
+  robot.Assign({RobotTime(500)});
   EXPECT_EQ(robot.Next(0).thread, kPlanner) << "the controller wakes only at 600";
-  EXPECT_EQ(robot.Next(0).start_ns, 500);
-  EXPECT_EQ(robot.NextToPrecede(0), 600);
+  EXPECT_EQ(robot.Next(0).start.ns(), 500);
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), 600);
   robot.Remove(kPlanner);
-  robot.Assign({500});
+  robot.Assign({RobotTime(500)});
   EXPECT_EQ(robot.Next(0).thread, kController);
-  EXPECT_EQ(robot.Next(0).start_ns, 600);
-  EXPECT_EQ(robot.NextToPrecede(0), kNever);
+  EXPECT_EQ(robot.Next(0).start.ns(), 600);
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNever);
 }
 
 TEST(RunQueue, EachCoreRunsAThreadOfItsOwn) {
   RunQueue robot(2);
-  for (const int thread : {kPlanner, kController, kLogger}) robot.Add({thread, 10, 0});
-  robot.Assign({0, 0});
+  for (const int thread : {kPlanner, kController, kLogger}) robot.Add({thread, 10, RobotTime(0)});
+  robot.Assign({RobotTime(0), RobotTime(0)});
   EXPECT_EQ(robot.Next(0).thread, kPlanner);
   EXPECT_EQ(robot.Next(1).thread, kController);
   EXPECT_TRUE(robot.HasWaitingEqual(0));
   robot.Remove(kPlanner);
-  robot.Assign({0, 0});
+  robot.Assign({RobotTime(0), RobotTime(0)});
   EXPECT_FALSE(robot.HasWaitingEqual(0));
 }
 
 TEST(RunQueue, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
   RunQueue robot(2);
-  robot.Add({kPlanner, 10, 500});
+  robot.Add({kPlanner, 10, RobotTime(500)});
   robot.Ran(1, kPlanner);
-  robot.Assign({300, 500});
+  robot.Assign({RobotTime(300), RobotTime(500)});
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
   EXPECT_EQ(robot.Next(0).thread, kNobody);
 }
 
 TEST(RunQueue, WhoWakesTakesTheIdleCore) {
   RunQueue robot(2);
-  robot.Add({kPlanner, 10, 500});
+  robot.Add({kPlanner, 10, RobotTime(500)});
   robot.Ran(0, kPlanner);
-  robot.Add({kController, 80, 500});
-  robot.Assign({500, 300});
+  robot.Add({kController, 80, RobotTime(500)});
+  robot.Assign({RobotTime(500), RobotTime(300)});
   EXPECT_EQ(robot.Next(0).thread, kPlanner);
   EXPECT_EQ(robot.Next(1).thread, kController);
-  EXPECT_EQ(robot.Next(1).start_ns, 500);
+  EXPECT_EQ(robot.Next(1).start.ns(), 500);
 }
 
 TEST(RunQueue, WhoIsDisplacedMovesToAFreeCore) {
   RunQueue robot(2);
-  robot.Add({kPlanner, 10, 500});
+  robot.Add({kPlanner, 10, RobotTime(500)});
   robot.Ran(0, kPlanner);
-  robot.Add({kController, 80, 500, 1});  // only core 0
-  robot.Assign({500, 500});
+  robot.Add({kController, 80, RobotTime(500), 1});  // only core 0
+  robot.Assign({RobotTime(500), RobotTime(500)});
   EXPECT_EQ(robot.Next(0).thread, kController);
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
 }
 
 TEST(RunQueue, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
   RunQueue robot(2);
-  robot.Add({kPlanner, 10, 500});
-  robot.Add({kLogger, 5, 500});
+  robot.Add({kPlanner, 10, RobotTime(500)});
+  robot.Add({kLogger, 5, RobotTime(500)});
   robot.Ran(0, kPlanner);
   robot.Ran(1, kLogger);
-  robot.Add({kController, 80, 500});
-  robot.Assign({500, 500});
+  robot.Add({kController, 80, RobotTime(500)});
+  robot.Assign({RobotTime(500), RobotTime(500)});
   EXPECT_EQ(robot.Next(0).thread, kController);
   EXPECT_EQ(robot.Next(1).thread, kPlanner) << "and not the logger";
 }
 
 TEST(RunQueue, AffinityIsKept) {
   RunQueue robot(2);
-  robot.Add({kPlanner, 10, 0, 2});
-  robot.Add({kLogger, 10, 0, 2});
-  robot.Assign({0, 0});
+  robot.Add({kPlanner, 10, RobotTime(0), 2});
+  robot.Add({kLogger, 10, RobotTime(0), 2});
+  robot.Assign({RobotTime(0), RobotTime(0)});
   EXPECT_EQ(robot.Next(0).thread, kNobody);
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
   EXPECT_TRUE(robot.HasWaitingEqual(1));

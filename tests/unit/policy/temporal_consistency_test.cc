@@ -2,102 +2,103 @@
 
 #include <gtest/gtest.h>
 
-#include "shm/layout.h"
-
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kDrift = 1'000'000;
-constexpr std::int64_t kEnd = 20'000'000'000;
-constexpr std::int64_t kNever = shm::kNeverNs;
+constexpr VirtualTime operator""_ns(unsigned long long ns) {
+  return RobotTime(static_cast<std::int64_t>(ns));
+}
+
+constexpr VirtualDuration kDrift = VirtualDuration::Milliseconds(1);
+constexpr VirtualTime kEnd = 20'000'000'000_ns, kNever = VirtualTime::Never();
 
 TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(predator, 500, 500);
-  root.Update(prey, 300, 300);
+  root.Update(predator, 500_ns, 500_ns);
+  root.Update(prey, 300_ns, 300_ns);
   EXPECT_EQ(root.First(), prey);
-  EXPECT_EQ(root.Least(), 300);
+  EXPECT_EQ(root.Least(), 300_ns);
 }
 
 TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(prey, 300, 300);
-  root.Update(predator, 300, 300);
+  root.Update(prey, 300_ns, 300_ns);
+  root.Update(predator, 300_ns, 300_ns);
   EXPECT_EQ(root.First(), predator);
 }
 
 TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
   TemporalConsistency root(kDrift, kEnd);
   const auto a = root.AddLeaf(0), b = root.AddLeaf(1), c = root.AddLeaf(2);
-  root.Update(a, 0, shm::kNeverNs);
-  root.Update(b, 0, 0);
-  root.Update(c, 0, shm::kNeverNs);
+  root.Update(a, 0_ns, kNever);
+  root.Update(b, 0_ns, 0_ns);
+  root.Update(c, 0_ns, kNever);
   ASSERT_EQ(root.First(), b);
   root.FirstActs();
-  root.Update(b, 500, 500);
-  root.Update(a, 0, 500);  // woken by b
-  root.Update(c, 0, 500);
+  root.Update(b, 500_ns, 500_ns);
+  root.Update(a, 0_ns, 500_ns);  // woken by b
+  root.Update(c, 0_ns, 500_ns);
   EXPECT_EQ(root.First(), b);
-  EXPECT_EQ(root.ReadSafe(b), 500);
-  root.Update(b, 501, 501);
+  EXPECT_EQ(root.ReadSafe(b), 500_ns);
+  root.Update(b, 501_ns, 501_ns);
   EXPECT_EQ(root.First(), a);
-  EXPECT_EQ(root.ReadSafe(a), 500);
+  EXPECT_EQ(root.ReadSafe(a), 500_ns);
 }
 
 TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(prey, 100, kNever);
-  root.Update(predator, 5'000'000, 5'000'000);
+  root.Update(prey, 100_ns, kNever);
+  root.Update(predator, 5'000'000_ns, 5'000'000_ns);
   EXPECT_EQ(root.First(), predator);
   EXPECT_EQ(root.Horizon(predator), kEnd);
   EXPECT_EQ(root.ReadSafe(predator), kNever);
-  root.Update(predator, 5'000'000, kNever);
+  root.Update(predator, 5'000'000_ns, kNever);
   EXPECT_EQ(root.First(), -1);
 }
 
 TEST(TemporalConsistency, AnIdleLeafHoldsOthersBackOnlyFromItsWakeUpOn) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(predator, 0, 0);
-  root.Update(prey, 0, 10'000'000);
-  EXPECT_EQ(root.Horizon(predator), 10'000'000 + kDrift);
-  EXPECT_EQ(root.WriteSafe(predator), 10'000'000);
-  EXPECT_EQ(root.Horizon(prey), kDrift);
+  root.Update(predator, 0_ns, 0_ns);
+  root.Update(prey, 0_ns, 10'000'000_ns);
+  EXPECT_EQ(root.Horizon(predator), 10'000'000_ns + kDrift);
+  EXPECT_EQ(root.WriteSafe(predator), 10'000'000_ns);
+  EXPECT_EQ(root.Horizon(prey), 0_ns + kDrift);
 }
 
 TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0);
-  root.Update(predator, 7'000'000, 7'000'000);
+  root.Update(predator, 7'000'000_ns, 7'000'000_ns);
   EXPECT_EQ(root.DynamicsHorizon(), kNever);
-  root.UpdateDynamics(7'000'000, 10'000'000);
-  EXPECT_EQ(root.DynamicsHorizon(), 7'000'000 + kDrift);
+  root.UpdateDynamics(7'000'000_ns, 10'000'000_ns);
+  EXPECT_EQ(root.DynamicsHorizon(), 7'000'000_ns + kDrift);
 }
 
 TEST(TemporalConsistency, NobodyActsFurtherBehindOthersThanTheDriftBound) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(prey, 0, 7'000'000);
-  root.Update(predator, 8'000'000, 8'000'000);
-  root.Update(prey, 0, 6'000'000);
+  root.Update(prey, 0_ns, 7'000'000_ns);
+  root.Update(predator, 8'000'000_ns, 8'000'000_ns);
+  root.Update(prey, 0_ns, 6'000'000_ns);
   EXPECT_EQ(root.First(), prey);
-  EXPECT_EQ(root.Least(), 7'000'000);
-  root.Update(prey, 0, 7'500'000);
-  EXPECT_EQ(root.Least(), 7'500'000);
-  root.Update(prey, 7'500'000, 7'500'000);
-  EXPECT_EQ(root.drift_ns(), kDrift);
+  EXPECT_EQ(root.Least(), 7'000'000_ns);
+  root.Update(prey, 0_ns, 7'500'000_ns);
+  EXPECT_EQ(root.Least(), 7'500'000_ns);
+  root.Update(prey, 7'500'000_ns, 7'500'000_ns);
+  EXPECT_EQ(root.drift(), kDrift);
 }
 
 TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0);
-  root.Update(predator, 0, 0);
-  root.UpdateDynamics(0, 10'000'000);
-  EXPECT_EQ(root.ReadSafe(predator), 9'999'999);
-  root.UpdateDynamics(0, kNever);
+  root.Update(predator, 0_ns, 0_ns);
+  root.UpdateDynamics(0_ns, 10'000'000_ns);
+  EXPECT_EQ(root.ReadSafe(predator), 9'999'999_ns);
+  root.UpdateDynamics(0_ns, kNever);
   EXPECT_EQ(root.ReadSafe(predator), kNever);
 }
 
@@ -105,30 +106,30 @@ TEST(TemporalConsistency, InputComesFromOtherLeavesFromOtherComputersAndFromTheD
   TemporalConsistency root(kDrift, kEnd);
   const auto one = root.AddLeaf(0), two = root.AddLeaf(0), prey = root.AddLeaf(1);
   EXPECT_EQ(root.NextOutput(), kNever);
-  root.UpdateDynamics(0, 10'000'000);
-  EXPECT_EQ(root.NextOutput(), 10'000'000);
-  root.Update(two, 200, 200);
-  root.Update(prey, 300, 300);
-  EXPECT_EQ(root.NextInput(one), 200);
-  EXPECT_EQ(root.NextInputFromOutside(one), 300);
-  EXPECT_EQ(root.NextInputFromOutside(prey), 200);
-  root.Update(prey, 300, kNever);
+  root.UpdateDynamics(0_ns, 10'000'000_ns);
+  EXPECT_EQ(root.NextOutput(), 10'000'000_ns);
+  root.Update(two, 200_ns, 200_ns);
+  root.Update(prey, 300_ns, 300_ns);
+  EXPECT_EQ(root.NextInput(one), 200_ns);
+  EXPECT_EQ(root.NextInputFromOutside(one), 300_ns);
+  EXPECT_EQ(root.NextInputFromOutside(prey), 200_ns);
+  root.Update(prey, 300_ns, kNever);
   EXPECT_EQ(root.NextInputFromOutside(one), kNever);
 }
 
 TEST(TemporalConsistency, ALeafGivesWayToOthersOfItsInstantAndToNoneAtTheNext) {
   TemporalConsistency root(kDrift, kEnd);
   const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
-  root.Update(drone, 300, 300);
-  root.Update(ground, 0, 300);
+  root.Update(drone, 300_ns, 300_ns);
+  root.Update(ground, 0_ns, 300_ns);
   ASSERT_EQ(root.First(), drone);
   root.GiveWay(drone);
   EXPECT_TRUE(root.HasGivenWay(drone));
   EXPECT_EQ(root.First(), ground);
-  EXPECT_EQ(root.ReadSafe(ground), 300);
-  root.Update(ground, 300, 400);
+  EXPECT_EQ(root.ReadSafe(ground), 300_ns);
+  root.Update(ground, 300_ns, 400_ns);
   EXPECT_EQ(root.First(), drone);
-  root.Update(drone, 400, 400);
+  root.Update(drone, 400_ns, 400_ns);
   EXPECT_FALSE(root.HasGivenWay(drone));
   EXPECT_EQ(root.First(), drone);
 }
@@ -136,8 +137,8 @@ TEST(TemporalConsistency, ALeafGivesWayToOthersOfItsInstantAndToNoneAtTheNext) {
 TEST(TemporalConsistency, WhereAllGiveWayOneActsAllTheSame) {
   TemporalConsistency root(kDrift, kEnd);
   const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
-  root.Update(drone, 300, 300);
-  root.Update(ground, 300, 300);
+  root.Update(drone, 300_ns, 300_ns);
+  root.Update(ground, 300_ns, 300_ns);
   root.GiveWay(drone);
   root.GiveWay(ground);
   EXPECT_EQ(root.First(), drone);
@@ -149,31 +150,31 @@ TEST(TemporalConsistency, WhereAllGiveWayOneActsAllTheSame) {
 TEST(TemporalConsistency, NobodyIsWokenFurtherBehindTheOthersThanTheDriftBound) {
   TemporalConsistency root(kDrift, kEnd);
   const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
-  root.Update(ground, 0, kNever);
-  root.Update(drone, 5 * kDrift, 5 * kDrift);
-  EXPECT_EQ(root.EarliestWake(), 4 * kDrift);
-  root.Update(ground, 0, root.EarliestWake());
-  EXPECT_EQ(root.Horizon(drone), 5 * kDrift);
+  root.Update(ground, 0_ns, kNever);
+  root.Update(drone, 0_ns + 5 * kDrift, 0_ns + 5 * kDrift);
+  EXPECT_EQ(root.EarliestWake(), 0_ns + 4 * kDrift);
+  root.Update(ground, 0_ns, root.EarliestWake());
+  EXPECT_EQ(root.Horizon(drone), 0_ns + 5 * kDrift);
 }
 
 TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(predator, 0, 0);
-  root.Update(prey, 0, 0);
-  root.UpdateDynamics(0, kNever);
-  root.Update(predator, 900'000, 900'000);
-  EXPECT_EQ(root.drift_ns(), 900'000);
-  root.Update(prey, 800'000, 800'000);
-  root.UpdateDynamics(800'000, kNever);
-  EXPECT_EQ(root.drift_ns(), 900'000);
+  root.Update(predator, 0_ns, 0_ns);
+  root.Update(prey, 0_ns, 0_ns);
+  root.UpdateDynamics(0_ns, kNever);
+  root.Update(predator, 900'000_ns, 900'000_ns);
+  EXPECT_EQ(root.drift(), VirtualNs(900'000));
+  root.Update(prey, 800'000_ns, 800'000_ns);
+  root.UpdateDynamics(800'000_ns, kNever);
+  EXPECT_EQ(root.drift(), VirtualNs(900'000));
 }
 
 TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
-  TemporalConsistency root(kNever, kEnd);
+  TemporalConsistency root(VirtualNs(kNever.ns()), kEnd);
   const auto predator = root.AddLeaf(0);
-  root.Update(predator, 1, 1);
-  root.UpdateDynamics(1, kNever);
+  root.Update(predator, 1_ns, 1_ns);
+  root.UpdateDynamics(1_ns, kNever);
   EXPECT_EQ(root.Horizon(predator), kEnd);
   EXPECT_EQ(root.DynamicsHorizon(), kNever);
 }
@@ -182,11 +183,11 @@ TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
   TemporalConsistency root(kDrift, kEnd);
   const auto leaf = root.AddLeaf(0);
   root.Update(leaf, kEnd, kEnd);
-  root.UpdateDynamics(kEnd, kEnd + 10);
+  root.UpdateDynamics(kEnd, kEnd + VirtualNs(10));
   EXPECT_EQ(root.Horizon(leaf), kEnd);
   root.EndDynamics();
-  root.EndAt(kEnd + 100);
-  EXPECT_EQ(root.Horizon(leaf), kEnd + 100);
+  root.EndAt(kEnd + VirtualNs(100));
+  EXPECT_EQ(root.Horizon(leaf), kEnd + VirtualNs(100));
   EXPECT_EQ(root.DynamicsHorizon(), kNever);
   EXPECT_EQ(root.NextOutput(), kNever);
   EXPECT_EQ(root.ReadSafe(leaf), kNever);
@@ -195,71 +196,71 @@ TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
 TEST(TemporalConsistency, WhoDoesNothingForAWhileLetsOthersGoFirst) {
   TemporalConsistency root(kDrift, kEnd);
   const auto ahead = root.AddLeaf(0), other = root.AddLeaf(1);
-  root.Update(ahead, 300, 300, 700);
-  root.Update(other, 500, 500);
+  root.Update(ahead, 300_ns, 300_ns, 700_ns);
+  root.Update(other, 500_ns, 500_ns);
   EXPECT_EQ(root.First(), other);
-  EXPECT_EQ(root.Least(), 500);
-  EXPECT_EQ(root.NextInput(other), 700);
-  EXPECT_EQ(root.ReadSafe(other), 700);
-  root.Update(ahead, 300, 300);
+  EXPECT_EQ(root.Least(), 500_ns);
+  EXPECT_EQ(root.NextInput(other), 700_ns);
+  EXPECT_EQ(root.ReadSafe(other), 700_ns);
+  root.Update(ahead, 300_ns, 300_ns);
   EXPECT_EQ(root.First(), ahead) << "something else has come up";
-  EXPECT_EQ(root.NextInput(other), 300);
+  EXPECT_EQ(root.NextInput(other), 300_ns);
 }
 
 TEST(TemporalConsistency, NobodyGetsFurtherAwayFromOneThatDoesNothingForAWhile) {
   TemporalConsistency root(kDrift, kEnd);
   const auto ahead = root.AddLeaf(0), other = root.AddLeaf(1);
-  root.Update(ahead, 300, 300, 700);
-  root.Update(other, 500, 500);
-  EXPECT_EQ(root.Horizon(other), 300 + kDrift);
-  EXPECT_EQ(root.Horizon(ahead), 500 + kDrift) << "not from itself";
-  root.Update(other, 600, 600);
-  EXPECT_EQ(root.drift_ns(), 300);
-  root.Update(ahead, 400, 400, 300);
-  EXPECT_EQ(root.Horizon(other), 400 + kDrift) << "a time that is over is none";
+  root.Update(ahead, 300_ns, 300_ns, 700_ns);
+  root.Update(other, 500_ns, 500_ns);
+  EXPECT_EQ(root.Horizon(other), 300_ns + kDrift);
+  EXPECT_EQ(root.Horizon(ahead), 500_ns + kDrift) << "not from itself";
+  root.Update(other, 600_ns, 600_ns);
+  EXPECT_EQ(root.drift(), VirtualNs(300));
+  root.Update(ahead, 400_ns, 400_ns, 300_ns);
+  EXPECT_EQ(root.Horizon(other), 400_ns + kDrift) << "a time that is over is none";
   EXPECT_EQ(root.First(), ahead);
 }
 
 TEST(TemporalConsistency, WhatIsLocalToAComputerDoesNotDependOnOthers) {
   TemporalConsistency root(kDrift, kEnd);
   const auto other = root.AddLeaf(1), reader = root.AddLeaf(2), third = root.AddLeaf(3);
-  root.Update(other, 300, 300);
-  root.Update(reader, 500, 500);
-  root.Update(third, 0, kNever);
-  EXPECT_EQ(root.ReadSafe(reader), 300);
+  root.Update(other, 300_ns, 300_ns);
+  root.Update(reader, 500_ns, 500_ns);
+  root.Update(third, 0_ns, kNever);
+  EXPECT_EQ(root.ReadSafe(reader), 300_ns);
   EXPECT_EQ(root.LocalReadSafe(reader), kNever);
 }
 
 TEST(TemporalConsistency, WhatIsLocalDependsOnTheDynamics) {
   TemporalConsistency root(kDrift, kEnd);
   const auto reader = root.AddLeaf(1);
-  root.Update(reader, 500, 500);
-  root.UpdateDynamics(400, 1000);
-  EXPECT_EQ(root.LocalReadSafe(reader), 999) << "what they send at 1000 is there at 1000";
+  root.Update(reader, 500_ns, 500_ns);
+  root.UpdateDynamics(400_ns, 1000_ns);
+  EXPECT_EQ(root.LocalReadSafe(reader), 999_ns) << "what they send at 1000 is there at 1000";
 }
 
 TEST(TemporalConsistency, WhatIsLocalDependsOnTheComputersOtherCores) {
   TemporalConsistency root(kDrift, kEnd);
   const auto before = root.AddLeaf(1), first = root.AddLeaf(2), second = root.AddLeaf(2);
-  root.Update(before, 300, 300);
-  root.Update(first, 500, 500);
-  root.Update(second, 450, 450);
-  EXPECT_EQ(root.LocalReadSafe(first), 450);
-  EXPECT_EQ(root.LocalReadSafe(second), 500);
-  root.Update(second, 450, 700);
-  EXPECT_EQ(root.LocalReadSafe(first), 450) << "the other computer may wake it at 300";
-  root.Update(before, 300, 600);
-  EXPECT_EQ(root.LocalReadSafe(first), 600);
-  root.Update(before, 300, kNever);
-  EXPECT_EQ(root.LocalReadSafe(first), 700);
+  root.Update(before, 300_ns, 300_ns);
+  root.Update(first, 500_ns, 500_ns);
+  root.Update(second, 450_ns, 450_ns);
+  EXPECT_EQ(root.LocalReadSafe(first), 450_ns);
+  EXPECT_EQ(root.LocalReadSafe(second), 500_ns);
+  root.Update(second, 450_ns, 700_ns);
+  EXPECT_EQ(root.LocalReadSafe(first), 450_ns) << "the other computer may wake it at 300";
+  root.Update(before, 300_ns, 600_ns);
+  EXPECT_EQ(root.LocalReadSafe(first), 600_ns);
+  root.Update(before, 300_ns, kNever);
+  EXPECT_EQ(root.LocalReadSafe(first), 700_ns);
 }
 
 TEST(TemporalConsistency, NoLeafsProgressGoesBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto leaf = root.AddLeaf(0);
-  root.Update(leaf, 500, 500);
-  root.Update(leaf, 500, 700);
-  EXPECT_DEATH(root.Update(leaf, 499, 700), "a bug in tcs");
+  root.Update(leaf, 500_ns, 500_ns);
+  root.Update(leaf, 500_ns, 700_ns);
+  EXPECT_DEATH(root.Update(leaf, 499_ns, 700_ns), "a bug in tcs");
 }
 
 }  // namespace

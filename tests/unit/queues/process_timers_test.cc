@@ -25,7 +25,8 @@ class ProcessTimersTest : public testing::Test {
   // How often that timer runs out at the instant.
   std::int64_t CountAt(ProcessTimers::Id id, std::int64_t now_ns) {
     std::int64_t count = 0;
-    for (const auto& timer : timers_.Expire(now_ns)) count += timer.id == id ? timer.count : 0;
+    for (const auto& timer : timers_.Expire(RobotTime(now_ns)))
+      count += timer.id == id ? timer.count : 0;
     return count;
   }
 
@@ -44,42 +45,42 @@ class ProcessTimersTest : public testing::Test {
 };
 
 TEST_F(ProcessTimersTest, NothingIsDueAtFirst) {
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
-  EXPECT_EQ(timers_.NextLook(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
+  EXPECT_EQ(timers_.NextLook(), VirtualTime::Never());
   EXPECT_FALSE(timers_.HasCpuTimers());
   EXPECT_FALSE(timers_.HasSignals());
-  EXPECT_TRUE(timers_.Expire(1'000 * kMs).empty());
+  EXPECT_TRUE(timers_.Expire(RobotTime(1'000 * kMs)).empty());
 }
 
 TEST_F(ProcessTimersTest, WithoutIntervalItRunsOutOnce) {
   const auto id = Armed(kDescriptor, 5 * kMs);
-  EXPECT_EQ(timers_.NextExpiry(), 5 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(5 * kMs));
   EXPECT_EQ(CountAt(id, 5 * kMs - 1), 0);
   EXPECT_EQ(CountAt(id, 5 * kMs), 1);
   EXPECT_EQ(timers_.Get(id).next_ns, 0);
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
   EXPECT_EQ(CountAt(id, 100 * kMs), 0);
 }
 
 TEST_F(ProcessTimersTest, WithAnIntervalItRunsOutAgain) {
   const auto id = Armed(kDescriptor, 5 * kMs, 2 * kMs);
-  const auto ran_out = timers_.Expire(5 * kMs);
+  const auto ran_out = timers_.Expire(RobotTime(5 * kMs));
   ASSERT_EQ(ran_out.size(), 1u);
   EXPECT_EQ(ran_out[0].id, id);
   EXPECT_EQ(ran_out[0].count, 1);
-  EXPECT_EQ(ran_out[0].clock_ns, 5 * kMs);
+  EXPECT_EQ(ran_out[0].shown, OwnTime(5 * kMs));
   EXPECT_TRUE(ran_out[0].is_periodic);
-  EXPECT_EQ(timers_.NextExpiry(), 7 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(7 * kMs));
   EXPECT_EQ(CountAt(id, 7 * kMs), 1);
-  EXPECT_EQ(timers_.NextExpiry(), 9 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(9 * kMs));
 }
 
 TEST_F(ProcessTimersTest, WhoeverKeepsItsNextExpiryIsToldOfEachOtherOne) {
   std::vector<std::int64_t> told;
-  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry()); });
+  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry().ns()); });
   const auto id = Armed(kDescriptor, 5 * kMs, 2 * kMs);
   const auto later = Armed(kDescriptor, 50 * kMs);
-  timers_.Expire(5 * kMs);
+  timers_.Expire(RobotTime(5 * kMs));
   timers_.Delete(id);
   timers_.Set(later, {}, {});
   EXPECT_EQ(told, (std::vector<std::int64_t>{5 * kMs, 7 * kMs, 50 * kMs, kNeverNs}));
@@ -88,9 +89,9 @@ TEST_F(ProcessTimersTest, WhoeverKeepsItsNextExpiryIsToldOfEachOtherOne) {
 TEST_F(ProcessTimersTest, WhatRestsIsToldOfAsWell) {
   std::vector<std::int64_t> told;
   Armed(kDescriptor, 5 * kMs, 1'000);
-  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry()); });
-  timers_.Expire(5 * kMs);
-  timers_.EndRests(6 * kMs);
+  timers_.TellOfNextExpiry([&] { told.push_back(timers_.NextExpiry().ns()); });
+  timers_.Expire(RobotTime(5 * kMs));
+  timers_.EndRests(RobotTime(6 * kMs));
   EXPECT_EQ(told, (std::vector<std::int64_t>{kNeverNs, 6 * kMs}));
 }
 
@@ -102,11 +103,11 @@ TEST_F(ProcessTimersTest, ManyIntervalsAreCaughtUpWithAtOnce) {
 
 TEST_F(ProcessTimersTest, TheEndOfAllTimeNeverComes) {
   const auto once = Armed(kDescriptor, kNeverNs);
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
   const auto often = Armed(kDescriptor, 1, kNeverNs);
   EXPECT_EQ(CountAt(often, kMs), 1);
   EXPECT_EQ(timers_.Get(often).next_ns, kNeverNs);
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
   EXPECT_EQ(CountAt(once, kNeverNs - 1), 0);
   // As far as one can count.
   const auto most = Armed(kPosix, 1, 1);
@@ -118,9 +119,9 @@ TEST_F(ProcessTimersTest, SetAnewItRunsOutWhenItIsToNow) {
   const auto id = Armed(kDescriptor, 5 * kMs, kMs);
   timers_.Set(id, {20 * kMs, 0}, {});
   EXPECT_EQ(CountAt(id, 10 * kMs), 0);
-  EXPECT_EQ(timers_.NextExpiry(), 20 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(20 * kMs));
   timers_.Set(id, {0, kMs}, {});  // not armed
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
   EXPECT_EQ(timers_.Get(id).interval_ns, kMs);
   timers_.Set(id, {-7, -7}, {});  // what no program asks for
   EXPECT_EQ(timers_.Get(id).next_ns, 0);
@@ -132,12 +133,12 @@ TEST_F(ProcessTimersTest, WhatIsNoTimerIsLeftAlone) {
   timers_.Set(kNone, {kMs, kMs}, {});
   timers_.Delete(kNone);
   timers_.Accept(kNone);
-  timers_.AcceptAt(kNone, kMs);
+  timers_.AcceptAt(kNone, RobotTime(kMs));
   EXPECT_FALSE(timers_.KindOf(kNone).has_value());
   EXPECT_EQ(timers_.Get(kNone).next_ns, 0);
   EXPECT_EQ(timers_.Overruns(kNone), 0);
-  EXPECT_FALSE(timers_.IsBehind(kNone, kMs));
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_FALSE(timers_.IsBehind(kNone, RobotTime(kMs)));
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
 }
 
 TEST_F(ProcessTimersTest, TheThreeOfSetitimerAreThereWithoutBeingCreated) {
@@ -146,15 +147,15 @@ TEST_F(ProcessTimersTest, TheThreeOfSetitimerAreThereWithoutBeingCreated) {
   EXPECT_EQ(timers_.KindOf(ITIMER_PROF)->signal, SIGPROF);
   EXPECT_EQ(timers_.KindOf(ITIMER_PROF)->clock, TimerClock::kProcessCpu);
   timers_.Set(ITIMER_REAL, {3 * kMs, 0}, {});
-  EXPECT_EQ(timers_.NextExpiry(), 3 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(3 * kMs));
   timers_.Delete(ITIMER_REAL);  // not for them
   EXPECT_EQ(CountAt(ITIMER_REAL, 3 * kMs), 1);
 }
 
 TEST_F(ProcessTimersTest, OneSignalOfSetitimersIsUnderwayAndNotCounted) {
   timers_.Set(ITIMER_REAL, {kMs, kMs}, {});
-  timers_.Expire(5 * kMs);
-  timers_.Expire(6 * kMs);
+  timers_.Expire(RobotTime(5 * kMs));
+  timers_.Expire(RobotTime(6 * kMs));
   const auto signals = timers_.TakeSignals();
   ASSERT_EQ(signals.size(), 1u);
   EXPECT_EQ(signals[0].number, SIGALRM);
@@ -163,14 +164,14 @@ TEST_F(ProcessTimersTest, OneSignalOfSetitimersIsUnderwayAndNotCounted) {
   // Once sent, what is pending is the kernel's to tell.
   timers_.NoteSent(signals[0], 0);
   EXPECT_TRUE(timers_.SentSignals().empty());
-  timers_.Expire(7 * kMs);
+  timers_.Expire(RobotTime(7 * kMs));
   EXPECT_TRUE(timers_.HasSignals());
 }
 
 TEST_F(ProcessTimersTest, SignalsAreInTheOrderOfTheirExpirationsAndCanBeGivenBack) {
   const auto first = Armed(kPosix, kMs), second = Armed(kPosix, 2 * kMs);
-  timers_.Expire(kMs);
-  timers_.Expire(2 * kMs);
+  timers_.Expire(RobotTime(kMs));
+  timers_.Expire(RobotTime(2 * kMs));
   auto signals = timers_.TakeSignals();
   ASSERT_EQ(signals.size(), 2u);
   EXPECT_EQ(signals[0].timer_id, first);
@@ -188,18 +189,18 @@ TEST_F(ProcessTimersTest, SignalsAreInTheOrderOfTheirExpirationsAndCanBeGivenBac
 
 TEST_F(ProcessTimersTest, WhatRunsOutBeforeItsSignalIsAcceptedIsOverruns) {
   const auto id = Armed(kPosix, kMs, kMs);
-  timers_.Expire(3 * kMs);
+  timers_.Expire(RobotTime(3 * kMs));
   const auto signals = timers_.TakeSignals();
   ASSERT_EQ(signals.size(), 1u);
   EXPECT_EQ(signals[0].overruns, 2);
   timers_.NoteSent(signals[0], kThread);
-  timers_.Expire(7 * kMs);
+  timers_.Expire(RobotTime(7 * kMs));
   EXPECT_FALSE(timers_.HasSignals());
   EXPECT_EQ(timers_.Overruns(id), 0);  // none was accepted
   timers_.Accept(id);
   EXPECT_EQ(timers_.Overruns(id), 6);
   // The next one is a signal of its own.
-  timers_.Expire(8 * kMs);
+  timers_.Expire(RobotTime(8 * kMs));
   EXPECT_TRUE(timers_.HasSignals());
   EXPECT_EQ(timers_.Overruns(id), 6);
   timers_.Accept(id);
@@ -208,7 +209,7 @@ TEST_F(ProcessTimersTest, WhatRunsOutBeforeItsSignalIsAcceptedIsOverruns) {
 
 TEST_F(ProcessTimersTest, OnlySentSignalsCanHaveBeenAccepted) {
   const auto id = Armed(kPosix, kMs, kMs);
-  timers_.Expire(kMs);
+  timers_.Expire(RobotTime(kMs));
   EXPECT_TRUE(timers_.SentSignals().empty());
   SendAll();
   const auto sent = timers_.SentSignals();
@@ -222,27 +223,27 @@ TEST_F(ProcessTimersTest, OnlySentSignalsCanHaveBeenAccepted) {
 
 TEST_F(ProcessTimersTest, WhoAcceptsASignalHasAllThatHasRunOutByNow) {
   const auto id = Armed(kPosix, kMs, kMs);
-  timers_.AcceptAt(id, 9 * kMs);  // nothing is underway: nothing happens
-  EXPECT_EQ(timers_.NextExpiry(), kMs);
-  timers_.Expire(kMs);
+  timers_.AcceptAt(id, RobotTime(9 * kMs));  // nothing is underway: nothing happens
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(kMs));
+  timers_.Expire(RobotTime(kMs));
   SendAll();
-  timers_.AcceptAt(id, 4 * kMs);
+  timers_.AcceptAt(id, RobotTime(4 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 3);
-  EXPECT_EQ(timers_.NextExpiry(), 5 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(5 * kMs));
 }
 
 TEST_F(ProcessTimersTest, OverrunsAreNoMoreThanAnIntHolds) {
   const auto id = Armed(kPosix, 1, 1);
-  timers_.Expire(1'000'000 * kMs);
+  timers_.Expire(RobotTime(1'000'000 * kMs));
   EXPECT_EQ(timers_.TakeSignals().at(0).overruns, INT_MAX);
-  timers_.Expire(kNeverNs - 1);
+  timers_.Expire(RobotTime(kNeverNs - 1));
   timers_.Accept(id);
   EXPECT_EQ(timers_.Overruns(id), INT_MAX);
 }
 
 TEST_F(ProcessTimersTest, SetAnewItsOverrunsAreForgottenAndASignalUnderwayIsNot) {
   const auto id = Armed(kPosix, kMs, kMs);
-  timers_.Expire(3 * kMs);
+  timers_.Expire(RobotTime(3 * kMs));
   timers_.Set(id, {10 * kMs, 0}, {});
   EXPECT_TRUE(timers_.HasSignals());
   SendAll();
@@ -253,10 +254,10 @@ TEST_F(ProcessTimersTest, SetAnewItsOverrunsAreForgottenAndASignalUnderwayIsNot)
 
 TEST_F(ProcessTimersTest, DeletedItsUnsentSignalIsGone) {
   const auto id = Armed(kPosix, kMs, kMs), other = Armed(kPosix, kMs);
-  timers_.Expire(kMs);
+  timers_.Expire(RobotTime(kMs));
   timers_.Delete(id);
   EXPECT_FALSE(timers_.KindOf(id).has_value());
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
   const auto signals = timers_.TakeSignals();
   ASSERT_EQ(signals.size(), 1u);
   EXPECT_EQ(signals[0].timer_id, other);
@@ -264,7 +265,7 @@ TEST_F(ProcessTimersTest, DeletedItsUnsentSignalIsGone) {
 
 TEST_F(ProcessTimersTest, DeletedWithASentSignalNobodyWaitsForItsAcceptance) {
   const auto id = Armed(kPosix, kMs);
-  timers_.Expire(kMs);
+  timers_.Expire(RobotTime(kMs));
   const auto signals = timers_.TakeSignals();
   timers_.NoteSent(signals[0], kThread);
   timers_.Delete(id);
@@ -282,7 +283,7 @@ TEST_F(ProcessTimersTest, AnotherProgramKeepsAllButThoseOfTimerCreate) {
   EXPECT_FALSE(timers_.KindOf(posix).has_value());
   EXPECT_EQ(timers_.Get(descriptor).next_ns, 2 * kMs);
   EXPECT_EQ(timers_.Get(ITIMER_REAL).next_ns, 3 * kMs);
-  EXPECT_EQ(timers_.NextExpiry(), 2 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(2 * kMs));
 }
 
 TEST_F(ProcessTimersTest, ThereIsRoomForSoMany) {
@@ -303,82 +304,91 @@ TEST_F(ProcessTimersTest, OnProcessorTimeOfTheProcessAllThreadsCount) {
   const auto id = Armed({.clock = TimerClock::kProcessCpu, .is_posix = 1, .signal = SIGUSR1},
                         10 * kMs, 10 * kMs);
   EXPECT_TRUE(timers_.HasCpuTimers());
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({4 * kMs, kThread, kMs}), 6 * kMs);
-  EXPECT_TRUE(timers_.ExpireCpu({9 * kMs, kThread, kMs}).empty());
-  const auto ran_out = timers_.ExpireCpu({35 * kMs, kThread, kMs});
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(4 * kMs), kThread, VirtualNs(kMs)}),
+            VirtualNs(6 * kMs));
+  EXPECT_TRUE(timers_.ExpireCpu({VirtualNs(9 * kMs), kThread, VirtualNs(kMs)}).empty());
+  const auto ran_out = timers_.ExpireCpu({VirtualNs(35 * kMs), kThread, VirtualNs(kMs)});
   ASSERT_EQ(ran_out.size(), 1u);
   EXPECT_EQ(ran_out[0].id, id);
   EXPECT_EQ(ran_out[0].count, 3);
   EXPECT_EQ(timers_.TakeSignals().at(0).overruns, 2);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({35 * kMs, kThread, kMs}), 5 * kMs);
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(35 * kMs), kThread, VirtualNs(kMs)}),
+            VirtualNs(5 * kMs));
   // Time that passes does not concern it.
-  EXPECT_TRUE(timers_.Expire(1'000 * kMs).empty());
+  EXPECT_TRUE(timers_.Expire(RobotTime(1'000 * kMs)).empty());
 }
 
 TEST_F(ProcessTimersTest, OnProcessorTimeOfAThreadOnlyThatOneCounts) {
   Armed({.clock = TimerClock::kThreadCpu, .clock_tid = kThread}, 10 * kMs);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({50 * kMs, kThread + 1, 50 * kMs}), kNeverNs);
-  EXPECT_TRUE(timers_.ExpireCpu({50 * kMs, kThread + 1, 50 * kMs}).empty());
-  EXPECT_EQ(timers_.CpuTimeToExpiry({50 * kMs, kThread, 3 * kMs}), 7 * kMs);
-  EXPECT_EQ(timers_.ExpireCpu({50 * kMs, kThread, 10 * kMs}).size(), 1u);
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(50 * kMs), kThread + 1, VirtualNs(50 * kMs)}),
+            std::nullopt);
+  EXPECT_TRUE(timers_.ExpireCpu({VirtualNs(50 * kMs), kThread + 1, VirtualNs(50 * kMs)}).empty());
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(50 * kMs), kThread, VirtualNs(3 * kMs)}),
+            VirtualNs(7 * kMs));
+  EXPECT_EQ(timers_.ExpireCpu({VirtualNs(50 * kMs), kThread, VirtualNs(10 * kMs)}).size(), 1u);
   EXPECT_FALSE(timers_.HasCpuTimers());
 }
 
 TEST_F(ProcessTimersTest, WhatHasRunOutOnProcessorTimeIsFoundAtTheNextLook) {
   Armed({.clock = TimerClock::kProcessCpu}, 10 * kMs);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({30 * kMs, kThread, 0}), 1'000);
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(30 * kMs), kThread, VirtualNs(0)}),
+            VirtualNs(1'000));
 }
 
 TEST_F(ProcessTimersTest, ShortIntervalsOfProcessorTimeAreLookedAtNowAndThen) {
   Armed({.clock = TimerClock::kProcessCpu}, kMs, 1'000);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({0, kThread, 0}), kMs);
-  EXPECT_EQ(timers_.ExpireCpu({kMs, kThread, 0}).at(0).count, 1);
-  EXPECT_EQ(timers_.CpuTimeToExpiry({kMs, kThread, 0}), shm::kShortIntervalNs);
-  EXPECT_EQ(timers_.ExpireCpu({kMs + shm::kShortIntervalNs, kThread, 0}).at(0).count, 100);
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(0), kThread, VirtualNs(0)}), VirtualNs(kMs));
+  EXPECT_EQ(timers_.ExpireCpu({VirtualNs(kMs), kThread, VirtualNs(0)}).at(0).count, 1);
+  EXPECT_EQ(timers_.CpuTimeToExpiry({VirtualNs(kMs), kThread, VirtualNs(0)}),
+            VirtualNs(shm::kShortIntervalNs));
+  EXPECT_EQ(timers_.ExpireCpu({VirtualNs(kMs + shm::kShortIntervalNs), kThread, VirtualNs(0)})
+                .at(0)
+                .count,
+            100);
 }
 
 // Short intervals.
 
 TEST_F(ProcessTimersTest, OfAShortIntervalItRestsUntilItsProcessHasRun) {
   const auto id = Armed(kDescriptor, kMs, 1'000);
-  EXPECT_EQ(timers_.NextExpiry(), kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(kMs));
   EXPECT_EQ(CountAt(id, kMs), 1);
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
-  EXPECT_EQ(timers_.NextLook(), kMs + shm::kShortIntervalNs);
-  timers_.EndRests(5 * kMs);
-  EXPECT_EQ(timers_.NextLook(), kNeverNs);
-  EXPECT_EQ(timers_.NextExpiry(), 5 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
+  EXPECT_EQ(timers_.NextLook(), RobotTime(kMs + shm::kShortIntervalNs));
+  timers_.EndRests(RobotTime(5 * kMs));
+  EXPECT_EQ(timers_.NextLook(), VirtualTime::Never());
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(5 * kMs));
   EXPECT_EQ(CountAt(id, 5 * kMs), 4'000);
 }
 
 TEST_F(ProcessTimersTest, WhoeverIsToSeeATimerThatRestsIsToldThatItIsBehind) {
   const auto id = Armed(kDescriptor, kMs, 1'000), other = Armed(kDescriptor, kMs, kMs);
-  EXPECT_FALSE(timers_.IsBehind(id, kMs - 1));
-  EXPECT_TRUE(timers_.IsBehind(id, kMs));
-  EXPECT_FALSE(timers_.IsBehind(other, kMs));  // is fired at its instant
-  timers_.Expire(kMs);
-  EXPECT_FALSE(timers_.IsBehind(id, kMs + 999));
-  EXPECT_TRUE(timers_.IsBehind(id, kMs + 1'000));
+  EXPECT_FALSE(timers_.IsBehind(id, RobotTime(kMs - 1)));
+  EXPECT_TRUE(timers_.IsBehind(id, RobotTime(kMs)));
+  EXPECT_FALSE(timers_.IsBehind(other, RobotTime(kMs)));  // is fired at its instant
+  timers_.Expire(RobotTime(kMs));
+  EXPECT_FALSE(timers_.IsBehind(id, RobotTime(kMs + 999)));
+  EXPECT_TRUE(timers_.IsBehind(id, RobotTime(kMs + 1'000)));
   timers_.Set(id, {0, 1'000}, {});
-  EXPECT_FALSE(timers_.IsBehind(id, 2 * kMs));
+  EXPECT_FALSE(timers_.IsBehind(id, RobotTime(2 * kMs)));
 }
 
 TEST_F(ProcessTimersTest, OthersDoNotRest) {
   Armed(kDescriptor, kMs, shm::kShortIntervalNs);
-  timers_.Expire(kMs);
-  EXPECT_EQ(timers_.NextExpiry(), kMs + shm::kShortIntervalNs);
-  EXPECT_EQ(timers_.NextLook(), kNeverNs);
-  timers_.EndRests(9 * kMs);  // nobody does
-  EXPECT_EQ(timers_.NextExpiry(), kMs + shm::kShortIntervalNs);
+  timers_.Expire(RobotTime(kMs));
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(kMs + shm::kShortIntervalNs));
+  EXPECT_EQ(timers_.NextLook(), VirtualTime::Never());
+  timers_.EndRests(RobotTime(9 * kMs));  // nobody does
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(kMs + shm::kShortIntervalNs));
 }
 
 TEST_F(ProcessTimersTest, SetAnewItRestsNoMore) {
   const auto id = Armed(kDescriptor, kMs, 1'000);
-  timers_.Expire(kMs);
+  timers_.Expire(RobotTime(kMs));
   timers_.Set(id, {2 * kMs, 0}, {});
-  EXPECT_EQ(timers_.NextExpiry(), 2 * kMs);
-  EXPECT_EQ(timers_.NextLook(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(2 * kMs));
+  EXPECT_EQ(timers_.NextLook(), VirtualTime::Never());
 }
 
 // Where the process's clock is ahead of its virtual CPU's.
@@ -386,28 +396,28 @@ TEST_F(ProcessTimersTest, SetAnewItRestsNoMore) {
 TEST_F(ProcessTimersTest, AFrozenClockIsAheadByWhatItWasWhenTheTimerWasSet) {
   const auto id = timers_.Create(kDescriptor);
   timers_.Set(id, {10 * kMs, 10 * kMs}, VirtualDuration::Nanoseconds(3 * kMs));
-  EXPECT_EQ(timers_.NextExpiry(), 7 * kMs);
-  EXPECT_TRUE(timers_.Expire(7 * kMs - 1).empty());
-  const auto ran_out = timers_.Expire(7 * kMs);
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(7 * kMs));
+  EXPECT_TRUE(timers_.Expire(RobotTime(7 * kMs - 1)).empty());
+  const auto ran_out = timers_.Expire(RobotTime(7 * kMs));
   ASSERT_EQ(ran_out.size(), 1u);
-  EXPECT_EQ(ran_out[0].clock_ns, 10 * kMs);
-  EXPECT_EQ(timers_.NextExpiry(), 17 * kMs);
+  EXPECT_EQ(ran_out[0].shown, OwnTime(10 * kMs));
+  EXPECT_EQ(timers_.NextExpiry(), RobotTime(17 * kMs));
   EXPECT_EQ(timers_.Get(id).next_ns, 20 * kMs);
 }
 
 TEST_F(ProcessTimersTest, AFrozenClockDoesNotBringTheEndOfAllTimeNearer) {
   const auto id = timers_.Create(kDescriptor);
   timers_.Set(id, {kNeverNs, 0}, VirtualDuration::Nanoseconds(3 * kMs));
-  EXPECT_EQ(timers_.NextExpiry(), kNeverNs);
+  EXPECT_EQ(timers_.NextExpiry(), VirtualTime::Never());
 }
 
 TEST_F(ProcessTimersTest, OnAFrozenClockShortIntervalsRestAndAreAcceptedByItsTime) {
   const auto id = timers_.Create(kPosix);
   timers_.Set(id, {10 * kMs, 1'000}, VirtualDuration::Nanoseconds(3 * kMs));
-  timers_.Expire(7 * kMs);
-  EXPECT_EQ(timers_.NextLook(), 7 * kMs + shm::kShortIntervalNs);
+  timers_.Expire(RobotTime(7 * kMs));
+  EXPECT_EQ(timers_.NextLook(), RobotTime(7 * kMs + shm::kShortIntervalNs));
   SendAll();
-  timers_.AcceptAt(id, 8 * kMs);
+  timers_.AcceptAt(id, RobotTime(8 * kMs));
   EXPECT_EQ(timers_.Overruns(id), 1'000);
 }
 
