@@ -296,13 +296,13 @@ int main(int argc, char** argv) {
 
   std::string accounting = "measured";
   bool no_wait = false;
-  std::string host_cpus = "1";
+  std::string host_cpus = "auto";
   for (CLI::App* sub : {run, exec}) {
     sub->add_option(
            "--host-cpus", host_cpus,
-           "processors of the host to use at most, or auto for those that no other run has: on "
-           "further ones programs compute ahead (experimental), and islands of the physics are "
-           "integrated; 1 unless told")
+           "processors of the host to use at most, or auto (unless told) for those that no other "
+           "run has: on further ones programs compute ahead, and islands of the physics are "
+           "integrated")
         ->check(CLI::IsMember({"auto"}) | CLI::Range(1, 1024));
     sub->add_flag("--no-wait", no_wait,
                   "fail at once where other runs have all processors, and say which");

@@ -68,15 +68,21 @@ Finding JudgeThrottling(const std::string& runtime_us, const std::string& period
   constexpr char kName[] = "real-time throttling";
   int major = 0, minor = 0;
   std::sscanf(release.c_str(), "%d.%d", &major, &minor);
-  if (major > 6 || (major == 6 && minor >= 12)) {
-    return {kName, Verdict::kWarning,
-            "ordinary programs get 50 ms of each second on a busy processor (the fair server)",
-            "results do not change, but runs take that much longer; as root, `echo 0 > "
-            "/sys/kernel/debug/sched/fair_server/cpuN/runtime` turns it off for processor N, where "
-            "the kernel permits it"};
-  }
   const long runtime = ToLong(runtime_us, -1), period = ToLong(period_us, 1'000'000);
-  if (runtime < 0 || runtime >= period) return {kName, Verdict::kOk, "off", ""};
+  const bool is_off = runtime < 0 || runtime >= period;
+  // Since 6.12 only kernels with real-time groups heed the setting; others have a fair server.
+  if (major > 6 || (major == 6 && minor >= 12)) {
+    const std::string also =
+        is_off ? ""
+               : "`sysctl -w kernel.sched_rt_runtime_us=-1` on kernels with real-time groups, ";
+    return {
+        kName, Verdict::kWarning,
+        "a processor that a run keeps busy has up to 50 ms of each second for others",
+        "results do not change, but runs take that much longer; as root, " + also +
+            "`echo 0 > /sys/kernel/debug/sched/fair_server/cpuN/runtime` for processor N, where "
+            "the kernel permits it, turns it off"};
+  }
+  if (is_off) return {kName, Verdict::kOk, "off", ""};
   return {kName, Verdict::kWarning,
           fmt::format("real-time programs get {:.0f} % of each {:.1f} s",
                       100.0 * static_cast<double>(runtime) / static_cast<double>(period),

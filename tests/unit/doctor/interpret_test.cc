@@ -44,6 +44,11 @@ TEST(Doctor, TheFairServerDoesNotHeedTheThrottlesSetting) {
     const Finding server = JudgeThrottling("-1\n", "1000000\n", release);
     EXPECT_EQ(server.verdict, Verdict::kWarning) << release;
     EXPECT_NE(server.mend.find("fair_server"), std::string::npos);
+    EXPECT_EQ(server.mend.find("sched_rt_runtime_us"), std::string::npos) << "it is off";
+    // Kernels with real-time groups do heed it.
+    const Finding both = JudgeThrottling("950000\n", "1000000\n", release);
+    EXPECT_NE(both.mend.find("fair_server"), std::string::npos);
+    EXPECT_NE(both.mend.find("sched_rt_runtime_us=-1"), std::string::npos);
   }
 }
 
