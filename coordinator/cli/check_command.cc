@@ -15,7 +15,7 @@ namespace tcs {
 
 const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
   CLI::App* check = app->add_subcommand(
-      "check", "read a scenario and what it names, and say all that is wrong with it");
+      "check", "report every mistake of a scenario and of the files that it names");
   check->add_option("scenario", arguments->scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
   check

@@ -147,7 +147,8 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
     const Json json = Json::parse(text);
     const int version = json.at("version").get<int>();
     if (version > kVersion) {
-      return LoadError{path + " is of a later tcsim; use that one, or make the run again"};
+      return LoadError{path +
+                       " was written by a later tcsim; use that version, or make the run again"};
     }
     for (const Json& topic : json.at("topics")) topics.push_back(ToTopic(topic));
   } catch (const Json::exception&) {

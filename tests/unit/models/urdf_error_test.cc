@@ -216,7 +216,7 @@ const Mistake kLinkMistakes[] = {
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"robot.urdf\"/>",
      6,
-     {"no mesh that tcs reads", ".stl, .obj or .dae"}},
+     {"not a mesh that tcs reads", ".stl, .obj or .dae"}},
     {"MeshIsAFolder",
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"/tmp/.stl\"/>",

@@ -300,7 +300,7 @@ TEST_F(BagTest, OnAFullDiskSaysWhatIsMissing) {
       for (int i = 0; i < 1000; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
       error = bag.Close();
     }
-    const bool is_one_sentence = error.find("flight_0.db3 is not whole: ") != std::string::npos &&
+    const bool is_one_sentence = error.find("flight_0.db3 is incomplete: ") != std::string::npos &&
                                  error.find(" of 1000 samples are missing") != std::string::npos &&
                                  error.find('\n') == std::string::npos;
     if (!is_one_sentence) fputs((error + "\n").c_str(), stderr);

@@ -140,7 +140,7 @@ TEST_F(TopicsFileTest, ThatIsNotOursIsDamagedWhateverItHolds) {
 
 TEST_F(TopicsFileTest, OfALaterVersionIsRefused) {
   std::ofstream(Path()) << R"({"version": 2, "topics": "something else"})";
-  EXPECT_THAT(Complaint(), HasSubstr("topics.json is of a later tcsim"));
+  EXPECT_THAT(Complaint(), HasSubstr("topics.json was written by a later tcsim"));
 }
 
 TEST(TopicReport, HasTheRateBetweenItsFirstAndItsLastSample) {
