@@ -83,4 +83,4 @@ refused "has no line of 5s: next to it are 1.5s" snapshot "$out/whole@5s"
 refused "give the folder of a run that had a world" snapshot "$out/nowhere@1s"
 refused "is after the end, 20s" run "$example" --stop-at 21s
 refused "at 1.2s and at 1.21s, but not at 1.205s" run "$example" --stop-at 1.205s
-refused "is not above 0" run "$example" --stop-at 0s
+refused "is not positive" run "$example" --stop-at 0s
