@@ -45,8 +45,8 @@ bool FindCyclone(const Link& link) {
   const char* base = file != nullptr ? strrchr(file, '/') : nullptr;
   const bool same = base != nullptr && strcmp(base + 1, kFile) == 0;
   if (!same) {
-    Say("tcs carries DDS in shared memory for %s, but this program has %s, so its DDS uses sockets",
-        kFile, file != nullptr ? file : map->l_name);
+    Say("DDS in shared memory needs %s, but this program has %s, so its DDS uses sockets", kFile,
+        file != nullptr ? file : map->l_name);
   }
   free(file);
   return same && FindAll(link, library);

@@ -11,7 +11,7 @@ cp "$debians" "$work/libddsc.so.9.9.9"
 ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
 said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
   "ddsperf -D 2 pong & ddsperf -D 2 ping 100Hz; wait" 2>&1)
-[[ $(grep -c 'tcs: tcs carries DDS in shared memory for '"${debians##*/}"', but this program has .*/libddsc.so.9.9.9, so its DDS uses sockets' \
+[[ $(grep -c 'tcs: DDS in shared memory needs '"${debians##*/}"', but this program has .*/libddsc.so.9.9.9, so its DDS uses sockets' \
   <<<"$said") == 2 ]] || fail "not told once by each program: $said"
 grep -Eq 'recvUC|mean .* cnt ' <<<"$said" || fail "they have not met: $said"
 
