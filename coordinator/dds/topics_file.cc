@@ -136,8 +136,8 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
   if (!file && errno == ENOENT) {
     return LoadError{
         "'" + folder +
-        "' has no topics.json: no program of the run spoke DDS by endpoints, or no run "
-        "that came to its end wrote there"};
+        "' has no topics.json: no program of the run used DDS in shared memory, or the run "
+        "did not come to its end"};
   }
   if (!file) return LoadError{fmt::format("{} cannot be read: {}", path, strerror(errno))};
   const std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -106,7 +106,7 @@ TEST_F(TopicsFileTest, OfNothingIsEmpty) {
 }
 
 TEST_F(TopicsFileTest, ThatIsMissingIsExplained) {
-  EXPECT_THAT(Complaint(), HasSubstr("has no topics.json: no program of the run spoke DDS"));
+  EXPECT_THAT(Complaint(), HasSubstr("has no topics.json: no program of the run used DDS"));
   const auto nowhere = ReadTopics("/no/such");
   EXPECT_EQ(std::get<LoadError>(nowhere).message,
             "there is no folder '/no/such'; give one that tcsim run has written");
