@@ -22,7 +22,9 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
       ->add_option("--overlay", arguments->overlays,
                    "FILE: a piece of a scenario whose values replace the scenario's; repeatable")
       ->allow_extra_args(false);
-  check->add_option("--set", arguments->set, "KEY=VALUE: what the file would say; repeatable")
+  check
+      ->add_option("--set", arguments->set,
+                   "KEY=VALUE: another value for a key of the scenario; repeatable")
       ->allow_extra_args(false);
   return check;
 }

@@ -130,14 +130,16 @@ int main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "run a scenario");
   run->add_option("scenario", arguments.scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
-  run->add_option("--duration", arguments.duration, "TIME: of virtual time, such as 20s");
+  run->add_option("--duration", arguments.duration,
+                  "TIME: how much virtual time the run lasts, such as 20s");
   run->add_option(
       "--stop-at", arguments.stop_at,
-      "TIME: of virtual time, such as 12.5s: stop there, and write the world as it is then "
-      "into snapshot.yaml, a piece of a scenario for --overlay");
+      "TIME: stop at this virtual time, such as 12.5s, and write the world as it is then into "
+      "snapshot.yaml, a piece of a scenario for --overlay");
   run->add_option_function<std::string>(
          "--from", [](const std::string& from) { throw PlainError(tcs::NoWayBack(from)); },
-         "DIR@TIME: says what is possible instead; programs cannot go on from within a run")
+         "DIR@TIME: refused, because programs cannot go on from the middle of a run; says what is "
+         "possible instead")
       ->expected(1);
   run->add_option("--drift", arguments.drift,
                   "TIME: how far progress may drift apart, such as 1ms");
@@ -147,8 +149,10 @@ int main(int argc, char** argv) {
                   "FILE: a piece of a scenario whose values replace the scenario's, such as what "
                   "`tcsim fit` writes; repeatable")
       ->allow_extra_args(false);
-  run->add_option("--set", arguments.set,
-                  "KEY=VALUE: what the file would say, such as dynamics.engine=ode; repeatable")
+  run->add_option(
+         "--set", arguments.set,
+         "KEY=VALUE: another value for a key of the scenario, such as dynamics.engine=ode; "
+         "repeatable")
       ->allow_extra_args(false);
   run->add_option("--out", arguments.out, "FOLDER: where logs, body states, trace and summary go")
       ->capture_default_str();
@@ -166,8 +170,8 @@ int main(int argc, char** argv) {
   std::string view;
   run->add_flag(
          "--view", view,
-         "shows the run while it goes, in a browser at the address that is printed; "
-         "--view=PORT or --view=ADDRESS:PORT: there, else at a free port of this machine alone")
+         "show the run while it goes, in a browser at the address that is printed; --view=PORT or "
+         "--view=ADDRESS:PORT chooses the address (default: a free port, for this machine only)")
       ->type_name("[=WHERE]");
   run->add_option("--pace", arguments.pace,
                   "the pace of virtual time, as a multiple of the wall clock; 1 for people and "
@@ -176,7 +180,7 @@ int main(int argc, char** argv) {
   run->add_flag("--pause", arguments.pauses,
                 "with --view: paused at the start, until the page lets the run go on");
   run->add_option("--gdb", arguments.debugged,
-                  "ROBOT/CLIENT: opens that client in gdb, before it begins; virtual time stands "
+                  "ROBOT/CLIENT: open that client in gdb, before it begins; virtual time stands "
                   "still while gdb has stopped it");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";

@@ -37,7 +37,8 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_flag("--host-network", arguments->host_network,
                    "run one trial at a time, in this machine's network, instead of each in a "
                    "network of its own");
-  trials->add_option("--duration", options.duration, "TIME: of virtual time, such as 20s");
+  trials->add_option("--duration", options.duration,
+                     "TIME: how much virtual time each run lasts, such as 20s");
   trials->add_option("--drift", options.drift,
                      "TIME: how far progress may drift apart, such as 1ms");
   trials
