@@ -54,7 +54,7 @@ if(DEFINED ENV{DEBEMAIL})
 endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulation of robots in which computing takes time")
 set(CPACK_PACKAGE_DESCRIPTION
-    "tcs runs robot programs that nobody recompiled (controllers, planners, DDS
+    "tcs runs unmodified robot programs (controllers, planners, DDS
 nodes) in a simulation in which computing takes time: a planner that needs
 0.8 s of processor time finds the world 0.8 s older when it is done.
 .

@@ -116,8 +116,10 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
       mend = "use a program that is linked with libddsc";
       break;
     case shm::WhySockets::kNoRoom:
-      reason = "there is no room for it in shared memory";
-      mend = "a run has room for 1024 of them, those that have ended included: start fewer";
+      reason = "the run's shared memory has no room for it";
+      mend =
+          "start fewer programs: a run has room for 1024 that speak DDS, including the ones that "
+          "have ended";
       break;
     case shm::WhySockets::kNoLibraryOfOurs:
       break;
@@ -127,7 +129,7 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
                                  ? "programs whose DDS is in shared memory"
                                  : "the scenario's topics in shared memory (" + topics + ")";
   const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
-  run_.Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
+  run_.Warn(fmt::format("the DDS of {} uses sockets because {}, so it never meets {}; {}{}",
                         process.name, reason, missed, mend, other_way));
 }
 

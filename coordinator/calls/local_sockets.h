@@ -2,8 +2,8 @@
 // (shm/local_sockets.h).
 //
 // For the coordinator's thread only. What clients say of their sockets is not checked: a name that
-// two robots claim is nobody's, a socket is looked for by its own robot only, and whoever says too
-// much of its own deceives itself.
+// two robots claim belongs to neither, a socket is looked up by its own robot only, and a client
+// that lies about its own sockets harms itself only.
 #pragma once
 
 #include <sys/types.h>
@@ -35,7 +35,7 @@ class LocalSockets {
   // thread has come no less far than that robot has looked by now. A number that no robot has is
   // passed by.
   void Reaches(Task& task, std::uint32_t number);
-  // The same of a call that the kernel is to carry out, if it is one that reaches a robot.
+  // The same for a call that the kernel is to carry out, if the call reaches a robot.
   void ReachesBy(Task& task, const TrappedCall& call);
 
  private:

@@ -59,10 +59,11 @@ class Outlet {
   // Hands over what is due. True if there was anything.
   virtual bool HandOver(VirtualTime now) = 0;
 
-  // At the run's end: why nothing of what was sent has reached anybody, and how to mend that, as a
-  // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
+  // At the run's end: why nothing of what was sent has reached a program, and how to mend that, as
+  // the rest of a sentence that begins with the channel's name. Empty: it has, or that cannot be
+  // told.
   virtual std::string WhyUnheard() const { return {}; }
-  // The same of readings that did not go out, whoever was there to hear them.
+  // The same for readings that did not go out, whether or not a program was listening.
   virtual std::string WhatWasLost() const { return {}; }
 };
 
@@ -78,7 +79,8 @@ struct GoalNames {
   bool follow_trajectories = false;                 // a command is one
 };
 
-// Who is given what comes in. Channels are numbered as the scenario lists those of commands.
+// Takes the commands that come in. Channels have the numbers of the scenario's list of command
+// channels.
 class CommandSink {
  public:
   // A command that was sent at `sent`.

@@ -23,10 +23,8 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim new --language c hover\n"
      "the same with a controller in C, and a CMakeLists.txt for it"},
     {"check",
-     "tcsim check\n"
-     "reads scenario.yaml in this folder, and says all that is wrong with it\n"
-     "tcsim check --set robots.drone.cpu.cores=4 scenario.yaml\n"
-     "the same with another value"},
+     "tcsim check\nreports every mistake of scenario.yaml in this folder\ntcsim check --set "
+     "robots.drone.cpu.cores=4 scenario.yaml\nthe same with another value"},
     {"run",
      "tcsim run\n"
      "runs scenario.yaml in this folder, and writes to out\n"

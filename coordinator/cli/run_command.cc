@@ -126,7 +126,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     // Before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);
     Say(fmt::format("watch the run at {}{}", options.view->url(),
-                    arguments.pauses ? ", where it stands until it is let go on" : ""));
+                    arguments.pauses ? ", where it is paused until the page lets it go on" : ""));
   }
 
   LiveLine line(scenario.duration.ns());

@@ -87,7 +87,7 @@ std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
   plan->first_seed = arguments.first_seed.value_or(scenario.seed);
   const auto others = static_cast<std::uint64_t>(plan->trials - 1);
   if (plan->first_seed > std::numeric_limits<std::uint64_t>::max() - others) {
-    return fmt::format("--first-seed: {} leaves no room for {} seeds; begin with a smaller one",
+    return fmt::format("--first-seed: {} is too large for {} seeds; begin with a smaller one",
                        plan->first_seed, plan->trials);
   }
   return {};
@@ -133,7 +133,7 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   options.whole_cores = arguments.options.accounting == "measured";
   options.at_once = arguments.jobs > 0 ? arguments.jobs : RunsAtOnce(cpus, options.whole_cores);
   if (options.at_once > cpu_count) {
-    Say(fmt::format("--jobs {}: each run needs a processor of its own; {} at a time",
+    Say(fmt::format("--jobs {}: each run needs a processor of its own, so {} run at a time",
                     arguments.jobs, cpu_count));
     options.at_once = cpu_count;
   }
@@ -147,7 +147,7 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   options.own_networks = why_not.empty();
   if (!options.own_networks) {
     Say(
-        fmt::format("trials run one at a time, in this machine's network, since they cannot have "
+        fmt::format("trials run one at a time, in this machine's network, because they cannot have "
                     "networks of their own ({})",
                     why_not));
     options.at_once = 1;

@@ -251,8 +251,8 @@ bool Engine::GivesUpStart(Task& task, int turns) {
   }
   if (turns < kStartTurns) return false;
   run_.report.error = fmt::format(
-      "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
-      "set-uid?",
+      "{}, started by {}, did not load the shim within 30 s; check that it is dynamically linked "
+      "and not set-uid",
       ProgramOf(task.process->pid), task.process->name);
   return true;
 }
@@ -306,16 +306,15 @@ void Engine::StepAside(Task& task) {
   }
   const Process& process = *task.process;
   if (process.robot->is_ideal) {
-    run_.Warn(
-        process.name +
-        " has computed for 10 s at one instant: its robot is ideal, so that the world waits for "
-        "what it computes, but no longer; from here on it counts as waiting for what others do");
+    run_.Warn(process.name +
+              " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
+              "world waits for it, but no longer than that; from here on it counts as waiting for "
+              "other programs");
   } else {
-    run_.Warn(
-        process.name +
-        " has computed for 5 s without a call or an allocation: under --accounting fixed that "
-        "counts as waiting for "
-        "what others do, and depends on the host; run it with --accounting measured");
+    run_.Warn(process.name +
+              " has computed for 5 s without a call or an allocation; under --accounting fixed "
+              "that counts as waiting for other programs, and makes the run depend on the host; "
+              "run it with --accounting measured");
   }
   waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;

@@ -103,16 +103,16 @@ void Engine::LetWorldGoOnWithout(Task& task) {
   const double at_s = static_cast<double>(task.cpu->progress_ns) * 1e-9;
   if (task.process->robot->is_ideal) {
     run_.Warn(
-        fmt::format("{} has been busy for {:.0f} s at one instant: its robot is ideal, so that "
-                    "the world waits for what it does, but no longer; from {:.3f} s on it goes on "
-                    "without that program; does it answer its own answers?",
+        fmt::format("{} has been busy for {:.0f} s at one instant of virtual time; its robot is "
+                    "ideal, so the world waits for it, but no longer than that; from {:.3f} s on "
+                    "the world goes on without it; check whether it answers its own answers",
                     task.process->name, static_cast<double>(kMostHeldNs) * 1e-9, at_s));
   } else {
-    run_.Warn(fmt::format(
-        "{} has computed for {:.0f} s at one instant of the world's: under --sync "
-        "callback the world waits for it, but not for longer than the run is to be; from "
-        "{:.3f} s on it goes on without that program",
-        task.process->name, static_cast<double>(MostHeldNs()) * 1e-9, at_s));
+    run_.Warn(
+        fmt::format("{} has computed for {:.0f} s at one instant of the world; under --sync "
+                    "callback the world waits for it, but no longer than the run is to last; from "
+                    "{:.3f} s on the world goes on without it",
+                    task.process->name, static_cast<double>(MostHeldNs()) * 1e-9, at_s));
   }
   host_cpu_.active().Hold(task);
   task.reached_ns = task.cpu->progress_ns;

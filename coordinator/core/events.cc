@@ -152,7 +152,7 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   run_.Warn(fmt::format(
-      "{} blocked in system call {}, which the shim does not see; that time is not charged",
+      "{} blocked in system call {}, which the shim does not know; that time is not charged",
       task.process->name, ThreadSystemCall(task.tid)));
   return true;
 }

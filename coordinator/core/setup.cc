@@ -43,7 +43,7 @@ std::string Engine::Prepare() {
   const std::string no_real_time = WhyNoRealTime();
   if (run_.gates_only && !TrapsHoldSignals()) {
     return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
-           ", and to run without it takes Linux 5.19 or newer";
+           ", and runs without it need Linux 5.19 or newer";
   }
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
@@ -96,20 +96,20 @@ void Engine::TellOfMissingRights(bool may_have_levels) const {
   if (!run_.options.on_notice) return;
   if (!may_have_levels) {
     run_.options.on_notice(
-        "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
+        "SCHED_FIFO is not permitted here, so gates keep the threads apart and the run takes "
         "longer (`tcsim doctor` says more)");
   }
   if (run_.has_porters) {
     run_.options.on_notice(
-        std::string("pidfd_getfd is refused here, so that a process beside each program hands over "
-                    "its descriptors: the run takes longer") +
+        std::string("pidfd_getfd is refused here, so a process beside each program hands over its "
+                    "descriptors and the run takes longer") +
         (may_have_levels ? ", without SCHED_FIFO, which is permitted" : "") +
         " (`tcsim doctor` says more)");
   }
   if (run_.IsFixed() && WhyNoFixedLayout() != 0) {
     run_.options.on_notice(
-        "addresses are others in each run here, for personality is refused: programs that go by "
-        "them do not repeat to the byte (`tcsim doctor` says more)");
+        "addresses differ from run to run here because personality is refused: programs that "
+        "depend on them do not repeat to the byte (`tcsim doctor` says more)");
   }
 }
 
@@ -187,7 +187,7 @@ std::string Engine::PrepareHostCpu() {
   // As with any other process of ours.
   if (const int error = WhyNoLooksInto(host_cpu_.detector().pid()); error != 0) {
     return fmt::format(
-        "tcsim may not look into processes of its own here ({}), so that it could not see what "
+        "tcsim may not read the memory of its own processes here ({}), so it cannot see what "
         "programs wait for; `tcsim doctor` says how to allow it",
         strerror(error));
   }

@@ -272,9 +272,9 @@ std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
   const auto before = KnownAs(header.from, GuidAt(header.subject));
   const std::size_t had = before == known_.end() ? 0 : before->message->size();
   if (Find(header.from)->known_bytes - had + header.size > kMostKnownBytes) {
-    return "has made so many DDS participants, writers and readers that what they say of "
-           "themselves takes 16 MiB: nobody is told of further ones; delete those that are not "
-           "needed any more";
+    return "has made so many DDS participants, writers and readers that their descriptions take 16 "
+           "MiB: other programs are not told of further ones; delete the ones that are not needed "
+           "any more";
   }
   return std::nullopt;
 }

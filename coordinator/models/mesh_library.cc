@@ -81,7 +81,7 @@ std::string HullInFile(const std::string& path) {
 
 Mesh Read(const std::string& path) {
   if (!IsMeshName(path)) {
-    throw ModelMistake{path + ": is no mesh that tcs reads; give one of .stl, .obj or .dae"};
+    throw ModelMistake{path + ": is not a mesh that tcs reads; give a file of .stl, .obj or .dae"};
   }
   CheckFile(path, kMostBytes, "a mesh");
   constexpr std::size_t kMostSaid = 1 << 20;

@@ -55,7 +55,7 @@ std::string FolderOf(const std::string& path) {
 void LoadHead(const YamlMap& top, Scenario* scenario) {
   if (const YamlValue* name = top.Find("name")) {
     scenario->name = name->AsText();
-    if (scenario->name.empty()) name->Fail("is empty; name the scenario or leave the key out");
+    if (scenario->name.empty()) name->Fail("is empty; write a name, or leave the key out");
   }
   scenario->duration = top.Require("duration", "duration: 20s").AsPositiveDuration();
   if (const YamlValue* drift = top.Find("drift")) {

@@ -28,12 +28,12 @@ struct ScenarioOverrides {
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the
 // files it names change or the ports it names are taken. The first mistake is the error, one
 // sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "), or "--set
-// KEY=VALUE: " where the value does not come from a file. Reads the
-// environment (PATH, ${NAME}); not thread-safe against those who change it.
+// KEY=VALUE: " where the value does not come from a file. Reads the environment (PATH, ${NAME});
+// not thread-safe against threads that change it.
 [[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
                                                 const ScenarioOverrides& overrides = {});
 
-// The same, with all mistakes that can be told apart, in the order of the file; not empty.
+// The same, but returns all mistakes that can be told apart, in the order of the file; not empty.
 [[nodiscard]] std::variant<Scenario, std::vector<LoadError>> CheckScenario(
     const std::string& path, const ScenarioOverrides& overrides = {});
 

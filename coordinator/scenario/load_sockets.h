@@ -20,7 +20,7 @@ class UdpEndpoints {
   explicit UdpEndpoints(const std::optional<NetworkSpec>& network) : network_(network) {}
 
   UdpEndpoint Load(const YamlValue& value);
-  // One that can be sent to.
+  // An address to which datagrams can be sent.
   UdpEndpoint LoadReceiver(const YamlValue& value);
 
  private:
@@ -33,7 +33,7 @@ class UdpEndpoints {
   std::vector<Use> uses_;
 };
 
-// The same of UNIX sockets' names.
+// The same for names of UNIX sockets.
 class UnixNames {
  public:
   // With a network, names without a file are each robot's own.

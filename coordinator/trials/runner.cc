@@ -39,7 +39,7 @@ double SecondsSince(std::int64_t start_ns) {
 std::string MakeAnew(const std::string& folder) {
   for (int look = 0; !FolderLock(folder).IsOurs(); ++look) {
     if (look == kDyingRunLooks) {
-      return "a run that was started before still writes to " + folder + "; end it";
+      return "an earlier run still writes to " + folder + "; end it";
     }
     poll(nullptr, 0, kLookMs);
   }

@@ -57,16 +57,15 @@ std::vector<std::string> ActuatorAccount::Complaints() const {
                                       actuator.name, fmt::join(actuator.channels, " and ")));
     }
     if (actuator.again > 0) {
-      sentences.push_back(fmt::format(
-          "{} was commanded {} at an instant for which it had a command already, the first time "
-          "at {:.9g} s (channel {}); the last one acted",
-          actuator.name, Times(actuator.again), actuator.first_again.seconds(),
-          fmt::join(actuator.channels, " and ")));
+      sentences.push_back(
+          fmt::format("{} was commanded {} at an instant for which it already had a command, first "
+                      "at {:.9g} s (channel {}); the last command acted",
+                      actuator.name, Times(actuator.again), actuator.first_again.seconds(),
+                      fmt::join(actuator.channels, " and ")));
     }
     if (actuator.beyond > 0) {
       sentences.push_back(fmt::format(
-          "{} was commanded {} beyond what it can do, the first time at {:.9g} s: {}, of which it "
-          "was given {}",
+          "{} was commanded {} beyond its limit, first at {:.9g} s: {}, of which it got {}",
           actuator.name, Times(actuator.beyond), actuator.first_beyond.seconds(), actuator.asked,
           actuator.given));
     }

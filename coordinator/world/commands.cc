@@ -94,8 +94,8 @@ void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const Joint
   if (on.spec.rotors) {
     for (const JointGoal& goal : goals) {
       if (goal.velocity && !goal.position && !goal.effort) continue;
-      Refuse(channel, "a command wants something else of rotor '" +
-                          on.spec.rotors->names[goal.joint] + "' than a speed");
+      Refuse(channel, "a command sets something other than a speed for rotor '" +
+                          on.spec.rotors->names[goal.joint] + "'");
       return;
     }
   }
@@ -218,10 +218,8 @@ std::string Commands::ComplaintAbout(std::size_t channel, const Inlet::Place& pl
                                      const std::string& body) const {
   const Channel& on = channels_[channel];
   if (on.taken + on.refused == 0) {
-    return fmt::format(
-        "channel {}: nothing came in {}, so that no command moved {}; let a client "
-        "{}",
-        on.spec.name, place.where, body, place.mend);
+    return fmt::format("channel {}: nothing came in {}, so no command moved {}; let a client {}",
+                       on.spec.name, place.where, body, place.mend);
   }
   if (on.refused <= 1) return {};
   return fmt::format("channel {}: {} of the {} messages that came in were no commands",

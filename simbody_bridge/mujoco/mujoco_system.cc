@@ -50,7 +50,8 @@ MujocoSystem::MujocoSystem(const Forest& forest, const std::array<double, 3>& gr
     : forest_(forest),
       model_(Compile(MjcfOf(forest, gravity_mps2))),
       data_(mj_makeData(model_.get())) {
-  if (data_ == nullptr) throw DynamicsError("MuJoCo makes no data; is there memory left?");
+  if (data_ == nullptr)
+    throw DynamicsError("MuJoCo cannot make its data; check whether memory is left");
   FindIds();
   SetStart();
 }

@@ -32,5 +32,5 @@ mkdir "$out/empty"
 refused "give a folder that .tcsim run. wrote" "$out/empty"
 echo nonsense >"$out/empty/trace.json"
 refused "is no schedule of a run" "$out/empty"
-refused "was not written whole" "$out/run" --out /dev/full
+refused "was not written completely" "$out/run" --out /dev/full
 refused "cannot be written" "$out/run" --out "$out/nowhere/trace.gz"

@@ -17,7 +17,7 @@ namespace tcs {
 class DatagramSender {
  public:
   virtual ~DatagramSender() = default;
-  // Without waiting. What nobody has room for is lost, as on a network.
+  // Does not wait. A datagram for which the receiver has no room is lost, as on a network.
   virtual void Send(const std::string& datagram) = 0;
   virtual std::string WhyUnheard() const = 0;  // as Outlet's
 };
@@ -50,7 +50,7 @@ class JsonOutlet final : public Outlet {
 
 class JsonInlet final : public Inlet {
  public:
-  // Of the scenario's commands, the channel of that number.
+  // The channel with that number among the scenario's command channels.
   JsonInlet(std::unique_ptr<DatagramReceiver> receiver, std::size_t channel)
       : receiver_(std::move(receiver)), channel_(channel) {}
 

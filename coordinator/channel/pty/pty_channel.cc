@@ -82,15 +82,16 @@ class PtyChannels::DeviceOutlet final : public Outlet {
   std::string WhatWasLost() const override {
     if (lost_ == 0) return {};
     return fmt::format(
-        "{} of its {} readings were left out, because the line was not free: one of {} bytes takes "
-        "{:.1f} ms at {} baud, and they are {:.1f} ms apart; lower the rate, or raise the baud",
+        "{} of its {} readings were left out because the line was busy: a reading of {} bytes "
+        "takes {:.1f} ms at {} baud, and readings are {:.1f} ms apart; lower the rate, or raise "
+        "the baud rate",
         lost_, count_, longest_, Milliseconds(device_.TimeOf(longest_)), device_.port().baud,
         Milliseconds(period_));
   }
   std::string WhyUnheard() const override {
     if (device_.terminal().IsOpen()) return {};
     return fmt::format(
-        "no program of {} has {} open, so that its samples are lost; let a client open it",
+        "no program of {} has opened {}, so the samples for it are lost; let a client open it",
         device_.port().robot, device_.port().path);
   }
 
@@ -154,8 +155,8 @@ class PtyChannels::DeviceInlet final : public Inlet {
     if (has_warned_ || baud == device_.port().baud) return;
     has_warned_ = true;
     sink.Note(fmt::format(
-        "a program of {} has set {} to {} baud, but in the scenario the line has {}, with which "
-        "it goes on; on a real line neither would understand the other: set one as the other",
+        "a program of {} has set {} to {} baud, but the line has {} in the scenario and keeps it; "
+        "on a real line the two ends would not understand each other: use one rate in both",
         device_.port().robot, device_.port().path, baud, device_.port().baud));
   }
 

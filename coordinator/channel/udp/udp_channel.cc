@@ -26,7 +26,7 @@ class UdpSender final : public DatagramSender {
   std::string WhyUnheard() const override {
     if (IsListenedTo(to_)) return {};
     return fmt::format(
-        "nobody listens on {}, so that its samples are lost; let a client bind that port",
+        "no program listens on {}, so the samples for it are lost; let a client bind that port",
         NameOf(to_));
   }
 

@@ -44,8 +44,7 @@ SocketError CannotBind(const UdpEndpoint& endpoint, int error) {
       return {port + " is taken by another program; choose another port or end that program",
               error};
     case EADDRNOTAVAIL:
-      return {port + " cannot be listened on: this machine has no such address; use 127.0.0.1",
-              error};
+      return {port + " cannot be bound: this machine has no such address; use 127.0.0.1", error};
     case EACCES:
       return {port + " is reserved for root; choose a port above 1023", error};
     default:
@@ -101,7 +100,7 @@ std::optional<SocketError> UdpSocket::SendTo(const UdpEndpoint& to, std::string_
   const std::string target = to.host + ":" + std::to_string(to.port);
   if (error == EMSGSIZE) {
     return SocketError{"a datagram of " + std::to_string(payload.size()) + " bytes for " + target +
-                           " is longer than UDP carries; send fewer bodies in one channel",
+                           " is longer than a UDP datagram; send fewer bodies in one channel",
                        error};
   }
   return SocketError{"cannot send to " + target + ": " + std::strerror(error), error};

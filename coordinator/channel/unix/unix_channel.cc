@@ -22,7 +22,8 @@ class UnixSender final : public DatagramSender {
   std::string WhyUnheard() const override {
     if (IsListenedTo(to_)) return {};
     return fmt::format(
-        "nobody has the UNIX socket {}, so that its samples are lost; let a client bind it",
+        "no program has bound the UNIX socket {}, so the samples for it are lost; let a client "
+        "bind it",
         to_.Text());
   }
 

@@ -18,8 +18,8 @@ namespace tcs {
 
 class UnixSocket {
  public:
-  // A socket that receives what is sent to `name`. A file of a socket that nobody has open any more
-  // is replaced.
+  // A socket that receives what is sent to `name`. The file of a socket that no program has open
+  // any more is replaced.
   [[nodiscard]] static std::variant<UnixSocket, std::string> Bind(const UnixName& name);
   // A socket for sending only; it has no name.
   [[nodiscard]] static std::variant<UnixSocket, std::string> ForSending();
@@ -32,8 +32,8 @@ class UnixSocket {
   // For epoll; stays the socket's.
   int fd() const { return fd_.get(); }
 
-  // Sends one datagram without waiting. False where nobody has the name, or no room for it: errno
-  // says which.
+  // Sends one datagram without waiting. False if no program has bound the name, or it has no room:
+  // errno says which.
   [[nodiscard]] bool SendTo(const UnixName& to, std::string_view payload);
 
   // The next datagram, whole; none if nothing has come.

@@ -75,7 +75,7 @@ TEST(Doctor, AnIsolatedProcessorIsFoundInTheKernelsList) {
 TEST(Doctor, WherePidfdGetfdIsRefusedAProcessBesideEachProgramHandsDescriptorsOver) {
   const Finding permitted = JudgeDescriptors(0, 0, false);
   EXPECT_EQ(permitted.verdict, Verdict::kOk);
-  EXPECT_NE(permitted.found.find("would hand them over"), std::string::npos);
+  EXPECT_NE(permitted.found.find("would hand descriptors over"), std::string::npos);
   const Finding refused = JudgeDescriptors(EPERM, 0, true);
   EXPECT_EQ(refused.verdict, Verdict::kWarning);
   EXPECT_NE(refused.found.find("SCHED_FIFO is not used"), std::string::npos);

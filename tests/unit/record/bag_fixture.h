@@ -83,7 +83,7 @@ class BagFixture : public testing::Test {
         error = bag.Close();
       }
       const bool is_one_sentence =
-          error.find(file_name_ + " is not whole: ") != std::string::npos &&
+          error.find(file_name_ + " is incomplete: ") != std::string::npos &&
           error.find(" of 1000 samples are missing") != std::string::npos &&
           error.find('\n') == std::string::npos;
       if (!is_one_sentence) fputs((error + "\n").c_str(), stderr);

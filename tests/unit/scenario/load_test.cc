@@ -171,10 +171,10 @@ TEST_F(LoadTest, TheAirIsAsWritten) {
   EXPECT_EQ(Load(blowing).world->wind.seed, Load(blowing).world->wind.seed);
   EXPECT_NE(Load(blowing).world->wind.seed, Load(blowing, {.seed = 8}).world->wind.seed);
   EXPECT_TRUE(Load(blowing).warnings.empty());
-  EXPECT_THAT(Load(WithReplaced("gravity: [0, 0, -9.81]", "wind: [1, 0, 0]")).warnings,
-              ElementsAre(folder_.Path("s.yaml") +
-                          ":9: dynamics.wind moves no body, for none has drag; give one a drag, "
-                          "like drag: {linear: 0.3}"));
+  EXPECT_THAT(
+      Load(WithReplaced("gravity: [0, 0, -9.81]", "wind: [1, 0, 0]")).warnings,
+      ElementsAre(folder_.Path("s.yaml") + ":9: dynamics.wind moves no body because no body has "
+                                           "drag; give one a drag, like drag: {linear: 0.3}"));
 }
 
 TEST_F(LoadTest, BodiesThatStandTogetherAreOneIsland) {

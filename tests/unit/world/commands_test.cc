@@ -72,7 +72,7 @@ TEST_F(CommandsTest, WhatIsNoneIsNamedOnceAndCounted) {
 
 TEST_F(CommandsTest, ASilentChannelIsNamedAtTheEnd) {
   EXPECT_EQ(Complaint(0),
-            "channel bow: nothing came in there, so that no command moved ship; let a client send "
+            "channel bow: nothing came in there, so no command moved ship; let a client send "
             "some");
   commands_.Take(0, {}, Wrench{});
   EXPECT_EQ(Complaint(0), "");
@@ -164,8 +164,9 @@ TEST_F(ActuatorsTest, RotorsHaveSpeedsAlone) {
   const std::vector<JointGoal> goals = {{.joint = 1, .position = 2}};
   commands_.Take(1, AtMs(1), goals);
   EXPECT_THAT(spun_, IsEmpty());
-  EXPECT_THAT(warnings_, ElementsAre("channel motors: a command wants something else of rotor "
-                                     "'right' than a speed"));
+  EXPECT_THAT(
+      warnings_,
+      ElementsAre("channel motors: a command sets something other than a speed for rotor 'right'"));
 }
 
 TEST_F(ActuatorsTest, LinksArePushedWithinTheLimits) {
@@ -184,10 +185,10 @@ TEST_F(ActuatorsTest, WhatIsBeyondTheLimitsIsCutAndSaid) {
       driven_[0],
       (JointDrive{.effort = 30, .stiffness = 100, .position = 2, .damping = 10, .velocity = -4}));
   EXPECT_THAT(commands_.ComplaintsAboutActuators(),
-              ElementsAre("joint 'elbow' of arm was commanded once beyond what it can do, the "
-                          "first time at 0.03 s: the position 3, of which it was given 2",
-                          "rotor 'left' of drone was commanded twice beyond what it can do, the "
-                          "first time at 0.012 s: the speed 1.5, of which it was given 1"));
+              ElementsAre("joint 'elbow' of arm was commanded once beyond its limit, first at 0.03 "
+                          "s: the position 3, of which it got 2",
+                          "rotor 'left' of drone was commanded twice beyond its limit, first at "
+                          "0.012 s: the speed 1.5, of which it got 1"));
 }
 
 TEST_F(ActuatorsTest, WhatIsCommandedAgainAtOneInstantIsSaid) {
@@ -195,13 +196,13 @@ TEST_F(ActuatorsTest, WhatIsCommandedAgainAtOneInstantIsSaid) {
   commands_.Take(3, AtMs(10), Speeds(100, 200));
   commands_.Take(3, AtMs(10), std::vector<JointGoal>{{.joint = 1, .velocity = 300}});
   commands_.Take(3, AtMs(11), Speeds(100, 200));
-  EXPECT_THAT(commands_.ComplaintsAboutActuators(),
-              ElementsAre("rotor 'left' of drone was commanded once at an instant for which it had "
-                          "a command already, the first time at 0.012 s (channel motors and "
-                          "again); the last one acted",
-                          "rotor 'right' of drone was commanded twice at an instant for which it "
-                          "had a command already, the first time at 0.012 s (channel motors and "
-                          "again); the last one acted"));
+  EXPECT_THAT(
+      commands_.ComplaintsAboutActuators(),
+      ElementsAre(
+          "rotor 'left' of drone was commanded once at an instant for which it already had a "
+          "command, first at 0.012 s (channel motors and again); the last command acted",
+          "rotor 'right' of drone was commanded twice at an instant for which it already had a "
+          "command, first at 0.012 s (channel motors and again); the last command acted"));
 }
 
 // Of a channel on which nothing comes in another sentence tells.
