@@ -19,9 +19,20 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_option("--out", arguments->out, "FOLDER: for all of them (docs/TRIALS.md)")
       ->capture_default_str();
   trials
-      ->add_option("--jobs", arguments->jobs,
-                   "how many at once; one for each free processor unless told")
+      ->add_option(
+          "--jobs", arguments->jobs,
+          "how many at once; unless told one for each free processor, and as many as Slurm "
+          "has room for")
       ->check(CLI::Range(1, kMost));
+  trials
+      ->add_option("--launcher", arguments->launcher,
+                   "where the trials run; local: on this machine (default); slurm: as jobs of a "
+                   "cluster, with the folder on a file system that its nodes share")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  trials
+      ->add_option("--slurm-option", arguments->slurm_options,
+                   "OPTION: of sbatch, such as --slurm-option=--partition=short; repeatable")
+      ->allow_extra_args(false);
   trials->add_option("--vary", arguments->vary,
                      "KEY=V1,V2,...: all trials for each of these values of a key of the scenario");
   trials->add_option("--name", arguments->name, "what the trials are called in a report");

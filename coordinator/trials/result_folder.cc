@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/trials/outcome.h"
+#include "coordinator/trials/slurm/work_folder.h"
 
 namespace tcs {
 
@@ -95,6 +96,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
   });
   if (fs::path file = fs::path(path) / kRecord; fs::exists(file)) {
     if (restart) {
+      folder->left_jobs = RetireWorkFolders(path);
       try {
         RemoveTrials(path);
       } catch (const fs::filesystem_error& error) {
@@ -108,6 +110,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
     return fmt::format("the folder '{}' holds other things than trials; choose another with --out",
                        path);
   }
+  if (!restart) folder->left_jobs = RetireWorkFolders(path);
   return WriteWhole(path + "/" + kRecord, ToJson(record));
 }
 
