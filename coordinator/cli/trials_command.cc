@@ -212,8 +212,10 @@ std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
 
 // "seed 3 failed: its last words (where the log is)"
 std::string Failure(const TrialsPlan& plan, const TrialEnd& end, const std::string& folder) {
-  return fmt::format("{} failed: {} ({}/{}/tcsim.log)", NameOf(plan, end.trial), end.why, folder,
-                     end.trial.folder);
+  const std::string log = fmt::format("{}/{}/tcsim.log", folder, end.trial.folder);
+  std::error_code error;
+  return fmt::format("{} failed: {}{}", NameOf(plan, end.trial), end.why,
+                     fs::exists(log, error) ? " (" + log + ")" : "");
 }
 
 // What a trial came to, as it ends: for a log.

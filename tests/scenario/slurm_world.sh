@@ -12,11 +12,12 @@ slurm=$(mktemp -d)
 slurm_processes=()
 
 start_slurm() {  # NUMBER of nodes: n1, n2, ...
-  local last=$1 host user port node
+  local last=$1 host user port node version
   host=$(uname -n) user=$(id -un) port=$((21000 + $$ % 1000 * 10))
   host=${host%%.*}
   chmod 755 "$slurm"  # munged wants that of its socket's folder
   mkdir "$slurm"/{state,spool,log}
+  for node in $(seq "$last"); do mkdir "$slurm/spool/n$node"; done
   head -c 128 /dev/urandom >"$slurm/munge.key"
   chmod 600 "$slurm/munge.key"
   cat >"$slurm/slurm.conf" <<CONF
@@ -39,14 +40,17 @@ ReturnToService=2
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
-SlurmdTimeout=3
-MessageTimeout=3
-TCPTimeout=2
+SlurmdTimeout=5
+MessageTimeout=5
 KillWait=5
 SchedulerParameters=batch_sched_delay=0,sched_interval=1
 NodeName=n[1-$last] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + last))] CPUs=1
 PartitionName=work Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
+  # Since Slurm 23 (Debian 13) slurmd wants control groups, if nobody tells it not to; before, that was a mistake.
+  version=$(slurmd -V)
+  version=${version##* }
+  ((${version%%.*} < 23)) || echo "CgroupPlugin=disabled" >"$slurm/cgroup.conf"
   export SLURM_CONF=$slurm/slurm.conf
   munged --foreground --socket="$slurm/munge.sock" --key-file="$slurm/munge.key" --pid-file="$slurm/munge.pid" \
     --log-file="$slurm/log/munge" --seed-file="$slurm/munge.seed" &>/dev/null &

@@ -45,7 +45,9 @@ echo "$((2 * many)) trials in $SECONDS s; $((SECONDS - killed_at)) of them since
 value=(1s 1100ms)
 named="seed $((1 + lost / 2)) with duration=${value[lost % 2]}"
 grep -q "^tcsim: $named was lost on node n2 (.*); it is run again" "$out/said" || fail "$named: $(cat "$out/said")"
-(($(grep -c 'was lost' "$out/said") == 1)) || fail "$(cat "$out/said")"
+# Where a busy machine makes another node seem dead, its trials are lost as well, and treated alike.
+grep 'was lost' "$out/said" | grep -Evq "^tcsim: seed [0-9]+ with duration=[0-9]+m?s was lost on node n[1-4] \(" &&
+  fail "$(cat "$out/said")"
 (($(results) == 2 * many)) || fail "$(results) results"
 [[ ! -e $out/there/slurm ]] || fail "the jobs' folder is still there: $(find "$out/there/slurm")"
 for duration in "${value[@]}"; do

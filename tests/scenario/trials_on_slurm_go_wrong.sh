@@ -61,10 +61,11 @@ no_jobs
 
 # The job of one trial is cancelled each time that it begins.
 long() { timeout --foreground 80 "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1h --launcher slurm "$@"; }
-claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1; }
-begun() {  # FOLDER [JOB]: waits for a trial that another job has begun
+claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1 || true; }
+begun() {  # FOLDER [JOB]: waits for a trial that another job has begun; that is `job` then
   for _ in $(seq 300); do
-    [[ -n $(claim "$1") && $(claim "$1") != "${2:-}" ]] && return
+    job=$(claim "$1")
+    [[ -n $job && $job != "${2:-}" ]] && return
     sleep 0.1
   done
   fail "no trial has begun: $(cat "$out/said")"
@@ -74,14 +75,13 @@ call=$!
 job=""
 for _ in 1 2 3; do
   begun cancelled "$job"
-  job=$(claim cancelled)
   scancel "${job%@*}"
 done
 status=0; wait "$call" || status=$?
 ((status == 1)) || fail "exit status $status: $(cat "$out/said")"
 (($(grep -c '^tcsim: seed 1 was lost on node n[12] (CANCELLED: .*); it is run again' "$out/said") == 2)) ||
   fail "$(cat "$out/said")"
-grep -q '^tcsim: seed 1 failed: its job was lost 3 times, at last on node n[12] (CANCELLED' "$out/said" ||
+grep -q '^tcsim: seed 1 failed: its job was lost 3 times, at last on node n[12] (CANCELLED: somebody has cancelled its job)$' "$out/said" ||
   fail "$(cat "$out/said")"
 no_jobs
 

@@ -45,6 +45,14 @@ std::string Quoted(const std::string& text) {
   return quoted + "'";
 }
 
+// "68:0": an exit status and a signal; before Slurm 23 as of waitpid: "17408".
+int ParseExit(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const int first = std::atoi(text.c_str());
+  if (colon == std::string::npos) return first;
+  return W_EXITCODE(first, std::atoi(text.c_str() + colon + 1));
+}
+
 bool IsOneOf(const std::string& word, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(), [&](const char* w) { return word == w; });
 }
@@ -126,7 +134,7 @@ std::map<std::string, QueuedJob> ParseQueue(const std::string& text) {
     QueuedJob job;
     job.id = fields[0] + "_" + fields[1];
     job.state = fields[2];
-    job.wait_status = std::atoi(fields[3].c_str());
+    job.wait_status = ParseExit(fields[3]);
     if (fields[4] != "(null)") job.node = fields[4];
     if (!IsOneOf(fields[5], {"None", "(null)"})) job.reason = fields[5];
     jobs[job.id] = job;

@@ -109,8 +109,9 @@ class Sweep {
   std::int64_t idle_since_ns_ = 0;  // no trial runs
   bool said_unknown_ = false, said_idle_ = false;
   std::vector<std::string> bad_nodes_;
-  std::string bad_news_;   // of the first of them
-  std::string last_gone_;  // how the last job that ran nothing has ended
+  std::string bad_news_;  // of the first of them
+  // How the last job that ran nothing has ended.
+  std::string last_gone_ = "the queue does not know it any more";
   std::set<std::string> seen_gone_;
   int most_jobs_ = 0;
   int vain_calls_ = 0;

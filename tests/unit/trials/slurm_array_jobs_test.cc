@@ -11,7 +11,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// As Slurm 22.05 prints it.
+// As squeue prints it.
 std::string Line(const std::string& array, const std::string& task, const std::string& state,
                  const std::string& exit, const std::string& node, const std::string& reason) {
   const auto wide = [](std::string text, std::size_t width) {
@@ -37,6 +37,15 @@ TEST(SlurmQueue, TellsEachJobOfAnArray) {
   EXPECT_FALSE(queue.at("13_0").IsAlive());
   EXPECT_EQ(queue.at("13_0").wait_status, kRunWasKilled << 8);
   EXPECT_TRUE(ParseQueue("").empty());
+}
+
+TEST(SlurmQueue, HasExitStatusesAsOldAndNewReleasesWriteThem) {
+  const auto queue = ParseQueue(Line("1", "0", "FAILED", "17408", "n1", "None") +
+                                Line("1", "1", "FAILED", "68:0", "n1", "None") +
+                                Line("1", "2", "FAILED", "0:9", "n1", "None"));
+  EXPECT_EQ(queue.at("1_0").wait_status, kRunWasKilled << 8);
+  EXPECT_EQ(queue.at("1_1").wait_status, kRunWasKilled << 8);
+  EXPECT_EQ(WhyGone(&queue.at("1_2")), "FAILED: signal 9");
 }
 
 TEST(SlurmQueue, SaysWhyAJobIsGone) {
