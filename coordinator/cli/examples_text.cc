@@ -38,7 +38,9 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim trials --trials 100 scenario.yaml\n"
      "a hundred seeds, several at once; called again it goes on where it ended\n"
      "tcsim trials --trials 10 --vary robots.drone.cpu.speed=0.5,1,2 scenario.yaml\n"
-     "ten seeds for each of three processors"},
+     "ten seeds for each of three processors\n"
+     "tcsim trials --trials 200 --out /shared/t --launcher slurm --slurm-option=--partition=short\n"
+     "on a cluster's nodes, which all see /shared"},
     {"exec",
      "tcsim exec -- python3 program.py\n"
      "any program, with the same input, output and exit status\n"

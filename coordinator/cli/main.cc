@@ -34,6 +34,7 @@
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/trials/slurm/slurm_job.h"
 #include "coordinator/view/launch.h"
 
 namespace {
@@ -199,6 +200,9 @@ int main(int argc, char** argv) {
   std::string generated;
   CLI::App* generate = app.add_subcommand("generate")->group("");  // for the build
   generate->add_option("folder", generated)->required();
+  std::string slurm_work;
+  CLI::App* slurm_job = app.add_subcommand("slurm-job")->group("");  // for trials on a cluster
+  slurm_job->add_option("folder", slurm_work)->required();
 
   double speed = 1.0;
   int cores = 1;
@@ -379,6 +383,7 @@ int main(int argc, char** argv) {
   }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
+  if (slurm_job->parsed()) return tcs::RunSlurmJob(slurm_work, tcs::kVersion);
   if (!arguments.debugged.empty()) {
     return tcs::RunWithGdb([&](const tcs::GdbSession& gdb) {
       return tcs::RunGuarded(

@@ -25,8 +25,18 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
       ->capture_default_str();
   trials
       ->add_option("--jobs", arguments->jobs,
-                   "how many trials run at once (default: one for each free processor)")
+                   "how many trials run at once (default: one for each free processor, and as "
+                   "many as Slurm has room for)")
       ->check(CLI::Range(1, kMost));
+  trials
+      ->add_option("--launcher", arguments->launcher,
+                   "where the trials run; local: on this machine (default); slurm: as jobs of a "
+                   "cluster, with the folder on a file system that its nodes share")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  trials
+      ->add_option("--slurm-option", arguments->slurm_options,
+                   "OPTION: of sbatch, such as --slurm-option=--partition=short; repeatable")
+      ->allow_extra_args(false);
   trials->add_option(
       "--vary", arguments->vary,
       "KEY=V1,V2,...: run all trials for each of these values of a key of the scenario");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/trials/outcome.h"
+#include "coordinator/trials/slurm/work_folder.h"
 
 namespace tcs {
 
@@ -94,6 +95,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
   });
   if (fs::path file = fs::path(path) / kRecord; fs::exists(file)) {
     if (restart) {
+      folder->left_jobs = RetireWorkFolders(path);
       try {
         RemoveTrials(path);
       } catch (const fs::filesystem_error& error) {
@@ -107,6 +109,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
     return fmt::format(
         "the folder '{}' holds other files than trials; choose another folder with --out", path);
   }
+  if (!restart) folder->left_jobs = RetireWorkFolders(path);
   return WriteWhole(path + "/" + kRecord, ToJson(record));
 }
 
