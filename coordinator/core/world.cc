@@ -269,9 +269,9 @@ std::vector<int> World::command_fds() const {
   return fds;
 }
 
-void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
+void World::ReceiveCommands(std::size_t index, std::int64_t now_ns, const CommandSender& from) {
   const Spent spent(&host_ns_);
-  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), queue_);
+  channels_.inlets[index]->Receive({VirtualTime::FromNanoseconds(now_ns), from}, queue_);
   // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
   if (now_ns < progress_ns_) next_stop_ns_ = std::min(next_stop_ns_, now_ns);
 }

@@ -69,8 +69,9 @@ class World {
   std::vector<int> command_fds() const;
   // The addresses of those to which programs send datagrams.
   void NameReceivers(shm::OwnReceivers& receivers) const;
-  // Takes what has arrived there at virtual time `now_ns`; others may still send for times before.
-  void ReceiveCommands(std::size_t index, std::int64_t now_ns);
+  // Takes what has arrived there at virtual time `now_ns`, from the thread that is known to have
+  // sent it; others may still send for times before.
+  void ReceiveCommands(std::size_t index, std::int64_t now_ns, const CommandSender& from);
   // Applies what has been sent by `now_ns` to where no descriptor tells of it.
   void ReceiveUntold(std::int64_t now_ns);
   // Takes what has been written to terminals, at `now_ns`.

@@ -13,7 +13,7 @@ bool JsonOutlet::HandOver(VirtualTime now) {
   return on_the_way_.Arrive(now, [this](const std::string& datagram) { sender_->Send(datagram); });
 }
 
-void JsonInlet::Receive(VirtualTime now, CommandSink& sink) {
+void JsonInlet::Receive(const CommandSent& now, CommandSink& sink) {
   while (const auto datagram = receiver_->Receive()) {
     TakeCommand("the command datagram", *datagram, channel_, now, sink);
   }

@@ -55,7 +55,7 @@ class JsonInlet final : public Inlet {
       : receiver_(std::move(receiver)), channel_(channel) {}
 
   int fd() const override { return receiver_->fd(); }
-  void Receive(VirtualTime now, CommandSink& sink) override;
+  void Receive(const CommandSent& now, CommandSink& sink) override;
   Place PlaceOf(std::size_t) const override {
     return {receiver_->Where(), "send its commands there"};
   }
