@@ -322,7 +322,8 @@ struct alignas(64) RunHeader {
   std::uint32_t gates_only;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
   std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
-  std::uint32_t reserved_too;
+  // 1: each robot has abstract names of its own (a network namespace).
+  std::uint32_t names_by_robot;
   std::uint64_t reserved[5];
 };
 static_assert(sizeof(RunHeader) == 128);

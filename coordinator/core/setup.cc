@@ -137,6 +137,7 @@ std::string Engine::PrepareMemory() {
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.Preempts() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
+  run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
 }
 

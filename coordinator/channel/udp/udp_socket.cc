@@ -41,7 +41,9 @@ SocketError CannotBind(const UdpEndpoint& endpoint, int error) {
   const std::string port = "port " + std::to_string(endpoint.port) + " on " + endpoint.host;
   switch (error) {
     case EADDRINUSE:
-      return {port + " is taken by another program; choose another port or end that program",
+      return {port +
+                  " is taken by another program; choose another port or end that program (with "
+                  "${loopback} as the address each run has ports of its own)",
               error};
     case EADDRNOTAVAIL:
       return {port + " cannot be listened on: this machine has no such address; use 127.0.0.1",

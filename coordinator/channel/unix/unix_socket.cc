@@ -38,8 +38,8 @@ std::string CannotBind(const UnixName& name, int error) {
   switch (error) {
     case EADDRINUSE:
       return what +
-             " is taken by another program; end that one, or choose another path (with "
-             "${result_dir} in it each run has its own)";
+             " is taken by another program; end that one, or choose another name (with ${run} "
+             "in it each run has its own)";
     case ENOENT:
     case ENOTDIR:
       return what + " cannot be made, because its folder is not there; make it, or choose another";
