@@ -27,6 +27,8 @@
 
 namespace tcs {
 
+class DatagramWatch;
+
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
   BodyState state;        // finite
@@ -65,6 +67,9 @@ class Outlet {
   virtual std::string WhyUnheard() const { return {}; }
   // The same of readings that did not go out, whoever was there to hear them.
   virtual std::string WhatWasLost() const { return {}; }
+
+  // Has the watch, which outlives this, told of each datagram that goes out.
+  virtual void TellOf(DatagramWatch&, const std::string& /*channel*/) {}
 };
 
 // An end that has been opened, or why it was not: one sentence.
@@ -137,6 +142,9 @@ class Inlet {
     std::string where, mend;
   };
   virtual Place PlaceOf(std::size_t channel) const = 0;
+
+  // As Outlet's, of each that comes in.
+  virtual void TellOf(DatagramWatch&) {}
 };
 
 }  // namespace tcs

@@ -44,6 +44,8 @@ struct Channels {
   // sentence. The scenario and the endpoints outlive this.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at);
+  // Has the watch, which outlives this, told of datagrams.
+  void TellOf(DatagramWatch& watch, const Scenario& scenario);
   // What goes over those that are not on DDS, which records themselves. After Open, and before
   // anybody has an outlet or an inlet.
   void Record(const Scenario& scenario, ChannelRecords& records);

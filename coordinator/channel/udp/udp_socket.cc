@@ -152,4 +152,9 @@ bool IsListenedTo(const UdpEndpoint& endpoint) {
   return false;
 }
 
+shm::ReceiverAddress KernelAddressOf(const UdpEndpoint& endpoint) {
+  const auto address = ToAddress(endpoint);
+  return address ? shm::AddressOf(&*address, sizeof *address) : shm::ReceiverAddress{};
+}
+
 }  // namespace tcs

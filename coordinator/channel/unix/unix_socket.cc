@@ -128,4 +128,10 @@ bool IsListenedTo(const UnixName& name) {
          (errno != ECONNREFUSED && errno != ENOENT);
 }
 
+shm::ReceiverAddress KernelAddressOf(const UnixName& name) {
+  const Address address(name);
+  const std::size_t size = address.size - (name.is_abstract ? 0 : 1);
+  return shm::AddressOf(address.get(), size);
+}
+
 }  // namespace tcs
