@@ -113,7 +113,7 @@ struct DdsMessage {
   // all; and the instance, by its number in the writer's process. Of participants, `instance` is
   // DdsTag of their domain.
   std::uint32_t keep_last;
-  std::uint32_t reserved;
+  std::uint32_t sender_ran;  // the coordinator's own: see Hub::Send, the lower half
   std::uint64_t instance;
 };
 static_assert(sizeof(DdsMessage) == 104);

@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/datagram_notes.h"
 #include "shm/ipc_times.h"
 #include "shm/receipts.h"
 #include "shm/work_counts.h"
@@ -33,7 +34,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 17;
+inline constexpr std::uint32_t kVersion = 18;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -288,8 +289,10 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
   std::uint32_t robot;
   std::uint8_t reserved[16];
+  DatagramNotes datagrams;
 };
-static_assert(sizeof(ThreadSlot) == 1152);
+static_assert(sizeof(ThreadSlot) == 3264);
+static_assert(offsetof(ThreadSlot, datagrams) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
@@ -322,8 +325,11 @@ struct alignas(64) RunHeader {
   std::uint32_t gates_only;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
   std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
+  // 1: each robot has abstract names of its own (a network namespace).
+  std::uint32_t names_by_robot;
+  std::uint32_t notes_datagrams;  // 1: threads note the datagrams that they send and receive
   std::uint32_t reserved_too;
-  std::uint64_t reserved[5];
+  std::uint64_t reserved[4];
 };
 static_assert(sizeof(RunHeader) == 128);
 static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);

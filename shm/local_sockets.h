@@ -64,7 +64,7 @@ inline std::uint32_t RobotOf(const RobotByNumber& table, std::uint64_t number) {
 
 struct LocalSockets {
   RobotByNumber by_cookie;  // SO_COOKIE, which the kernel gives to one socket ever
-  RobotByNumber by_name;    // HashOfName
+  RobotByNumber by_name;    // NumberOfName
 };
 
 // 0 for an address that is no abstract name. Names of one hash are taken for one: the sockets of
@@ -79,6 +79,14 @@ inline std::uint64_t HashOfName(const void* address, std::size_t size) {
   if (family != AF_UNIX || bytes[kBegin] != 0) return 0;
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (std::size_t i = kBegin; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3;
+  return hash == 0 ? 1 : hash;
+}
+
+// The number of a name, given its hash, for a program of the robot. Where robots have names of
+// their own (RunHeader::names_by_robot) a name that two of them use is two names.
+inline std::uint64_t NumberOfName(std::uint64_t hash, std::uint32_t robot, bool is_by_robot) {
+  if (hash == 0 || !is_by_robot) return hash;
+  hash = (hash ^ robot) * 0x100000001b3;
   return hash == 0 ? 1 : hash;
 }
 

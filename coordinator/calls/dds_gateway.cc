@@ -64,7 +64,7 @@ void DdsGateway::Handle(Task& task, const shm::Notification& note, std::int64_t 
       Join(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      Send(process, static_cast<std::size_t>(note.args[0]), task.reached_ns);
+      Send(process, static_cast<std::size_t>(note.args[0]), task);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
@@ -92,8 +92,9 @@ void DdsGateway::AwaitDeliverer(Task& task, std::int64_t deadline_ns) {
 }
 
 // What is wrong is said once of each process: it may send as often as it likes.
-void DdsGateway::Send(Process& process, std::size_t bytes, std::int64_t at_ns) {
-  const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns);
+void DdsGateway::Send(Process& process, std::size_t bytes, const Task& by) {
+  const std::int64_t at_ns = by.reached_ns;
+  const std::string wrong = hub_.Send(process.dds_number, bytes, at_ns, by.charged_ns);
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     run_.Warn(fmt::format("{} {}", process.name, wrong));
   }

@@ -67,7 +67,7 @@ class DdsGateway {
   dds::Speaker WhoIs(dds::Hub::Number number) const;
   std::size_t RobotOf(dds::Hub::Number number) const;
   void Join(Task& task);
-  void Send(Process& process, std::size_t bytes, std::int64_t at_ns);
+  void Send(Process& process, std::size_t bytes, const Task& by);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
   void AwaitMessages(Task& task);
   void AwaitDeliverer(Task& task, std::int64_t deadline_ns);

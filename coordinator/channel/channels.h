@@ -44,6 +44,8 @@ struct Channels {
   // sentence. The scenario and the endpoints outlive this.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at);
+  // Has the watch, which outlives this, told of datagrams.
+  void TellOf(DatagramWatch& watch, const Scenario& scenario);
   // Records what goes over the channels that are not on DDS (DDS records its own messages). Call it
   // after Open, and before any outlet or inlet is given out.
   void Record(const Scenario& scenario, ChannelRecords& records);

@@ -145,8 +145,9 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, std::int
 }
 
 // False if the thread cannot have done what it has noted: its process is ended for that.
-bool Engine::TakeIpcNotesOf(Task& task) {
+bool Engine::TakeNotesOf(Task& task) {
   const char* what = TakeIpcNotes(task, *memory_);
+  if (what == nullptr) what = datagrams_.TakeNotes(task);
   if (what != nullptr) expulsion_.Expel(*task.process, what);
   return what == nullptr;
 }
@@ -211,7 +212,7 @@ void Engine::Settle(Task& task) {
     task.lead = clock.lead();
     run_.most_lead = std::max(run_.most_lead, task.lead);
     records_.Ran(task, {begun.ns(), clock.At(at).ns()}, {start, start}, host_cpu_.stop_tsc());
-    TakeIpcNotesOf(task);
+    TakeNotesOf(task);
     return;
   }
   task.cpu->ComeTo(progress);
@@ -220,7 +221,7 @@ void Engine::Settle(Task& task) {
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
-  TakeIpcNotesOf(task);
+  TakeNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const std::int64_t busy_until = slept ? std::min(progress, start + executed) : progress;
@@ -339,7 +340,7 @@ bool Engine::AnswerEarly(Task& task) {
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
-    if (!TakeIpcNotesOf(task)) return true;
+    if (!TakeNotesOf(task)) return true;
     const shm::Notification early = SlotOf(task).note;
     finds_more = notifications_.Handle(task, early);
   } else {

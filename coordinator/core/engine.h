@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/calls/child_stops.h"
+#include "coordinator/calls/datagram_log.h"
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/follow_ups.h"
@@ -142,7 +143,7 @@ class Engine {
   std::int64_t NsToLook(Task& task);
   std::int64_t OwnHorizonNs() const;
   void Settle(Task& task);
-  bool TakeIpcNotesOf(Task& task);
+  bool TakeNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, std::int64_t asked_ns);
   void StepAside(Task& task);
   void WakeSpinners();
@@ -240,6 +241,7 @@ class Engine {
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
+  DatagramLog datagrams_{run_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.ns);
                              }};

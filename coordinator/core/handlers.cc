@@ -88,7 +88,12 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
 }
 
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
-  world_.ReceiveCommands(channel.index, moment.ns);
+  CommandSender from;
+  if (run_.turn.HasClock()) {
+    const Task& task = *run_.turn.task();
+    from = {static_cast<std::uint64_t>(task.tid), host_cpu_.ClockOf(task).cpu_ns};
+  }
+  world_.ReceiveCommands(channel.index, moment.ns, from);
   return {};
 }
 

@@ -50,7 +50,8 @@ std::string Engine::Prepare() {
     network_.MakeAt(address, make);
   };
   const bool is_recorded = run_.options.record != RecordingKind::kNone;
-  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded);
+  if (std::string error =
+          world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded ? &datagrams_ : nullptr);
       !error.empty()) {
     return error;
   }
@@ -70,6 +71,7 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
+  if (!run_.options.output_directory.empty()) datagrams_.Open();
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   ahead_.Open(claim_.cpu, further);
@@ -137,6 +139,8 @@ std::string Engine::PrepareMemory() {
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.Preempts() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
+  run_.header->notes_datagrams = run_.options.record == RecordingKind::kNone ? 0 : 1;
+  run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
 }
 

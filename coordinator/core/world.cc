@@ -62,7 +62,7 @@ World::World(std::function<void(const std::string&)> warn)
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
-                        bool is_recorded) {
+                        DatagramWatch* watch) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -76,7 +76,15 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
-  if (is_recorded) channels_.Record(scenario_, channel_records_.emplace(scenario_));
+  if (watch != nullptr) {
+    channels_.TellOf(*watch, scenario_);
+    channels_.Record(scenario_, channel_records_.emplace(scenario_));
+    for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+      auto& outlet = channels_.outlets[i];
+      outlet = measurements_.Wrap(scenario_.sensors[i], std::move(outlet));
+    }
+    is_recorded_ = true;
+  }
   if (channels_.clock != nullptr) {
     sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
   }
@@ -122,7 +130,8 @@ void World::Begin(std::int64_t realtime_offset_ns) {
 std::string World::OpenRecords(const std::string& folder) {
   // Those of an earlier run would be taken for this one's.
   std::error_code ignored;
-  for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/commands.csv"}) {
+  for (const char* file :
+       {"/scene.json", "/bodies.csv", "/joints.csv", "/commands.csv", "/sensors.csv"}) {
     std::filesystem::remove(folder + file, ignored);
   }
   if (!present()) return {};
@@ -142,6 +151,9 @@ std::string World::OpenRecords(const std::string& folder) {
   if (error.empty() && !scenario_.commands.empty()) {
     error = commands_.log().Open(folder + "/commands.csv");
   }
+  if (error.empty() && is_recorded_ && !scenario_.sensors.empty()) {
+    error = measurements_.Open(folder + "/sensors.csv");
+  }
   return error;
 }
 
@@ -155,6 +167,7 @@ void World::FlushRecords() {
   FlushBodies();
   joints_csv_.Flush();
   commands_.log().Flush();
+  measurements_.Flush();
 }
 
 std::string World::CloseRecords() {
@@ -163,8 +176,10 @@ std::string World::CloseRecords() {
   FlushBodies();
   csv_.close();
   if (!csv_) return NotWrittenWhole(csv_path_);
-  const std::string errors[] = {joints_csv_.Close(), commands_.log().Close()};
-  return errors[0].empty() ? errors[1] : errors[0];
+  for (std::string error : {joints_csv_.Close(), commands_.log().Close(), measurements_.Close()}) {
+    if (!error.empty()) return error;
+  }
+  return {};
 }
 
 void World::RecordInto(record::MessageSink& sink) {
@@ -269,9 +284,9 @@ std::vector<int> World::command_fds() const {
   return fds;
 }
 
-void World::ReceiveCommands(std::size_t index, std::int64_t now_ns) {
+void World::ReceiveCommands(std::size_t index, std::int64_t now_ns, const CommandSender& from) {
   const Spent spent(&host_ns_);
-  channels_.inlets[index]->Receive(VirtualTime::FromNanoseconds(now_ns), queue_);
+  channels_.inlets[index]->Receive({VirtualTime::FromNanoseconds(now_ns), from}, queue_);
   // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
   if (now_ns < progress_ns_) next_stop_ns_ = std::min(next_stop_ns_, now_ns);
 }

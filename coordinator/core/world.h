@@ -19,6 +19,7 @@
 #include "coordinator/world/due_links.h"
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
+#include "coordinator/world/measurement_log.h"
 #include "coordinator/world/sensors.h"
 #include "coordinator/world/world_topics.h"
 #include "shm/own_receivers.h"
@@ -31,9 +32,9 @@ class World {
   explicit World(std::function<void(const std::string&)> warn);
 
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
-  // are for those on DDS; they outlive this. RecordInto follows if `is_recorded`.
+  // are for those on DDS; they outlive this. With a `watch` RecordInto follows.
   std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
-                   bool is_recorded = false);
+                   DatagramWatch* watch = nullptr);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
@@ -43,8 +44,8 @@ class World {
   void Begin(std::int64_t realtime_offset_ns);
 
   // What the world looks like, how it moved and what moved it are written into this folder:
-  // scene.json, bodies.csv, joints.csv, commands.csv; nothing without a world. Empty on success,
-  // else one sentence.
+  // scene.json, bodies.csv, joints.csv, commands.csv, and sensors.csv if it is recorded; nothing
+  // without a world. Empty on success, else one sentence.
   std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   std::string CloseRecords();
@@ -69,8 +70,9 @@ class World {
   std::vector<int> command_fds() const;
   // The addresses of those to which programs send datagrams.
   void NameReceivers(shm::OwnReceivers& receivers) const;
-  // Takes what has arrived there at virtual time `now_ns`; others may still send for times before.
-  void ReceiveCommands(std::size_t index, std::int64_t now_ns);
+  // Takes what has arrived there at virtual time `now_ns`, from the thread that is known to have
+  // sent it; others may still send for times before.
+  void ReceiveCommands(std::size_t index, std::int64_t now_ns, const CommandSender& from);
   // Applies what has been sent by `now_ns` to where no descriptor tells of it.
   void ReceiveUntold(std::int64_t now_ns);
   // Takes what has been written to terminals, at `now_ns`.
@@ -108,6 +110,7 @@ class World {
   std::unique_ptr<Dynamics> dynamics_;
   std::int64_t progress_ns_ = 0, next_output_ns_ = 0, next_stop_ns_ = 0;
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
+  MeasurementLog measurements_;                    // this, too
   Channels channels_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
@@ -119,6 +122,7 @@ class World {
   LinkLines link_lines_;
   JointLines joint_lines_;
   CsvFile joints_csv_;
+  bool is_recorded_ = false;
   DueLinks due_links_;
   std::optional<WorldTopics> topics_;
   std::vector<int> all_bodies_, due_;

@@ -215,7 +215,7 @@ void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
   }
 }
 
-std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
+std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns, std::int64_t ran_ns) {
   const Member* member = Find(from);
   if (member == nullptr) {
     return "sends DDS messages in a child that it has forked, where its participants are not: they "
@@ -228,13 +228,14 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
         bytes);
   }
   std::string wrong =
-      EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
+      EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns, ran_ns);
   GiveBack(*Find(from), shm::kDdsHeaderSize, bytes);
   return wrong;
 }
 
 // Of messages in memory that the program may write to all the while.
-std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns) {
+std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns,
+                          std::int64_t ran_ns) {
   while (!left.empty()) {
     DdsMessage header{};
     if (left.size() >= sizeof header) header = HeaderOf(left);
@@ -243,6 +244,7 @@ std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int
     if (auto wrong = WhatIsWrongWithSize(header, left.size())) return *wrong;
     header.from = from;
     header.time_ns = now_ns;
+    header.sender_ran = static_cast<std::uint32_t>(ran_ns);
     Bytes copy(left.begin(), left.begin() + header.size);
     PutHeader(header, copy);
     if (auto wrong = WhyNot(header, PayloadOf(copy))) return *wrong;

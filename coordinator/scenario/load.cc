@@ -87,7 +87,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
-  const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
+  const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory,
+                            overrides.run};
   const YamlValue& all = top.place();
   const bool has_world = all.Try([&] { LoadWorld(top, variables, &scenario); });
   // What is on bodies that nobody has read cannot be right.

@@ -23,6 +23,7 @@ struct ScenarioOverrides {
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
   // Absolute: what ${result_dir} stands for, where clients may have folders.
   std::string result_directory;
+  std::uint32_t run = 0;  // what ${run} and ${loopback} stand for (substitute.h)
 };
 
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the

@@ -17,7 +17,8 @@ namespace tcs {
 class UdpEndpoints {
  public:
   // With a network each is at the address of a robot. It outlives this.
-  explicit UdpEndpoints(const std::optional<NetworkSpec>& network) : network_(network) {}
+  UdpEndpoints(Variables variables, const std::optional<NetworkSpec>& network)
+      : variables_(std::move(variables)), network_(network) {}
 
   UdpEndpoint Load(const YamlValue& value);
   // An address to which datagrams can be sent.
@@ -29,6 +30,9 @@ class UdpEndpoints {
     std::string name;
     Place place;
   };
+  UdpEndpoint LoadEndpoint(const YamlValue& value) const;
+
+  Variables variables_;
   const std::optional<NetworkSpec>& network_;
   std::vector<Use> uses_;
 };

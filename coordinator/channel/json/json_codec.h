@@ -53,6 +53,6 @@ struct DecodeError {
 
 // Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
-                 VirtualTime sent, CommandSink& sink);
+                 const CommandSent& sent, CommandSink& sink);
 
 }  // namespace tcs

@@ -124,13 +124,13 @@ class PtyChannels::DeviceInlet final : public Inlet {
   int fd() const override { return device_.terminal().fd(); }
   bool IsTerminal() const override { return true; }
 
-  void Receive(VirtualTime now, CommandSink& sink) override {
+  void Receive(const CommandSent& now, CommandSink& sink) override {
     const std::string bytes = device_.terminal().Read();
     CheckBaud(sink);
     for (const char byte : bytes) {
-      const VirtualTime gone = device_.Gone(now);
+      const VirtualTime gone = device_.Gone(now.at);
       if (byte == '\n') {
-        TakeLine(gone, sink);
+        TakeLine({gone, now.by}, sink);
         line_.clear();
       } else if (line_.size() <= kLongestLine) {
         line_ += byte;
@@ -144,7 +144,7 @@ class PtyChannels::DeviceInlet final : public Inlet {
   }
 
  private:
-  void TakeLine(VirtualTime sent, CommandSink& sink) {
+  void TakeLine(const CommandSent& sent, CommandSink& sink) {
     if (!channel_.has_value()) return;
     if (line_.find_first_not_of(" \t\r") == std::string::npos) return;
     TakeCommand("the command line", line_, *channel_, sent, sink);

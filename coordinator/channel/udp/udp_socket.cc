@@ -41,7 +41,9 @@ SocketError CannotBind(const UdpEndpoint& endpoint, int error) {
   const std::string port = "port " + std::to_string(endpoint.port) + " on " + endpoint.host;
   switch (error) {
     case EADDRINUSE:
-      return {port + " is taken by another program; choose another port or end that program",
+      return {port +
+                  " is taken by another program; choose another port or end that program (with "
+                  "${loopback} as the address each run has ports of its own)",
               error};
     case EADDRNOTAVAIL:
       return {port + " cannot be bound: this machine has no such address; use 127.0.0.1", error};
@@ -147,6 +149,11 @@ bool IsListenedTo(const UdpEndpoint& endpoint) {
     }
   }
   return false;
+}
+
+shm::ReceiverAddress KernelAddressOf(const UdpEndpoint& endpoint) {
+  const auto address = ToAddress(endpoint);
+  return address ? shm::AddressOf(&*address, sizeof *address) : shm::ReceiverAddress{};
 }
 
 }  // namespace tcs

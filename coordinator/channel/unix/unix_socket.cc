@@ -39,7 +39,7 @@ std::string CannotBind(const UnixName& name, int error) {
     case EADDRINUSE:
       return what +
              " is taken by another program; end that program, or choose another path (with "
-             "${result_dir} in the path, each run has its own)";
+             "${result_dir} or ${run} in it, each run has its own)";
     case ENOENT:
     case ENOTDIR:
       return what +
@@ -129,6 +129,12 @@ bool IsListenedTo(const UnixName& name) {
   const Address address(name);
   return connect(std::get<UniqueFd>(opened).get(), address.get(), address.size) == 0 ||
          (errno != ECONNREFUSED && errno != ENOENT);
+}
+
+shm::ReceiverAddress KernelAddressOf(const UnixName& name) {
+  const Address address(name);
+  const std::size_t size = address.size - (name.is_abstract ? 0 : 1);
+  return shm::AddressOf(address.get(), size);
 }
 
 }  // namespace tcs

@@ -13,6 +13,7 @@
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
+#include "shm/own_receivers.h"
 
 namespace tcs {
 
@@ -48,5 +49,8 @@ class UnixSocket {
 
 // Whether some socket gets what is sent to `name`.
 [[nodiscard]] bool IsListenedTo(const UnixName& name);
+
+// As the kernel has it.
+shm::ReceiverAddress KernelAddressOf(const UnixName& name);
 
 }  // namespace tcs
