@@ -37,7 +37,7 @@ says 'drone/controller ended at .* with exit status 1: "no map here" \(run/drone
 (($(wc -l <stderr) == 1)) || fail "not one line: $(cat stderr)"
 grep -q '^ended before its 0.500 s because all programs had ended' stdout || fail "$(cat stdout)"
 hover 's/hover.py/-c, "raise SystemExit(3)"/'
-says 'drone/controller ended at .* with exit status 3: it said nothing'
+says 'drone/controller ended at .* with exit status 3: it printed nothing'
 
 # A run that is killed leaves no summary of the one before it.
 mv hover.py.bak hover.py
