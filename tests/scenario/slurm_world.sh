@@ -107,7 +107,8 @@ end_slurm() {
   disown -a
   # shellcheck disable=SC2046
   kill -9 $(with_descendants $(steps_of)) "${slurm_processes[@]}" 2>/dev/null
-  for _ in $(seq 50); do pgrep -f "$slurm" >/dev/null || break; sleep 0.1; done
+  local until=$((SECONDS + 5))
+  while ((SECONDS < until)) && pgrep -f "$slurm" >/dev/null; do sleep 0.1; done
   pkill -9 -f "$slurm"
   rm -rf "$slurm"
 }
