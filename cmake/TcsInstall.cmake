@@ -47,8 +47,8 @@ install(DIRECTORY "${CMAKE_SOURCE_DIR}/docs" DESTINATION "${tcs_doc}")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tcsim)
 set(CPACK_PACKAGE_VENDOR tcs)
-# As Debian's own tools take it; lintian wants a mail address that exists.
-set(CPACK_PACKAGE_CONTACT "tcs maintainers <tcs@localhost>")
+# As Debian's own tools take it. The address stands for one: DEBFULLNAME and DEBEMAIL name whoever makes the package.
+set(CPACK_PACKAGE_CONTACT "tcs maintainers <tcs@example.org>")
 if(DEFINED ENV{DEBEMAIL})
   set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 endif()

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <time.h>
-#include <unistd.h>
 #include <x86gprintrin.h>
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 #include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
-#include "coordinator/os/own_network.h"
+#include "coordinator/os/own_computer.h"
 #include "shm/check.h"
 
 namespace tcs {
@@ -413,15 +412,11 @@ RunReport Engine::Run() {
   return report;
 }
 
-// Who is not root may make the robots' computers in a user namespace, which has to be entered
-// before anything else is tried.
 RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {
-  if (scenario.network && geteuid() != 0) {
-    if (const std::string why_not = EnterOwnNetwork(); !why_not.empty()) {
+  if (scenario.network) {
+    if (const std::optional<NoComputer> why_not = GetReadyForComputers()) {
       RunReport refused;
-      refused.error = "this host does not let a robot have a network of its own (" + why_not +
-                      "); run tcsim as root, or allow user namespaces, or leave `network` out of "
-                      "the scenario";
+      refused.error = why_not->Sentence();
       return refused;
     }
   }

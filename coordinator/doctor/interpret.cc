@@ -167,6 +167,20 @@ Finding JudgeLayout(int error) {
           "docker's --security-opt seccomp=FILE can"};
 }
 
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root) {
+  constexpr char kName[] = "networks of robots";
+  if (!why_not) {
+    return {kName, Verdict::kOk,
+            fmt::format("`network` in a scenario works: {} and /dev/net/tun are permitted",
+                        is_root ? "namespaces" : "user namespaces"),
+            ""};
+  }
+  return {kName, Verdict::kWarning,
+          fmt::format("no robot can have one of its own ({}: {})", why_not->step,
+                      strerror(why_not->error)),
+          "only scenarios with `network` take it: " + why_not->Mend()};
+}
+
 Finding JudgeLibc(const std::string& version) {
   int major = 0, minor = 0;
   std::sscanf(version.c_str(), "%d.%d", &major, &minor);

@@ -100,6 +100,28 @@ TEST(Doctor, AnAddressLayoutThatCannotBeFixedIsAWarning) {
   EXPECT_TRUE(CanRun({random}));
 }
 
+TEST(Doctor, WhatRobotsWithNetworksLackIsNamedWithItsMend) {
+  EXPECT_EQ(JudgeNetworks(std::nullopt, true).verdict, Verdict::kOk);
+  EXPECT_NE(JudgeNetworks(std::nullopt, false).found.find("user namespaces"), std::string::npos);
+  struct Case {
+    NoComputer why_not;
+    const char *found, *mend;
+  };
+  const Case cases[] = {
+      {{"/dev/net/tun", ENOENT}, "(/dev/net/tun: No such file", "modprobe tun"},
+      {{"/dev/net/tun", EACCES}, "(/dev/net/tun: Permission denied)", "chmod 666 /dev/net/tun"},
+      {{"/proc/sys/net", EROFS}, "Read-only", "mount /proc/sys for writing"},
+      {{"user namespace", EPERM}, "(user namespace: ", "allow user namespaces"},
+  };
+  for (const Case& c : cases) {
+    const Finding missing = JudgeNetworks(c.why_not, false);
+    EXPECT_EQ(missing.verdict, Verdict::kWarning);
+    EXPECT_NE(missing.found.find(c.found), std::string::npos) << missing.found;
+    EXPECT_NE(missing.mend.find(c.mend), std::string::npos) << missing.mend;
+    EXPECT_TRUE(CanRun({missing})) << "scenarios without `network` run";
+  }
+}
+
 TEST(Doctor, AnOldCLibraryIsAWarning) {
   EXPECT_EQ(JudgeLibc("2.36").verdict, Verdict::kOk);
   EXPECT_EQ(JudgeLibc("3.0").verdict, Verdict::kOk);
