@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simbody_bridge/simbody/tree/mimics.h"
+
 namespace tcs {
 namespace {
 
@@ -17,32 +19,6 @@ constexpr double kStickMps = 1e-4;
 Vector3d ToEigen(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
-
-void ContactStep::Reduce(const SimbodyTree& tree) {
-  const SimTK::State& state = tree.evaluated();
-  const Forest& forest = tree.forest();
-  const int all = state.getNU();
-  std::vector<int> leader(static_cast<std::size_t>(all), -1);
-  std::vector<double> multiplier(static_cast<std::size_t>(all), 1);
-  for (const ForestJoint& joint : forest.joints) {
-    if (joint.leader < 0) continue;
-    const int body = forest.joints[static_cast<std::size_t>(joint.leader)].body;
-    const auto own = static_cast<std::size_t>(int{tree.body(joint.body).getFirstUIndex(state)});
-    leader[own] = tree.body(body).getFirstUIndex(state);
-    multiplier[own] = joint.joint->mimic->multiplier;
-  }
-  std::vector<int> column(static_cast<std::size_t>(all), -1);
-  int columns = 0;
-  for (int u = 0; u < all; ++u) {
-    if (leader[static_cast<std::size_t>(u)] < 0) column[static_cast<std::size_t>(u)] = columns++;
-  }
-  reduction_.setZero(all, columns);
-  for (int u = 0; u < all; ++u) {
-    const auto i = static_cast<std::size_t>(u);
-    const int of = leader[i] < 0 ? column[i] : column[static_cast<std::size_t>(leader[i])];
-    reduction_(u, of) = multiplier[i];
-  }
-}
 
 void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact) {
   const SimTK::State& state = tree.evaluated();
@@ -142,10 +118,11 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
   const SimTK::State& state = tree.evaluated();
   step.length_s = h;
   step.next_try_s = step.try_s;
+  step.course.clear();
   step.to = step.from;
   const bool is_known = std::isfinite(step.from_rate.back());
   if (is_known) {
-    Reduce(tree);
+    Reduce(tree, &reduction_);
     Assemble(tree, h);
     tree.contacts().Find(state, &contacts_);
     rows_.clear();

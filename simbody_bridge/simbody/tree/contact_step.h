@@ -31,13 +31,12 @@ class ContactStep {
     Eigen::Vector3d sliding = Eigen::Vector3d::Zero();  // across it, as in the last round
     bool is_open = false;                               // it would pull
   };
-  void Reduce(const SimbodyTree& tree);
   void Assemble(SimbodyTree& tree, double h);
   void AddRow(const SimbodyTree& tree, const Contact& contact);
   void Solve(double h);
   bool Update(double h);
 
-  // The speeds are `reduction_` times those of joints that mimic no other.
+  // See mimics.h.
   Eigen::MatrixXd reduction_;
   Eigen::MatrixXd mass_, system_;
   Eigen::VectorXd force_, change_;
