@@ -98,6 +98,13 @@ class Reader {
     }
     if (robot.tracks.empty()) return;
     robot.root = robot.tracks.front();
+    const bool stands = model.at("fixed_base").get<bool>();
+    for (const Json& link : links) {
+      const std::string name = link.at("name");
+      const auto place = places_.find(name);
+      if (place == places_.end() || (stands && place->second.track == robot.root)) continue;
+      found_.moving.insert(name);
+    }
     found_.robots.push_back(std::move(robot));
   }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct ReplayScene {
   };
   std::vector<std::string> tracks;  // names in bodies.csv
   std::vector<Robot> robots;
+  std::set<std::string> moving;  // the links that are not fixed to the world
   nlohmann::ordered_json json;
 };
 

@@ -280,6 +280,7 @@ struct Scenario {
   dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
+  bool csv_contacts = false;              // contact forces are written, too
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
 };

@@ -241,6 +241,37 @@ TEST_F(ReplayTest, JointsHaveTheirUnits) {
   EXPECT_THAT(replay.robots[0].paths, ElementsAre(1));
 }
 
+TEST_F(ReplayTest, ContactsAreThoseOfItsMoments) {
+  json scene = Scene();
+  json table = Link("table"), cart = Link("cart/base"), wheel = Link("cart/wheel", "continuous", 0);
+  scene["models"] = {
+      {{"name", "table"}, {"root", 0}, {"fixed_base", true}, {"links", {table}}},
+      {{"name", "cart"}, {"root", 0}, {"fixed_base", false}, {"links", {cart, wheel}}}};
+  Write("run/scene.json", scene.dump());
+  for (int i = 0; i < 3; ++i) {
+    for (const char* link : {"table", "cart/base", "cart/wheel"}) State(i * 0.02, link, i);
+  }
+  Write("run/contacts.csv",
+        "time_s,first,second,x_m,y_m,z_m,normal_x,normal_y,normal_z,force_x_n,force_y_n,force_z_n\n"
+        "0.010000000,cart/wheel,floor,9,9,9,0,0,1,9,9,9\n"
+        "0.020000000,cart/base,cart/wheel,1,0,0,0,0,1,0,0,-3\n"
+        "0.020000000,cart/wheel,table,0.25,-1,0.5,0,0,1,1,0,20\n"
+        "0.020000000,cart/wheel,table,0.5,-1,0.5,0,0,1,nonsense,0,20\n"
+        "0.040000000,cart/wheel,table,0.5,-1,0.5,0,0,1,-1,0,21\n");
+  const Replay replay = Read();
+  ASSERT_THAT(replay.contacts.points(), SizeIs(3));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("contacts.csv has 1 line of no use")));
+  const json encoded = json::parse(Encoded(replay))["contacts"];
+  EXPECT_EQ(encoded["pairs"], json::parse(R"([["cart/base","cart/wheel",true],)"
+                                          R"(["cart/wheel","table",false]])"));
+  EXPECT_EQ(encoded["stride"], 1);
+}
+
+TEST_F(ReplayTest, WithoutContactsThePageHasNone) {
+  State(0, "a", 0);
+  EXPECT_TRUE(json::parse(Encoded(Read()))["contacts"].is_null());
+}
+
 TEST_F(ReplayTest, LinesCountFromWhenTheirEndWasThere) {
   State(0, "a", 0);
   Write("run/r-p.out.log", "hello\nmark:  lift off\nhalf a line and more\n\nrest");
