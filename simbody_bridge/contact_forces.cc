@@ -6,7 +6,10 @@
 namespace tcs {
 namespace {
 
-std::array<double, 3> Opposite(const std::array<double, 3>& v) { return {-v[0], -v[1], -v[2]}; }
+// Without negative zeros.
+std::array<double, 3> Opposite(const std::array<double, 3>& v) {
+  return {0 - v[0], 0 - v[1], 0 - v[2]};
+}
 
 // Which of two comes first: links that move, then links that do not, then fixtures.
 auto RankOf(const ForestShape& shape) {

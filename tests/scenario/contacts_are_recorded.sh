@@ -11,8 +11,8 @@ dynamics: {engine: $engine, gravity: [0, 0, -9.81]}
 models:
   floor: {plane: [0, 0, 1]}
   crate: {box: [0.2, 0.2, 0.2], mass: 3, position: [1, 0, 0.1]}
-  stone: {sphere: 0.1, mass: 1, position: [0, 0, 15]}
-  dog: {urdf: $source_root/tests/models/quadruped.urdf, position: [0, 3, 0.5]}
+  stone: {sphere: 0.1, mass: 1, position: [0, 0, 25]}
+  dog: {urdf: $source_root/tests/models/quadruped.urdf, at: {position: [0, 3, 0.5]}, joints: {lf_knee: -1.4, rf_knee: -1.4, lh_knee: -1.4, rh_knee: -1.4}}
 robots:
   r: {clients: {c: {command: [python3, -c, "import time\nfor i in range(40): time.sleep(0.05)"]}}}
 YAML
