@@ -183,7 +183,7 @@ void LiveRun::Look() {
   if (reading_ == nullptr) {
     // The scene is there before the first moment.
     if (!IsFile(folder_ + "/bodies.csv")) return;
-    auto scene = ReadReplayScene(folder_);
+    auto scene = ReadReplayScene(folder_, MeshLooks::kLeftOut);
     if (std::holds_alternative<LoadError>(scene)) return;
     reading_ = std::make_unique<Reading>(folder_, std::move(std::get<ReplayScene>(scene)));
   }

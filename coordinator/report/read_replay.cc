@@ -60,7 +60,7 @@ LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name
   replay.end_s = end_s;
   replay.contacts = ContactTrack(most_bytes / kRoomPerContact);
   ReadSaid(folder, &replay);
-  auto scene = ReadReplayScene(folder);
+  auto scene = ReadReplayScene(folder, MeshLooks::kRead);
   if (const auto* error = std::get_if<LoadError>(&scene)) return *error;
   auto& found = std::get<ReplayScene>(scene);
   const double interval_s = IntervalOf(found, end_s, most_bytes);

@@ -272,6 +272,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
+  // Of these the folders, in `packages`, that their meshes' packages may be in.
+  std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;
   std::optional<NetworkSpec> network;  // none: all robots share the host's
   std::vector<SensorChannelSpec> sensors;

@@ -46,6 +46,17 @@ const tcs = (() => {
     return {...signal, data: null, values};
   }
 
+  // Of a mesh that is only looks; hulls are as they are. See looks.cc.
+  function decodeMesh(mesh) {
+    if (typeof mesh.vertices !== 'string') return mesh;
+    const corners = numbersIn(mesh.vertices), indices = numbersIn(mesh.triangles), vertices = [], triangles = [];
+    for (const sums = [0, 0, 0]; !corners.isAtEnd();) {
+      vertices.push([0, 1, 2].map(axis => mesh.least[axis] + (sums[axis] += corners.signed()) * mesh.step[axis]));
+    }
+    for (let last = 0; !indices.isAtEnd();) triangles.push([0, 1, 2].map(() => last += indices.signed()));
+    return {vertices, triangles, isLooks: true};
+  }
+
   // Of each moment the contacts that are shown there, [pair, x, y, z, force along x, y, z] after each
   // other, and how strong they all are. See contact_track.cc.
   function decodeContacts(contacts, moments) {
@@ -78,6 +89,7 @@ const tcs = (() => {
     run.said = run.said.map(([us, client, stream, text, isMark]) => ({time: us / 1e6, client, stream, text, isMark}));
     run.end = Math.max(run.end, run.count ? run.time[run.count - 1] : 0, 1e-6);
     run.scene = run.scene || {region: null, fixtures: [], meshes: [], sensors: [], tracks: []};
+    run.scene.meshes = run.scene.meshes.map(decodeMesh);
     return run;
   }
 

@@ -168,6 +168,53 @@ TEST_F(ReplayTest, LooksAreShownRatherThanWhatCollides) {
   EXPECT_EQ(replay.scene["tracks"][1][0]["colour"][0], 1);
 }
 
+TEST_F(ReplayTest, MeshesThatAreOnlyLooksAreReadOnce) {
+  Write("run/roof.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 4\nf 2 3 4\n");
+  const auto mesh = [&](const std::string& file, double scale) {
+    return json{{"kind", "mesh_file"},           {"name", "package://it/" + file},
+                {"path", Path("run/" + file)},   {"scale", {scale, scale, scale}},
+                {"pose", {0, 0, 3, 0, 0, 0, 1}}, {"colour", {0, 1, 0, 1}}};
+  };
+  json scene = Scene();
+  const auto add = [&](const char* name, const json& visual) {
+    json link = Link(name);
+    link["shapes"].push_back(Box(1));
+    link["visuals"].push_back(visual);
+    scene["models"].push_back(
+        {{"name", name}, {"root", 0}, {"fixed_base", false}, {"links", {link}}});
+    State(0, name, 0);
+  };
+  add("a", mesh("roof.obj", 1));
+  add("b", mesh("roof.obj", 1));
+  add("c", mesh("roof.obj", -0.5));
+  add("d", mesh("gone.obj", 1));
+  Write("run/scene.json", scene.dump());
+  const Replay replay = Read();
+  const json tracks = replay.scene["tracks"];
+  EXPECT_EQ(tracks[0][0]["kind"], "mesh");
+  EXPECT_EQ(tracks[0][0]["pose"][2], 3);
+  EXPECT_EQ(tracks[0][0]["colour"][1], 1);
+  EXPECT_FALSE(tracks[0][0].contains("path")) << "nobody needs to know where it was";
+  EXPECT_EQ(tracks[1][0]["mesh"], tracks[0][0]["mesh"]);
+  EXPECT_NE(tracks[2][0]["mesh"], tracks[0][0]["mesh"]);
+  EXPECT_EQ(tracks[3][0]["kind"], "box") << "what collides, for one that is not there";
+  ASSERT_THAT(replay.scene["meshes"], SizeIs(2));
+  const json first = replay.scene["meshes"][0];
+  std::vector<double> corners;
+  std::array<std::int64_t, 3> sums{};
+  for (const std::int64_t number : Decoded(first["vertices"])) {
+    const std::size_t axis = corners.size() % 3;
+    sums[axis] += number;
+    corners.push_back(first["least"][axis].get<double>() +
+                      static_cast<double>(sums[axis]) * first["step"][axis].get<double>());
+  }
+  const double wanted[] = {0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 2, 0};
+  EXPECT_THAT(corners, Pointwise(DoubleNear(1e-4), wanted));
+  EXPECT_THAT(Decoded(first["triangles"]), ElementsAre(0, 1, 1, -1, 2, -1));
+  // A mirror turns them round.
+  EXPECT_THAT(Decoded(replay.scene["meshes"][1]["triangles"]), ElementsAre(0, 2, -1, 0, 1, 1));
+}
+
 TEST_F(ReplayTest, ABodyLooksLikeABoxOfItsMoments) {
   json scene = Scene();
   // Of 12 kg, 1 m by 2 m by 3 m.

@@ -86,6 +86,7 @@ TEST(SceneTest, HasAllThatIsToBeSeen) {
                          "filename='mast.stl'/></geometry><material name='m'><color rgba='1 0.5 0 "
                          "1'/></material></visual></link></robot>";
   scenario.urdf_files["cart"] = urdf;
+  scenario.urdf_packages["cart"] = {};
   SensorChannelSpec scan{.name = "scan"};
   scan.instrument = LidarSpec{.mount = {.link = 2, .at = {}, .frame = {}}, .rays = 9};
   scenario.sensors = {scan};
@@ -111,6 +112,8 @@ TEST(SceneTest, HasAllThatIsToBeSeen) {
   EXPECT_EQ(links[2]["parent"], 0);
   EXPECT_EQ(links[2]["pose"][2], 7);
   EXPECT_EQ(links[2]["visuals"][0]["name"], "mast.stl");
+  EXPECT_EQ(links[2]["visuals"][0]["path"],
+            (std::filesystem::path(urdf).parent_path() / "mast.stl").string());
   EXPECT_EQ(links[2]["visuals"][0]["colour"][1], 0.5);
   EXPECT_EQ(scene["sensors"][0]["link"], "cart/wheel");
   EXPECT_EQ(scene["sensors"][0]["rays"], 9);
