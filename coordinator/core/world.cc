@@ -71,6 +71,7 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   states_.resize(all_bodies_.size());
   link_lines_ = LinkLines(*scenario.world);
   joint_lines_ = JointLines(*scenario.world);
+  contact_lines_ = ContactLines(*scenario.world);
   sensors_ = Sensors(scenario_.world->gravity_mps2);
   std::vector<std::string> names_of_bodies;
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
@@ -130,8 +131,8 @@ void World::Begin(std::int64_t realtime_offset_ns) {
 std::string World::OpenRecords(const std::string& folder) {
   // Those of an earlier run would be taken for this one's.
   std::error_code ignored;
-  for (const char* file :
-       {"/scene.json", "/bodies.csv", "/joints.csv", "/commands.csv", "/sensors.csv"}) {
+  for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/contacts.csv",
+                           "/commands.csv", "/sensors.csv"}) {
     std::filesystem::remove(folder + file, ignored);
   }
   if (!present()) return {};
@@ -148,6 +149,9 @@ std::string World::OpenRecords(const std::string& folder) {
   FindNextStop();
   std::string error;
   if (!joint_lines_.empty()) error = joints_csv_.Open(folder + "/joints.csv", kJointsCsvHead);
+  if (error.empty() && scenario_.csv_contacts) {
+    error = contacts_csv_.Open(folder + "/contacts.csv", kContactsCsvHead);
+  }
   if (error.empty() && !scenario_.commands.empty()) {
     error = commands_.log().Open(folder + "/commands.csv");
   }
@@ -166,6 +170,7 @@ void World::FlushBodies() {
 void World::FlushRecords() {
   FlushBodies();
   joints_csv_.Flush();
+  contacts_csv_.Flush();
   commands_.log().Flush();
   measurements_.Flush();
 }
@@ -176,7 +181,8 @@ std::string World::CloseRecords() {
   FlushBodies();
   csv_.close();
   if (!csv_) return NotWrittenWhole(csv_path_);
-  for (std::string error : {joints_csv_.Close(), commands_.log().Close(), measurements_.Close()}) {
+  for (const std::string& error : {joints_csv_.Close(), contacts_csv_.Close(),
+                                   commands_.log().Close(), measurements_.Close()}) {
     if (!error.empty()) return error;
   }
   return {};
@@ -207,6 +213,7 @@ void World::WriteStates() {
   link_lines_.Append(*dynamics_, &csv_text_);
   if (topics_) topics_->Write(VirtualTime::FromNanoseconds(now), states_, link_lines_.states());
   joint_lines_.Write(*dynamics_, &joints_csv_);
+  if (contacts_csv_.is_open()) contact_lines_.Write(*dynamics_, &contacts_csv_);
   if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }
 

@@ -16,6 +16,7 @@
 #include "coordinator/trace/csv_file.h"
 #include "coordinator/world/command_queue.h"
 #include "coordinator/world/commands.h"
+#include "coordinator/world/contact_lines.h"
 #include "coordinator/world/due_links.h"
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
@@ -44,8 +45,8 @@ class World {
   void Begin(std::int64_t realtime_offset_ns);
 
   // What the world looks like, how it moved and what moved it are written into this folder:
-  // scene.json, bodies.csv, joints.csv, commands.csv, and sensors.csv if it is recorded; nothing
-  // without a world. Empty on success, else one sentence.
+  // scene.json, bodies.csv, joints.csv, commands.csv, contacts.csv if the scenario asks for it, and
+  // sensors.csv if it is recorded; nothing without a world. Empty on success, else one sentence.
   std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   std::string CloseRecords();
@@ -122,6 +123,8 @@ class World {
   LinkLines link_lines_;
   JointLines joint_lines_;
   CsvFile joints_csv_;
+  ContactLines contact_lines_;
+  CsvFile contacts_csv_;
   bool is_recorded_ = false;
   DueLinks due_links_;
   std::optional<WorldTopics> topics_;

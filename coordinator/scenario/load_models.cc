@@ -100,7 +100,7 @@ class Models {
     }
   }
 
-  PackagePath PackagesOf(const YamlMap& map) const {
+  std::vector<std::string> PackagesOf(const YamlMap& map) const {
     std::vector<std::string> folders;
     if (const YamlValue* packages = map.Find("packages")) {
       for (const YamlValue& folder : packages->AsList("[../install/share]")) {
@@ -110,7 +110,7 @@ class Models {
         }
       }
     }
-    return PackagePath(std::move(folders));
+    return folders;
   }
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
@@ -119,8 +119,10 @@ class Models {
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
-    RobotModel model = Read(urdf, use, PackagesOf(map));
+    std::vector<std::string> packages = PackagesOf(map);
+    RobotModel model = Read(urdf, use, PackagePath(packages));
     model.name = entry.key;
+    scenario_.urdf_packages[model.name] = std::move(packages);
     scenario_.urdf_files[model.name] = PathOf(urdf);
     if (const YamlValue* v = map.Find("at")) {
       const YamlMap at = v->AsMap();

@@ -272,6 +272,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
+  // Of these the folders, in `packages`, that their meshes' packages may be in.
+  std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;
   std::optional<NetworkSpec> network;  // none: all robots share the host's
   std::vector<SensorChannelSpec> sensors;
@@ -280,6 +282,7 @@ struct Scenario {
   dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
+  bool csv_contacts = false;              // contact forces are written, too
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
 };

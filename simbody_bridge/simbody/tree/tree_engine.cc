@@ -57,18 +57,13 @@ class TreeEngine : public ForestEngine<SteppedTree> {
   void Take(IslandStep& step) override {
     SteppedTree& tree = At(step.island);
     ModelLoads& loads = LoadsOn(step.island);
-    const double limit_s = step.limit.seconds();
     const double free_s = tree.TimeToTouch(step.from);
-    if (has_set_steps_) {
-      if (free_s < limit_s) {
-        tree.contact_step.Take(tree, loads, step, limit_s);
-      } else {
-        tree.TakeWhole(loads, step);
-      }
-    } else if (free_s < std::min(kContactStep, step.limit).seconds()) {
-      tree.contact_step.Take(tree, loads, step, std::min(kContactStep, step.limit).seconds());
+    if (const double contact_s = ContactStepOf(step).seconds(); free_s < contact_s) {
+      tree.contact_step.Take(tree, loads, step, contact_s);
+    } else if (has_set_steps_) {
+      tree.TakeWhole(loads, step);
     } else {
-      tree.TakeControlled(loads, step, accuracy_, std::min(limit_s, free_s));
+      tree.TakeControlled(loads, step, accuracy_, std::min(step.limit.seconds(), free_s));
       // It was pushed harder than is trusted.
       while (step.length_s > kContactStep.seconds() &&
              tree.MayHaveTouched(step.to, step.length_s)) {
@@ -91,7 +86,25 @@ class TreeEngine : public ForestEngine<SteppedTree> {
     tree.NormaliseQuaternions(*state);
   }
 
+  void ReadContacts(const IslandStep& step, VirtualDuration after,
+                    std::vector<ContactForce>* contacts) override {
+    SteppedTree& tree = At(step.island);
+    IslandStep again = step;
+    if (has_set_steps_) again.limit = after;
+    const double contact_s = ContactStepOf(again).seconds();
+    if (tree.TimeToTouch(again.from) >= contact_s) return;
+    tree.contact_step.Take(tree, LoadsOn(step.island), again, contact_s);
+    std::vector<ShapeContact> found;
+    tree.contact_step.FindForces(&found);
+    AppendForces(ForestOf(step.island), found, contacts);
+  }
+
  private:
+  // How long a step is that is one of contact.
+  VirtualDuration ContactStepOf(const IslandStep& step) const {
+    return has_set_steps_ ? step.limit : std::min(kContactStep, step.limit);
+  }
+
   const bool has_set_steps_;
   const VirtualDuration longest_step_;
   const double accuracy_;
