@@ -41,19 +41,24 @@ std::string FromEnvironment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-// Of the CPUs that Slurm has bound the job to. Where it binds nobody, those are all of the node,
-// and as many jobs as there are CPUs share them: then one that no other run has. The first one is
-// left to the rest of the machine for as long as there is another.
+// Of the CPUs that Slurm has bound the job to the run claims one. Where Slurm binds nobody, those
+// are all of the node, and as many jobs as there are CPUs share them. A run that may use several
+// leaves the first one to the rest of the machine (os/cpu_claim.h): so who finds only that one free
+// is to use it, and everybody else takes whichever becomes free.
 cpu_set_t CpusForRun() {
   cpu_set_t cpus;
   CPU_ZERO(&cpus);
   const std::vector<CpuPlace> places = CpuPlaces();
-  for (auto place = places.rbegin(); place != places.rend(); ++place) {
-    if (IsClaimed(place->number)) continue;
-    CPU_SET(static_cast<std::size_t>(place->number), &cpus);
-    return cpus;
+  bool others_are_claimed = true;
+  for (const CpuPlace& place : places) {
+    CPU_SET(static_cast<std::size_t>(place.number), &cpus);
+    if (place.number != places.front().number && !IsClaimed(place.number)) {
+      others_are_claimed = false;
+    }
   }
-  for (const CpuPlace& place : places) CPU_SET(static_cast<std::size_t>(place.number), &cpus);
+  if (!others_are_claimed || IsClaimed(places.front().number)) return cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<std::size_t>(places.front().number), &cpus);
   return cpus;
 }
 
