@@ -59,6 +59,9 @@ class Outlet {
   // Hands over what is due. True if there was anything.
   virtual bool HandOver(VirtualTime now) = 0;
 
+  // How many readings it still has.
+  virtual std::size_t Kept() const { return NextDue().IsNever() ? 0 : 1; }
+
   // At the run's end: why nothing of what was sent has reached anybody, and how to mend that, as a
   // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
   virtual std::string WhyUnheard() const { return {}; }

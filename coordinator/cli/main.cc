@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coordinator/cli/check_command.h"
+#include "coordinator/cli/dump_command.h"
 #include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
@@ -290,6 +291,9 @@ int main(int argc, char** argv) {
   fit->add_option("--out", fit_arguments.out,
                   "FILE: for the costs, as run --overlay takes it; printed unless told");
 
+  tcs::DumpArguments dump_arguments;
+  const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
+
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
   doctor->add_flag("--json", as_json, "for programs");
@@ -316,6 +320,8 @@ int main(int argc, char** argv) {
   if (generate->parsed()) return tcs::Generate(tcs::Describe(app), generated);
   if (make_new->parsed()) return tcs::FlushStdout(tcs::NewCommand(new_arguments));
   if (check->parsed()) return tcs::FlushStdout(tcs::CheckCommand(check_arguments));
+
+  if (dump->parsed()) return tcs::FlushStdout(tcs::DumpCommand(dump_arguments));
 
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;

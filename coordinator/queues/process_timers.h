@@ -85,6 +85,13 @@ class ProcessTimers {
   // None: there is no such timer. The same in all that follow: 0, or nothing happens.
   std::optional<shm::TimerKind> KindOf(Id id) const;
   Setting Get(Id id) const;
+  // Those that are armed, by their ids.
+  struct Armed {
+    Id id;
+    Setting setting;
+    shm::TimerKind kind;
+  };
+  std::vector<Armed> AllArmed() const;
   // What it was set to, and its signal's overruns, are forgotten; a signal on its way is not.
   void Set(Id id, Setting setting, VirtualDuration lead);
 
