@@ -35,6 +35,7 @@ class DdsGateway {
   // Once the run's header has its times, and the world is open. Empty on success, else one
   // sentence.
   [[nodiscard]] std::string Open();
+  const dds::Hub& hub() const { return hub_; }
   DdsRecords& records() { return records_; }
   // The coordinator's own endpoints, for the world's channels on DDS.
   dds::OwnEndpoints& ends() { return ends_; }

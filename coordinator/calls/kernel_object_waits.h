@@ -37,6 +37,8 @@ class KernelObjectWaits {
   // any.
   bool LookAtKernelWaits(Moment moment);
 
+  const WaitQueues& queues() const { return objects_; }
+
   // Something was written to a terminal.
   void FlushTerminals(Moment moment);
 

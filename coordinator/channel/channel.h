@@ -62,6 +62,9 @@ class Outlet {
   // Hands over what is due. True if there was anything.
   virtual bool HandOver(VirtualTime now) = 0;
 
+  // How many readings it still has.
+  virtual std::size_t Kept() const { return NextDue().IsNever() ? 0 : 1; }
+
   // At the run's end: why nothing of what was sent has reached a program, and how to mend that, as
   // the rest of a sentence that begins with the channel's name. Empty: it has, or that cannot be
   // told.

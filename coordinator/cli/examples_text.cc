@@ -9,7 +9,7 @@ namespace tcs {
 namespace {
 
 // A command, and pairs of lines: a command line, and what it is for. An empty name is tcsim itself.
-constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
+constexpr std::array<std::pair<const char*, const char*>, 10> kExamples = {{
     {"",
      "tcsim new hover && cd hover && tcsim run\n"
      "a first robot: writes a scenario and a controller, and flies them\n"
@@ -52,6 +52,11 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim report --figures svg slow fast\n"
      "one page of two, and each figure as a file"},
     {"topics", "tcsim topics --qos out\nall DDS topics of a run, with both ends of each"},
+    {"dump",
+     "tcsim dump\n"
+     "of the only run that goes on: who runs, and who waits for what\n"
+     "tcsim dump --json out\n"
+     "of the run that writes to out, for programs"},
     {"fit",
      "tcsim run --for-fit --out measured scenario.yaml && tcsim fit --out costs.yaml measured\n"
      "the costs with which `--accounting fixed --overlay costs.yaml` takes the time that was "

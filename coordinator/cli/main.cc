@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coordinator/cli/check_command.h"
+#include "coordinator/cli/dump_command.h"
 #include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
@@ -306,6 +307,9 @@ int main(int argc, char** argv) {
       "--out", fit_arguments.out,
       "FILE: where to write the costs, for `tcsim run --overlay` (default: the terminal)");
 
+  tcs::DumpArguments dump_arguments;
+  const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
+
   bool as_json = false;
   CLI::App* doctor = app.add_subcommand(
       "doctor", "check what this machine allows, and say how to mend what it does not");
@@ -332,6 +336,8 @@ int main(int argc, char** argv) {
   if (generate->parsed()) return tcs::Generate(tcs::Describe(app), generated);
   if (make_new->parsed()) return tcs::FlushStdout(tcs::NewCommand(new_arguments));
   if (check->parsed()) return tcs::FlushStdout(tcs::CheckCommand(check_arguments));
+
+  if (dump->parsed()) return tcs::FlushStdout(tcs::DumpCommand(dump_arguments));
 
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;

@@ -369,6 +369,7 @@ void Engine::BeginTurn(Task& task, std::int64_t horizon_ns, std::int64_t idle_un
   if (task.is_brief) task.brief_until_ns = HostClockOf(task) + kBriefNs / 2;
   Resume(task);
   run_.turn.recorded_tsc = host_cpu_.stop_tsc();
+  state_link_.Dispatched(task.tid, host_cpu_.stop_tsc(), task.cpu->progress_ns);
   if (task.activation.start_ns < 0) {
     task.activation.start_ns = task.process->clock.At(RobotTime(task.cpu->progress_ns)).ns();
   }

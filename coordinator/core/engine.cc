@@ -202,8 +202,10 @@ bool Engine::StepWorld() {
   run_.latest_ns = std::max(run_.latest_ns, std::min(now, limit));
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
+  state_link_.Does(Doing::kIntegrates, begun_tsc);
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
+  state_link_.Does(Doing::kSchedules, ended_tsc);
   records_.Integrated({now, world_.progress_ns()}, {begun_tsc, ended_tsc});
   run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   if (sent) {
@@ -246,8 +248,10 @@ std::int64_t Engine::KeepWorldNear(const Task& task, std::int64_t horizon_ns) {
     const std::int64_t to =
         computes ? std::min(now + bound, run_.root.Horizon(task.cpu->leaf)) : now;
     const std::uint64_t begun_tsc = __rdtsc();
+    state_link_.Does(Doing::kIntegrates, begun_tsc);
     world_.Lead(now, std::min(to, world_.NextStopNs()));
     const std::uint64_t ended_tsc = __rdtsc();
+    state_link_.Does(Doing::kSchedules, ended_tsc);
     records_.Integrated({world, world_.progress_ns()}, {begun_tsc, ended_tsc});
     run_.root.UpdateDynamics(world_.progress_ns(), world_.NextOutputNs());
   }
@@ -304,6 +308,7 @@ std::int64_t Engine::FurthestNs() const {
 void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
+  state_link_.Does(Doing::kWrites, begun_tsc);
   LookAtDetector();
   if (run_.options.on_progress) {
     if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) {
@@ -314,6 +319,7 @@ void Engine::LookAround() {
   }
   if (run_.options.on_notice) standstill_.Look(RunningNs(), FurthestNs());
   const std::uint64_t now_tsc = __rdtsc();
+  state_link_.Does(Doing::kSchedules, now_tsc);
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
 }
@@ -396,6 +402,7 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     run_.report.error = error.what();
   }
+  state_link_.Does(Doing::kWrites, __rdtsc());
   reporter_.Conclude(reached_end_ ? run_.end_ns : FurthestNs());
   // First: what clients do at their end is no part of the run.
   const std::string& folder = run_.options.output_directory;

@@ -47,7 +47,9 @@
 #include "coordinator/core/pacing.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
+#include "coordinator/core/state_dump.h"
 #include "coordinator/core/world.h"
+#include "coordinator/dump/state_link.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
@@ -163,6 +165,7 @@ class Engine {
   Reactor::Found OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnStateAsked(Subject subject, std::uint32_t events, Moment moment);
 
   // System calls that the kernel hands over (trapped.cc).
   Reactor::Found TrapArrived(int listener, Moment moment);
@@ -292,6 +295,10 @@ class Engine {
   DebuggerHold debugger_{run_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records(), pacing_}};
+  StateLink state_link_;
+  StateDump state_dump_{{run_, clock_, host_cpu_, world_, network_, launches_, ahead_,
+                         words_.table(), objects_.queues(), dds_.hub(), unknown_children_, pacing_,
+                         state_link_}};
 
   CpuClaim claim_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now

@@ -7,6 +7,7 @@
 #include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -200,8 +201,15 @@ Reactor::Found Engine::TakeEvents(std::int64_t timeout_ns, Moment moment, bool i
   const bool counts = !is_rest && run_.turn.HasClock() && timeout_ns >= 0;
   const shm::ClockReading before =
       counts ? host_cpu_.ClockOf(*run_.turn.task()) : shm::ClockReading{};
+  const bool sleeps = timeout_ns != 0;
+  if (sleeps && run_.turn.lasts()) {
+    state_link_.Does(Doing::kAwaitsThread, host_cpu_.stop_tsc());
+  } else if (sleeps) {
+    state_link_.Does(Doing::kAwaitsEvents, __rdtsc());
+  }
   const std::size_t n = reactor_.Wait(timeout_ns);
   if (!is_rest) host_cpu_.Woke();
+  if (sleeps) state_link_.Does(Doing::kSchedules, host_cpu_.stop_tsc());
   if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*run_.turn.task(), before, timeout_ns);
   if (n == 0 && run_.turn.lasts()) {

@@ -9,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <time.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include <cstring>
 #include <memory>
@@ -38,6 +39,8 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 }  // namespace
 
 std::string Engine::Prepare() {
+  state_link_.Open(run_.options.output_directory);
+  state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
   const std::string no_real_time = WhyNoRealTime();
@@ -58,6 +61,7 @@ std::string Engine::Prepare() {
   std::string taken;
   claim_ = ClaimCpu(run_.options.waits_for_cpu, &taken);
   if (!taken.empty()) return taken;
+  state_link_.RunsOn(claim_.cpu);
   ClientsRunOn(claim_.cpu);
   const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
   const std::vector<int> beside = World::ProcessorsBeside(claim_.cpu, run_.options.host_cpus);
@@ -78,6 +82,9 @@ std::string Engine::Prepare() {
   world_.UseProcessors(beside);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
+  if (state_link_.wake_fd() >= 0) {
+    reactor_.Add(state_link_.wake_fd(), EPOLLIN, {Tag::kStateAsked});
+  }
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());

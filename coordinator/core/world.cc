@@ -332,6 +332,15 @@ std::vector<std::string> World::CommandComplaints() const {
   return complaints;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> World::KeptReadings() const {
+  std::vector<std::pair<std::size_t, std::size_t>> kept;
+  for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+    if (const std::size_t count = channels_.outlets[i]->Kept(); count > 0)
+      kept.emplace_back(i, count);
+  }
+  return kept;
+}
+
 std::vector<std::string> World::UnheardSensors() const {
   return OfSensors([](const Outlet& outlet) { return outlet.WhyUnheard(); });
 }

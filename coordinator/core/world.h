@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/channel/channels.h"
@@ -66,6 +67,11 @@ class World {
   // Goes on to `to_ns`, at most the next stop, while somebody acts at `now_ns` whose commands are
   // still to come. Each is applied at its time.
   void Lead(std::int64_t now_ns, std::int64_t to_ns);
+
+  // How many commands were sent and do not act yet; and the channels of sensors that have readings
+  // on their way, each with how many, by their numbers in the scenario.
+  std::size_t kept_commands() const { return queue_.size(); }
+  std::vector<std::pair<std::size_t, std::size_t>> KeptReadings() const;
 
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;

@@ -460,6 +460,12 @@ std::int64_t Hub::DueNs(Number number) const {
   return member == nullptr || member->queue.empty() ? shm::kNeverNs : member->queue.begin()->first;
 }
 
+Hub::Backlog Hub::BacklogOf(Number number) const {
+  const Member* member = Find(number);
+  if (member == nullptr) return {};
+  return {member->queue.size(), member->queued_bytes, DueNs(number)};
+}
+
 std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {
   Member* member = Find(number);
   if (member == nullptr) return 0;

@@ -87,6 +87,13 @@ class Hub {
   // so if it dies then.
   bool IsFull(Number number) const;
 
+  // What waits for the process and is not in its hands yet.
+  struct Backlog {
+    std::size_t messages = 0, bytes = 0;
+    std::int64_t due_ns = shm::kNeverNs;  // the first
+  };
+  Backlog BacklogOf(Number number) const;
+
   // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
   // left to be filled in.
   void SendOwn(shm::DdsMessage header, std::span<const std::byte> payload, std::int64_t due_ns);

@@ -31,7 +31,7 @@ class Message {
     rtattr attribute{static_cast<unsigned short>(RTA_LENGTH(size)), type};
     char* at = attributes_ + used_;
     memcpy(at, &attribute, sizeof attribute);
-    memcpy(at + RTA_LENGTH(0), value, size);
+    if (size > 0) memcpy(at + RTA_LENGTH(0), value, size);
     Grow(RTA_SPACE(size));
   }
   template <class Value>

@@ -35,6 +35,13 @@ constexpr std::uint32_t kDeviceQueue = 32768;  // packets; more than one call se
 constexpr std::uint32_t kNoTimeoutMs = 120'000;
 constexpr std::uint32_t kHostsOfNet = 0xff;  // as network/wire.cc has them
 
+// About the interface of that name.
+ifreq RequestFor(const char* name) {
+  ifreq request{};
+  snprintf(request.ifr_name, sizeof request.ifr_name, "%s", name);
+  return request;
+}
+
 // What the host's time would have a part in, and what makes up for it. Kernels that do not have one
 // of these do not have what it turns off, either.
 struct Setting {
@@ -113,8 +120,7 @@ class Maker {
  private:
   UniqueFd MakeDevice() {
     UniqueFd fd(open(kTun, O_RDWR | O_NONBLOCK | O_CLOEXEC));
-    ifreq wanted{};
-    strcpy(wanted.ifr_name, kDevice);
+    ifreq wanted = RequestFor(kDevice);
     wanted.ifr_flags = IFF_TUN | IFF_NO_PI;
     if (!fd || ioctl(fd.get(), TUNSETIFF, &wanted) != 0) return {};
     return fd;
@@ -122,8 +128,7 @@ class Maker {
 
   bool Raise(const char* name) {
     const UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    ifreq wanted{};
-    strcpy(wanted.ifr_name, name);
+    ifreq wanted = RequestFor(name);
     if (ioctl(fd.get(), SIOCGIFFLAGS, &wanted) != 0) return false;
     wanted.ifr_flags = static_cast<short>(wanted.ifr_flags | IFF_UP);
     return ioctl(fd.get(), SIOCSIFFLAGS, &wanted) == 0;

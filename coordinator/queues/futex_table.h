@@ -44,12 +44,16 @@ class FutexTable {
   std::size_t IndexOf(Thread thread, const FutexKey& word) const;
   // The word that it waits at, which must be one.
   const FutexKey& WordOf(Thread thread) const;
+  // The first of those that it waits at; null: none.
+  const FutexKey* FirstWordOf(Thread thread) const;
 
   // False if no thread waits at this place of any page, and so none at this address, whatever it is
   // mapped to.
   bool MayBeWaitedAt(std::uint64_t address) const;
   // Whom a wake with these bits is for; kNobody: none.
   Thread MostUrgent(const FutexKey& word, std::uint32_t bits) const;
+  // Where somebody waits, each once, in the order of processes and addresses.
+  std::vector<FutexKey> AwaitedWords() const;
   // All, in the order of waiting.
   std::vector<Thread> WaitersAt(const FutexKey& word) const;
   // The same, the most urgent first.

@@ -87,6 +87,13 @@ class ProcessTimers {
   // None: there is no such timer. The functions below then return 0, or do nothing.
   std::optional<shm::TimerKind> KindOf(Id id) const;
   Setting Get(Id id) const;
+  // The timers that are armed, by their ids.
+  struct Armed {
+    Id id;
+    Setting setting;
+    shm::TimerKind kind;
+  };
+  std::vector<Armed> AllArmed() const;
   // Forgets the timer's earlier setting and its signal's overruns, but not a signal that is on its
   // way.
   void Set(Id id, Setting setting, VirtualDuration lead);

@@ -68,6 +68,10 @@ WaitText TextOfWait(const Task& task, bool has_child) {
   }
   if (task.state == TaskState::kStarting) return {8, "is being started"};
   if (task.state != TaskState::kWaiting) return {9, "is about to act"};
+  return TextOfAwaited(task, has_child);
+}
+
+WaitText TextOfAwaited(const Task& task, bool has_child) {
   if (const auto* wait = task.Awaits<awaited::Descriptors>(); wait != nullptr) {
     return {2, DescriptorsOf(task, *wait)};
   }

@@ -44,6 +44,8 @@ class CommandQueue final : public CommandSink {
   void Refuse(std::size_t channel, const std::string& why) override { to_.Refuse(channel, why); }
   void Note(const std::string& sentence) override { to_.Note(sentence); }
 
+  std::size_t size() const { return kept_.size(); }
+
   // Gives on what was sent by `until`; `before` is told of each one's time first. False if there
   // was nothing.
   bool PassOn(VirtualTime until, const std::function<void(VirtualTime)>& before);

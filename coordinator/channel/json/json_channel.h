@@ -45,6 +45,7 @@ class JsonOutlet final : public Outlet {
   bool Send(const Reading& reading, VirtualTime arrives) override;
   VirtualTime NextDue() const override { return on_the_way_.NextDue(); }
   bool HandOver(VirtualTime now) override;
+  std::size_t Kept() const override { return on_the_way_.size(); }
   std::string WhyUnheard() const override { return sender_->WhyUnheard(); }
   void TellOf(DatagramWatch& watch, const std::string& channel) override {
     watch_ = &watch;

@@ -74,6 +74,9 @@ class PtyChannels::DeviceOutlet final : public Outlet {
     return false;
   }
   VirtualTime NextDue() const override { return std::min(waiting_.NextDue(), device_.NextDue()); }
+  std::size_t Kept() const override {
+    return waiting_.size() + (device_.NextDue().IsNever() ? 0 : 1);
+  }
   bool HandOver(VirtualTime now) override {
     waiting_.Arrive(now, [&](const std::string& line) { Begin(line, now); });
     return device_.HandOver(now);

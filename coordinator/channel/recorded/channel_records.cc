@@ -55,6 +55,7 @@ class ChannelRecords::WrappedOutlet final : public Outlet {
     return outlet_->Send(reading, arrives);
   }
   VirtualTime NextDue() const override { return outlet_->NextDue(); }
+  std::size_t Kept() const override { return outlet_->Kept(); }
   bool HandOver(VirtualTime now) override { return outlet_->HandOver(now); }
   std::string WhyUnheard() const override { return outlet_->WhyUnheard(); }
   std::string WhatWasLost() const override { return outlet_->WhatWasLost(); }
