@@ -47,14 +47,14 @@ install(DIRECTORY "${CMAKE_SOURCE_DIR}/docs" DESTINATION "${tcs_doc}")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tcsim)
 set(CPACK_PACKAGE_VENDOR tcs)
-# As Debian's own tools take it; lintian wants a mail address that exists.
-set(CPACK_PACKAGE_CONTACT "tcs maintainers <tcs@localhost>")
+# As Debian's own tools take it. The address stands for one: DEBFULLNAME and DEBEMAIL name whoever makes the package.
+set(CPACK_PACKAGE_CONTACT "tcs maintainers <tcs@example.org>")
 if(DEFINED ENV{DEBEMAIL})
   set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulation of robots in which computing takes time")
 set(CPACK_PACKAGE_DESCRIPTION
-    "tcs runs robot programs that nobody recompiled (controllers, planners, DDS
+    "tcs runs unmodified robot programs (controllers, planners, DDS
 nodes) in a simulation in which computing takes time: a planner that needs
 0.8 s of processor time finds the world 0.8 s older when it is done.
 .

@@ -85,12 +85,17 @@ function(tcs_add_executable target)
   tcs_target_defaults(${target})
 endfunction()
 
-# One GoogleTest executable, its cases registered with CTest under one label.
-#   tcs_add_gtest(name LABEL unit SOURCES a.cc b.cc LIBS x y)
+# One GoogleTest executable, its cases registered with CTest under one label. Its own sources are compiled quickly, as
+# what they test is not; OPTIMISED: they are not, either.
+#   tcs_add_gtest(name LABEL unit [OPTIMISED] SOURCES a.cc b.cc LIBS x y)
 function(tcs_add_gtest target)
-  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED" "LABEL" "SOURCES;LIBS" ${ARGN})
   tcs_add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main GTest::gmock)
+  if(NOT ARG_OPTIMISED)
+    tcs_target_compile_quickly(${target})
+    tcs_share_precompiled(tcs_gtest_headers ${target})
+  endif()
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)
 endfunction()

@@ -1,6 +1,6 @@
 // What the kernel answers without waiting, though a descriptor is not ready: nothing was asked for,
-// or something is wrong. Nobody but the kernel knows all of that, so it is asked, in a form of the
-// call that does not wait. -EAGAIN: the call would wait.
+// or something is wrong. Only the kernel knows all of that, so the kernel is asked, in a form of
+// the call that does not wait. -EAGAIN: the call would wait.
 #pragma once
 
 #include <sys/socket.h>
@@ -18,8 +18,8 @@ bool AcceptWaits(int fd, int flags);
 // answer.
 bool WantsMore(int fd);
 
-// False if nobody who sends to the socket waits for what is read to make room: what does not fit is
-// lost with UDP.
+// False if no sender to the socket waits until a read makes room: with UDP, what does not fit is
+// lost.
 bool ReadingMakesRoom(int fd);
 
 // True if a call with such flags never waits for data.

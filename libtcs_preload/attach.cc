@@ -31,7 +31,7 @@ int Connect() {
   if (length + 1 > sizeof address.sun_path) DieWithoutCoordinator("TCS_SOCKET is too long");
   memcpy(address.sun_path + 1, SocketName(), length);
   const long fd = RawSyscall(SYS_socket, AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
-  if (fd < 0) DieWithoutCoordinator("no descriptor is left for the connection to it");
+  if (fd < 0) DieWithoutCoordinator("this process has no free descriptor for the connection to it");
   const long size = static_cast<long>(offsetof(sockaddr_un, sun_path) + 1 + length);
   if (RawSyscall(SYS_connect, fd, Arg(&address), size) != 0) {
     DieWithoutCoordinator("that tcsim is no longer there");
@@ -65,7 +65,7 @@ Received Exchange(int socket, shm::AttachWants wants) {
   } while (n == -4 /* EINTR */);
   if (n != static_cast<long>(sizeof received.reply) || received.reply.magic != shm::kMagic ||
       received.reply.version != shm::kVersion) {
-    DieWithoutCoordinator("it does not get a place there (another version of tcs?)");
+    DieWithoutCoordinator("tcsim has no place for it (another version of tcs?)");
   }
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
   if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {

@@ -14,12 +14,12 @@ enum class WaitResult { kRetry, kTimedOut, kInterrupted };
 // Stops the thread until one of `fds` (negative ones are passed over) may be ready, one of
 // `waiting`'s signals, which the thread blocks, is pending, or `deadline_ns` is reached. kRetry:
 // probe again: everything sent until then is there. What was sent up to the call but was not there
-// yet ends the wait at the time of the call, so nobody needs to hold before.
+// yet ends the wait at the time of the call, so no caller needs to hold before.
 //
-// Who waits for one descriptor to take what there is, is one of several: one is woken for one
-// event, the one that waits longest, or (an epoll set's) that came last. `again`: it was woken, and
-// found nothing. When it has taken something, it calls PassOn, so that what it has left finds the
-// next.
+// Several threads may wait for one descriptor to take what there is. One event wakes one of them:
+// the one that has waited longest, or, at an epoll set, the one that came last. `again`: the thread
+// was woken, and found nothing. When it has taken something, it calls PassOn, so that the next
+// thread gets what it has left.
 enum class OneEvent { kForAll = 0, kForTheFirst = 1, kForTheLast = 2 };
 struct Waiting {
   OneEvent event = OneEvent::kForAll;
@@ -43,14 +43,14 @@ bool PollNow(int fd, short events);
 
 // HoldForRead, unless others cannot change what the call finds. It takes a datagram that is there
 // already: that is from the past, and comes first whatever else is still sent. Or it reads a timer,
-// which expires at no time that the thread's horizon does not stop at.
-// True if it held: somebody else may have taken what was there.
+// which expires at no time that the thread's horizon does not stop at. True if it held: another
+// thread may have taken what was there.
 bool HoldForReadFrom(GuestThread& thread, int fd, bool socket);
 
 bool IsNonBlocking(int fd);
 
-// True if calls on `fd` can wait for somebody else: sockets, pipes, terminals, event descriptors.
-// `is_socket` is told which of them, if given.
+// True if calls on `fd` can wait for another program or thread: sockets, pipes, terminals, event
+// descriptors. `is_socket` is told which of them, if given.
 bool CanWait(int fd, bool* is_socket = nullptr);
 
 // The descriptor's SO_RCVTIMEO or SO_SNDTIMEO as a deadline from now.

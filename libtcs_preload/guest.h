@@ -8,8 +8,8 @@
 //   * mechanism only: who runs when is the coordinator's business.
 //
 // A process finds its coordinator through the environment (shm/attach_protocol.h). Without the
-// variable the shim lets every call through. With it, but with nobody behind it, the process ends:
-// one line on stderr, exit status 127.
+// variable the shim lets every call through. With the variable, but with no coordinator behind it,
+// the process ends: one line on stderr, exit status 127.
 #pragma once
 
 #include <atomic>

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "libtcs_preload/at_once.h"
+#include "libtcs_preload/datagram_notes.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
@@ -95,6 +96,7 @@ bool ReadDatagram(GuestThread& t, int fd, Reads reads, AtOnce at_once, ssize_t* 
     }
   }
   if (got > 0 && reads.takes) NoteReceived(t);
+  if (got >= 0 && reads.takes && NotesDatagrams()) NoteDatagramsReceived(t, fd, 1);
   *result = ToErrno(got);
   if (t.passes_on && !reads.dont_wait && !IsNonBlocking(fd)) {
     const int error = errno;
@@ -119,6 +121,9 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     if (any_socket) AcknowledgeAtOnce(fd);
     BeginTaking(*t, fd, any_socket);
     const long result = call();
+    if (any_socket && result >= 0 && reads.takes && NotesDatagrams()) {
+      NoteDatagramsReceived(*t, fd, 1);
+    }
     if (result > 0 && reads.takes) {
       if (any_socket) {
         NoteReceived(*t);
@@ -182,12 +187,14 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   HoldForWrite(*t);
   const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
+  if (NotesDatagrams()) NoteDatagram(*t, fd, nullptr, 0);
   const long result =
       rest.bytes() == 0
           ? whole()
           : TransferAll(
                 *t, fd, POLLOUT, SO_SNDTIMEO, rest,
                 [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
+  if (result < 0 && NotesDatagrams()) TakeBackDatagram(*t, fd, nullptr, 0);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
   }
@@ -206,9 +213,7 @@ void HoldToSend(GuestThread& t, int fd, const msghdr& message) {
 
 // Control data travels with the first part.
 template <class Whole>
-ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
-  if (t == nullptr) return ToErrno(whole());
-  HoldToSend(*t, fd, message);
+ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole whole) {
   if (message.msg_iovlen > kMostBuffers || DontWait(flags) || IsNonBlocking(fd)) {
     return ToErrno(whole());
   }
@@ -223,6 +228,21 @@ ssize_t SendAll(GuestThread* t, int fd, msghdr message, int flags, Whole whole) 
         return sent;
       },
       whole));
+}
+
+template <class Whole>
+ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, Whole whole) {
+  if (t == nullptr) return ToErrno(whole());
+  HoldToSend(*t, fd, message);
+  if (!NotesDatagrams()) return SendInParts(t, fd, message, flags, whole);
+  NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
+  const ssize_t sent = SendInParts(t, fd, message, flags, whole);
+  if (sent < 0) {
+    const int error = errno;
+    TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
+    errno = error;
+  }
+  return sent;
 }
 
 // With MSG_WAITALL a stream gives all that is asked for, or what there is at its end.
@@ -370,7 +390,10 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   if (state == FdState::kReady) HoldForRead(*t);
   BeginTaking(*t, fd, true);
   const long result = at_once();
-  if (result > 0 && Takes(flags)) NoteReceived(*t);
+  if (result > 0 && Takes(flags)) {
+    NoteReceived(*t);
+    if (NotesDatagrams()) NoteDatagramsReceived(*t, fd, static_cast<std::uint32_t>(result));
+  }
   PassOn(*t);
   return static_cast<int>(ToErrno(result));
 }

@@ -1,6 +1,7 @@
-// Calls in which the kernel itself may hold the thread, for it alone knows what they wait for:
-// locks of files, the other end of a FIFO. The coordinator is told before, so that others get their
-// turn at once; whoever may end such a wait tells it after (TellKernelWaiters in keys.h).
+// Calls in which the kernel itself may hold the thread, because only the kernel knows what they
+// wait for: locks of files, the other end of a FIFO. The shim tells the coordinator before such a
+// call, so that other threads get their turn at once. A thread that may have ended such a wait
+// tells the coordinator afterwards (TellKernelWaiters in keys.h).
 #pragma once
 
 #include <pthread.h>

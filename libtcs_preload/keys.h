@@ -1,4 +1,5 @@
-// Kernel objects that cannot be polled: whoever changes one tells those who wait for it.
+// Kernel objects that cannot be polled: a thread that changes one tells the threads that wait for
+// it.
 #pragma once
 
 #include "libtcs_preload/exchange.h"
@@ -16,7 +17,7 @@ inline void TellKernelWaiters(GuestThread& thread) {
                            .args = {static_cast<std::int64_t>(shm::WaitKey::kKernelWaits), 0}});
 }
 
-// After a change of the object: those who wait for one try again.
+// After a change of the object: the threads that wait for it try again.
 inline void TellChanged(GuestThread& thread, shm::WaitKey kind, std::int64_t id) {
   if (!AnybodyWaits()) return;
   Exchange(thread, Request{.kind = shm::NotificationKind::kWakeKey,

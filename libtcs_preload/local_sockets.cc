@@ -27,9 +27,10 @@ bool IsLocal(const GuestThread& thread, int fd) {
          shm::RobotOf(shm::LocalSocketsOf(*g_run).by_cookie, cookie) == thread.slot->robot;
 }
 
-std::uint64_t NameOf(const void* address, socklen_t size) {
+std::uint64_t NameOf(const GuestThread& thread, const void* address, socklen_t size) {
   if (address == nullptr || size > sizeof(sockaddr_un) || !CanRead(address, size)) return 0;
-  return shm::HashOfName(address, size);
+  return shm::NumberOfName(shm::HashOfName(address, size), thread.slot->robot,
+                           g_header->names_by_robot != 0);
 }
 
 bool Reach(GuestThread& thread, std::uint32_t robot) {
@@ -71,7 +72,7 @@ bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long co
 }
 
 bool ReachesSafely(GuestThread& thread, const void* address, socklen_t size) {
-  const std::uint64_t name = NameOf(address, size);
+  const std::uint64_t name = NameOf(thread, address, size);
   if (name == 0) return false;
   const std::uint32_t robot = shm::RobotOf(shm::LocalSocketsOf(*g_run).by_name, name);
   if (robot == shm::kNoRobot) return false;
@@ -91,7 +92,7 @@ using namespace tcs::preload;
 // The coordinator is told first: once the kernel has the name, others can send to it.
 TCS_EXPORT int bind(int fd, const sockaddr* address, socklen_t size) {
   const Entered t;
-  const std::uint64_t name = t != nullptr ? NameOf(address, size) : 0;
+  const std::uint64_t name = t != nullptr ? NameOf(*t, address, size) : 0;
   int type = 0;
   std::uint64_t cookie = 0;
   if (name != 0 && SocketOption(fd, SO_TYPE, &type) && type == SOCK_DGRAM &&

@@ -13,7 +13,7 @@ namespace tcs::preload {
 // A look at the descriptor at `now_ns` by the thread's clock misses nothing, though others have not
 // come as far. Makes a system call.
 bool IsSafeLook(const GuestThread& thread, int fd, std::int64_t now_ns);
-// The same of several; false where they are many.
+// The same for several descriptors; false if there are too many to look at.
 bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long count,
                   std::int64_t now_ns);
 
@@ -22,7 +22,7 @@ bool AreSafeLooks(const GuestThread& thread, const pollfd* fds, unsigned long co
 // which can look at an earlier time; or another robot's do, to which sockets were local so far, and
 // it has held.
 bool ReachesSafely(GuestThread& thread, const void* address, socklen_t size);
-// The same of a message, which may have descriptors in it that leave the own robot.
+// The same for a message, which may carry descriptors that leave the robot.
 bool ReachesSafely(GuestThread& thread, const msghdr& message);
 
 }  // namespace tcs::preload

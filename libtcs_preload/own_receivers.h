@@ -5,8 +5,8 @@
 
 namespace tcs::preload {
 
-// Whether nobody but the coordinator receives what is sent by the socket to the address; without
-// one, to where the socket is connected.
+// Whether only the coordinator receives what the socket sends to the address; without an address,
+// to where the socket is connected.
 bool IsForCoordinator(int fd, const void* address, socklen_t size);
 
 }  // namespace tcs::preload

@@ -1,8 +1,8 @@
 // Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters) a
 // process of the shim's own, beside each client, hands them over (shm/attach_protocol.h). It shares
-// the client's memory and its table of descriptors and nothing else: it is no thread, so that
-// programs that count theirs find what they expect; it is nobody's child, so that no wait() finds
-// it, not even with __WALL; and it has a session of its own.
+// the client's memory and its table of descriptors and nothing else: it is no thread, so a program
+// that counts its threads finds the number that it expects; it is not the program's child, so no
+// wait() finds it, not even with __WALL; and it has a session of its own.
 //
 // Its code runs without anything of the C library's: no errno, no thread-local variables, no lock.
 #pragma once
@@ -17,7 +17,7 @@ namespace tcs::preload {
 void MakePorter();
 
 // The same if there is none: the coordinator has ended it because the process was about to execute
-// another program, or somebody else has. For the beginning of each call.
+// another program, or another process has ended it. For the beginning of each call.
 inline void KeepPorter() {
   if (g_header->has_porters != 0 && g_process->porter.load(std::memory_order_relaxed) == 0) {
     MakePorter();

@@ -9,8 +9,8 @@
 
 namespace tcs::preload {
 
-// With all six arguments. Calls of this form must not be among those that the trap knows by the
-// mark.
+// With all six arguments. Calls of this form must not be among the calls that the trap lets through
+// by the mark.
 inline long RawSyscall(long number, long a, long b, long c, long d, long e, long f) {
   long result;
   register long r10 __asm__("r10") = d;

@@ -9,8 +9,8 @@ namespace tcs::preload {
 // The calling thread has received something that others, or a timer, have sent.
 void NoteReceived(GuestThread& thread, shm::Receipts::Of of = shm::Receipts::Of::kMessage);
 
-// The same of what it has just read from a descriptor: nothing for one that tells a program's own
-// threads of each other (eventfd, signalfd).
+// The same for bytes that the thread has just read from a descriptor. Descriptors by which a
+// program's own threads wake each other (eventfd, signalfd) count for nothing.
 void NoteReceivedFrom(GuestThread& thread, int fd);
 
 inline void NoteSent(GuestThread& thread) { shm::NoteSent(thread.slot->receipts); }

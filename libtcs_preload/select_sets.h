@@ -1,5 +1,5 @@
-// The three sets of select(2), however many descriptors they hold, for a call that looks at them
-// more than once: the kernel works on a copy, and the program's own change when the call is over.
+// The three sets of select(2), for any number of descriptors and for a call that looks at them more
+// than once. The kernel works on a copy, and the program's own sets change when the call is over.
 #pragma once
 
 #include <poll.h>
@@ -32,7 +32,7 @@ class SelectSets {
  private:
   static constexpr int kSets = 3;
   static constexpr std::size_t kWordBits = 64;
-  // Of the size that fd_set has: what they need is on the stack.
+  // Sets of fd_set's size are kept on the stack.
   static constexpr std::size_t kOrdinary = FD_SETSIZE;
 
   bool MakeRoom();

@@ -1,15 +1,16 @@
-// Descriptors of signalfd, whose readiness is that of the process that looks: the coordinator,
-// which watches all other descriptors, does not see it, and waits for their signals instead.
+// Descriptors of signalfd. They are ready when the process that looks has a signal. So the
+// coordinator, which watches all other descriptors, does not see whether they are ready, and waits
+// for their signals instead.
 #pragma once
 
 namespace tcs::preload {
 
-// The signals that `fd` stands for, or those in the epoll set that it is; 0 for all others. Costs
-// nothing in processes without such descriptors.
+// The signals of `fd`, or of the signalfds in the epoll set `fd`; 0 for all other descriptors.
+// Costs nothing in processes without such descriptors.
 unsigned long SignalsOf(int fd, bool* is_epoll);
 
-// Has the kernel look again at those in an epoll set: when the coordinator looked, they did not
-// seem ready, and the set has forgotten them.
+// Has the kernel look again at the signalfds in an epoll set: when the coordinator looked, they did
+// not seem ready, and the set has forgotten them.
 void RearmSignalFds(int epfd);
 
 }  // namespace tcs::preload

@@ -12,9 +12,9 @@
 namespace tcs::preload {
 
 // For its lifetime all signals are blocked, so that no handler runs where the call would not let
-// it; those that the mask lets in end the wait by being pending (WaitForFds), and have their
-// handlers run under the mask in one step with the end of the wait (Deliver). Without a mask it
-// does nothing.
+// it; a signal that the mask lets in ends the wait by being pending (WaitForFds), and its handler
+// runs under the mask in one step with the end of the wait (Deliver). Without a mask it does
+// nothing.
 class MaskedWait {
  public:
   explicit MaskedWait(const sigset_t* mask) : active_(mask != nullptr) {

@@ -3,7 +3,8 @@
 
 namespace tcs::preload {
 
-// What is written to `fd` is sent, however little it is and whatever is still unacknowledged.
+// What is written to `fd` is sent at once, however little it is and whatever is still
+// unacknowledged.
 void SendAtOnce(int fd);
 
 // The next read acknowledges what it takes.

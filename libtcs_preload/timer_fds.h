@@ -18,7 +18,8 @@ struct TimerFd {
 bool RememberTimerFd(int fd, std::int64_t id, Clock clock);
 TimerFd* FindTimerFd(int fd);
 
-// The same, sure: not so where it was closed behind our back, and its number is another's now.
+// The same, checked: false if the descriptor was closed without the shim's knowledge and its number
+// now belongs to another one.
 bool IsTimerFd(int fd);
 
 // The timer's interval is one, or is none any more.

@@ -21,9 +21,9 @@ std::atomic<bool> g_has_said{false};
 void SayOnce() {
   if (g_has_said.exchange(true)) return;
   static const char kSentence[] =
-      "tcs: a debugger or tracer cannot work inside a run, where its program's stops are not told "
-      "to it; start the program without it, and attach to it from outside (gdb -p PID, strace -p "
-      "PID), or open a client of a scenario with `tcsim run --gdb ROBOT/CLIENT`\n";
+      "tcs: a debugger or tracer cannot work inside a run, because it does not learn when its "
+      "program stops; start the program without it, and attach to it from outside (gdb -p PID, "
+      "strace -p PID), or open a client of a scenario with `tcsim run --gdb ROBOT/CLIENT`\n";
   RawSyscall(SYS_write, 2, Arg(kSentence), sizeof kSentence - 1);
 }
 

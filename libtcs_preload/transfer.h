@@ -11,8 +11,8 @@
 
 namespace tcs::preload {
 
-// What is left of some buffers. It looks at them only when asked for bytes(), or when some have
-// been used: then the kernel has, too, and they are there.
+// What is left of some buffers. It reads their list only when asked for bytes(), or when some bytes
+// have been used: then the kernel has read the list, too, so the memory is there.
 class Rest {
  public:
   Rest(const iovec* iov, std::size_t count) : iov_(iov), count_(count) {}

@@ -1,5 +1,5 @@
-// The kernel's own user-space clock functions. Who calls them past the C library's symbols (Go's
-// runtime, the C library itself from inside) is led to the shim's.
+// The kernel's own user-space clock functions. A program that calls them past the C library's
+// symbols (Go's runtime, the C library itself from inside) is led to the shim's functions.
 #pragma once
 
 namespace tcs::preload {

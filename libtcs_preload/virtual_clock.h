@@ -68,10 +68,10 @@ std::int64_t DeadlineAfter(GuestThread& thread, std::int64_t timeout_ns);
 // is what is true at that time, no more and no less.
 void HoldForRead(GuestThread& thread);
 
-// Returns once nobody can read any more what is from before the thread's time.
+// Returns once no thread can read at a time before this thread's any more.
 void HoldForWrite(GuestThread& thread);
-// The thread writes now. False if somebody may still read what is from before, so that the write
-// has to hold unless it is kept from all of them.
+// The thread writes now. False if another thread may still read at an earlier time. The write then
+// has to hold, unless it is kept from all such readers.
 bool BeginWrite(GuestThread& thread);
 
 using shm::AddSaturated;

@@ -54,9 +54,9 @@ static_assert(sizeof(PipeMessage) == 4);
 
 // Where the kernel lets the coordinator copy no descriptors of clients (RunHeader::has_porters)
 // each process has a porter: a process beside it that shares its table of descriptors, and sends
-// the coordinator copies of those that it asks for. One answer for each request, over a
-// SOCK_SEQPACKET socket, the copy beside it. The porter's first message is an answer with the
-// serial 0: who sent it is the porter, as the kernel says.
+// the coordinator copies of the descriptors that it asks for. One answer for each request, over a
+// SOCK_SEQPACKET socket, with the copy beside it. The porter's first message is an answer with the
+// serial 0: the kernel says which process sent it, and that is the porter.
 struct PorterRequest {
   std::int32_t number;
   std::uint32_t serial;  // never 0

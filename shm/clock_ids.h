@@ -18,7 +18,7 @@ enum class ClockKind {
 
 struct ClockOfId {
   ClockKind kind = ClockKind::kNone;
-  bool is_read_only = false;  // nobody can sleep on it, nor have timers
+  bool is_read_only = false;  // no thread can sleep on it or have timers
   bool is_alarm = false;      // would wake a machine that sleeps
   pid_t owner = 0;            // of processor time: this process or thread; 0: the caller
 
@@ -79,7 +79,7 @@ constexpr int ErrorOfSleepOn(clockid_t id, pid_t sleeper) {
   return clock.owner == 0 || clock.owner == sleeper ? EINVAL : EOPNOTSUPP;
 }
 
-// The same of its timers (timer_create). Machines of robots do not sleep.
+// The same for timers on it (timer_create). Computers of robots do not suspend.
 constexpr int ErrorOfTimerOn(const ClockOfId& clock) {
   if (clock.kind == ClockKind::kNone) return EINVAL;
   return clock.is_read_only || clock.is_alarm ? EOPNOTSUPP : 0;

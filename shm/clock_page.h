@@ -65,7 +65,7 @@ inline ClockReading ReadClock(const ClockPage& page) {
   }
 }
 
-// What the clock was at `tsc`, for a page that nobody moves meanwhile: one whose thread is stopped.
+// What the clock was at `tsc`, for a page that does not change meanwhile: its thread is stopped.
 inline ClockReading ReadClockAt(const ClockPage& page, std::uint64_t tsc) {
   ClockReading r;
   r.executed_word = page.executed_adjust.load(std::memory_order_acquire);
@@ -140,7 +140,7 @@ inline void TakeOut(ClockPage& page, const ClockReading& r, std::int64_t ns, std
   page.host_cpu_origin_ns += HostNsOf(page, ns);
 }
 
-// The same of what has been executed since the dispatch: the way out of the gate.
+// The same for the time executed since the dispatch, which the way out of the gate takes.
 inline void TakeOutGate(ClockPage& page, const ClockReading& r, std::int64_t most_ns) {
   TakeOut(page, r, r.cpu_ns - page.base_cpu_ns, most_ns);
 }

@@ -5,15 +5,15 @@
 //   kEndpoint, kTopic: DdsEndpoint, then its texts.
 //
 // Texts and lists lie behind the structure; a DdsBytes says where, counted from the payload's
-// start. Numbers of policies are those of the DDS C API's enumerations (dds_public_qosdefs.h) and,
-// for kinds, of the DDS specification: 0 volatile, 1 transient local, …; durations are ns,
-// INT64_MAX for ever.
+// start. Policies have the numbers of the DDS C API's enumerations (dds_public_qosdefs.h) and, for
+// kinds, of the DDS specification: 0 volatile, 1 transient local, …; durations are ns, INT64_MAX
+// for ever.
 //
 // An endpoint's GUID belongs to its participant: its first 12 bytes are the participant's, its last
-// byte says what it is (kDds…Id). Who owns a transient-local writer must answer the news of a
-// reliable transient-local reader of its topic with what the writer has, as kSamples addressed to
-// that reader, and then kHistoryEnd; the reader gets nothing of that writer before. The same with
-// nothing to send where such a writer is new and the reader is not.
+// byte says what it is (kDds…Id). When the process of a transient-local writer is told of a
+// reliable transient-local reader of its topic, it must answer with what the writer has, as
+// kSamples addressed to that reader, and then kHistoryEnd. The reader gets nothing of that writer
+// before. The same, with nothing to send, where such a writer is new and the reader is not.
 #pragma once
 
 #include <cstddef>

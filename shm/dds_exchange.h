@@ -2,7 +2,7 @@
 // memory that they pass through.
 //
 // The coordinator is in the middle. A process that has a participant joins: it gets a number and an
-// area, a memfd that nobody else sees (whose pages cost nothing until they are used):
+// area, a memfd that no other process sees (whose pages cost nothing until they are used):
 //
 //   +---------+------------------+------------------+
 //   | DdsArea | outbox           | inbox            |
@@ -13,22 +13,22 @@
 // To send, a process writes whole messages into its outbox and notifies (kDdsSend): they carry the
 // virtual time of that notification. The coordinator copies them out, checks them, and keeps them
 // in the order of their times. One thread of each process, the *deliverer*, waits for what is due
-// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox. It runs as
-// the robot's scheduler lets it, as a middleware's threads do, for the program's listeners run on
-// it. A thread that is about to look at what has come first waits until nobody can send anything
-// before its own time any more (kRead), and then until the deliverer is done (kDdsSync): meanwhile
-// it lends it its priority.
+// (kDdsWait): the coordinator wakes it at the message's time, the messages in its inbox. It is
+// scheduled by the robot's scheduler, as a middleware's threads are, because the program's
+// listeners run on it. A thread that is about to look at what has come first waits until no program
+// can send anything before its own time any more (kRead), and then until the deliverer is done
+// (kDdsSync). Meanwhile it lends the deliverer its priority (priority inheritance).
 //
-// A process for which more waits than it can take at once is *full*: it takes more slowly than
-// others write, or hangs. The coordinator shows in all areas which are. What then becomes of a
-// sample is as DDS has it (DdsMessage::keep_last, kDdsUnreliable): a reliable writer that keeps all
-// waits before it writes the next one (kDdsRoom), for as long as its QoS say, and then its write
-// fails; of one that keeps the last few, more of an instance replace what waits; what is promised
-// to nobody is dropped and counted.
+// Back-pressure: a process for which more waits than it can take at once is *full*, because it
+// takes more slowly than others write, or hangs. The coordinator shows in all areas which processes
+// are full. What then happens to a sample is what DDS says (DdsMessage::keep_last, kDdsUnreliable).
+// A reliable writer that keeps all samples waits before it writes the next one (kDdsRoom), for as
+// long as its QoS say, and then its write fails. Of a writer that keeps the last few, further
+// samples of an instance replace the ones that wait. Best-effort samples are dropped and counted.
 //
-// The coordinator remembers participants and endpoints: who joins later is told of them, and when a
-// process dies its participants are reported as gone once their leases are over. It trusts nothing
-// that it reads here. Any change bumps kVersion (layout.h).
+// The coordinator remembers participants and endpoints: a process that joins later is told of them,
+// and when a process dies its participants are reported as gone once their leases are over. The
+// coordinator trusts nothing that it reads here. Any change bumps kVersion (layout.h).
 #pragma once
 
 #include <atomic>
@@ -90,7 +90,8 @@ inline constexpr std::uint16_t kDdsGone = 1;  // the subject is no more
 inline constexpr std::uint16_t kDdsLeased = 2;
 // No reader in the process that the sample is for has been promised it.
 inline constexpr std::uint16_t kDdsUnreliable = 4;
-// What is for everybody is for the sender, too: it has several domains that are one on the network.
+// A message for all processes is for the sender, too, if the sender has several domains that are
+// one on the network.
 inline constexpr std::uint16_t kDdsToSender = 8;
 
 struct DdsMessage {
@@ -112,7 +113,7 @@ struct DdsMessage {
   // all; and the instance, by its number in the writer's process. Of participants, `instance` is
   // DdsTag of their domain.
   std::uint32_t keep_last;
-  std::uint32_t reserved;
+  std::uint32_t sender_ran;  // the coordinator's own: see Hub::Send, the lower half
   std::uint64_t instance;
 };
 static_assert(sizeof(DdsMessage) == 104);
@@ -120,8 +121,8 @@ static_assert(offsetof(DdsMessage, subject) == 24);
 static_assert(offsetof(DdsMessage, source_timestamp_ns) == 56);
 static_assert(offsetof(DdsMessage, instance) == 96);
 
-// Of the tag that Cyclone's configuration may give a domain (Discovery/Tag): participants of
-// domains with different ones do not meet. The coordinator meets all.
+// The tag that Cyclone's configuration may give a domain (Discovery/Tag). Participants of domains
+// with different tags do not meet. The coordinator meets all.
 inline constexpr std::uint64_t DdsTag(const char* tag) {
   if (tag == nullptr || *tag == '\0') return 0;
   std::uint64_t hash = 0xcbf29ce484222325u;

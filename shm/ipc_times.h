@@ -3,8 +3,8 @@
 // thread notes in its slot what it has done, and the coordinator takes that over when the thread
 // stops.
 //
-// A place belongs to an object from its first use on. Those of removed objects are used again, in
-// no particular order, once all places that an object may have are taken.
+// A place belongs to an object from its first use on. The places of removed objects are used again,
+// in no particular order, once all places that an object may have are taken.
 #pragma once
 
 #include <atomic>

@@ -8,15 +8,15 @@
 //   coordinator's          +---------------+---------------+-----
 //
 // Sealed memfds that never have a name. The coordinator makes them, the shim maps them when its
-// process attaches (attach_protocol.h). What is of the run everybody reads, and only the
-// coordinator can write; what is of a process nobody else sees. A thread slot belongs to one kernel
-// thread from its attach to its end.
+// process attaches (attach_protocol.h). All processes can read the run's memory, and only the
+// coordinator can write it. No other process sees the memory of a process. A thread slot belongs to
+// one kernel thread from its attach to its end.
 //
-// Who writes what. Each group of fields names its writer. The coordinator writes a slot's clock
-// only while the slot's thread is stopped, and bumps the dispatch number in the two adjustment
-// words each time; the thread moves those words by compare-and-swap and so notices that it was
-// stopped between (clock_page.h). The coordinator trusts nothing it reads here: it copies, then
-// checks, and keeps its own idea of every clock.
+// Writers. Each group of fields names its writer. The coordinator writes a slot's clock only while
+// the slot's thread is stopped, and bumps the dispatch number in the two adjustment words each
+// time; the thread moves those words by compare-and-swap and so notices that it was stopped in
+// between (clock_page.h). The coordinator trusts nothing that it reads here: it copies, then
+// checks, and keeps its own value of every clock.
 //
 // Any change to a size, an offset or a meaning bumps kVersion. All times are virtual nanoseconds
 // since the run's start unless the name says otherwise.
@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/datagram_notes.h"
 #include "shm/ipc_times.h"
 #include "shm/receipts.h"
 #include "shm/work_counts.h"
@@ -33,7 +34,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 17;
+inline constexpr std::uint32_t kVersion = 18;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -46,7 +47,7 @@ enum class NotificationKind : std::uint32_t {
   kNone = 0,
   kHorizon = 1,    // the thread's clock has reached its horizon
   kRead = 2,       // go on once nothing can be produced before time_ns any more
-  kWrite = 3,      // go on once nobody can still read before time_ns
+  kWrite = 3,      // go on once no thread can still read before time_ns
   kIdle = 4,       // sleep until deadline_ns; args[0]: 1 if with the signal mask args[1];
                    // 2 if also until a signal of the set args[1] is pending
   kWaitFds = 5,    // sleep until one of fds is ready, a signal of the set args[1] is pending, or
@@ -106,17 +107,17 @@ enum class NotificationKind : std::uint32_t {
                   // robot has looked for the last time without waiting for others
 };
 
-// By this the coordinator stops a thread that computes, where only gates keep threads apart
-// (RunHeader::preempts). It is one of the two that the C library keeps for itself: programs can
-// neither catch nor block it, and it is in none of their sets. The library itself has it for
-// set*id() in programs of several threads, and tells its own by who sent it. It carries the number
-// of the dispatch that is to end.
+// The signal by which the coordinator stops a thread that computes, where only gates keep threads
+// apart (RunHeader::preempts). It is one of the two signals that the C library keeps for itself:
+// programs can neither catch nor block it, and it is in none of their sets. The library uses it for
+// set*id() in programs of several threads, and recognises its own signals by their sender. The
+// signal carries the number of the dispatch that is to end.
 inline constexpr int kPreemptionSignal = 33;
 
 // Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call
 // that the kernel carries out, so that the thread says once it is done (kCall).
 inline constexpr std::uint64_t kBeginsInCall = 2;
-// The same where the thread computes ahead of its turns: each of its calls begins at its gate.
+// The same for a thread that computes ahead of its turns: each of its calls begins at its gate.
 inline constexpr std::uint64_t kIsAhead = 4;
 
 inline constexpr std::int64_t kKeepPolicy = -1;
@@ -129,7 +130,7 @@ enum class WhySockets : std::uint32_t {
 };
 
 // Kernel objects that cannot be polled. Two are for waking only. kTerminals: what is written to one
-// end of a terminal reaches the other some time later, unless somebody polls. kKernelWaits: the
+// end of a terminal reaches the other some time later, unless a thread polls. kKernelWaits: the
 // kernel may have let threads go on that it held.
 enum class WaitKey : std::uint32_t {
   kSemaphores = 1,
@@ -156,8 +157,8 @@ static_assert(sizeof(TimerKind) == 3 * sizeof(std::int64_t));
 // _PROF).
 inline constexpr std::int64_t kFirstTimerId = 16;
 
-// Timers of shorter intervals are not worked off one expiration after another: who is about to read
-// a descriptor of such a one asks for it first (kTimerGet).
+// Timers of shorter intervals are not processed expiration by expiration: a thread that is about to
+// read the descriptor of such a timer asks for its count first (kTimerGet).
 inline constexpr std::int64_t kShortIntervalNs = 100'000;
 
 // Why a dispatch ended a wait.
@@ -185,7 +186,7 @@ struct ClockPage {
   std::int64_t horizon_ns;  // the clock never shows more
   std::int64_t idle_until_ns;  // the thread may move its own clock up to here by sleeping
   std::int64_t read_safe_ns;   // nothing is produced before this any more
-  std::int64_t write_safe_ns;  // nobody reads before this any more
+  std::int64_t write_safe_ns;  // no thread reads before this any more
   // Written by the coordinator at a dispatch, moved by the thread: 16 bits dispatch number, 48 bits
   // signed ns.
   std::atomic<std::uint64_t> executed_adjust;  // less what was stolen, plus set costs
@@ -288,8 +289,10 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
   std::uint32_t robot;
   std::uint8_t reserved[16];
+  DatagramNotes datagrams;
 };
-static_assert(sizeof(ThreadSlot) == 1152);
+static_assert(sizeof(ThreadSlot) == 3264);
+static_assert(offsetof(ThreadSlot, datagrams) == 1152);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
@@ -313,7 +316,7 @@ struct alignas(64) RunHeader {
   std::int64_t realtime_offset_ns;      // CLOCK_REALTIME minus virtual time; never 0
   std::int32_t coordinator_pid;
   Sync sync;
-  std::atomic<std::uint32_t> queues_notify;  // 1: who sends to a message queue may send a signal
+  std::atomic<std::uint32_t> queues_notify;  // 1: a send to a message queue may send a signal
   std::atomic<std::uint32_t>
       key_waiters;  // threads that kWakeKey may concern; if none it is spared
   std::atomic<std::uint32_t> kernel_waiters;  // the same for its kKernelWaits
@@ -322,8 +325,11 @@ struct alignas(64) RunHeader {
   std::uint32_t gates_only;
   std::uint32_t preempts;     // 1: the coordinator sends kPreemptionSignal
   std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
+  // 1: each robot has abstract names of its own (a network namespace).
+  std::uint32_t names_by_robot;
+  std::uint32_t notes_datagrams;  // 1: threads note the datagrams that they send and receive
   std::uint32_t reserved_too;
-  std::uint64_t reserved[5];
+  std::uint64_t reserved[4];
 };
 static_assert(sizeof(RunHeader) == 128);
 static_assert(offsetof(RunHeader, monotonic_offset_ns) == 32);

@@ -1,7 +1,7 @@
 // The sockets that only programs of one robot, and the coordinator, can send to: UNIX datagram
-// sockets with an abstract name, as long as no program of another robot has sent to one of that
-// robot's or connected to it. Whoever looks there and finds nothing need not wait until other
-// robots have come as far.
+// sockets with an abstract name, as long as no program of another robot has sent to a socket of
+// that robot or connected to it. A thread that reads there and finds nothing need not wait until
+// other robots have come as far.
 //
 //   bind      the coordinator is told before the kernel is: the name and the socket are the robot's
 //   look      a socket that is here, and of the own robot: ClockPage::local_read_safe_ns is enough
@@ -9,9 +9,9 @@
 //             (NotificationKind::kReaches). It takes all that is that robot's out of here, for
 //             good, and the sender goes on once it is as far as that robot has looked.
 //
-// A descriptor that leaves its robot (SCM_RIGHTS, pidfd_getfd) takes out what is its robot's, too.
-// Sockets that are not here are looked at as any other descriptor: those bound by calls that the
-// shim does not see, and those for which there was no room.
+// A descriptor that leaves its robot (SCM_RIGHTS, pidfd_getfd) takes out the sockets of its robot,
+// too. Sockets that are not here are treated as any other descriptor: sockets bound by calls that
+// the shim does not see, and sockets for which there was no room.
 //
 // Written by the coordinator, read by all clients at any time; behind the rest of the run's memory
 // (own_receivers.h). Entries are never moved, so that a look needs no lock.
@@ -37,7 +37,7 @@ struct RobotByNumber {
   static constexpr std::uint32_t kMost = kPlaces / 2;
   struct Place {
     std::atomic<std::uint64_t> number;  // 0: free
-    std::atomic<std::uint32_t> robot;   // kNoRobot: nobody's any more
+    std::atomic<std::uint32_t> robot;   // kNoRobot: no robot's any more
     std::uint32_t reserved;
   };
   Place places[kPlaces];
@@ -64,11 +64,12 @@ inline std::uint32_t RobotOf(const RobotByNumber& table, std::uint64_t number) {
 
 struct LocalSockets {
   RobotByNumber by_cookie;  // SO_COOKIE, which the kernel gives to one socket ever
-  RobotByNumber by_name;    // HashOfName
+  RobotByNumber by_name;    // NumberOfName
 };
 
-// 0 for an address that is no abstract name. Names of one hash are taken for one: two robots'
-// sockets are then nobody's, and a send reaches a robot that it does not concern. Both are safe.
+// 0 for an address that is no abstract name. Names of one hash are taken for one: the sockets of
+// two robots then belong to neither, and a send seems to reach a robot that it does not concern.
+// Both are safe.
 inline std::uint64_t HashOfName(const void* address, std::size_t size) {
   constexpr std::size_t kBegin = offsetof(sockaddr_un, sun_path);
   sa_family_t family = AF_UNSPEC;
@@ -78,6 +79,14 @@ inline std::uint64_t HashOfName(const void* address, std::size_t size) {
   if (family != AF_UNIX || bytes[kBegin] != 0) return 0;
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (std::size_t i = kBegin; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3;
+  return hash == 0 ? 1 : hash;
+}
+
+// The number of a name, given its hash, for a program of the robot. Where robots have names of
+// their own (RunHeader::names_by_robot) a name that two of them use is two names.
+inline std::uint64_t NumberOfName(std::uint64_t hash, std::uint32_t robot, bool is_by_robot) {
+  if (hash == 0 || !is_by_robot) return hash;
+  hash = (hash ^ robot) * 0x100000001b3;
   return hash == 0 ? 1 : hash;
 }
 

@@ -1,6 +1,6 @@
-// The addresses of datagram sockets at which the coordinator itself receives, and nobody else: the
-// commands that robots' programs send there. No program sees such a datagram, so whoever sends one
-// does not wait until nobody can look at an earlier time; the coordinator keeps it until then.
+// The addresses of datagram sockets at which only the coordinator receives: the commands that
+// robots' programs send there. No program sees such a datagram, so its sender does not wait until
+// no thread can read at an earlier time any more; the coordinator keeps the datagram until then.
 //
 // Written by the coordinator before anyone attaches, read by all clients; behind the rest of the
 // run's memory (layout.h).
@@ -20,8 +20,8 @@
 
 namespace tcs::shm {
 
-// What tells an address from others of its kind, and zeros behind it; of no bytes where nobody
-// receives by it, or in a way that is not known here.
+// What tells an address from others of its kind, and zeros behind it; of no bytes where there is no
+// receiver, or the kind of address is not known here.
 struct ReceiverAddress {
   std::uint16_t size;
   unsigned char bytes[110];

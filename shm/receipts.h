@@ -1,11 +1,11 @@
-// Where one activation of a thread ends and the next begins though it did not wait between: it
-// received what was there already. The same rule on both sides of the segment.
+// Where one activation of a thread ends and the next begins although the thread did not wait in
+// between: it received a message that was there already. Both sides of the segment use this rule.
 //
-// An activation begins with a wait's end, and what the thread receives then it was woken for, or
-// finds on the way. A thread that receives once more after it has worked on that (it has sent
-// something, or computed for kWorkNs) is at its next activation, whether it had to wait or not. A
-// program's start counts as such work, so that its first message begins an activation, too. What
-// is received in one go, several pieces of one message or all that waits in a socket, begins none.
+// An activation begins when a wait ends. What the thread receives then belongs to that activation.
+// If the thread works on it (sends something, or computes for kWorkNs) and then receives again,
+// that begins its next activation, whether or not it had to wait. A program's start counts as such
+// work, so its first message begins an activation, too. Pieces that are received one after the
+// other, several of one message or all that wait in a socket, begin none.
 //
 // The state is written by the thread, and by the coordinator while the thread is stopped. The
 // coordinator empties the list at each stop, and trusts nothing in it.
@@ -25,7 +25,7 @@ struct Receipts {
 
   enum class Of : std::uint32_t { kMessage = 0, kTimer = 1 };
 
-  // At which an activation began.
+  // A receipt at which an activation began.
   struct Entry {
     std::int64_t time_ns;  // the thread's clock
     std::int64_t cpu_ns;   // what it had been charged

@@ -1,5 +1,5 @@
-// What a thread does that has a set cost under fixed accounting, counted: what `tcsim fit` makes
-// those costs of. Written by the thread; figures only, so the coordinator believes any value.
+// Counts of what a thread does that has a set cost under fixed accounting: `tcsim fit` makes these
+// costs from them. Written by the thread; figures only, so the coordinator believes any value.
 #pragma once
 
 #include <cstdint>

@@ -83,6 +83,19 @@ struct LinkState {
   std::array<double, 3> angular_velocity_radps{};
 };
 
+// A point where two things touch, and what they do to each other there, in the world's frame. A
+// contact stands in a list once: what `second` feels is the opposite force at the same point.
+struct ContactForce {
+  int first = 0;  // the link that the force acts on
+  // The link that it is the force of, or the fixture (index into WorldSpec::fixtures); the other
+  // one of the two is -1. What is fixed to the world is never `first`, unless both are; of two
+  // links that move, or of two that do not, `first` has the lower number.
+  int second = -1, fixture = -1;
+  std::array<double, 3> point_m{};
+  std::array<double, 3> normal{};   // of unit length, from the second towards the first
+  std::array<double, 3> force_n{};  // along the normal, and friction across it
+};
+
 // Along which axes a wrench on a link is given; those of the link turn with it while it acts.
 enum class WrenchFrame { kWorld, kLink };
 
@@ -254,6 +267,16 @@ class Dynamics {
                          std::span<LinkState> states) = 0;
   virtual void ReadJoints(VirtualTime t, std::span<const int> joints,
                           std::span<JointState> states) = 0;
+
+  // The contacts of all models at `t` >= Now(), of those alone that push: in the order of their
+  // first and then of their second things, fixtures after links. A force is that of the engine's
+  // step which ends at `t` or is under way then, constant over it: so it is what changed the
+  // momenta that ReadLinks tells of at `t`, by commands until then. A blow counts in the steps that
+  // it takes (of 1 ms, by default). At the run's start no step has been taken, and nothing pushes.
+  // Free bodies touch nothing, on any engine; the walls of a region are no contacts.
+  //
+  // As Read, it changes nothing. It costs each island that may touch something about a step.
+  virtual void ReadContacts(VirtualTime t, std::vector<ContactForce>* contacts) = 0;
 
   // A checkpoint holds what a run goes on from: after Restore the same calls compute bitwise what
   // they computed in the run that was saved. It costs less than a step. With `reuse`, an earlier

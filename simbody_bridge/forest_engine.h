@@ -22,7 +22,12 @@ class ForestEngine : public ModelEngine {
  public:
   ForestEngine(const WorldSpec& world, const std::vector<std::vector<int>>& islands)
       : models_(world.models), fixtures_(world.fixtures), gravity_mps2_(world.gravity_mps2) {
-    for (const RobotModel& model : models_) bases_.push_back(StaticShapesOf(model));
+    int first_link = 0;
+    for (const RobotModel& model : models_) {
+      bases_.push_back(StaticShapesOf(model));
+      for (StaticShape& shape : bases_.back()) shape.link += first_link;
+      first_link += static_cast<int>(model.links.size());
+    }
     for (const std::vector<int>& models : islands) AddIsland(models, {});
   }
 
@@ -59,6 +64,7 @@ class ForestEngine : public ModelEngine {
   }
 
  protected:
+  const Forest& ForestOf(int island) const { return forests_[static_cast<std::size_t>(island)]; }
   System& At(int island) { return systems_[static_cast<std::size_t>(island)]; }
   ModelLoads& LoadsOn(int island) { return loads_[static_cast<std::size_t>(island)]; }
 
@@ -76,7 +82,7 @@ class ForestEngine : public ModelEngine {
 
   const std::vector<RobotModel> models_;  // which the forests point into, as into the fixtures
   const std::vector<Shape> fixtures_;
-  std::vector<std::vector<Shape>> bases_;  // the static shapes of each model
+  std::vector<std::vector<StaticShape>> bases_;  // of each model, by the links of all models
   const std::array<double, 3> gravity_mps2_;
   std::deque<Forest> forests_;
   std::deque<System> systems_;

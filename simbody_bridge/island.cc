@@ -270,6 +270,13 @@ Acting Island::ActingUntil(VirtualTime t) const {
   return {legs_[leg].step.wrenches, legs_[leg].step.remainders, t};
 }
 
+const IslandStep* Island::StepTo(VirtualTime t) const {
+  Require(t >= Origin().at && t <= frontier_.at, "a step is looked at where it was taken");
+  std::size_t leg = used_;
+  while (leg > 0 && legs_[leg - 1].start.at >= t) --leg;
+  return leg > 0 ? &legs_[leg - 1].step : nullptr;
+}
+
 void Island::Save(Saved* saved) const {
   saved->origin = Origin();
   saved->commands = commands_;

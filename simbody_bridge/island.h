@@ -70,6 +70,9 @@ class Island {
   void StateAt(VirtualTime t, std::vector<double>* state);
   // What acted until that time.
   Acting ActingUntil(VirtualTime t) const;
+  // The step that leads to the state at `t`, which is after its beginning; null at the island's own
+  // beginning. `t` as of StateAt. It is valid until the next call that is not const.
+  const IslandStep* StepTo(VirtualTime t) const;
 
   // What an island would go on from that began there; `t` as of StateAt.
   Node NodeAt(VirtualTime t);

@@ -31,6 +31,7 @@ struct IslandStep {
   double length_s = 0;                     // exactly limit.seconds() if it is as long as that
   double next_try_s = 0;                   // for the next step
   std::vector<double> from_rate, to_rate;  // derivatives, of an engine that interpolates
+  std::vector<double> course;              // what it interpolates by beside these, if anything
 };
 
 // What acts on an island at an instant: the commands, and what is left of those before.

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "simbody_bridge/body_islands.h"
+#include "simbody_bridge/contact_forces.h"
 #include "simbody_bridge/dynamics.h"
 #include "simbody_bridge/model_islands.h"
 #include "simbody_bridge/require.h"
@@ -77,6 +78,13 @@ class Islands : public Dynamics {
     Require(joints.size() == states.size(), "one state for each joint that is read");
     RequireKnown(t);
     models_.ReadJoints(t, now_, joints, states);
+  }
+
+  void ReadContacts(VirtualTime t, std::vector<ContactForce>* contacts) override {
+    RequireKnown(t);
+    contacts->clear();
+    models_.ReadContacts(t, now_, contacts);
+    SortForces(contacts);
   }
 
   std::unique_ptr<Checkpoint> Save(std::unique_ptr<Checkpoint> reuse) override;

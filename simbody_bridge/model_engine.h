@@ -84,6 +84,11 @@ class ModelEngine : public IslandEngine {
                          std::span<LinkState> read) = 0;
   virtual void ReadJoints(int island, std::span<const double> state, const Acting& acting,
                           std::span<const int> joints, std::span<JointState> read) = 0;
+
+  // Appends the contacts that push in a step that was taken, as Dynamics has them, in an order that
+  // is a function of the step: those that lead to the state `after` its beginning, up to its end.
+  virtual void ReadContacts(const IslandStep& step, VirtualDuration after,
+                            std::vector<ContactForce>* contacts) = 0;
 };
 
 // The models of each island at least: those of world.models_together, and the others alone. Throws

@@ -61,8 +61,8 @@ ModelIslands::ModelIslands(const WorldSpec& world, Dynamics::Work& work)
 void ModelIslands::AddStatics() {
   for (std::size_t i = 0; i < models_.size(); ++i) {
     if (!models_[i].touches_models) continue;
-    for (const Shape& shape : StaticShapesOf(models_[i])) {
-      statics_.push_back({BallOf(shape), static_cast<int>(i)});
+    for (const StaticShape& of : StaticShapesOf(models_[i])) {
+      statics_.push_back({BallOf(of.shape), static_cast<int>(i)});
     }
   }
 }
@@ -221,6 +221,21 @@ void ModelIslands::ReadJoints(VirtualTime t, VirtualTime now, std::span<const in
         engine_->ReadJoints(of.group->island(), state_, of.island.ActingUntil(t), local_,
                             states.subspan(first, count));
       });
+}
+
+void ModelIslands::ReadContacts(VirtualTime t, VirtualTime now,
+                                std::vector<ContactForce>* contacts) {
+  asked_.clear();
+  for (const Owned& of : islands_) asked_.push_back(of.get());
+  Reach(t, now);
+  std::vector<const GroupIsland*> read;
+  for (std::size_t model = 0; model < models_.size(); ++model) {
+    const GroupIsland& of = HoldingAt(static_cast<int>(model), t);
+    if (std::ranges::find(read, &of) != read.end()) continue;
+    read.push_back(&of);
+    const IslandStep* step = of.island.StepTo(t);
+    if (step != nullptr) engine_->ReadContacts(*step, t - step->at, contacts);
+  }
 }
 
 // Those in `asked_`; where one of them can meet others, all that can.

@@ -45,6 +45,8 @@ class ModelIslands {
                  std::span<LinkState> states);
   void ReadJoints(VirtualTime t, VirtualTime now, std::span<const int> joints,
                   std::span<JointState> states);
+  // Those of each island after each other.
+  void ReadContacts(VirtualTime t, VirtualTime now, std::vector<ContactForce>* contacts);
 
   // What is gone on from.
   struct SavedIsland {

@@ -1,5 +1,5 @@
-// Processes that a signal stops, and that go on: at once, as far as others can see, though their
-// threads may be at nobody's turn; and their parents hear of it.
+// Processes that a signal stops, and that go on. Others see that at once, even if none of the
+// process's threads has its turn, and the parents learn of it.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -20,8 +20,8 @@ class ChildStops {
 
   // Has it stopped or gone on since the last look? Then its parent hears of it.
   void Look(Process& process, Moment moment);
-  // Nobody says that a process has been stopped from outside: those whose parents wait for it are
-  // looked at.
+  // No notification says that a process has been stopped from outside. So the processes whose
+  // parents wait for such a stop are looked at.
   void LookAtAwaited(Moment moment);
   // A child has ended, or, `by_stop`, has stopped or gone on: the parent's threads that wait for
   // such a change look at it, and its signal is there.

@@ -64,7 +64,7 @@ void DdsGateway::Handle(Task& task, const shm::Notification& note, VirtualTime d
       Join(task);
       break;
     case shm::NotificationKind::kDdsSend:
-      Send(process, static_cast<std::size_t>(note.args[0]), task.reached);
+      Send(process, static_cast<std::size_t>(note.args[0]), task);
       break;
     case shm::NotificationKind::kDdsWait:
       AwaitMessages(task);
@@ -92,8 +92,9 @@ void DdsGateway::AwaitDeliverer(Task& task, VirtualTime deadline) {
 }
 
 // What is wrong is said once of each process: it may send as often as it likes.
-void DdsGateway::Send(Process& process, std::size_t bytes, VirtualTime at) {
-  const std::string wrong = hub_.Send(process.dds_number, bytes, at.ns());
+void DdsGateway::Send(Process& process, std::size_t bytes, const Task& by) {
+  const VirtualTime at = by.reached;
+  const std::string wrong = hub_.Send(process.dds_number, bytes, at.ns(), by.charged.ns());
   if (!wrong.empty() && !std::exchange(process.client->dds_warned, true)) {
     run_.Warn(fmt::format("{} {}", process.name, wrong));
   }
@@ -116,8 +117,10 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
       mend = "use a program that is linked with libddsc";
       break;
     case shm::WhySockets::kNoRoom:
-      reason = "there is no room for it in shared memory";
-      mend = "a run has room for 1024 of them, those that have ended included: start fewer";
+      reason = "the run's shared memory has no room for it";
+      mend =
+          "start fewer programs: a run has room for 1024 that speak DDS, including the ones that "
+          "have ended";
       break;
     case shm::WhySockets::kNoLibraryOfOurs:
       break;
@@ -127,7 +130,7 @@ void DdsGateway::WarnOfSockets(const Process& process, shm::WhySockets why) {
                                  ? "programs whose DDS is in shared memory"
                                  : "the scenario's topics in shared memory (" + topics + ")";
   const char* other_way = topics.empty() ? "" : ", or give it channels of the type udp_json";
-  run_.Warn(fmt::format("the DDS of {} uses sockets, as {}, so that it never meets {}; {}{}",
+  run_.Warn(fmt::format("the DDS of {} uses sockets because {}, so it never meets {}; {}{}",
                         process.name, reason, missed, mend, other_way));
 }
 

@@ -1,6 +1,7 @@
-// Programs that speak DDS: who has joined, what they send each other, and the thread of each that
-// takes what is for it, its deliverer (shm/dds_exchange.h). The hub keeps messages in order; this
-// has threads wait and go on for it. The world's channels on DDS are part of it, too.
+// Programs that speak DDS: which ones have joined, what they send each other, and each program's
+// deliverer, the thread that takes its messages in (shm/dds_exchange.h). The hub keeps messages in
+// order; this class has threads wait and go on for it. The world's channels on DDS are part of it,
+// too.
 //
 // For the coordinator's thread only. Trusts nothing that processes say; what is wrong is warned of
 // once per client.
@@ -34,8 +35,9 @@ class DdsGateway {
   // Once the run's header has its times, and the world is open. Empty on success, else one
   // sentence.
   [[nodiscard]] std::string Open();
+  const dds::Hub& hub() const { return hub_; }
   DdsRecords& records() { return records_; }
-  // The coordinator's own, for the world's channels on DDS.
+  // The coordinator's own endpoints, for the world's channels on DDS.
   dds::OwnEndpoints& ends() { return ends_; }
   const DdsRecords& records() const { return records_; }
   // The world, if there is one, takes what is for it, as far as nothing can come before that any
@@ -58,15 +60,15 @@ class DdsGateway {
   void HandOver(Task& task);
   // Something may have been sent: deliverers wait until what is for them is due.
   void ShowDeliverersTheirDeadlines();
-  // Those that wait until the process's deliverer has handed over what is due, if it is not about
-  // to any more.
+  // Wakes the threads that wait until the process's deliverer has handed over the due messages, if
+  // it has none left to hand over.
   void ReleaseThoseAwaitingDeliverer(const Process& process, Moment moment);
 
  private:
   dds::Speaker WhoIs(dds::Hub::Number number) const;
   std::size_t RobotOf(dds::Hub::Number number) const;
   void Join(Task& task);
-  void Send(Process& process, std::size_t bytes, VirtualTime at);
+  void Send(Process& process, std::size_t bytes, const Task& by);
   void WarnOfSockets(const Process& process, shm::WhySockets why);
   void AwaitMessages(Task& task);
   void AwaitDeliverer(Task& task, VirtualTime deadline);

@@ -68,19 +68,18 @@ void DdsRecords::WarnOfDrops() const {
     if (count > 0) run_.Warn(fmt::format("{} DDS samples {}", count, what));
   };
   say(drops.lost,
-      "were dropped, because a program has stopped taking what is sent to it and 256 MiB were "
-      "waiting: look for a listener that never returns");
+      "were dropped because a program does not take them any more and 256 MiB were waiting for it: "
+      "look for a listener that never returns");
   say(drops.unreliable,
-      "that no reader was promised (best effort) were dropped, because 1 MiB was waiting for a "
-      "program that takes more slowly: tcsim topics says of which topics");
+      "of best-effort readers or writers were dropped because 1 MiB was waiting for a program that "
+      "takes too slowly: `tcsim topics DIR` names the topics");
   say(drops.replaced,
-      "were replaced by later ones of writers that keep the last, because 1 MiB was waiting for a "
-      "program that takes more slowly: tcsim topics says of which topics");
+      "of KEEP_LAST writers were replaced by later ones because 1 MiB was waiting for a program "
+      "that takes too slowly: `tcsim topics DIR` names the topics");
   if (!topic_log_.is_whole()) {
     run_.Warn(fmt::format(
-        "the programs have made more than {} different writers and readers of DDS "
-        "topics: topics.json{} of the first ones only; do names or QoS have a counter "
-        "in them?",
+        "the programs have made more than {} different writers and readers of DDS topics: "
+        "topics.json{} of the first ones only; look for a counter in their names or QoS",
         dds::TopicLog::kMostEnds, recording_.has_value() ? " and bag/ tell" : " tells"));
   }
 }

@@ -38,10 +38,10 @@ class DdsRecords {
   [[nodiscard]] std::string Close();
   // The recording; null where there is none.
   record::MessageSink* sink() { return recording_ ? &*recording_ : nullptr; }
-  // What is sent from now on is no part of the run.
+  // Messages that are sent from now on are no part of the run.
   void Stop();
 
-  // Of samples that nobody got, and of topics that nobody knows of.
+  // Warns of samples that no reader got, and of endpoints that were not recorded.
   void WarnOfDrops() const;
   const dds::TopicLog& topics() const { return topic_log_; }
 

@@ -18,8 +18,8 @@ class DescriptorWaits {
  public:
   explicit DescriptorWaits(Reactor& reactor) : reactor_(reactor) {}
 
-  // Those of the thread's process with these numbers are watched from now on. One that cannot be
-  // watched is left out: a file is always ready, and of what is closed nobody hears.
+  // From now on the descriptors of the thread's process with these numbers are watched. One that
+  // cannot be watched is left out: a file is always ready, and a closed descriptor reports nothing.
   awaited::Descriptors Watch(const Task& task, const shm::WaitFd* fds, std::size_t count);
   // What the notification asks for: whether one event is for one waiter, and whether signals end
   // it.

@@ -1,6 +1,6 @@
-// What is due after a call that was let through to the kernel: others may go on by what it did, at
-// the time of the call. So its thread runs just long enough for the kernel to carry it out, and is
-// stopped for that.
+// What is due after a call that was let through to the kernel: other threads may go on because of
+// it, at the time of the call. So its thread runs just long enough for the kernel to carry the call
+// out, and is then stopped.
 //
 // For the coordinator's thread only.
 #pragma once

@@ -30,8 +30,8 @@ class FutexCalls {
 
   // Carries the call out, or has the thread wait; task.trap_result is what it returns.
   void Handle(Task& task, const TrappedCall& call);
-  // FUTEX_WAKE and FUTEX_WAKE_BITSET, whoever of the process calls: the threads woken; none for
-  // other commands.
+  // FUTEX_WAKE and FUTEX_WAKE_BITSET, from any thread of the process: the number of threads woken;
+  // none for other commands.
   std::int64_t CarryOutWake(const Process& process, const TrappedCall& call, Moment moment);
 
  private:

@@ -28,15 +28,16 @@ class FutexWords {
   // Wakes at most so many, one of whose bits is in `bits`. Returns how many.
   std::int64_t Wake(const FutexKey& key, std::int64_t most, std::uint32_t bits, Moment moment);
 
-  // Null: nobody waits there.
+  // Null: no thread waits there.
   Task* MostUrgent(const FutexKey& key, std::uint32_t bits);
   // From an absolute or relative timeout, if the call has one, to a deadline on its virtual CPU.
   // 0, or the call's error.
   std::int64_t Deadline(const Task& task, const TrappedCall& call, int command,
                         const timespec& timeout, VirtualTime* deadline);
   static FutexKey KeyFor(const Task& task, const TrappedCall& call, std::uint64_t address);
-  // The same for a wake. What a shared address is mapped to takes a look at the process, and where
-  // nobody waits at the same place of any page, nobody can be woken.
+  // The same for a wake. To find out what a shared address is mapped to takes a look at the
+  // process. Where no thread waits at the same place of any page, there is none to wake, and that
+  // look is spared.
   FutexKey WokenKeyFor(const Process& process, const TrappedCall& call,
                        std::uint64_t address) const;
 

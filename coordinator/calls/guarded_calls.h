@@ -20,8 +20,8 @@ namespace tcs {
 
 class GuardedCalls {
  public:
-  // tcsim's own processes; and who says of others that they are beside programs, as porters: no
-  // signal is meant for those.
+  // tcsim's own processes, and what tells which processes are porters beside programs: no signal is
+  // meant for porters.
   void Guard(std::vector<pid_t> own, std::function<bool(pid_t)> is_beside) {
     guarded_ = std::move(own);
     is_beside_ = std::move(is_beside);
@@ -30,7 +30,7 @@ class GuardedCalls {
 
   // The kernel carries the call out, unless it is about one of them.
   void LetThrough(const TrappedCall& call) const;
-  // The same of the call that the task has stopped in.
+  // The same for the call in which the task has stopped.
   void Continue(const Task& task) const;
 
  private:

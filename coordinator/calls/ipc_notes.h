@@ -1,4 +1,4 @@
-// What threads have done to System V objects, for everybody to see (shm/ipc_times.h).
+// What threads have done to System V objects, where all processes can read it (shm/ipc_times.h).
 #pragma once
 
 #include "coordinator/tasks/task.h"

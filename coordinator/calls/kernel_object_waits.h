@@ -28,14 +28,16 @@ class KernelObjectWaits {
   // It has ended.
   void Forget(const Task& task) { objects_.Forget(task.order); }
 
-  // Something of that kind (shm::WaitKey) has been done to the object. True if it has woken
-  // anybody.
+  // Something of that kind (shm::WaitKey) has been done to the object. True if that has woken a
+  // thread.
   bool Wake(std::int64_t kind, std::int64_t id, Moment moment);
   // A process that ends may change any object: the kernel undoes what it did to semaphores.
   void WakeAll(Moment moment);
   // Threads that the kernel holds in a call of theirs, and has just let go on. True if there are
   // any.
   bool LookAtKernelWaits(Moment moment);
+
+  const WaitQueues& queues() const { return objects_; }
 
   // Something was written to a terminal.
   void FlushTerminals(Moment moment);

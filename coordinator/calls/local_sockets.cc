@@ -46,9 +46,13 @@ void LocalSockets::Binds(const Robot& robot, std::uint64_t cookie, std::uint64_t
   }
 }
 
-void LocalSockets::BindsUnseen(pid_t pid, const TrappedCall& call) {
-  const std::uint32_t owner = OwnerOf(pid, call.args[1], static_cast<std::uint32_t>(call.args[2]));
-  if (owner != shm::kNoRobot) TakeOut(owner);
+void LocalSockets::BindsUnseen(const Robot* robot, const TrappedCall& call) {
+  for (const Robot& each : run_.robots) {
+    if (robot != nullptr && robot != &each) continue;
+    const std::uint32_t owner =
+        OwnerOf(each, call.tid, call.args[1], static_cast<std::uint32_t>(call.args[2]));
+    if (owner != shm::kNoRobot) TakeOut(owner);
+  }
 }
 
 void LocalSockets::TakeOut(std::uint32_t number) {
@@ -75,19 +79,22 @@ void LocalSockets::ReachesAll(Task& task) {
   for (const Robot& robot : run_.robots) Reaches(task, robot.number);
 }
 
-// Of the name at that address of the process's memory.
-std::uint32_t LocalSockets::OwnerOf(pid_t pid, std::uint64_t address, std::uint64_t size) const {
+// Of the name at that address of the memory of a process of the robot.
+std::uint32_t LocalSockets::OwnerOf(const Robot& robot, pid_t pid, std::uint64_t address,
+                                    std::uint64_t size) const {
   sockaddr_un name{};
   if (address == 0 || size > sizeof name ||
       !ReadMemory(pid, address, &name, static_cast<std::size_t>(size))) {
     return shm::kNoRobot;
   }
-  const std::uint64_t hash = shm::HashOfName(&name, static_cast<std::size_t>(size));
-  return hash == 0 ? shm::kNoRobot : shm::RobotOf(sockets_->by_name, hash);
+  const std::uint64_t number =
+      shm::NumberOfName(shm::HashOfName(&name, static_cast<std::size_t>(size)), robot.number,
+                        run_.header->names_by_robot != 0);
+  return number == 0 ? shm::kNoRobot : shm::RobotOf(sockets_->by_name, number);
 }
 
 void LocalSockets::ReachesByAddress(Task& task, std::uint64_t address, std::uint64_t size) {
-  const std::uint32_t owner = OwnerOf(task.process->pid, address, size);
+  const std::uint32_t owner = OwnerOf(*task.process->robot, task.process->pid, address, size);
   if (owner != task.process->robot->number) Reaches(task, owner);
 }
 

@@ -2,8 +2,8 @@
 // (shm/local_sockets.h).
 //
 // For the coordinator's thread only. What clients say of their sockets is not checked: a name that
-// two robots claim is nobody's, a socket is looked for by its own robot only, and whoever says too
-// much of its own deceives itself.
+// two robots claim belongs to neither, a socket is looked up by its own robot only, and a client
+// that lies about its own sockets harms itself only.
 #pragma once
 
 #include <sys/types.h>
@@ -28,14 +28,15 @@ class LocalSockets {
 
   // A program of the robot is about to bind that socket to a name.
   void Binds(const Robot& robot, std::uint64_t cookie, std::uint64_t name);
-  // A process is about to bind a socket in a call that the shim does not see: what it does with it
+  // A thread of the robot (null: it is not known of which) is about to bind a socket in a call that
+  // the shim does not see: what it does with it
   // is not known, and if the name was some robot's nothing is local to that robot any more.
-  void BindsUnseen(pid_t pid, const TrappedCall& call);
+  void BindsUnseen(const Robot* robot, const TrappedCall& call);
   // The thread is about to reach the robot of that number: nothing is local to it any more, and the
   // thread has come no less far than that robot has looked by now. A number that no robot has is
   // passed by.
   void Reaches(Task& task, std::uint32_t number);
-  // The same of a call that the kernel is to carry out, if it is one that reaches a robot.
+  // The same for a call that the kernel is to carry out, if the call reaches a robot.
   void ReachesBy(Task& task, const TrappedCall& call);
 
  private:
@@ -43,7 +44,8 @@ class LocalSockets {
              const Robot& robot);
   void TakeOut(std::uint32_t number);
   void ReachesAll(Task& task);
-  std::uint32_t OwnerOf(pid_t pid, std::uint64_t address, std::uint64_t size) const;
+  std::uint32_t OwnerOf(const Robot& robot, pid_t pid, std::uint64_t address,
+                        std::uint64_t size) const;
   void ReachesByAddress(Task& task, std::uint64_t address, std::uint64_t size);
   void ReachesByMessage(Task& task, std::uint64_t message);
 

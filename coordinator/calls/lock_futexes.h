@@ -1,6 +1,7 @@
-// Priority-inheritance futexes (FUTEX_LOCK_PI and its kin): the word holds the owner's thread id;
-// who waits lends the owner its priority, and an unlock hands the lock on. Also conditions whose
-// waker hands its waiters on to such a lock (FUTEX_WAIT_REQUEUE_PI, FUTEX_CMP_REQUEUE_PI).
+// Priority-inheritance futexes (FUTEX_LOCK_PI and its kin): the word holds the owner's thread id, a
+// thread that waits lends the owner its priority, and an unlock hands the lock on. Also conditions
+// whose waker hands the waiting threads on to such a lock (FUTEX_WAIT_REQUEUE_PI,
+// FUTEX_CMP_REQUEUE_PI).
 //
 // Results are the kernel's: negative for an errno. For the coordinator's thread only.
 #pragma once
@@ -26,8 +27,8 @@ class LockFutexes {
   std::int64_t WaitAtCondition(Task& task, const TrappedCall& call);
   std::int64_t RequeueFromCondition(Task& task, const TrappedCall& call);
 
-  // Whoever waits for the thread to end, or for a lock that it held, goes on: the kernel's own wake
-  // does not reach them.
+  // The threads that wait for the thread to end, or for a lock that it held, go on: the kernel's
+  // own wake does not reach them.
   void WakeThoseWaitingFor(Task& ended, Moment moment);
 
  private:

@@ -1,5 +1,5 @@
-// Who is blocked on a lock of whom, so that the owner runs with the priority of the most urgent
-// thread that waits for it. The robot's scheduler reckons with it; this tells it.
+// Which thread is blocked on which owner's lock, so that the owner runs with the priority of the
+// most urgent thread that waits for it. The robot's scheduler applies that; this class tells it.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -13,10 +13,12 @@ class PriorityInheritance {
  public:
   PriorityInheritance(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
 
-  // The task waits for a lock of the owner's; null: for nobody's. A thread of another robot
-  // inherits no priority: they are computers apart. The owner's priority is to be found after it.
+  // The task waits for a lock of the owner's; null: the lock has no owner. A thread of another
+  // robot inherits no priority, because it runs on another computer. The caller then has the
+  // owner's priority found.
   static void BlockOn(Task& task, const Task* owner);
-  // The task is blocked on nobody any more, who loses what it inherited.
+  // The task is not blocked on a thread any more, and that thread loses the priority that it
+  // inherited.
   void Leave(Task& task);
   // Whom the thread blocks, or how urgent they are, may have changed.
   void Find(Task& task);

@@ -119,7 +119,7 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
       break;
     case SYS_bind:
       task.trap_continues = true;
-      parts_.local_sockets.BindsUnseen(task.process->pid, call);
+      parts_.local_sockets.BindsUnseen(task.process->robot, call);
       break;
     case SYS_pidfd_getfd:
       task.trap_continues = true;

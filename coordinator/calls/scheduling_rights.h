@@ -1,6 +1,6 @@
-// Who may ask the robot's scheduler for what: the kernel's rules (sched(7)), by the credentials and
-// resource limits that the program has in the kernel. The kernel's own check falls on nobody here,
-// for it never hears of these calls.
+// Which thread may ask the robot's scheduler for what: the kernel's rules (sched(7)), by the
+// credentials and resource limits that the program has in the kernel. The kernel itself cannot
+// check, because these calls never reach it.
 #pragma once
 
 #include <sys/types.h>
@@ -13,8 +13,8 @@ namespace tcs {
 // host does not even let tcsim have one.
 void IgnoreRealTimeLimits();
 
-// Threads by their kernel numbers. True for who has CAP_SYS_NICE; SCHED_DEADLINE is for nobody
-// else.
+// Threads by their kernel numbers. True for a thread with CAP_SYS_NICE; only such a thread may have
+// SCHED_DEADLINE.
 bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
                       const SchedulingParameters& wanted);
 bool MaySetAffinity(pid_t asking, pid_t tid);

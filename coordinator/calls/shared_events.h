@@ -20,7 +20,8 @@ class SharedEvents {
   SharedEvents(RunState& run, Waker& waker, Reactor& reactor)
       : run_(run), waker_(waker), reactor_(reactor) {}
 
-  // Those for whom an event has come, in one look at the kernel: they go on, or are passed over.
+  // The threads for which an event has come, in one look at the kernel: they go on, or are passed
+  // over.
   void Wake(const std::vector<Task*>& awaiters, Moment moment);
   // The thread has tried what it was woken for: what it has left is for the next.
   void PassOn(Task& first, Moment moment);

@@ -19,7 +19,7 @@ namespace tcs {
 
 class SignalCalls {
  public:
-  // How often it is looked at what nobody tells of.
+  // How often signals are looked for that no notification tells of.
   static constexpr HostDuration kLookEvery = HostDuration::Milliseconds(10);
 
   // `looked_at`: a signal may have stopped the process or let it go on, at that time.
@@ -32,10 +32,10 @@ class SignalCalls {
         clock_(clock),
         looked_at_(std::move(looked_at)) {}
 
-  // Somebody has sent one to that process; 0: to whomever.
+  // A program has sent a signal to that process; 0: to any process.
   void Sent(pid_t receiver, Moment moment);
-  // Nobody says that a signal has come from outside, so those who wait for one are looked at now
-  // and then. True if one goes on.
+  // No notification says that a signal has come from outside, so the threads that wait for one are
+  // looked at now and then. True if one of them goes on.
   bool Poll();
 
  private:

@@ -19,11 +19,11 @@ class SignalWakes {
 
   // True if the thread waits for a signal that is pending: then it goes on.
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
-  // What is for the whole process goes to the first of its threads that does not block it, as the
-  // kernel has it.
+  // A signal for the whole process goes to the first of its threads that does not block it, as in
+  // the kernel.
   void WakeForSignals(Process& process, Moment moment);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
-  // that nobody but who looks learns of one from outside. One from inside is told by who sends it.
+  // only a look finds one that came from outside. One from inside is told by its sender.
   bool HasSignalForTrapped(Task& task) const;
 
  private:

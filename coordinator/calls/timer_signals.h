@@ -1,6 +1,6 @@
-// The signals of timers, sent at their instant: at once where they become pending, are ignored or
-// end the process; at the dispatch of the thread that will run a handler, for the handler is its
-// work.
+// The signals of timers, sent at their instant. A signal that becomes pending, is ignored or ends
+// the process is sent at once. A signal with a handler is sent at the dispatch of the thread that
+// will run the handler, because the handler is that thread's work.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -16,9 +16,9 @@ class TimerSignals {
   TimerSignals(RunState& run, Waker& waker, SignalWakes& wakes)
       : run_(run), waker_(waker), wakes_(wakes) {}
 
-  // Those that the process's timers have to send.
+  // Routes the signals that the process's timers have to send.
   void Route(Process& process, Moment moment);
-  // Those that wait for the dispatch of this thread, which is now.
+  // Sends the signals that have waited for the dispatch of this thread, which is now.
   static void SendTo(const Task& task);
   // Finds out which timers' signals have been accepted. While one of a signal's number is pending
   // where it was sent to it counts as not: whose it is cannot be seen.

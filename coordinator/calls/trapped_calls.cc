@@ -28,13 +28,16 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
 // has not registered yet. The kernel carries out what it calls; but those whom it wakes may wait
 // here.
 void TrappedCalls::HandleUnmanaged(const TrappedCall& call, Moment moment) {
-  const pid_t pid = call.number == SYS_futex ? ProcessOfThread(call.tid) : -1;
+  const bool concerns_others = call.number == SYS_futex || call.number == SYS_bind;
+  const pid_t pid = concerns_others ? ProcessOfThread(call.tid) : -1;
   Process* process = run_.table.LivingProcess(pid);
-  if (process != nullptr && run_.table.Living(call.tid) == nullptr) {
+  if (call.number == SYS_futex && process != nullptr && run_.table.Living(call.tid) == nullptr) {
     process->has_unmanaged_threads = run_.had_unmanaged_threads = true;
     futexes_.CarryOutWake(*process, call, moment);
   }
-  if (call.number == SYS_bind) local_sockets_.BindsUnseen(call.tid, call);
+  if (call.number == SYS_bind) {
+    local_sockets_.BindsUnseen(process == nullptr ? nullptr : process->robot, call);
+  }
   guard_.LetThrough(call);
 }
 

@@ -36,7 +36,7 @@ class TrappedCalls {
   void HandleUnmanaged(const TrappedCall& call, Moment moment);
   // The last call of a thread.
   void Exit(Task& task, const TrappedCall& call);
-  // At the end of a run the kernel carries out all calls, those that wait included.
+  // At the end of a run the kernel carries out all calls, including the calls that wait.
   void ReleaseAll();
 
  private:

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,6 +26,8 @@
 #include "simbody_bridge/model/wheel_base.h"
 
 namespace tcs {
+
+class DatagramWatch;
 
 struct BodyReading {
   std::string_view name;  // UTF-8; outlives the reading
@@ -59,11 +62,18 @@ class Outlet {
   // Hands over what is due. True if there was anything.
   virtual bool HandOver(VirtualTime now) = 0;
 
-  // At the run's end: why nothing of what was sent has reached anybody, and how to mend that, as a
-  // sentence goes on after the channel's name. Empty: it has, or nobody can tell.
+  // How many readings it still has.
+  virtual std::size_t Kept() const { return NextDue().IsNever() ? 0 : 1; }
+
+  // At the run's end: why nothing of what was sent has reached a program, and how to mend that, as
+  // the rest of a sentence that begins with the channel's name. Empty: it has, or that cannot be
+  // told.
   virtual std::string WhyUnheard() const { return {}; }
-  // The same of readings that did not go out, whoever was there to hear them.
+  // The same for readings that did not go out, whether or not a program was listening.
   virtual std::string WhatWasLost() const { return {}; }
+
+  // Has the watch, which outlives this, told of each datagram that goes out.
+  virtual void TellOf(DatagramWatch&, const std::string& /*channel*/) {}
 };
 
 // An end that has been opened, or why it was not: one sentence.
@@ -78,14 +88,35 @@ struct GoalNames {
   bool follow_trajectories = false;                 // a command is one
 };
 
-// Who is given what comes in. Channels are numbered as the scenario lists those of commands.
+// The thread that has sent a command, and how much it had been charged by then. The charge is
+// another number for each of its commands that its own computing separates, also while its clock
+// stands still (a clock that has shown stolen time waits until that much has been computed). `id`
+// 0: not known, firmware or a program outside the run.
+struct CommandSender {
+  std::uint64_t id = 0;
+  std::int64_t ran_ns = 0;
+  bool operator==(const CommandSender&) const = default;
+};
+
+// When a command was sent, and by which thread.
+struct CommandSent {
+  VirtualTime at;
+  CommandSender by;
+  CommandSent(VirtualTime sent_at, CommandSender sent_by = {})  // NOLINT: a time is one
+      : at(sent_at), by(sent_by) {}
+};
+
+// Takes the commands that come in. Channels have the numbers of the scenario's list of command
+// channels.
 class CommandSink {
  public:
-  // A command that was sent at `sent`.
-  virtual void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) = 0;
-  virtual void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) = 0;
-  virtual void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) = 0;
-  virtual void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) = 0;
+  // A command.
+  virtual void Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) = 0;
+  virtual void Take(std::size_t channel, const CommandSent& sent,
+                    std::span<const JointGoal> goals) = 0;
+  virtual void Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) = 0;
+  virtual void Take(std::size_t channel, const CommandSent& sent,
+                    const JointTrajectory& trajectory) = 0;
   // The joints or rotors that the channel drives; none: wrenches are for its body or link.
   virtual std::optional<GoalNames> GoalsOf(std::size_t channel) const = 0;
   // Something that is no command; `why` is a sentence.
@@ -107,14 +138,18 @@ class Inlet {
   // True for one end of a terminal. What a program writes to the other end is not there at once,
   // but when it is received: so that is done whenever one has written to a terminal.
   virtual bool IsTerminal() const { return false; }
-  // Gives away what has come in by `now`, in the order of sending.
-  virtual void Receive(VirtualTime now, CommandSink& sink) = 0;
+  // Gives away what has come in by now, in the order of sending. `now` says who has sent it, if
+  // that is known.
+  virtual void Receive(const CommandSent& now, CommandSink& sink) = 0;
 
   // For a sentence about a channel of its: "nothing came in WHERE; let a client MEND".
   struct Place {
     std::string where, mend;
   };
   virtual Place PlaceOf(std::size_t channel) const = 0;
+
+  // As Outlet's, of each that comes in.
+  virtual void TellOf(DatagramWatch&) {}
 };
 
 }  // namespace tcs

@@ -69,6 +69,13 @@ std::string Channels::Open(const Scenario& scenario, dds::OwnEndpoints& ends,
   return {};
 }
 
+void Channels::TellOf(DatagramWatch& watch, const Scenario& scenario) {
+  for (std::size_t i = 0; i < outlets.size(); ++i) {
+    outlets[i]->TellOf(watch, scenario.sensors[i].name);
+  }
+  for (const auto& inlet : inlets) inlet->TellOf(watch);
+}
+
 void Channels::Record(const Scenario& scenario, ChannelRecords& records) {
   for (std::size_t i = 0; i < outlets.size(); ++i) {
     if (std::holds_alternative<DdsSensorEnd>(scenario.sensors[i].to)) continue;

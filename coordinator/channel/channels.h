@@ -44,8 +44,10 @@ struct Channels {
   // sentence. The scenario and the endpoints outlive this.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
                                  const MakeAt& make_at);
-  // What goes over those that are not on DDS, which records themselves. After Open, and before
-  // anybody has an outlet or an inlet.
+  // Has the watch, which outlives this, told of datagrams.
+  void TellOf(DatagramWatch& watch, const Scenario& scenario);
+  // Records what goes over the channels that are not on DDS (DDS records its own messages). Call it
+  // after Open, and before any outlet or inlet is given out.
   void Record(const Scenario& scenario, ChannelRecords& records);
   void Begin(VirtualDuration realtime_offset);
 };

@@ -1,6 +1,7 @@
 // Messages that have been sent and have not arrived yet, in order.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <string>
 #include <utility>
@@ -19,6 +20,8 @@ class OnTheWay {
   VirtualTime NextDue() const {
     return messages_.empty() ? VirtualTime::Never() : messages_.front().arrives;
   }
+
+  std::size_t size() const { return messages_.size(); }
 
   // Calls `receive` with each that has arrived by `now`. True if there was one.
   template <class Receive>

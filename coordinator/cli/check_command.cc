@@ -15,14 +15,16 @@ namespace tcs {
 
 const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
   CLI::App* check = app->add_subcommand(
-      "check", "read a scenario and what it names, and say all that is wrong with it");
+      "check", "report every mistake of a scenario and of the files that it names");
   check->add_option("scenario", arguments->scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
   check
       ->add_option("--overlay", arguments->overlays,
                    "FILE: a piece of a scenario whose values replace the scenario's; repeatable")
       ->allow_extra_args(false);
-  check->add_option("--set", arguments->set, "KEY=VALUE: what the file would say; repeatable")
+  check
+      ->add_option("--set", arguments->set,
+                   "KEY=VALUE: another value for a key of the scenario; repeatable")
       ->allow_extra_args(false);
   return check;
 }

@@ -14,7 +14,7 @@ std::string TakeDuration(const std::string& name, const std::string& text,
     return "--" + name + ": " + error->message;
   *to = std::get<VirtualDuration>(parsed);
   if (**to > VirtualDuration{} || zero == Zero::kAllowed) return {};
-  return "--" + name + ": " + text + " is not above 0; give a time such as 1ms or 20s";
+  return "--" + name + ": " + text + " is not positive; give a time such as 1ms or 20s";
 }
 
 }  // namespace tcs

@@ -9,7 +9,7 @@ namespace tcs {
 namespace {
 
 // A command, and pairs of lines: a command line, and what it is for. An empty name is tcsim itself.
-constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
+constexpr std::array<std::pair<const char*, const char*>, 10> kExamples = {{
     {"",
      "tcsim new hover && cd hover && tcsim run\n"
      "a first robot: writes a scenario and a controller, and flies them\n"
@@ -23,10 +23,8 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim new --language c hover\n"
      "the same with a controller in C, and a CMakeLists.txt for it"},
     {"check",
-     "tcsim check\n"
-     "reads scenario.yaml in this folder, and says all that is wrong with it\n"
-     "tcsim check --set robots.drone.cpu.cores=4 scenario.yaml\n"
-     "the same with another value"},
+     "tcsim check\nreports every mistake of scenario.yaml in this folder\ntcsim check --set "
+     "robots.drone.cpu.cores=4 scenario.yaml\nthe same with another value"},
     {"run",
      "tcsim run\n"
      "runs scenario.yaml in this folder, and writes to out\n"
@@ -40,7 +38,9 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim trials --trials 100 scenario.yaml\n"
      "a hundred seeds, several at once; called again it goes on where it ended\n"
      "tcsim trials --trials 10 --vary robots.drone.cpu.speed=0.5,1,2 scenario.yaml\n"
-     "ten seeds for each of three processors"},
+     "ten seeds for each of three processors\n"
+     "tcsim trials --trials 200 --out /shared/t --launcher slurm --slurm-option=--partition=short\n"
+     "on a cluster's nodes, which all see /shared"},
     {"exec",
      "tcsim exec -- python3 program.py\n"
      "any program, with the same input, output and exit status\n"
@@ -52,6 +52,11 @@ constexpr std::array<std::pair<const char*, const char*>, 9> kExamples = {{
      "tcsim report --figures svg slow fast\n"
      "one page of two, and each figure as a file"},
     {"topics", "tcsim topics --qos out\nall DDS topics of a run, with both ends of each"},
+    {"dump",
+     "tcsim dump\n"
+     "of the only run that goes on: who runs, and who waits for what\n"
+     "tcsim dump --json out\n"
+     "of the run that writes to out, for programs"},
     {"fit",
      "tcsim run --for-fit --out measured scenario.yaml && tcsim fit --out costs.yaml measured\n"
      "the costs with which `--accounting fixed --overlay costs.yaml` takes the time that was "

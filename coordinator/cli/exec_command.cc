@@ -89,7 +89,7 @@ int ExecCommand(const ExecArguments& arguments, const RunOptions& plain_options)
   }
   std::error_code gone;
   const std::string folder = std::filesystem::current_path(gone);
-  if (gone) return Fail("the current folder is gone; change to one that exists");
+  if (gone) return Fail("the current folder does not exist any more; change to another folder");
   auto found = FindExecutable(command[0], folder);
   if (const auto* error = std::get_if<LoadError>(&found))
     return Fail(error->message, kNoSuchProgram);

@@ -26,7 +26,8 @@ int FitCommand(const FitArguments& arguments) {
   if (!arguments.out.empty()) {
     std::error_code ignored;
     if (fs::exists(arguments.out, ignored) && !fs::is_regular_file(arguments.out, ignored)) {
-      return Fail("'" + arguments.out + "' is no file; give --out the name of one for the costs");
+      return Fail("'" + arguments.out +
+                  "' is not a file; give --out the name of a file for the costs");
     }
     if (const std::string error = WriteWhole(arguments.out, fragment); !error.empty()) {
       return Fail(error);

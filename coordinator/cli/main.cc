@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coordinator/cli/check_command.h"
+#include "coordinator/cli/dump_command.h"
 #include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
@@ -34,6 +35,7 @@
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
+#include "coordinator/trials/slurm/slurm_job.h"
 #include "coordinator/view/launch.h"
 
 namespace {
@@ -130,28 +132,34 @@ int main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "run a scenario");
   run->add_option("scenario", arguments.scenario, "FILE: the YAML file (docs/SCENARIO.md)")
       ->capture_default_str();
-  run->add_option("--duration", arguments.duration, "TIME: of virtual time, such as 20s");
+  run->add_option("--duration", arguments.duration,
+                  "TIME: how much virtual time the run lasts, such as 20s");
   run->add_option(
       "--stop-at", arguments.stop_at,
-      "TIME: of virtual time, such as 12.5s: stop there, and write the world as it is then "
-      "into snapshot.yaml, a piece of a scenario for --overlay");
+      "TIME: stop at this virtual time, such as 12.5s, and write the world as it is then into "
+      "snapshot.yaml, a piece of a scenario for --overlay");
   run->add_option_function<std::string>(
          "--from", [](const std::string& from) { throw PlainError(tcs::NoWayBack(from)); },
-         "DIR@TIME: says what is possible instead; programs cannot go on from within a run")
+         "DIR@TIME: refused, because programs cannot go on from the middle of a run; says what is "
+         "possible instead")
       ->expected(1);
   run->add_option("--drift", arguments.drift,
                   "TIME: how far progress may drift apart, such as 1ms");
-  CLI::Option* seeded = run->add_option("--seed", seed, "what ${seed} stands for");
+  CLI::Option* seeded =
+      run->add_option("--seed", seed, "the seed, which replaces ${seed} in the scenario");
   run->add_option("--overlay", arguments.overlays,
                   "FILE: a piece of a scenario whose values replace the scenario's, such as what "
                   "`tcsim fit` writes; repeatable")
       ->allow_extra_args(false);
-  run->add_option("--set", arguments.set,
-                  "KEY=VALUE: what the file would say, such as dynamics.engine=ode; repeatable")
+  run->add_option(
+         "--set", arguments.set,
+         "KEY=VALUE: another value for a key of the scenario, such as dynamics.engine=ode; "
+         "repeatable")
       ->allow_extra_args(false);
-  run->add_option("--out", arguments.out, "FOLDER: for logs, body states, trace and summary")
+  run->add_option("--out", arguments.out, "FOLDER: where logs, body states, trace and summary go")
       ->capture_default_str();
-  run->add_flag("--check", arguments.check, "only load the scenario, and say whether it is sound");
+  run->add_flag("--check", arguments.check,
+                "only load the scenario, and report whether it is correct");
   std::string record;
   run->add_flag("--record{sqlite3}", record,
                 "also write all messages and where bodies are into the folder, as the rosbag2 bag "
@@ -164,17 +172,17 @@ int main(int argc, char** argv) {
   std::string view;
   run->add_flag(
          "--view", view,
-         "shows the run while it goes, in a browser at the address that is printed; "
-         "--view=PORT or --view=ADDRESS:PORT: there, else at a free port of this machine alone")
+         "show the run while it goes, in a browser at the address that is printed; --view=PORT or "
+         "--view=ADDRESS:PORT chooses the address (default: a free port, for this machine only)")
       ->type_name("[=WHERE]");
   run->add_option("--pace", arguments.pace,
-                  "how fast virtual time is to pass, as a multiple of the wall clock: 1 for people "
-                  "and devices beside it; as fast as it can unless told")
+                  "the pace of virtual time, as a multiple of the wall clock; 1 for people and "
+                  "devices beside the run (default: as fast as possible)")
       ->check(CLI::Range(1e-3, 1e3));
   run->add_flag("--pause", arguments.pauses,
-                "with --view: stands at the start until it is let go on there");
+                "with --view: paused at the start, until the page lets the run go on");
   run->add_option("--gdb", arguments.debugged,
-                  "ROBOT/CLIENT: opens that client in gdb, before it begins; virtual time stands "
+                  "ROBOT/CLIENT: open that client in gdb, before it begins; virtual time stands "
                   "still while gdb has stopped it");
   run->add_option("--progress-fd", arguments.progress_fd)->group("");  // not for people
   std::string sync = "consistent";
@@ -193,37 +201,38 @@ int main(int argc, char** argv) {
   std::string generated;
   CLI::App* generate = app.add_subcommand("generate")->group("");  // for the build
   generate->add_option("folder", generated)->required();
+  std::string slurm_work;
+  CLI::App* slurm_job = app.add_subcommand("slurm-job")->group("");  // for trials on a cluster
+  slurm_job->add_option("folder", slurm_work)->required();
 
   double speed = 1.0;
   int cores = 1;
   std::vector<std::string> command;
   CLI::App* exec = app.add_subcommand("exec", "run any program in virtual time, without dynamics");
-  exec->add_option("--speed", speed, "of its processor, relative to the host's")
+  exec->add_option("--speed", speed, "the speed of the program's processor, relative to the host's")
       ->check(CLI::Range(1e-3, 1e3))
       ->capture_default_str();
-  exec->add_option("--cores", cores, "how many processors it has")
+  exec->add_option("--cores", cores, "how many processors the program has")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   bool patch_vdso = true;
-  exec->add_flag(
-      "--patch-vdso,!--no-patch-vdso", patch_vdso,
-      "no: programs that read the kernel's clocks past the C library's symbols, and what "
-      "the C library reads inside itself, see the host's time");
+  exec->add_flag("--patch-vdso,!--no-patch-vdso", patch_vdso,
+                 "leave the vDSO as it is: programs that read the kernel's clocks past the C "
+                 "library's symbols, and the C library's own reads, see the host's time");
   std::string uptime;
   exec->add_option("--uptime", uptime,
-                   "TIME: CLOCK_MONOTONIC when the program starts; 1000s unless told");
+                   "TIME: CLOCK_MONOTONIC when the program starts (default: 1000s)");
   std::string date;
-  exec->add_option(
-      "--date", date,
-      "DATE: CLOCK_REALTIME when the program starts, as 2005-03-18, 0:00 UTC; now unless "
-      "told, under --accounting fixed 2024-01-01");
+  exec->add_option("--date", date,
+                   "DATE: CLOCK_REALTIME when the program starts, such as 2005-03-18, at 0:00 UTC "
+                   "(default: now; under --accounting fixed 2024-01-01)");
   std::string call_cost;
   exec->add_option("--call-cost", call_cost,
-                   "TIME: of one call under --accounting fixed; 1us unless told");
+                   "TIME: the cost of one call under --accounting fixed (default: 1us)");
   std::string allocation_cost;
-  exec->add_option(
-      "--allocation-cost", allocation_cost,
-      "TIME: of one memory allocation under --accounting fixed; 2us unless told, 0 for none");
+  exec->add_option("--allocation-cost", allocation_cost,
+                   "TIME: the cost of one memory allocation under --accounting fixed; 0 for none "
+                   "(default: 2us)");
   std::string dds = "endpoints";
   exec->add_option(
           "--dds", dds,
@@ -234,16 +243,19 @@ int main(int argc, char** argv) {
   exec->positionals_at_end();
 
   tcs::ReportArguments report_arguments;
-  CLI::App* report = app.add_subcommand("report", "make one HTML page of result folders");
-  report->add_option("folders", report_arguments.folders, "FOLDER: what run or trials wrote")
+  CLI::App* report =
+      app.add_subcommand("report", "make one HTML page of the results of runs and trials");
+  report
+      ->add_option("folders", report_arguments.folders,
+                   "FOLDER: what `tcsim run` or `tcsim trials` wrote")
       ->required();
   report->add_option("--out", report_arguments.out, "FILE: the page")->capture_default_str();
   report
       ->add_option("--figures", report_arguments.figures,
-                   "svg or png: each figure as a file next to the page, too")
+                   "svg or png: also write each figure as a file next to the page")
       ->check(CLI::IsMember({"svg", "png"}));
   report->add_option("--bodies", report_arguments.bodies,
-                     "A,B: whose distance is meant; the first two unless told");
+                     "A,B: the two bodies whose distance is shown (default: the first two)");
   report
       ->add_option("--mark", report_arguments.marks,
                    "METRES: a distance that figures mark and tables count below; repeatable")
@@ -251,64 +263,72 @@ int main(int argc, char** argv) {
       ->take_all()
       ->check(CLI::NonNegativeNumber);
   report->add_option("--title", report_arguments.title,
-                     "TITLE: of the page; the scenario's name unless told");
+                     "TITLE: the title of the page (default: the scenario's name)");
 
   std::string viewed, view_where;
   CLI::App* show =
-      app.add_subcommand("view", "shows a result folder in a browser, also while the run goes");
-  show->add_option("folder", viewed, "FOLDER: what run writes, or wrote")->required();
-  show->add_option("--at", view_where,
-                   "WHERE: PORT or ADDRESS:PORT; else a free port of this machine alone");
+      app.add_subcommand("view", "show a result folder in a browser, also while the run goes on");
+  show->add_option("folder", viewed, "FOLDER: what `tcsim run` writes, or wrote")->required();
+  show->add_option(
+      "--at", view_where,
+      "WHERE: PORT or ADDRESS:PORT to listen at (default: a free port, for this machine only)");
 
   tcs::TopicsArguments topics_arguments;
-  CLI::App* topics = app.add_subcommand("topics", "what went over the DDS topics of a run");
+  CLI::App* topics = app.add_subcommand(
+      "topics",
+      "list the DDS topics of a run: types, rates, both ends, and readers that no writer suits");
   topics->add_option("folder", topics_arguments.folder, "FOLDER: what run wrote")->required();
   topics->add_flag("--qos", topics_arguments.with_qos,
-                   "the quality of service of each endpoint, too");
+                   "also list the quality of service of each endpoint");
 
   tcs::TraceArguments trace_arguments;
-  CLI::App* trace =
-      app.add_subcommand("trace", "make one trace for ui.perfetto.dev of what a run has written");
+  CLI::App* trace = app.add_subcommand("trace", "make one trace of a run for ui.perfetto.dev");
   trace->add_option("folder", trace_arguments.folder, "FOLDER: what run wrote")->required();
   trace->add_option("--out", trace_arguments.out,
-                    "FILE: the trace; trace.json.gz in the folder unless told");
+                    "FILE: the trace to write (default: trace.json.gz in the folder)");
 
   tcs::SnapshotArguments snapshot_arguments;
   CLI::App* snapshot = app.add_subcommand(
-      "snapshot", "how a run's world was at one moment, as a piece of a scenario");
+      "snapshot", "write the world of a run at one moment as a piece of a scenario");
   snapshot
       ->add_option("from", snapshot_arguments.from,
-                   "FOLDER[@TIME]: what run wrote, and when; the end unless told")
+                   "FOLDER[@TIME]: what `tcsim run` wrote, and the moment (default: the end)")
       ->required();
-  snapshot->add_option("--out", snapshot_arguments.out,
-                       "FILE: for it, as run --overlay takes it; printed unless told");
+  snapshot->add_option(
+      "--out", snapshot_arguments.out,
+      "FILE: where to write it, for `tcsim run --overlay` (default: the terminal)");
 
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
-      "fit", "the set costs with which --accounting fixed charges what a run has measured");
-  fit->add_option("folder", fit_arguments.folder, "FOLDER: what run --for-fit wrote")->required();
-  fit->add_option("--out", fit_arguments.out,
-                  "FILE: for the costs, as run --overlay takes it; printed unless told");
+      "fit", "find the set costs with which --accounting fixed charges what a run has measured");
+  fit->add_option("folder", fit_arguments.folder, "FOLDER: what `tcsim run --for-fit` wrote")
+      ->required();
+  fit->add_option(
+      "--out", fit_arguments.out,
+      "FILE: where to write the costs, for `tcsim run --overlay` (default: the terminal)");
+
+  tcs::DumpArguments dump_arguments;
+  const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
 
   bool as_json = false;
-  CLI::App* doctor = app.add_subcommand("doctor", "what this machine allows, and how to mend it");
+  CLI::App* doctor = app.add_subcommand(
+      "doctor", "check what this machine allows, and say how to mend what it does not");
   doctor->add_flag("--json", as_json, "for programs");
 
   std::string accounting = "measured";
   bool no_wait = false;
-  std::string host_cpus = "1";
+  std::string host_cpus = "auto";
   for (CLI::App* sub : {run, exec}) {
-    sub->add_option(
-           "--host-cpus", host_cpus,
-           "processors of the host to use at most, or auto for those that no other run has: on "
-           "further ones programs compute ahead (experimental), and islands of the physics are "
-           "integrated; 1 unless told")
+    sub->add_option("--host-cpus", host_cpus,
+                    "at most so many processors of the host, or auto for all that no other run "
+                    "has: on further ones programs compute ahead, and islands of the physics are "
+                    "integrated (default: auto)")
         ->check(CLI::IsMember({"auto"}) | CLI::Range(1, 1024));
     sub->add_flag("--no-wait", no_wait,
-                  "fail at once where other runs have all processors, and say which");
+                  "if other runs have all processors, fail at once and name those runs");
     sub->add_option("--accounting", accounting,
-                    "measured: computing takes the processor time it takes (default); fixed: a set "
-                    "cost per call, so that two runs are identical")
+                    "measured: computing takes the processor time that it takes (default); fixed: "
+                    "each call has a set cost, and two runs are identical")
         ->check(CLI::IsMember({"measured", "fixed"}));
   }
   tcs::AddExamples(&app);
@@ -316,6 +336,8 @@ int main(int argc, char** argv) {
   if (generate->parsed()) return tcs::Generate(tcs::Describe(app), generated);
   if (make_new->parsed()) return tcs::FlushStdout(tcs::NewCommand(new_arguments));
   if (check->parsed()) return tcs::FlushStdout(tcs::CheckCommand(check_arguments));
+
+  if (dump->parsed()) return tcs::FlushStdout(tcs::DumpCommand(dump_arguments));
 
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
@@ -335,12 +357,12 @@ int main(int argc, char** argv) {
   if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
-        "this is running inside another tcsim already; a run cannot contain another one");
+        "this tcsim was started inside a run of another tcsim; start it outside of that run");
   }
   for (const std::string& library :
        {options.preload_library, options.allocation_library, tcs::DdsLibrary()}) {
     if (access(library.c_str(), R_OK) != 0) {
-      return tcs::Fail("the shim is missing: " + library + "; build it again");
+      return tcs::Fail("the shim (libtcs_preload.so) is missing: " + library + "; build it again");
     }
   }
   if (!record.empty()) {
@@ -352,7 +374,7 @@ int main(int argc, char** argv) {
   if (seeded->count() > 0) arguments.seed = seed;
   // A trial's run was started as /proc/self/exe, and would be called "exe".
   if (arguments.pauses && view.empty()) {
-    return tcs::Fail("--pause is for runs that somebody lets go on: give --view, too");
+    return tcs::Fail("--pause needs --view, whose page lets the run go on: give both");
   }
   // Before there is anything else of the run: the server is no part of it.
   std::unique_ptr<tcs::ViewLink> link;
@@ -368,6 +390,7 @@ int main(int argc, char** argv) {
   }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
   if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
+  if (slurm_job->parsed()) return tcs::RunSlurmJob(slurm_work, tcs::kVersion);
   if (!arguments.debugged.empty()) {
     return tcs::RunWithGdb([&](const tcs::GdbSession& gdb) {
       return tcs::RunGuarded(

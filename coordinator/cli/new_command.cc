@@ -48,12 +48,13 @@ std::string TextOf(const fs::path& path) {
 
 const CLI::App* AddNew(CLI::App* app, NewArguments* arguments) {
   CLI::App* command =
-      app->add_subcommand("new", "write a first scenario, and a controller that flies in it");
+      app->add_subcommand("new", "write a first scenario, and a controller that flies");
   command->add_option("name", arguments->name, "the folder to make, and the robot's name")
       ->required();
   command
-      ->add_option("--language", arguments->language,
-                   "of the controller; Python unless told, C where there is no Python")
+      ->add_option(
+          "--language", arguments->language,
+          "the language of the controller (default: Python, or C where there is no Python)")
       ->check(CLI::IsMember({"python", "c"}));
   return command;
 }
@@ -61,11 +62,12 @@ const CLI::App* AddNew(CLI::App* app, NewArguments* arguments) {
 int NewCommand(const NewArguments& arguments) {
   const std::string& name = arguments.name;
   if (!IsName(name)) {
-    return Fail("'" + name + "' is not a name; use up to 64 letters, digits, '_' and '-'");
+    return Fail("'" + name +
+                "' cannot be used as a name; use up to 64 letters, digits, '_' and '-'");
   }
   std::error_code error;
   if (fs::exists(name, error) || error) {
-    return Fail("'" + name + "' is here already; choose another name, or remove it");
+    return Fail("'" + name + "' exists already; choose another name, or remove it");
   }
   const bool is_python =
       arguments.language.empty() ? IsInstalled("python3") : arguments.language == "python";

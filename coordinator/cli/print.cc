@@ -12,7 +12,7 @@ int FlushStdout(int status) {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0;
   if ((flushed && !was_bad) || errno == EBADF || status != kSucceeded) return status;
-  return Fail(fmt::format("not everything could be printed{}; look where its output goes",
+  return Fail(fmt::format("not everything could be printed{}; look where the output goes",
                           errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
 }
 

@@ -17,7 +17,7 @@ int ReportCommand(const ReportArguments& arguments) {
     bodies = {arguments.bodies.substr(0, comma),
               comma == std::string::npos ? "" : arguments.bodies.substr(comma + 1)};
     if (bodies[0].empty() || bodies[1].empty() || bodies[0] == bodies[1]) {
-      return Fail("--bodies wants two different names, such as --bodies predator,prey, not '" +
+      return Fail("--bodies needs two different names, such as --bodies predator,prey, not '" +
                   arguments.bodies + "'");
     }
   }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -85,6 +86,15 @@ std::string TakeDebugged(const std::string& name, const Scenario& scenario, cons
   return {};
 }
 
+// Another one for each run on this computer, as far as chance goes.
+std::uint32_t NumberOfThisRun() {
+  std::uint32_t number = 0;
+  if (getrandom(&number, sizeof number, 0) != sizeof number) {
+    number = static_cast<std::uint32_t>(getpid());
+  }
+  return number;
+}
+
 }  // namespace
 
 int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSession& gdb) {
@@ -93,6 +103,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   overrides.set = arguments.set;
   overrides.seed = arguments.seed;
   overrides.result_directory = AbsolutePathOf(arguments.out);
+  overrides.run = NumberOfThisRun();
   std::optional<VirtualDuration> stop_at;
   for (const std::string& error :
        {TakeDuration("duration", arguments.duration, &overrides.duration),
@@ -126,7 +137,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     // Before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);
     Say(fmt::format("watch the run at {}{}", options.view->url(),
-                    arguments.pauses ? ", where it stands until it is let go on" : ""));
+                    arguments.pauses ? ", where it is paused until the page lets it go on" : ""));
   }
 
   LiveLine line(scenario.duration.ns());

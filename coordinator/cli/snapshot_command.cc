@@ -54,8 +54,7 @@ int SnapshotCommand(const SnapshotArguments& arguments) {
 std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
                         VirtualDuration stop_at) {
   if (!scenario.world) {
-    return "--stop-at: the scenario has no world of which there could be a snapshot; use "
-           "--duration";
+    return "--stop-at: the scenario has no world to write a snapshot of; use --duration";
   }
   if (stop_at > duration) {
     return fmt::format("--stop-at: {} is after the end, {}; --duration sets a later one",
@@ -79,9 +78,9 @@ std::string WriteSnapshot(const std::string& folder) {
 std::string NoWayBack(const std::string& from) {
   const auto [folder, time] = FolderAndTime(from);
   return fmt::format(
-      "--from {}: programs cannot be taken back to a moment, for what they held in memory is not "
-      "recorded; `tcsim snapshot {} --out world.yaml` writes the world of that moment, from which "
-      "`tcsim run SCENARIO --overlay world.yaml` begins with programs that start anew",
+      "--from {}: programs cannot go back to a moment, because their memory is not recorded; "
+      "`tcsim snapshot {} --out world.yaml` writes the world of that moment, from which `tcsim run "
+      "SCENARIO --overlay world.yaml` begins with programs that start anew",
       from, from);
 }
 

@@ -31,7 +31,7 @@ std::string LastWordsOf(const std::string& base) {
     const std::string line = LastLine(base + log);
     if (!line.empty()) return fmt::format("\"{}\" ({}{})", line, base, log);
   }
-  return fmt::format("it said nothing ({}.err.log and .out.log are empty)", base);
+  return fmt::format("it printed nothing ({}.err.log and .out.log are empty)", base);
 }
 
 std::int64_t NotOnOurCpu(const RunReport& r) {
@@ -53,8 +53,8 @@ void PrintPace(const PaceReport& pace) {
   if (pace.stood_ns > 0) Print("it was paused for {:.3f} s of that\n", Seconds(pace.stood_ns));
   if (pace.pace <= 0) return;
   if (pace.behind_ns == 0) {
-    Print("it kept to {:g} x the wall clock, {:.1f} ms behind at most\n", pace.pace,
-          Milliseconds(pace.most_ns));
+    Print("it kept its pace of {:g} x the wall clock, and was at most {:.1f} ms behind\n",
+          pace.pace, Milliseconds(pace.most_ns));
     return;
   }
   Print("it was behind its pace of {:g} x the wall clock for {:.3f} s, {:.3f} s at its end\n",
@@ -81,7 +81,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   const bool all_ended = std::all_of(r.clients.begin(), r.clients.end(),
                                      [](const ClientReport& c) { return c.ended_at_ns >= 0; });
   if (!r.interrupted && all_ended && r.virtual_ns < scenario.duration.ns()) {
-    Print("ended before its {:.3f} s, as all programs had ended\n",
+    Print("ended before its {:.3f} s because all programs had ended\n",
           Seconds(scenario.duration.ns()));
   }
   Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns, lateness {:.3f} ms\n",
@@ -93,13 +93,13 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
       Seconds(r.coordinating_ns), OverheadPercent(r), Seconds(r.client_ns), Seconds(r.dynamics_ns),
       Seconds(std::max<std::int64_t>(0, NotOnOurCpu(r))), r.switches, r.samples, r.commands);
   if (r.ahead_ns > 0) {
-    Print("of the clients' {:.3f} s, {:.3f} s were computed ahead, on further processors\n",
+    Print("of the clients' {:.3f} s, {:.3f} s were computed ahead on further processors\n",
           Seconds(r.client_ns), Seconds(r.ahead_ns));
   }
   if (r.untold > 0) {
     Print(
-        "the processor was gone {} in the middle of a turn, and no clock told: {:.3f} ms that "
-        "nobody computed in are not charged (in the column 'stolen')\n",
+        "the host took the processor {} in the middle of a turn, and no clock of the kernel showed "
+        "it: {:.3f} ms are not charged (they are in the column 'stolen')\n",
         r.untold == 1 ? "once" : fmt::format("{} times", r.untold), Milliseconds(r.untold_ns));
   }
   std::size_t width = 6;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <system_error>
 #include <utility>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
+#include "coordinator/cli/version.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
 #include "coordinator/os/files.h"
@@ -22,9 +24,11 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/own_network.h"
 #include "coordinator/scenario/load.h"
+#include "coordinator/trials/local_launcher.h"
 #include "coordinator/trials/record.h"
 #include "coordinator/trials/result_folder.h"
-#include "coordinator/trials/runner.h"
+#include "coordinator/trials/slurm/array_jobs.h"
+#include "coordinator/trials/slurm/slurm_launcher.h"
 
 namespace tcs {
 
@@ -87,7 +91,7 @@ std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
   plan->first_seed = arguments.first_seed.value_or(scenario.seed);
   const auto others = static_cast<std::uint64_t>(plan->trials - 1);
   if (plan->first_seed > std::numeric_limits<std::uint64_t>::max() - others) {
-    return fmt::format("--first-seed: {} leaves no room for {} seeds; begin with a smaller one",
+    return fmt::format("--first-seed: {} is too large for {} seeds; begin with a smaller one",
                        plan->first_seed, plan->trials);
   }
   return {};
@@ -126,14 +130,14 @@ bool NeedsHostNetwork(const Scenario& scenario) {
                      [&](const CommandChannelSpec& channel) { return is_elsewhere(channel.from); });
 }
 
-RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scenario) {
-  RunnerOptions options;
+LocalOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scenario) {
+  LocalOptions options;
   const std::vector<CpuPlace> cpus = CpuPlaces();
   const auto cpu_count = static_cast<int>(cpus.size());
   options.whole_cores = arguments.options.accounting == "measured";
   options.at_once = arguments.jobs > 0 ? arguments.jobs : RunsAtOnce(cpus, options.whole_cores);
   if (options.at_once > cpu_count) {
-    Say(fmt::format("--jobs {}: each run needs a processor of its own; {} at a time",
+    Say(fmt::format("--jobs {}: each run needs a processor of its own, so {} run at a time",
                     arguments.jobs, cpu_count));
     options.at_once = cpu_count;
   }
@@ -147,12 +151,50 @@ RunnerOptions ShareMachine(const TrialsArguments& arguments, const Scenario& sce
   options.own_networks = why_not.empty();
   if (!options.own_networks) {
     Say(
-        fmt::format("trials run one at a time, in this machine's network, since they cannot have "
+        fmt::format("trials run one at a time, in this machine's network, because they cannot have "
                     "networks of their own ({})",
                     why_not));
     options.at_once = 1;
   }
   return options;
+}
+
+// This program's own file: jobs start it on their nodes.
+std::string OwnPath() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error);
+}
+
+std::unique_ptr<Launcher> MakeLauncher(const TrialsArguments& arguments, const Scenario& scenario) {
+  if (arguments.launcher == "slurm") {
+    SlurmOptions options;
+    options.most_jobs = arguments.jobs;
+    options.whole_cores = arguments.options.accounting == "measured";
+    options.in_host_network = arguments.host_network || NeedsHostNetwork(scenario);
+    options.options = arguments.slurm_options;
+    options.tcsim = OwnPath();
+    options.version = kVersion;
+    return std::make_unique<SlurmLauncher>(std::move(options));
+  }
+  LocalOptions options = ShareMachine(arguments, scenario);
+  options.waits_for_cpu = !arguments.no_wait;
+  return std::make_unique<LocalLauncher>(options);
+}
+
+// What cannot be meant.
+std::string CheckLauncher(const TrialsArguments& arguments) {
+  if (arguments.launcher != "slurm") {
+    return arguments.slurm_options.empty()
+               ? ""
+               : "--slurm-option is for trials on a cluster; add --launcher slurm";
+  }
+  if (arguments.no_wait) {
+    return "--no-wait is for trials on this machine; leave it out with --launcher slurm";
+  }
+  for (const std::string& option : arguments.slurm_options) {
+    if (std::string why = WhyNotForSbatch(option); !why.empty()) return why;
+  }
+  return WhyNoSlurm();
 }
 
 // For trials that are not to wait: who has the processors; empty if one is free.
@@ -170,8 +212,10 @@ std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
 
 // "seed 3 failed: its last words (where the log is)"
 std::string Failure(const TrialsPlan& plan, const TrialEnd& end, const std::string& folder) {
-  return fmt::format("{} failed: {} ({}/{}/tcsim.log)", NameOf(plan, end.trial), end.why, folder,
-                     end.trial.folder);
+  const std::string log = fmt::format("{}/{}/tcsim.log", folder, end.trial.folder);
+  std::error_code error;
+  return fmt::format("{} failed: {}{}", NameOf(plan, end.trial), end.why,
+                     fs::exists(log, error) ? " (" + log + ")" : "");
 }
 
 // What a trial came to, as it ends: for a log.
@@ -208,19 +252,18 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
     groups[trial.group].done.push_back(*outcome);
   }
 
-  RunnerReport report;
+  LauncherReport report;
   if (!todo.empty()) {
     if (arguments.no_wait) {
       if (const std::string taken = WhoHasProcessors(); !taken.empty()) return Fail(taken);
     }
-    RunnerOptions options = ShareMachine(arguments, scenarios.front());
-    options.waits_for_cpu = !arguments.no_wait;
+    const std::unique_ptr<Launcher> launcher = MakeLauncher(arguments, scenarios.front());
     if (!earlier.empty()) {
       Print("{} of {} trials are done already\n", earlier.size(), earlier.size() + todo.size());
       std::fflush(stdout);
     }
     TerminalLine line;
-    RunnerEvents events;
+    LauncherEvents events;
     if (TerminalLine::IsSeen()) {
       events.on_progress = [&line](const TrialsProgress& progress) {
         line.Show(ProgressLine(progress, TerminalLine::Columns()));
@@ -239,7 +282,16 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
       line.Clear();
       Say("ending the running trials");
     };
-    report = RunTrials(plan, folder, todo, earlier, duration_ns, options, events);
+    events.on_loss = [&](const TrialLoss& loss) {
+      line.Clear();
+      Say(fmt::format("{} was lost on node {} ({}){}", NameOf(plan, loss.trial), loss.node,
+                      loss.why, loss.again ? "; it is run again" : ""));
+    };
+    events.on_notice = [&line](const std::string& sentence) {
+      line.Clear();
+      Say(sentence);
+    };
+    report = launcher->Run({plan, folder, todo, earlier, duration_ns}, events);
     line.Clear();
   }
 
@@ -261,6 +313,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
                             earlier.size() + todo.size()),
                 InterruptedBy(report.stop_signal));
   }
+  if (!report.error.empty()) return Fail(report.error);
   return failed > 0 ? kClientFailed : kSucceeded;
 }
 
@@ -270,6 +323,7 @@ int TrialsCommand(const TrialsArguments& arguments) {
   const auto all = [&arguments] {
     TrialsPlan plan;
     std::vector<Scenario> scenarios;
+    if (const std::string error = CheckLauncher(arguments); !error.empty()) return Fail(error);
     if (const std::string error = MakePlan(arguments, &plan, &scenarios); !error.empty()) {
       return Fail(error);
     }
@@ -286,6 +340,7 @@ int TrialsCommand(const TrialsArguments& arguments) {
                       "them all as it is now",
                       folder.changed_program, arguments.out));
     }
+    if (const std::string error = CancelJobs(folder.left_jobs); !error.empty()) Say(error);
     return FlushStdout(RunPlan(arguments, plan, scenarios));
   };
   return RunGuarded(all, {.stop_within_s = kStopWithinS});

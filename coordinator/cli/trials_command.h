@@ -16,6 +16,8 @@ struct TrialsArguments {
   std::optional<std::uint64_t> first_seed;
   bool restart = false, host_network = false, no_wait = false;
   std::vector<std::string> overlays;  // files
+  std::string launcher = "local";     // or "slurm"
+  std::vector<std::string> slurm_options;
   TrialOptions options;
 };
 

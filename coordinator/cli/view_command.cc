@@ -28,7 +28,7 @@ int ViewCommand(const std::string& folder, const std::string& where) {
   }
   if (!is_of_run) {
     return Fail("in the folder '" + folder +
-                "' is nothing that `tcsim run` writes; name the one that it was given as --out");
+                "' is no result of `tcsim run`; give the folder that was its --out");
   }
   const std::string port = std::to_string(request.port);
   execl(request.server.c_str(), request.server.c_str(), request.folder.c_str(),

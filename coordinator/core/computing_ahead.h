@@ -58,6 +58,8 @@ class ComputingAhead {
   void StayHome(Process* process);
   // It has ended.
   void Forget(const Task& task);
+  // The further processors, whoever is there.
+  const std::deque<FurtherCpu>& cpus() const { return cpus_; }
 
   // The virtual CPU's next turn is of a thread that has computed ahead, or does so.
   bool IsNextOn(const VirtualCpu& cpu) const;

@@ -144,8 +144,9 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDura
 }
 
 // False if the thread cannot have done what it has noted: its process is ended for that.
-bool Engine::TakeIpcNotesOf(Task& task) {
+bool Engine::TakeNotesOf(Task& task) {
   const char* what = TakeIpcNotes(task, *memory_);
+  if (what == nullptr) what = datagrams_.TakeNotes(task);
   if (what != nullptr) expulsion_.Expel(*task.process, what);
   return what == nullptr;
 }
@@ -209,7 +210,7 @@ void Engine::Settle(Task& task) {
     task.lead = clock.lead();
     run_.most_lead = std::max(run_.most_lead, task.lead);
     records_.Ran(task, {begun, clock.At(start)}, {start, start}, host_cpu_.stop_tsc());
-    TakeIpcNotesOf(task);
+    TakeNotesOf(task);
     return;
   }
   task.cpu->ComeTo(progress);
@@ -218,7 +219,7 @@ void Engine::Settle(Task& task) {
   // gate when it next looks at its clock: others may have gone on since.
   page.horizon_ns = task.grant.horizon_ns = 0;
   if (Waker::IsRunnable(task)) waker_.Requeue(task);
-  TakeIpcNotesOf(task);
+  TakeNotesOf(task);
   const bool slept = shm::AdjustValue(reading.waited_word) != 0;
   if (slept) SchedulerOf(task).SleptSince(task.order, progress - start);
   const VirtualTime busy_until = slept ? std::min(progress, start + executed) : progress;
@@ -250,8 +251,8 @@ bool Engine::GivesUpStart(Task& task, int turns) {
   }
   if (turns < kStartTurns) return false;
   run_.report.error = fmt::format(
-      "{}, started by {}, did not load the shim within 30 s; is it dynamically linked, and not "
-      "set-uid?",
+      "{}, started by {}, did not load the shim within 30 s; check that it is dynamically linked "
+      "and not set-uid",
       ProgramOf(task.process->pid), task.process->name);
   return true;
 }
@@ -305,16 +306,15 @@ void Engine::StepAside(Task& task) {
   }
   const Process& process = *task.process;
   if (process.robot->is_ideal) {
-    run_.Warn(
-        process.name +
-        " has computed for 10 s at one instant: its robot is ideal, so that the world waits for "
-        "what it computes, but no longer; from here on it counts as waiting for what others do");
+    run_.Warn(process.name +
+              " has computed for 10 s at one instant of virtual time; its robot is ideal, so the "
+              "world waits for it, but no longer than that; from here on it counts as waiting for "
+              "other programs");
   } else {
-    run_.Warn(
-        process.name +
-        " has computed for 5 s without a call or an allocation: under --accounting fixed that "
-        "counts as waiting for "
-        "what others do, and depends on the host; run it with --accounting measured");
+    run_.Warn(process.name +
+              " has computed for 5 s without a call or an allocation; under --accounting fixed "
+              "that counts as waiting for other programs, and makes the run depend on the host; "
+              "run it with --accounting measured");
   }
   waker_.Wait(task, {awaited::OthersRun{}});
   has_spinners_ = true;
@@ -339,7 +339,7 @@ bool Engine::AnswerEarly(Task& task) {
   bool finds_more = false;
   if (std::exchange(task.notified_early, false)) {
     task.reply[0] = task.reply[1] = 0;
-    if (!TakeIpcNotesOf(task)) return true;
+    if (!TakeNotesOf(task)) return true;
     const shm::Notification early = SlotOf(task).note;
     finds_more = notifications_.Handle(task, early);
   } else {
@@ -368,6 +368,7 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   if (task.is_brief) task.brief_until = HostNs(HostClockOf(task)) + kBrief / 2;
   Resume(task);
   run_.turn.recorded_tsc = host_cpu_.stop_tsc();
+  state_link_.Dispatched(task.tid, host_cpu_.stop_tsc(), task.cpu->progress.ns());
   if (task.activation.start_ns < 0) {
     task.activation.start_ns = task.process->clock.At(task.cpu->progress).ns();
   }

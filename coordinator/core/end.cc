@@ -1,4 +1,6 @@
 // The orderly end of a run, once it has concluded.
+#include <x86gprintrin.h>
+
 #include "coordinator/core/engine.h"
 #include "coordinator/os/descendants.h"
 #include "coordinator/os/host.h"
@@ -37,6 +39,7 @@ void Engine::BeginGrace() {
 // Whoever is left now is killed. None may keep the processor meanwhile, nor this process, which
 // waits in the kernel for the last steps of their threads.
 void Engine::Shutdown() {
+  state_link_.Does(Doing::kEnds, __rdtsc());
   run_.header->shutdown.store(1);
   for (const Task& task : run_.table.tasks()) {
     if (task.state != TaskState::kDead) LeaveRealTime(task.tid);

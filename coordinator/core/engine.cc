@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <time.h>
-#include <unistd.h>
 #include <x86gprintrin.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@
 #include "coordinator/host/gate_executor.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
-#include "coordinator/os/own_network.h"
+#include "coordinator/os/own_computer.h"
 #include "shm/check.h"
 
 namespace tcs {
@@ -103,16 +102,16 @@ void Engine::LetWorldGoOnWithout(Task& task) {
   const double at_s = task.cpu->progress.seconds();
   if (task.process->robot->is_ideal) {
     run_.Warn(
-        fmt::format("{} has been busy for {:.0f} s at one instant: its robot is ideal, so that "
-                    "the world waits for what it does, but no longer; from {:.3f} s on it goes on "
-                    "without that program; does it answer its own answers?",
+        fmt::format("{} has been busy for {:.0f} s at one instant of virtual time; its robot is "
+                    "ideal, so the world waits for it, but no longer than that; from {:.3f} s on "
+                    "the world goes on without it; check whether it answers its own answers",
                     task.process->name, kMostStanding.seconds(), at_s));
   } else {
-    run_.Warn(fmt::format(
-        "{} has computed for {:.0f} s at one instant of the world's: under --sync "
-        "callback the world waits for it, but not for longer than the run is to be; from "
-        "{:.3f} s on it goes on without that program",
-        task.process->name, MostHeld().seconds(), at_s));
+    run_.Warn(
+        fmt::format("{} has computed for {:.0f} s at one instant of the world; under --sync "
+                    "callback the world waits for it, but no longer than the run is to last; from "
+                    "{:.3f} s on the world goes on without it",
+                    task.process->name, MostHeld().seconds(), at_s));
   }
   host_cpu_.active().Hold(task);
   task.ComeTo(task.cpu->progress);
@@ -202,8 +201,10 @@ bool Engine::StepWorld() {
   run_.latest = std::max(run_.latest, std::min(now, limit));
   Beat();
   const std::uint64_t begun_tsc = __rdtsc();
+  state_link_.Does(Doing::kIntegrates, begun_tsc);
   const bool sent = world_.Advance(limit);
   const std::uint64_t ended_tsc = __rdtsc();
+  state_link_.Does(Doing::kSchedules, ended_tsc);
   records_.Integrated({now, world_.progress()}, {begun_tsc, ended_tsc});
   run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
   if (sent) {
@@ -244,8 +245,10 @@ VirtualTime Engine::KeepWorldNear(const Task& task, VirtualTime horizon) {
                                .computes = task.used_up >= Task::kComputes});
   if (to.has_value()) {
     const std::uint64_t begun_tsc = __rdtsc();
+    state_link_.Does(Doing::kIntegrates, begun_tsc);
     world_.Lead(now, std::min(*to, world_.NextStop()));
     const std::uint64_t ended_tsc = __rdtsc();
+    state_link_.Does(Doing::kSchedules, ended_tsc);
     records_.Integrated({world, world_.progress()}, {begun_tsc, ended_tsc});
     run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
   }
@@ -302,6 +305,7 @@ VirtualTime Engine::Furthest() const {
 void Engine::LookAround() {
   const std::uint64_t begun_tsc = __rdtsc();
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
+  state_link_.Does(Doing::kWrites, begun_tsc);
   LookAtDetector();
   if (run_.options.on_progress) {
     if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) {
@@ -312,6 +316,7 @@ void Engine::LookAround() {
   }
   if (run_.options.on_notice) standstill_.Look(RunningTime(), Furthest());
   const std::uint64_t now_tsc = __rdtsc();
+  state_link_.Does(Doing::kSchedules, now_tsc);
   next_look_tsc_ =
       now_tsc + std::max(clock_.TicksIn(kLookEveryNs), (now_tsc - begun_tsc) * kLookPause);
 }
@@ -395,10 +400,11 @@ RunReport Engine::Run() {
   } catch (const DynamicsError& error) {
     run_.report.error = error.what();
   }
+  state_link_.Does(Doing::kWrites, __rdtsc());
   reporter_.Conclude(reached_end_ ? run_.end : Furthest());
   // First: what clients do at their end is no part of the run.
   const std::string& folder = run_.options.output_directory;
-  for (const std::string& error : {records_.Close(), dds_.records().Close(),
+  for (const std::string& error : {records_.Close(), datagrams_.Close(), dds_.records().Close(),
                                    folder.empty() ? "" : network_.WriteCounts(folder)}) {
     if (run_.report.error.empty()) run_.report.error = error;
   }
@@ -411,15 +417,11 @@ RunReport Engine::Run() {
   return report;
 }
 
-// Who is not root may make the robots' computers in a user namespace, which has to be entered
-// before anything else is tried.
 RunReport RunScenario(const Scenario& scenario, const RunOptions& options) {
-  if (scenario.network && geteuid() != 0) {
-    if (const std::string why_not = EnterOwnNetwork(); !why_not.empty()) {
+  if (scenario.network) {
+    if (const std::optional<NoComputer> why_not = GetReadyForComputers()) {
       RunReport refused;
-      refused.error = "this host does not let a robot have a network of its own (" + why_not +
-                      "); run tcsim as root, or allow user namespaces, or leave `network` out of "
-                      "the scenario";
+      refused.error = why_not->Sentence();
       return refused;
     }
   }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/calls/child_stops.h"
+#include "coordinator/calls/datagram_log.h"
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/follow_ups.h"
@@ -46,7 +47,9 @@
 #include "coordinator/core/pacing.h"
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
+#include "coordinator/core/state_dump.h"
 #include "coordinator/core/world.h"
+#include "coordinator/dump/state_link.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/host_cpu.h"
 #include "coordinator/host/meter.h"
@@ -142,7 +145,7 @@ class Engine {
   HostDuration TimeToLook(Task& task);
   ProgramTime OwnHorizon() const;
   void Settle(Task& task);
-  bool TakeIpcNotesOf(Task& task);
+  bool TakeNotesOf(Task& task);
   void TakeOutUntold(Task& task, const shm::ClockReading& before, HostDuration asked);
   void StepAside(Task& task);
   void WakeSpinners();
@@ -162,6 +165,7 @@ class Engine {
   Reactor::Found OnGraceRanOut(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetector(Subject subject, std::uint32_t events, Moment moment);
   Reactor::Found OnDetectorEnd(Subject subject, std::uint32_t events, Moment moment);
+  Reactor::Found OnStateAsked(Subject subject, std::uint32_t events, Moment moment);
 
   // System calls that the kernel hands over (trapped.cc).
   Reactor::Found TrapArrived(int listener, Moment moment);
@@ -237,6 +241,7 @@ class Engine {
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
+  DatagramLog datagrams_{run_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};
@@ -287,6 +292,10 @@ class Engine {
   DebuggerHold debugger_{run_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
   RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records(), pacing_}};
+  StateLink state_link_;
+  StateDump state_dump_{{run_, clock_, host_cpu_, world_, network_, launches_, ahead_,
+                         words_.table(), objects_.queues(), dds_.hub(), unknown_children_, pacing_,
+                         state_link_}};
 
   CpuClaim claim_;
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now

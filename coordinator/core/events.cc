@@ -7,6 +7,7 @@
 #include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -153,7 +154,7 @@ bool Engine::BlockedInKernel() {
     return true;
   }
   run_.Warn(fmt::format(
-      "{} blocked in system call {}, which the shim does not see; that time is not charged",
+      "{} blocked in system call {}, which the shim does not know; that time is not charged",
       task.process->name, ThreadSystemCall(task.tid)));
   return true;
 }
@@ -200,8 +201,15 @@ Reactor::Found Engine::TakeEvents(HostDuration timeout, Moment moment, bool is_r
   const bool counts = !is_rest && run_.turn.HasClock() && timeout >= HostDuration();
   const shm::ClockReading before =
       counts ? host_cpu_.ClockOf(*run_.turn.task()) : shm::ClockReading{};
+  const bool sleeps = timeout != HostDuration();
+  if (sleeps && run_.turn.lasts()) {
+    state_link_.Does(Doing::kAwaitsThread, host_cpu_.stop_tsc());
+  } else if (sleeps) {
+    state_link_.Does(Doing::kAwaitsEvents, __rdtsc());
+  }
   const std::size_t n = reactor_.Wait(timeout);
   if (!is_rest) host_cpu_.Woke();
+  if (sleeps) state_link_.Does(Doing::kSchedules, host_cpu_.stop_tsc());
   if (n == 0 && is_rest) return {};
   if (counts) TakeOutUntold(*run_.turn.task(), before, timeout);
   if (n == 0 && run_.turn.lasts()) {

@@ -3,6 +3,7 @@
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include <algorithm>
 #include <utility>
@@ -32,6 +33,7 @@ void Engine::RegisterHandlers() {
   on(Tag::kGraceRanOut, &Engine::OnGraceRanOut);
   on(Tag::kDetector, &Engine::OnDetector);
   on(Tag::kDetectorEnd, &Engine::OnDetectorEnd);
+  on(Tag::kStateAsked, &Engine::OnStateAsked);
 }
 
 Reactor::Found Engine::OnPipe(Subject process, std::uint32_t, Moment moment) {
@@ -88,7 +90,12 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
 }
 
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
-  world_.ReceiveCommands(channel.index, moment.at);
+  CommandSender from;
+  if (run_.turn.HasClock()) {
+    const Task& task = *run_.turn.task();
+    from = {static_cast<std::uint64_t>(task.tid), host_cpu_.ClockOf(task).cpu_ns};
+  }
+  world_.ReceiveCommands(channel.index, moment.at, from);
   return {};
 }
 
@@ -126,6 +133,12 @@ Reactor::Found Engine::OnDetector(Subject, std::uint32_t, Moment) {
 Reactor::Found Engine::OnDetectorEnd(Subject, std::uint32_t, Moment) {
   DetectorEnded();
   return {.stops_running = true};
+}
+
+// Nothing comes of it for the run.
+Reactor::Found Engine::OnStateAsked(Subject, std::uint32_t, Moment) {
+  if (state_link_.TakeAsked()) state_link_.Answer(state_dump_.Text(claim_.cpu, __rdtsc()));
+  return {};
 }
 
 }  // namespace tcs

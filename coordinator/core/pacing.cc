@@ -43,7 +43,8 @@ void Pacing::LookAtServer(HostTime now) {
   is_orphaned_ = true;
   if (notice_) {
     notice_(
-        "the server of the page has ended, and nobody else could let the run go on: it goes on");
+        "the server of the page has ended, and nothing else could let the paused run go on, so it "
+        "goes on");
   }
   pacer_.GoOn(now);
 }

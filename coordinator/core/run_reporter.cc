@@ -74,7 +74,7 @@ void RunReporter::WarnOfNeverStarted() {
   if (!run_.report.error.empty() || run_.stop.asked()) return;
   for (const Launches::Launch& launch : from_.launches.all()) {
     if (launch.process != nullptr || !launch.start.IsNever()) continue;
-    run_.Warn(fmt::format("{} was never started: it is to start after {}, which has not ended",
+    run_.Warn(fmt::format("{} was never started, because it starts after {}, which has not ended",
                           launch.spec->name, launch.spec->after));
   }
 }

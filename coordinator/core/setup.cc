@@ -9,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <time.h>
 #include <unistd.h>
+#include <x86gprintrin.h>
 
 #include <cstring>
 #include <memory>
@@ -38,25 +39,29 @@ constexpr std::int64_t kFixedDateNs = 1'704'067'200'000'000'000;
 }  // namespace
 
 std::string Engine::Prepare() {
+  state_link_.Open(run_.options.output_directory);
+  state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
   const std::string no_real_time = WhyNoRealTime();
   if (run_.gates_only && !TrapsHoldSignals()) {
     return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
-           ", and to run without it takes Linux 5.19 or newer";
+           ", and runs without it need Linux 5.19 or newer";
   }
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
     network_.MakeAt(address, make);
   };
   const bool is_recorded = run_.options.record != RecordingKind::kNone;
-  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded);
+  if (std::string error =
+          world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded ? &datagrams_ : nullptr);
       !error.empty()) {
     return error;
   }
   auto claim = ClaimCpu(run_.options.waits_for_cpu);
   if (const auto* taken = std::get_if<std::string>(&claim)) return *taken;
   claim_ = std::move(std::get<CpuClaim>(claim));
+  state_link_.RunsOn(claim_.cpu);
   ClientsRunOn(claim_.cpu);
   const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
   const std::vector<int> beside = World::ProcessorsBeside(claim_.cpu, run_.options.host_cpus);
@@ -70,12 +75,16 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
+  if (!run_.options.output_directory.empty()) datagrams_.Open();
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   ahead_.Open(claim_.cpu, further);
   world_.UseProcessors(beside);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
+  if (state_link_.wake_fd() >= 0) {
+    reactor_.Add(state_link_.wake_fd(), EPOLLIN, {Tag::kStateAsked});
+  }
   if (std::string error = PrepareMemory(); !error.empty()) return error;
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());
@@ -96,20 +105,20 @@ void Engine::TellOfMissingRights(bool may_have_levels) const {
   if (!run_.options.on_notice) return;
   if (!may_have_levels) {
     run_.options.on_notice(
-        "SCHED_FIFO is not permitted here, so that gates keep the threads apart: the run takes "
+        "SCHED_FIFO is not permitted here, so gates keep the threads apart and the run takes "
         "longer (`tcsim doctor` says more)");
   }
   if (run_.has_porters) {
     run_.options.on_notice(
-        std::string("pidfd_getfd is refused here, so that a process beside each program hands over "
-                    "its descriptors: the run takes longer") +
+        std::string("pidfd_getfd is refused here, so a process beside each program hands over its "
+                    "descriptors and the run takes longer") +
         (may_have_levels ? ", without SCHED_FIFO, which is permitted" : "") +
         " (`tcsim doctor` says more)");
   }
   if (run_.IsFixed() && WhyNoFixedLayout() != 0) {
     run_.options.on_notice(
-        "addresses are others in each run here, for personality is refused: programs that go by "
-        "them do not repeat to the byte (`tcsim doctor` says more)");
+        "addresses differ from run to run here because personality is refused: programs that "
+        "depend on them do not repeat to the byte (`tcsim doctor` says more)");
   }
 }
 
@@ -137,6 +146,8 @@ std::string Engine::PrepareMemory() {
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.Preempts() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
+  run_.header->notes_datagrams = run_.options.record == RecordingKind::kNone ? 0 : 1;
+  run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
 }
 
@@ -187,7 +198,7 @@ std::string Engine::PrepareHostCpu() {
   // As with any other process of ours.
   if (const int error = WhyNoLooksInto(host_cpu_.detector().pid()); error != 0) {
     return fmt::format(
-        "tcsim may not look into processes of its own here ({}), so that it could not see what "
+        "tcsim may not read the memory of its own processes here ({}), so it cannot see what "
         "programs wait for; `tcsim doctor` says how to allow it",
         strerror(error));
   }

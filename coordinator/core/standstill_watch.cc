@@ -55,7 +55,7 @@ std::vector<std::string> StandstillWatch::WhatIsAwaited() const {
     if (!first.text.empty()) awaited.push_back(NameOf(process) + ' ' + first.text);
   }
   for (const auto& [pid, child] : unknown_children_.living()) {
-    awaited.push_back(NameOf(pid) + ", which tcs knows nothing of, goes on");
+    awaited.push_back(NameOf(pid) + ", which never registered with tcs, goes on");
   }
   return awaited;
 }
@@ -94,9 +94,9 @@ void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
   has_said_standstill_ = true;
   const std::string why =
       unmanaged_.AnyRuns() || unknown_children_.AnyRuns()
-          ? "it waits for what computes without tcs's knowing of it: " +
+          ? "it waits for threads or processes that tcs does not manage: " +
                 Joined(WhatComputesUnmanaged())
-          : "nothing can happen any more but from outside; " + Joined(WhatIsAwaited());
+          : "only input from outside could make it go on; " + Joined(WhatIsAwaited());
   run_.options.on_notice(
       fmt::format("virtual time has stood still at {:.3f} s for {:.0f} s: {}; Ctrl-C ends the run",
                   furthest.seconds(), stood.seconds(), why));
@@ -121,8 +121,8 @@ void StandstillWatch::NoteLeftBehind(HostTime now) {
   if (now - *alone_since_ < kPatience) return;
   has_said_left_behind_ = true;
   run_.options.on_notice(
-      fmt::format("{} has ended; the run goes on for what it has left: {}; Ctrl-C "
-                  "ends it, too",
+      fmt::format("{} has ended; the run goes on for the background processes that it has left: "
+                  "{}; Ctrl-C ends these, too",
                   Joined(ended), Joined(left)));
 }
 

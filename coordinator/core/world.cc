@@ -62,7 +62,7 @@ World::World(std::function<void(const std::string&)> warn)
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
-                        bool is_recorded) {
+                        DatagramWatch* watch) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -71,12 +71,21 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   states_.resize(all_bodies_.size());
   link_lines_ = LinkLines(*scenario.world);
   joint_lines_ = JointLines(*scenario.world);
+  contact_lines_ = ContactLines(*scenario.world);
   sensors_ = Sensors(scenario_.world->gravity_mps2);
   std::vector<std::string> names_of_bodies;
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
-  if (is_recorded) channels_.Record(scenario_, channel_records_.emplace(scenario_));
+  if (watch != nullptr) {
+    channels_.TellOf(*watch, scenario_);
+    channels_.Record(scenario_, channel_records_.emplace(scenario_));
+    for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+      auto& outlet = channels_.outlets[i];
+      outlet = measurements_.Wrap(scenario_.sensors[i], std::move(outlet));
+    }
+    is_recorded_ = true;
+  }
   if (channels_.clock != nullptr) {
     sensors_.Add({}, {.period = scenario_.clock->period, .latency = {}}, {}, *channels_.clock);
   }
@@ -122,7 +131,8 @@ void World::Begin(std::int64_t realtime_offset_ns) {
 std::string World::OpenRecords(const std::string& folder) {
   // Those of an earlier run would be taken for this one's.
   std::error_code ignored;
-  for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/commands.csv"}) {
+  for (const char* file : {"/scene.json", "/bodies.csv", "/joints.csv", "/contacts.csv",
+                           "/commands.csv", "/sensors.csv"}) {
     std::filesystem::remove(folder + file, ignored);
   }
   if (!present()) return {};
@@ -139,8 +149,14 @@ std::string World::OpenRecords(const std::string& folder) {
   FindNextStop();
   std::string error;
   if (!joint_lines_.empty()) error = joints_csv_.Open(folder + "/joints.csv", kJointsCsvHead);
+  if (error.empty() && scenario_.csv_contacts) {
+    error = contacts_csv_.Open(folder + "/contacts.csv", kContactsCsvHead);
+  }
   if (error.empty() && !scenario_.commands.empty()) {
     error = commands_.log().Open(folder + "/commands.csv");
+  }
+  if (error.empty() && is_recorded_ && !scenario_.sensors.empty()) {
+    error = measurements_.Open(folder + "/sensors.csv");
   }
   return error;
 }
@@ -154,7 +170,9 @@ void World::FlushBodies() {
 void World::FlushRecords() {
   FlushBodies();
   joints_csv_.Flush();
+  contacts_csv_.Flush();
   commands_.log().Flush();
+  measurements_.Flush();
 }
 
 std::string World::CloseRecords() {
@@ -163,8 +181,11 @@ std::string World::CloseRecords() {
   FlushBodies();
   csv_.close();
   if (!csv_) return NotWrittenWhole(csv_path_);
-  const std::string errors[] = {joints_csv_.Close(), commands_.log().Close()};
-  return errors[0].empty() ? errors[1] : errors[0];
+  for (const std::string& error : {joints_csv_.Close(), contacts_csv_.Close(),
+                                   commands_.log().Close(), measurements_.Close()}) {
+    if (!error.empty()) return error;
+  }
+  return {};
 }
 
 void World::RecordInto(record::MessageSink& sink) {
@@ -191,6 +212,7 @@ void World::WriteStates() {
   link_lines_.Append(*dynamics_, &csv_text_);
   if (topics_) topics_->Write(now, states_, link_lines_.states());
   joint_lines_.Write(*dynamics_, &joints_csv_);
+  if (contacts_csv_.is_open()) contact_lines_.Write(*dynamics_, &contacts_csv_);
   if (csv_text_.size() > kCsvAtOnce) FlushBodies();
 }
 
@@ -266,9 +288,9 @@ std::vector<int> World::command_fds() const {
   return fds;
 }
 
-void World::ReceiveCommands(std::size_t index, VirtualTime now) {
+void World::ReceiveCommands(std::size_t index, VirtualTime now, const CommandSender& from) {
   const Spent spent(&host_ns_);
-  channels_.inlets[index]->Receive(now, queue_);
+  channels_.inlets[index]->Receive({now, from}, queue_);
   // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
   if (now < progress_) next_stop_ = std::min(next_stop_, now);
 }
@@ -305,6 +327,15 @@ std::vector<std::string> World::CommandComplaints() const {
   std::erase(complaints, "");
   std::ranges::move(commands_.ComplaintsAboutActuators(), std::back_inserter(complaints));
   return complaints;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> World::KeptReadings() const {
+  std::vector<std::pair<std::size_t, std::size_t>> kept;
+  for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+    if (const std::size_t count = channels_.outlets[i]->Kept(); count > 0)
+      kept.emplace_back(i, count);
+  }
+  return kept;
 }
 
 std::vector<std::string> World::UnheardSensors() const {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/channel/channels.h"
@@ -16,9 +17,11 @@
 #include "coordinator/trace/csv_file.h"
 #include "coordinator/world/command_queue.h"
 #include "coordinator/world/commands.h"
+#include "coordinator/world/contact_lines.h"
 #include "coordinator/world/due_links.h"
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
+#include "coordinator/world/measurement_log.h"
 #include "coordinator/world/sensors.h"
 #include "coordinator/world/world_topics.h"
 #include "shm/own_receivers.h"
@@ -31,9 +34,9 @@ class World {
   explicit World(std::function<void(const std::string&)> warn);
 
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
-  // are for those on DDS; they outlive this. RecordInto follows if `is_recorded`.
+  // are for those on DDS; they outlive this. With a `watch` RecordInto follows.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
-                                 const MakeAt& make_at, bool is_recorded = false);
+                                 const MakeAt& make_at, DatagramWatch* watch = nullptr);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);
@@ -43,8 +46,8 @@ class World {
   void Begin(std::int64_t realtime_offset_ns);
 
   // What the world looks like, how it moved and what moved it are written into this folder:
-  // scene.json, bodies.csv, joints.csv, commands.csv; nothing without a world. Empty on success,
-  // else one sentence.
+  // scene.json, bodies.csv, joints.csv, commands.csv, contacts.csv if the scenario asks for it, and
+  // sensors.csv if it is recorded; nothing without a world. Empty on success, else one sentence.
   [[nodiscard]] std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   [[nodiscard]] std::string CloseRecords();
@@ -65,12 +68,18 @@ class World {
   // still to come. Each is applied at its time.
   void Lead(VirtualTime now, VirtualTime to);
 
+  // How many commands were sent and do not act yet; and the channels of sensors that have readings
+  // on their way, each with how many, by their numbers in the scenario.
+  std::size_t kept_commands() const { return queue_.size(); }
+  std::vector<std::pair<std::size_t, std::size_t>> KeptReadings() const;
+
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
   // The addresses of those to which programs send datagrams.
   void NameReceivers(shm::OwnReceivers& receivers) const;
-  // Takes what has arrived there at `now`; others may still send for times before.
-  void ReceiveCommands(std::size_t index, VirtualTime now);
+  // Takes what has arrived there at `now`, from the thread that is known to have sent it; others
+  // may still send for times before.
+  void ReceiveCommands(std::size_t index, VirtualTime now, const CommandSender& from);
   // Applies what has been sent by `now` to where no descriptor tells of it.
   void ReceiveUntold(VirtualTime now);
   // Takes what has been written to terminals, at `now`.
@@ -107,6 +116,7 @@ class World {
   std::unique_ptr<Dynamics> dynamics_;
   VirtualTime progress_, next_output_, next_stop_;
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
+  MeasurementLog measurements_;                    // this, too
   Channels channels_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
@@ -118,6 +128,9 @@ class World {
   LinkLines link_lines_;
   JointLines joint_lines_;
   CsvFile joints_csv_;
+  ContactLines contact_lines_;
+  CsvFile contacts_csv_;
+  bool is_recorded_ = false;
   DueLinks due_links_;
   std::optional<WorldTopics> topics_;
   std::vector<int> all_bodies_, due_;

@@ -215,7 +215,7 @@ void Hub::Introduce(Number to, Number whom, std::int64_t now_ns) {
   }
 }
 
-std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
+std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns, std::int64_t ran_ns) {
   const Member* member = Find(from);
   if (member == nullptr) {
     return "sends DDS messages in a child that it has forked, where its participants are not: they "
@@ -228,13 +228,14 @@ std::string Hub::Send(Number from, std::size_t bytes, std::int64_t now_ns) {
         bytes);
   }
   std::string wrong =
-      EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns);
+      EnterAll(from, {reinterpret_cast<const std::byte*>(member->outbox()), bytes}, now_ns, ran_ns);
   GiveBack(*Find(from), shm::kDdsHeaderSize, bytes);
   return wrong;
 }
 
 // Of messages in memory that the program may write to all the while.
-std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns) {
+std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns,
+                          std::int64_t ran_ns) {
   while (!left.empty()) {
     DdsMessage header{};
     if (left.size() >= sizeof header) header = HeaderOf(left);
@@ -243,6 +244,7 @@ std::string Hub::EnterAll(Number from, std::span<const std::byte> left, std::int
     if (auto wrong = WhatIsWrongWithSize(header, left.size())) return *wrong;
     header.from = from;
     header.time_ns = now_ns;
+    header.sender_ran = static_cast<std::uint32_t>(ran_ns);
     Bytes copy(left.begin(), left.begin() + header.size);
     PutHeader(header, copy);
     if (auto wrong = WhyNot(header, PayloadOf(copy))) return *wrong;
@@ -272,9 +274,9 @@ std::optional<std::string> Hub::WhyNot(const DdsMessage& header,
   const auto before = KnownAs(header.from, GuidAt(header.subject));
   const std::size_t had = before == known_.end() ? 0 : before->message->size();
   if (Find(header.from)->known_bytes - had + header.size > kMostKnownBytes) {
-    return "has made so many DDS participants, writers and readers that what they say of "
-           "themselves takes 16 MiB: nobody is told of further ones; delete those that are not "
-           "needed any more";
+    return "has made so many DDS participants, writers and readers that their descriptions take 16 "
+           "MiB: other programs are not told of further ones; delete the ones that are not needed "
+           "any more";
   }
   return std::nullopt;
 }
@@ -456,6 +458,12 @@ void Hub::ShowFull(Number number) {
 std::int64_t Hub::DueNs(Number number) const {
   const Member* member = Find(number);
   return member == nullptr || member->queue.empty() ? shm::kNeverNs : member->queue.begin()->first;
+}
+
+Hub::Backlog Hub::BacklogOf(Number number) const {
+  const Member* member = Find(number);
+  if (member == nullptr) return {};
+  return {member->queue.size(), member->queued_bytes, DueNs(number)};
 }
 
 std::size_t Hub::Deliver(Number number, std::int64_t now_ns) {

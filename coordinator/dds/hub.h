@@ -70,10 +70,11 @@ class Hub {
   void Stop(Number number, std::int64_t now_ns);
   void Continue(Number number, std::int64_t now_ns);
 
-  // Takes the messages in the first `bytes` of its outbox, sent at `now_ns`. Says what is wrong
-  // with the first one that is not as it must be, as the rest of a sentence about the process: it
-  // is dropped, and what follows it.
-  [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns);
+  // Takes the messages in the first `bytes` of its outbox, sent at `now_ns` by a thread that had
+  // been charged `ran_ns`. Says what is wrong with the first one that is not as it must be, as the
+  // rest of a sentence about the process: it is dropped, and what follows it.
+  [[nodiscard]] std::string Send(Number from, std::size_t bytes, std::int64_t now_ns,
+                                 std::int64_t ran_ns = 0);
 
   // When the process's next message is due.
   std::int64_t DueNs(Number number) const;
@@ -85,6 +86,13 @@ class Hub {
   // More waits for it, or is in its hands, than it can take at once (shm/dds_exchange.h). It stays
   // so if it dies then.
   bool IsFull(Number number) const;
+
+  // What waits for the process and is not in its hands yet.
+  struct Backlog {
+    std::size_t messages = 0, bytes = 0;
+    std::int64_t due_ns = shm::kNeverNs;  // the first
+  };
+  Backlog BacklogOf(Number number) const;
 
   // What the coordinator itself sends, due at `due_ns`, in `header` with size, times and sender
   // left to be filled in.
@@ -147,7 +155,8 @@ class Hub {
     Message message;
   };
 
-  std::string EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns);
+  std::string EnterAll(Number from, std::span<const std::byte> left, std::int64_t now_ns,
+                       std::int64_t ran_ns);
   void Enter(const shm::DdsMessage& header, Bytes bytes);
   std::optional<std::string> WhyNot(const shm::DdsMessage& header,
                                     std::span<const std::byte> payload) const;

@@ -17,6 +17,12 @@ constexpr std::uint8_t kParticipantNumber = 1;  // the last but one byte of its 
 // ROS 2's middleware takes participants that say so for its own kind, with nodes.
 constexpr const char* kEnclave = "enclave=/;";
 
+std::uint64_t NumberOf(const Guid& writer) {
+  std::uint64_t number = 0xcbf29ce484222325u;
+  for (const auto byte : writer) number = (number ^ byte) * 0x100000001b3u;
+  return number;
+}
+
 // From any GUID of a participant's to its own.
 Guid WithParticipantId(Guid guid) {
   guid[12] = guid[13] = 0;
@@ -175,7 +181,11 @@ std::optional<OwnEndpoints::Sample> OwnEndpoints::Take(std::int64_t now_ns) {
     }
     const auto writer = remotes_.find(GuidAt(header.subject));
     if (writer == remotes_.end() || header.sample_kind != shm::kDdsData) continue;
-    Sample sample{{}, header.time_ns, {payload.begin(), payload.end()}};
+    Sample sample{.readers = {},
+                  .at_ns = header.time_ns,
+                  .writer = NumberOf(writer->first),
+                  .sender_ran_ns = header.sender_ran,
+                  .cdr = {payload.begin(), payload.end()}};
     for (Index i = 0; i < own_.size(); ++i) {
       const bool is_meant = !IsAddressed(header) || GuidAt(header.other) == own_[i].guid;
       if (is_meant && Matches(own_[i], writer->second)) sample.readers.push_back(i);

@@ -40,6 +40,8 @@ class OwnEndpoints {
   struct Sample {
     std::vector<Index> readers;  // all that the writer suits, or the one that it is addressed to
     std::int64_t at_ns;          // when it was written
+    std::uint64_t writer;        // another number for each
+    std::int64_t sender_ran_ns;  // as Hub::Send was told
     std::vector<std::byte> cdr;
   };
   // The next sample that was written by `now_ns` to one of the readers. Takes notice of who reads

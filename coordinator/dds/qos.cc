@@ -47,9 +47,9 @@ std::optional<std::string> WhatDoesNotMatch(const Qos& wanted, const Qos& offere
   // From the weakest promise to the strongest.
   if (offered.liveliness < wanted.liveliness) return Wants(wanted.liveliness, offered.liveliness);
   if (IsShorter(wanted.deadline, offered.deadline))
-    return "wants a shorter deadline than is offered";
+    return "requests a shorter deadline than is offered";
   if (IsShorter(wanted.lease, offered.lease)) {
-    return "wants a shorter lease of liveliness than is offered";
+    return "requests a shorter liveliness lease than is offered";
   }
   return std::nullopt;
 }

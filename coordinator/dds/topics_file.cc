@@ -136,8 +136,8 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
   if (!file && errno == ENOENT) {
     return LoadError{
         "'" + folder +
-        "' has no topics.json: no program of the run spoke DDS by endpoints, or no run "
-        "that came to its end wrote there"};
+        "' has no topics.json: no program of the run used DDS in shared memory, or the run "
+        "did not come to its end"};
   }
   if (!file) return LoadError{fmt::format("{} cannot be read: {}", path, strerror(errno))};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -147,7 +147,8 @@ LoadResult<std::vector<TopicReport>> ReadTopics(const std::string& folder) {
     const Json json = Json::parse(text);
     const int version = json.at("version").get<int>();
     if (version > kVersion) {
-      return LoadError{path + " is of a later tcsim; use that one, or make the run again"};
+      return LoadError{path +
+                       " was written by a later tcsim; use that version, or make the run again"};
     }
     for (const Json& topic : json.at("topics")) topics.push_back(ToTopic(topic));
   } catch (const Json::exception&) {

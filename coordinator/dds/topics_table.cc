@@ -78,8 +78,7 @@ std::optional<std::string> WhyApart(const TopicReport& topic, const std::string&
   if (!writer || other.domain != topic.domain) return std::nullopt;
   if (other.topic == topic.topic) {
     return fmt::format(
-        "{}: {} reads {} there, but {} writes {}, so that nothing gets across; use "
-        "one type at both ends",
+        "{}: {} reads {} there, but {} writes {}, so no sample arrives; use one type at both ends",
         topic.topic, reader, topic.type, *writer, other.type);
   }
   const bool is_ours = (reader == kSimulation) != (*writer == kSimulation);
@@ -87,8 +86,8 @@ std::optional<std::string> WhyApart(const TopicReport& topic, const std::string&
     return std::nullopt;
   }
   return fmt::format(
-      "{}: {} reads it, and nobody writes it; {}: {} writes it with the same type, "
-      "and nobody reads it; if they are meant for each other, use one name",
+      "{}: {} reads it, and no program writes it; {}: {} writes it with the same type, and no "
+      "program reads it; if they belong together, use one name",
       topic.topic, reader, other.topic, *writer);
 }
 

@@ -40,8 +40,8 @@ std::optional<std::string> WhatIsWrong(const DdsMessage& header,
     case DdsKind::kTopic:
       if (payload.size() > kMostAnnounced) {
         return fmt::format(
-            "has a DDS entity whose names and QoS take {} bytes, more than 1 MiB: "
-            "nobody is told of it; look for user data that is too large",
+            "has a DDS entity whose names and QoS take {} bytes, more than 1 MiB: other programs "
+            "are not told of it; look for user data that is too large",
             payload.size());
       }
       if (is_announced && header.kind == DdsKind::kParticipant && !IsParticipant(payload)) {

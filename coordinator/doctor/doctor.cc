@@ -17,6 +17,7 @@
 #include "coordinator/doctor/interpret.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/own_computer.h"
 #include "coordinator/os/pipe.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
@@ -134,6 +135,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       LookAtCpu(),
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
+      JudgeNetworks(WhyNoComputer(), geteuid() == 0),
       JudgeLibc(gnu_get_libc_version()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),

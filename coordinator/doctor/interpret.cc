@@ -44,7 +44,7 @@ Finding JudgeRealTime(int error, bool has_gates) {
   if (error == 0) {
     return {kName, Verdict::kOk,
             "SCHED_FIFO 13 is permitted: priorities keep the threads of a run apart; without them "
-            "gates would, with the same results and more slowly",
+            "gates would, with the same results, but more slowly",
             ""};
   }
   const std::string how =
@@ -52,7 +52,7 @@ Finding JudgeRealTime(int error, bool has_gates) {
       "again (in a container: --cap-add SYS_NICE)";
   if (!has_gates) {
     return {kName, Verdict::kMissing,
-            fmt::format("SCHED_FIFO 13 is refused ({}), and to run without it takes Linux 5.19",
+            fmt::format("SCHED_FIFO 13 is refused ({}), and runs without it need Linux 5.19",
                         strerror(error)),
             how};
   }
@@ -60,7 +60,7 @@ Finding JudgeRealTime(int error, bool has_gates) {
           fmt::format("SCHED_FIFO 13 is refused ({}): gates and a signal keep the threads of a run "
                       "apart, with the same results",
                       strerror(error)),
-          "with it runs take less time, most of all beside other programs: " + how};
+          "with it, runs take less time, most of all beside other programs: " + how};
 }
 
 Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us,
@@ -68,15 +68,21 @@ Finding JudgeThrottling(const std::string& runtime_us, const std::string& period
   constexpr char kName[] = "real-time throttling";
   int major = 0, minor = 0;
   std::sscanf(release.c_str(), "%d.%d", &major, &minor);
-  if (major > 6 || (major == 6 && minor >= 12)) {
-    return {kName, Verdict::kWarning,
-            "ordinary programs get 50 ms of each second on a busy processor (the fair server)",
-            "results do not change, but runs take that much longer; as root, `echo 0 > "
-            "/sys/kernel/debug/sched/fair_server/cpuN/runtime` turns it off for processor N, where "
-            "the kernel permits it"};
-  }
   const long runtime = ToLong(runtime_us, -1), period = ToLong(period_us, 1'000'000);
-  if (runtime < 0 || runtime >= period) return {kName, Verdict::kOk, "off", ""};
+  const bool is_off = runtime < 0 || runtime >= period;
+  // Since 6.12 only kernels with real-time groups heed the setting; others have a fair server.
+  if (major > 6 || (major == 6 && minor >= 12)) {
+    const std::string also =
+        is_off ? ""
+               : "`sysctl -w kernel.sched_rt_runtime_us=-1` on kernels with real-time groups, ";
+    return {
+        kName, Verdict::kWarning,
+        "a processor that a run keeps busy has up to 50 ms of each second for others",
+        "results do not change, but runs take that much longer; as root, " + also +
+            "`echo 0 > /sys/kernel/debug/sched/fair_server/cpuN/runtime` for processor N, where "
+            "the kernel permits it, turns it off"};
+  }
+  if (is_off) return {kName, Verdict::kOk, "off", ""};
   return {kName, Verdict::kWarning,
           fmt::format("real-time programs get {:.0f} % of each {:.1f} s",
                       100.0 * static_cast<double>(runtime) / static_cast<double>(period),
@@ -125,16 +131,16 @@ Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates)
   constexpr char kName[] = "descriptors of clients";
   if (memory_error != 0) {
     return {kName, Verdict::kMissing,
-            fmt::format("tcsim may not look into its own children: {}", strerror(memory_error)),
-            "set kernel.yama.ptrace_scope below 3, and allow process_vm_readv where a seccomp "
-            "profile is in the way (docker: --cap-add SYS_PTRACE)"};
+            fmt::format("tcsim may not read the memory of its own children: {}",
+                        strerror(memory_error)),
+            "set kernel.yama.ptrace_scope below 3; where a seccomp profile is in the way, allow "
+            "process_vm_readv (docker: --cap-add SYS_PTRACE)"};
   }
   if (descriptor_error == 0) {
-    return {
-        kName, Verdict::kOk,
-        "pidfd_getfd works; without it a process beside each program would hand them over, with "
-        "the same results and more slowly",
-        ""};
+    return {kName, Verdict::kOk,
+            "pidfd_getfd works; without it a process beside each program would hand descriptors "
+            "over, with the same results, but more slowly",
+            ""};
   }
   const std::string refused =
       fmt::format("pidfd_getfd is refused ({})", strerror(descriptor_error));
@@ -146,7 +152,7 @@ Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates)
           refused +
               ": a process beside each program hands them over, and SCHED_FIFO is not used, "
               "with the same results",
-          "with it runs take less time: " + how};
+          "with it, runs take less time: " + how};
 }
 
 Finding JudgeLayout(int error) {
@@ -154,12 +160,25 @@ Finding JudgeLayout(int error) {
   if (error == 0) {
     return {kName, Verdict::kOk, "the same in each run under `--accounting fixed`", ""};
   }
-  return {
-      kName, Verdict::kWarning,
-      fmt::format("another one in each run: personality is refused ({})", strerror(error)),
-      "programs that go by addresses (the order of pointers, say) do not repeat to the byte under "
-      "`--accounting fixed`; allow personality(ADDR_NO_RANDOMIZE), as docker's "
-      "--security-opt seccomp=FILE can"};
+  return {kName, Verdict::kWarning,
+          fmt::format("different in each run: personality is refused ({})", strerror(error)),
+          "programs that depend on addresses (for example on the order of pointers) do not repeat "
+          "to the byte under `--accounting fixed`; allow personality(ADDR_NO_RANDOMIZE), as "
+          "docker's --security-opt seccomp=FILE can"};
+}
+
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root) {
+  constexpr char kName[] = "networks of robots";
+  if (!why_not) {
+    return {kName, Verdict::kOk,
+            fmt::format("`network` in a scenario works: {} and /dev/net/tun are permitted",
+                        is_root ? "namespaces" : "user namespaces"),
+            ""};
+  }
+  return {kName, Verdict::kWarning,
+          fmt::format("no robot can have one of its own ({}: {})", why_not->step,
+                      strerror(why_not->error)),
+          "only scenarios with `network` take it: " + why_not->Mend()};
 }
 
 Finding JudgeLibc(const std::string& version) {
@@ -179,7 +198,7 @@ Finding JudgeShim(const std::string& path, int wait_status, const std::string& s
   const std::string first = said.substr(0, said.find('\n'));
   return {"shim", Verdict::kMissing,
           first.empty() ? path + " does not load" : path + " does not load: " + first,
-          "build it again with ./dev build; it belongs into ../lib beside tcsim's folder"};
+          "build it again with ./dev build; it belongs in ../lib beside the folder of tcsim"};
 }
 
 Finding JudgeSteal(const std::string& stat) {

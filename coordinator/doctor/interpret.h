@@ -1,9 +1,11 @@
 // From what the kernel says to a finding. Pure: text and numbers in, finding out.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "coordinator/doctor/finding.h"
+#include "coordinator/os/own_computer.h"
 
 namespace tcs {
 
@@ -26,6 +28,9 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated);
 Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates);
 // `error`: the errno of asking for a process without address-space randomisation; 0 if it worked.
 Finding JudgeLayout(int error);
+// `why_not`: of making a robot a computer of its own (WhyNoComputer); `is_root`: it takes no user
+// namespace.
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root);
 // `version`: of the C library, such as "2.36".
 Finding JudgeLibc(const std::string& version);
 // `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.

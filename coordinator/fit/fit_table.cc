@@ -87,8 +87,8 @@ std::string WarningOf(const std::string& name, const MeasuredClient& client, con
   }
   if (const double misfit = MisfitOf(costs, client.activations); misfit > kLargeMisfit) {
     return fmt::format(
-        "how long {} computes its calls and allocations do not tell: with these costs its "
-        "activations are charged in all what was measured, but each by itself {:.0f} % more or "
+        "calls and allocations do not tell how long {} computes: with these costs all its "
+        "activations together are charged what was measured, but a single one {:.0f} % more or "
         "less on average",
         name, 100 * misfit);
   }

@@ -42,7 +42,7 @@ bool IsName(const std::string& name) {
 
 LoadError NotCounted(const std::string& folder) {
   return LoadError{fmt::format(
-      "{} does not tell of calls and allocations; make the run again with --for-fit", folder)};
+      "{} has no counts of calls and allocations; make the run again with --for-fit", folder)};
 }
 
 LoadResult<MeasuredRun> FromSummary(const std::string& folder) {
@@ -97,8 +97,8 @@ LoadResult<MeasuredRun> ReadMeasuredRun(const std::string& folder) {
   const auto read = report::ReadCsv(path, {"client", "charged_ns", "calls", "allocations"}, take);
   if (const auto* error = std::get_if<LoadError>(&read)) return *error;
   if (const auto unusable = std::get<std::int64_t>(read); unusable > 0) {
-    run->warnings.push_back(
-        fmt::format("{} has {} of no use, left out", path, report::Count(unusable, "line")));
+    run->warnings.push_back(fmt::format("{} has {} that cannot be used; left out", path,
+                                        report::Count(unusable, "line")));
   }
   return result;
 }

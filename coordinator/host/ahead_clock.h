@@ -2,10 +2,12 @@
 // it. Its CPU clock is known for some instants; from one to the next the TSC carries on. So what
 // others took of that processor since the last instant counts as computed until the next one.
 //
-// Pure; the host's nanoseconds.
+// The host's nanoseconds. One thread says what is known, another one may ask at the same time,
+// which waits if the first one is interrupted in the midst.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 
 namespace tcs {
@@ -23,28 +25,47 @@ class AheadClock {
   static constexpr std::int64_t kMostUnknownNs = 3'000'000;
   static constexpr std::int64_t kLostNs = 20'000'000;
 
+  // It has been sent just now. Nobody asks meanwhile.
+  void Start() { Know(0, 0); }
+
   // At `at_ns` it had computed `computed_ns`. Times are from when it was sent.
   void Know(std::int64_t at_ns, std::int64_t computed_ns) {
-    at_ns_ = at_ns;
-    computed_ns_ = computed_ns;
+    ++version_;
+    at_ns_.store(at_ns);
+    computed_ns_.store(computed_ns);
+    ++version_;
   }
 
   // What it has computed by `now_ns`, as far as it can be told, but not more than `most_ns`.
   std::int64_t ComputedBy(std::int64_t now_ns, std::int64_t most_ns) const {
+    const auto [at_ns, computed_ns] = Last();
     const std::int64_t since_ns =
-        std::clamp<std::int64_t>(now_ns - std::max(at_ns_, kWayNs), 0, kMostUnknownNs);
-    return std::max(computed_ns_, std::min(computed_ns_ + since_ns, most_ns));
+        std::clamp<std::int64_t>(now_ns - std::max(at_ns, kWayNs), 0, kMostUnknownNs);
+    return std::max(computed_ns, std::min(computed_ns + since_ns, most_ns));
   }
 
   // Others had the processor for long, by then, or have it from whoever is to look.
   bool IsStarvedBy(std::int64_t now_ns) const {
-    const std::int64_t taken_ns = at_ns_ - computed_ns_ - kWayNs;
-    return (taken_ns > kMostTakenNs && taken_ns > at_ns_ / kMostTakenOf) ||
-           now_ns - at_ns_ > kLostNs;
+    const auto [at_ns, computed_ns] = Last();
+    const std::int64_t taken_ns = at_ns - computed_ns - kWayNs;
+    return (taken_ns > kMostTakenNs && taken_ns > at_ns / kMostTakenOf) || now_ns - at_ns > kLostNs;
   }
 
  private:
-  std::int64_t at_ns_ = 0, computed_ns_ = 0;
+  struct Known {
+    std::int64_t at_ns, computed_ns;
+  };
+  // A sequence lock: odd while the two are written.
+  Known Last() const {
+    for (;;) {
+      const std::uint32_t version = version_.load();
+      const Known known{at_ns_.load(), computed_ns_.load()};
+      if (version % 2 == 0 && version_.load() == version) return known;
+    }
+  }
+
+  std::atomic<std::uint32_t> version_{0};
+  std::atomic<std::int64_t> at_ns_{0}, computed_ns_{0};
 };
 
 }  // namespace tcs

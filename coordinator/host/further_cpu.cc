@@ -1,14 +1,17 @@
 #include "coordinator/host/further_cpu.h"
 
+#include <linux/futex.h>
 #include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 #include <x86gprintrin.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "coordinator/os/host.h"
+#include "shm/time_values.h"
 
 namespace tcs {
 
@@ -19,6 +22,7 @@ constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
 constexpr std::int64_t kWayToSleepNs = 20'000, kMostWayHomeNs = 2'000'000;
 constexpr std::int64_t kClaimsEveryNs = 100'000'000;
+constexpr std::int64_t kForEverNs = 3'600'000'000'000;
 
 }  // namespace
 
@@ -31,11 +35,8 @@ FurtherCpu::FurtherCpu(int cpu, int home, double ticks_per_ns, Executor& executo
       asks_whether_claimed_(std::move(is_claimed)) {}
 
 FurtherCpu::~FurtherCpu() {
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-  }
-  changed_.notify_one();
+  ends_.store(true);
+  WakeWarden();
   if (warden_.joinable()) warden_.join();
 }
 
@@ -48,29 +49,85 @@ void FurtherCpu::StartWarden() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+void FurtherCpu::WakeWarden() {
+  ++wakes_;
+  syscall(SYS_futex, &wakes_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+}
+
+// --- The warden
+// -----------------------------------------------------------------------------------
+
 void FurtherCpu::Guard() {
   BindTo(0, cpu_);
-  std::unique_lock lock(mutex_);
-  while (!ends_) {
-    if (tid_ == 0) {
-      changed_.wait(lock);
-      continue;
-    }
-    Look(__rdtsc());
-    LookForClaims(__rdtsc());
-    const std::int64_t left_ns = allowed_ns_.load() - Computed();
-    if (left_ns > 0 && !is_claimed_.load()) {
-      changed_.wait_for(
-          lock, std::chrono::nanoseconds(std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs)));
-      continue;
-    }
-    executor_.Hold(tid_);
-    BindTo(tid_, home_);
-    tid_ = 0;
-    left_at_ns_ = PassedNs(__rdtsc());
-    has_left_.store(true);
+  while (!ends_.load()) {
+    const std::uint32_t wakes = wakes_.load();
+    Fetch();
+    Sleep(wakes, NsToGuard());
   }
 }
+
+// Until it is woken again, after `wakes` times, or that is over.
+void FurtherCpu::Sleep(std::uint32_t wakes, std::int64_t ns) {
+  const timespec timeout = shm::ToTimespec(ns);
+  syscall(SYS_futex, &wakes_, FUTEX_WAIT_PRIVATE, wakes, &timeout, nullptr, 0);
+}
+
+// In this order: with ordinary priority on the home processor the thread could run there, before
+// the coordinator, for as long as the kernel has ordinary threads run that real-time ones have kept
+// waiting (50 ms of each second).
+void FurtherCpu::Fetch() {
+  Place asked = Place::kAsked;
+  if (!place_.compare_exchange_strong(asked, Place::kMoves)) return;
+  const bool may_come = allowed_ns_.load() > 0;
+  if (may_come && BindTo(tid_, cpu_)) {
+    executor_.LetGo(tid_);
+    place_.store(Place::kHere);
+    return;
+  }
+  is_refused_.store(may_come && Computed() >= 0);
+  Leave();
+}
+
+void FurtherCpu::Leave() {
+  left_at_ns_ = PassedNs(__rdtsc());
+  place_.store(Place::kLeft);
+}
+
+// Sends the thread home that has come to its limit. How long nobody has to be looked after.
+std::int64_t FurtherCpu::NsToGuard() {
+  looks_.store(true);
+  const std::int64_t left_ns = place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
+  looks_.store(false);
+  if (left_ns == kForEverNs) return left_ns;
+  if (left_ns > 0) return std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs);
+  Place here = Place::kHere;
+  if (place_.compare_exchange_strong(here, Place::kMoves)) {
+    executor_.Hold(tid_);
+    BindTo(tid_, home_);
+    Leave();
+  }
+  return kForEverNs;
+}
+
+// The thread does not run meanwhile, so that its CPU clock is right.
+std::int64_t FurtherCpu::LeftAfterLook() {
+  const std::uint64_t tsc = __rdtsc();
+  const std::int64_t computed_ns = std::max<std::int64_t>(0, Computed());
+  ahead_.Know(PassedNs(tsc), computed_ns);
+  return IsClaimedBy(tsc) ? 0 : allowed_ns_.load() - computed_ns;
+}
+
+// Other runs come and go.
+bool FurtherCpu::IsClaimedBy(std::uint64_t tsc) {
+  if (tsc >= looks_for_claims_tsc_) {
+    looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
+    is_claimed_.store(asks_whether_claimed_(cpu_));
+  }
+  return is_claimed_.load();
+}
+
+// --- Of both
+// --------------------------------------------------------------------------------------
 
 std::uint64_t FurtherCpu::TicksIn(std::int64_t ns) const {
   return static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
@@ -80,94 +137,82 @@ std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
   return static_cast<std::int64_t>(static_cast<double>(tsc - since_tsc_) / ticks_per_ns_);
 }
 
-std::int64_t FurtherCpu::Computed() const {
-  return std::max<std::int64_t>(0, ReadThreadCpuClock(clock_.get()) - begun_ns_);
-}
+// Since it was sent; negative: it has ended.
+std::int64_t FurtherCpu::Computed() const { return ReadThreadCpuClock(clock_.get()) - begun_ns_; }
 
-// The thread does not run meanwhile, so that its CPU clock is right.
-void FurtherCpu::Look(std::uint64_t tsc) { ahead_.Know(PassedNs(tsc), Computed()); }
-
-// Other runs come and go.
-void FurtherCpu::LookForClaims(std::uint64_t tsc) {
-  if (tsc < looks_for_claims_tsc_) return;
-  looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
-  is_claimed_.store(asks_whether_claimed_(cpu_));
-}
+// --- The coordinator
+// ------------------------------------------------------------------------------
 
 bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns) {
   UniqueFd clock(OpenThreadCpuClock(thread.tid));
   const std::int64_t begun_ns = clock ? ReadThreadCpuClock(clock.get()) : -1;
   if (begun_ns < 0) return false;
   if (!warden_.joinable()) StartWarden();
-  // In this order: with ordinary priority on the home processor it could run there, before this
-  // process, for as long as the kernel has ordinary threads run that real-time ones have kept
-  // waiting (50 ms of each second).
-  if (!BindTo(thread.tid, cpu_)) {
-    not_before_tsc_ = UINT64_MAX;
-    return false;
-  }
-  executor_.LetGo(thread.tid);
+  // Until it is fetched it does not run where it is.
+  if (std::exchange(thread.may_run, false)) executor_.Hold(thread.tid);
   thread_ = &thread;
   thread.is_ahead = true;
-  thread.may_run = false;
+  tid_ = thread.tid;
+  since_tsc_ = tsc;
+  clock_ = std::move(clock);
+  begun_ns_ = begun_ns;
+  ahead_.Start();
   allowed_ns_.store(allowed_ns);
-  has_left_.store(false);
-  {
-    const auto lock = Lock();
-    tid_ = thread.tid;
-    since_tsc_ = tsc;
-    clock_ = std::move(clock);
-    begun_ns_ = begun_ns;
-    ahead_ = {};
-  }
-  changed_.notify_one();
+  place_.store(Place::kAsked);
+  WakeWarden();
   return true;
 }
 
 std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
-  const auto lock = Lock();
-  return has_left_.load() ? Computed() : ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
+  if (HasLeft()) return std::max<std::int64_t>(0, Computed());
+  return ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {
-  const auto lock = Lock();
   // Since it has left nobody looks, however late this process comes to ask.
-  return is_claimed_.load() || ahead_.IsStarvedBy(has_left_.load() ? left_at_ns_ : PassedNs(tsc));
-}
-
-// If this process slept meanwhile, threads would run whose turn it is not.
-std::unique_lock<std::mutex> FurtherCpu::Lock() {
-  std::unique_lock lock(mutex_, std::defer_lock);
-  while (!lock.try_lock()) _mm_pause();
-  return lock;
+  return is_claimed_.load() || ahead_.IsStarvedBy(HasLeft() ? left_at_ns_ : PassedNs(tsc));
 }
 
 // One that has spoken is on its way to sleep. One that computes on is sent home by the warden: the
-// kernel would have this process sleep until a thread that runs elsewhere has stopped.
+// kernel would have this process sleep until a thread that runs elsewhere has stopped, and others
+// would run meanwhile whose turn it is not.
 void FurtherCpu::AwaitStandstill() const {
-  const pid_t tid = thread_->tid;
   const std::uint64_t sleeps_by_tsc = __rdtsc() + TicksIn(kWayToSleepNs);
-  while (ThreadState(tid) == 'R' && __rdtsc() < sleeps_by_tsc) _mm_pause();
+  while (ThreadState(tid_) == 'R' && __rdtsc() < sleeps_by_tsc) _mm_pause();
 }
 
 void FurtherCpu::HaveSentHome() {
   allowed_ns_.store(0);
-  changed_.notify_one();
+  WakeWarden();
   const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
-  while (!has_left_.load() && __rdtsc() < until_tsc) _mm_pause();
+  while (!HasLeft() && __rdtsc() < until_tsc) _mm_pause();
 }
 
-void FurtherCpu::BringHome() {
-  if (!has_left_.load()) AwaitStandstill();
-  if (!has_left_.load() && ThreadState(thread_->tid) == 'R') HaveSentHome();
-  const auto lock = Lock();
-  if (tid_ != 0) {
+// The warden acts on a thread only as long as it is its: it has looked away before the coordinator
+// goes on.
+void FurtherCpu::TakeBack() {
+  Place place = place_.load();
+  while (place != Place::kLeft) {
+    const bool is_moving = place == Place::kMoves;
+    if (!is_moving && place_.compare_exchange_strong(place, Place::kHome)) break;
+    _mm_pause();
+    place = place_.load();
+  }
+  while (looks_.load()) _mm_pause();
+  if (place == Place::kHere) {
     executor_.Hold(tid_);
     BindTo(tid_, home_);
   }
-  tid_ = 0;
+  place_.store(Place::kHome);
+}
+
+void FurtherCpu::BringHome() {
+  if (!HasLeft()) AwaitStandstill();
+  if (!HasLeft() && ThreadState(tid_) == 'R') HaveSentHome();
+  TakeBack();
   thread_->is_ahead = false;
   thread_ = nullptr;
+  if (is_refused_.load()) not_before_tsc_ = UINT64_MAX;
   if (is_claimed_.exchange(false)) LeaveToOthers(__rdtsc());
 }
 

@@ -5,19 +5,19 @@
 // it shares with others.
 //
 // It may compute as far as it is allowed to. A warden sees to that, a thread of this process on
-// that processor, before which it goes: it looks what the thread has computed, sleeps for as long
-// as that one may go on, and sends it home when it has come to its limit, however late this
-// process's other thread looks. The thread itself has ordinary priority there: it takes the
-// processor from nobody, and when somebody dies it leaves no real-time thread.
+// that processor, before which it goes: it fetches the thread, looks what it has computed, sleeps
+// for as long as that one may go on, and sends it home when it has come to its limit. The kernel
+// may let the coordinator stand at any place, for 50 ms of each second (real-time throttling). So
+// the warden never waits for it, and whom the coordinator has asked it to fetch is either held at
+// home or guarded. The thread itself has ordinary priority here: it takes the processor from
+// nobody, and when somebody dies it leaves no real-time thread.
 //
 // Send, Allow and the others are for the coordinator's thread only.
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <thread>
 
 #include "coordinator/host/ahead_clock.h"
@@ -43,8 +43,9 @@ class FurtherCpu {
   // Others need the processor: nobody is to be sent here before `tsc`.
   bool IsFreeAt(std::uint64_t tsc) const { return thread_ == nullptr && tsc >= not_before_tsc_; }
 
-  // The thread, which has stopped, computes on here, for as long as its CPU clock counts
-  // `allowed_ns` from now on. False if the kernel does not let it.
+  // The thread, which has stopped, is fetched to compute on here, for as long as its CPU clock
+  // counts `allowed_ns` from now on. False if it has ended. If the kernel does not let it come here
+  // it has left at once, and nobody is sent here any more.
   bool Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns);
   // In all, since it was sent.
   void Allow(std::int64_t allowed_ns) { allowed_ns_.store(allowed_ns); }
@@ -53,7 +54,7 @@ class FurtherCpu {
   // Others had the processor for long, by then, or have claimed it.
   bool IsStarvedBy(std::uint64_t tsc);
   // It has come to its limit, and is at home.
-  bool HasLeft() const { return has_left_.load(); }
+  bool HasLeft() const { return place_.load() == Place::kLeft; }
 
   // It stands still at home, if it lives, and is not said to be here any more. Where it computed,
   // this process looks on until it has stopped, and does not sleep.
@@ -63,16 +64,31 @@ class FurtherCpu {
   void LeaveToOthers(std::uint64_t tsc);
 
  private:
-  std::unique_lock<std::mutex> Lock();
+  // Of the thread, and with it who may touch it and what is known of it: the coordinator where it
+  // is at home or has left, else the warden.
+  enum class Place : int {
+    kHome,   // or there is none
+    kAsked,  // the warden is asked to fetch it; the coordinator may take that back
+    kMoves,  // the warden moves it, one way or the other
+    kHere,   // the warden looks after it; the coordinator may take it home
+    kLeft,   // the warden has sent it home
+  };
+
   void AwaitStandstill() const;
   void HaveSentHome();
+  void TakeBack();
   void StartWarden();
+  void WakeWarden();
   void Guard();
+  void Fetch();
+  void Leave();
+  std::int64_t NsToGuard();
+  std::int64_t LeftAfterLook();
+  void Sleep(std::uint32_t wakes, std::int64_t ns);
   std::uint64_t TicksIn(std::int64_t ns) const;
   std::int64_t PassedNs(std::uint64_t tsc) const;
   std::int64_t Computed() const;
-  void Look(std::uint64_t tsc);
-  void LookForClaims(std::uint64_t tsc);
+  bool IsClaimedBy(std::uint64_t tsc);
 
   const int cpu_, home_;
   const double ticks_per_ns_;
@@ -82,20 +98,22 @@ class FurtherCpu {
   int left_to_others_ = 0;        // in a row
   std::uint64_t left_ticks_ = 0;  // the last time
   std::uint64_t not_before_tsc_ = 0;
-  std::atomic<std::int64_t> allowed_ns_{0};
-  std::atomic<bool> has_left_{false};
-  std::atomic<bool> is_claimed_{false};  // another run was found to take its turns here
 
-  std::mutex mutex_;  // of what follows
-  std::condition_variable changed_;
-  pid_t tid_ = 0;  // whom the warden looks after; 0: nobody
+  std::atomic<Place> place_{Place::kHome};
+  std::atomic<bool> looks_{false};  // the warden, at what is known of the thread
+  std::atomic<std::uint32_t> wakes_{0};
+  std::atomic<bool> ends_{false};
+  std::atomic<std::int64_t> allowed_ns_{0};
+  std::atomic<bool> is_claimed_{false};  // another run was found to take its turns here
+  std::atomic<bool> is_refused_{false};  // by the kernel
+
+  pid_t tid_ = 0;
   std::uint64_t since_tsc_ = 0;
   std::uint64_t looks_for_claims_tsc_ = 0;
   UniqueFd clock_;  // its CPU clock,
   std::int64_t begun_ns_ = 0;
   AheadClock ahead_;
   std::int64_t left_at_ns_ = 0;  // when it left, since it was sent
-  bool ends_ = false;
   std::thread warden_;
 };
 

@@ -24,11 +24,11 @@ std::size_t CheckOpened(int fd, const std::string& path, std::size_t most_bytes,
   struct stat status;
   if (fstat(fd, &status) != 0) FailToRead(path, errno, what);
   if (!S_ISREG(status.st_mode)) {
-    throw ModelMistake{fmt::format("{}: is no ordinary file; give the path of {}", path, what)};
+    throw ModelMistake{fmt::format("{}: is not a regular file; give the path of {}", path, what)};
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size > most_bytes) {
-    throw ModelMistake{fmt::format("{}: has {} bytes, more than the {} MiB that tcs takes of {}",
+    throw ModelMistake{fmt::format("{}: has {} bytes, more than the {} MiB that tcs takes for {}",
                                    path, size, most_bytes >> 20, what)};
   }
   return size;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <utility>
 #include <variant>
 
@@ -12,6 +11,7 @@
 #include "coordinator/models/mesh_hull.h"
 #include "coordinator/models/mesh_points.h"
 #include "coordinator/models/model_mistake.h"
+#include "coordinator/models/packed_mesh.h"
 #include "coordinator/models/urdf_xml.h"
 
 namespace tcs {
@@ -24,39 +24,9 @@ constexpr unsigned kMostSeconds = 20;
 using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// What the child says: a word, and what follows it.
-constexpr char kHullFollows = 'H', kWhyNotFollows = 'W';
-
-std::string Packed(const Hull& hull) {
-  const std::uint64_t sizes[2] = {hull.vertices.size(), hull.triangles.size()};
-  std::string packed(1, kHullFollows);
-  packed.append(reinterpret_cast<const char*>(sizes), sizeof sizes);
-  packed.append(reinterpret_cast<const char*>(hull.vertices.data()), sizes[0] * sizeof(Point));
-  packed.append(reinterpret_cast<const char*>(hull.triangles.data()), sizes[1] * sizeof(Triangle));
-  return packed;
-}
-
-// False if it is no hull that could have been packed: whatever was in the mesh may have taken the
-// child over.
-bool Unpack(const std::string& packed, Mesh* mesh) {
-  std::uint64_t sizes[2];
-  if (packed.size() < 1 + sizeof sizes || packed[0] != kHullFollows) return false;
-  std::memcpy(sizes, packed.data() + 1, sizeof sizes);
-  if (sizes[0] > kMostVertices || sizes[1] > 2 * kMostVertices) return false;
-  const std::size_t points = sizes[0] * sizeof(Point), triangles = sizes[1] * sizeof(Triangle);
-  if (packed.size() != 1 + sizeof sizes + points + triangles) return false;
-  mesh->vertices_m.resize(sizes[0]);
-  mesh->triangles.resize(sizes[1]);
-  const char* from = packed.data() + 1 + sizeof sizes;
-  if (points > 0) std::memcpy(mesh->vertices_m.data(), from, points);
-  if (triangles > 0) std::memcpy(mesh->triangles.data(), from + points, triangles);
-  for (const Triangle& triangle : mesh->triangles) {
-    for (const std::uint32_t vertex : triangle) {
-      if (vertex >= sizes[0]) return false;
-    }
-  }
-  return true;
-}
+// What the child says else: a word, and what follows it.
+constexpr char kWhyNotFollows = 'W';
+static_assert(kWhyNotFollows != kMeshFollows);
 
 std::string HullInFile(const std::string& path) {
   auto read = MeshPoints(TextOf(path, kMostBytes, "a mesh"), path);
@@ -71,7 +41,7 @@ std::string HullInFile(const std::string& path) {
   if (hull.vertices.empty()) {
     return kWhyNotFollows + fmt::format("its {} vertices span no volume", points.size());
   }
-  return Packed(hull);
+  return Packed({hull.vertices, hull.triangles});
 }
 
 [[noreturn]] void Refuse(const std::string& path, std::string_view why) {
@@ -81,7 +51,7 @@ std::string HullInFile(const std::string& path) {
 
 Mesh Read(const std::string& path) {
   if (!IsMeshName(path)) {
-    throw ModelMistake{path + ": is no mesh that tcs reads; give one of .stl, .obj or .dae"};
+    throw ModelMistake{path + ": is not a mesh that tcs reads; give a file of .stl, .obj or .dae"};
   }
   CheckFile(path, kMostBytes, "a mesh");
   constexpr std::size_t kMostSaid = 1 << 20;
@@ -92,9 +62,11 @@ Mesh Read(const std::string& path) {
     const std::string shown = Quoted(std::string_view(done.result).substr(1, kLongest));
     Refuse(path, shown.substr(1, shown.size() - 2));
   }
-  Mesh mesh{path, {}, {}};
-  if (!Unpack(done.result, &mesh)) Refuse(path, "the library that reads it fails");
-  return mesh;
+  Surface hull;
+  if (!Unpack(done.result, kMostVertices, 2 * kMostVertices, &hull)) {
+    Refuse(path, "the library that reads it fails");
+  }
+  return {path, std::move(hull.vertices), std::move(hull.triangles)};
 }
 
 Mesh Scaled(Mesh mesh, const Point& scale) {

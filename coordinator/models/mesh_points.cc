@@ -36,8 +36,29 @@ bool IsMeshName(const std::string& path) {
   return end == ".stl" || end == ".obj" || end == ".dae";
 }
 
-std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const std::string& text,
-                                                                         const std::string& path) {
+namespace {
+
+// Appends a mesh of the scene, where it is there.
+void Append(const aiMesh& mesh, const aiMatrix4x4& transform, bool with_triangles,
+            Surface* surface) {
+  const auto first = static_cast<std::uint32_t>(surface->vertices.size());
+  for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+    const aiVector3D at = transform * mesh.mVertices[k];
+    surface->vertices.push_back({at.x, at.y, at.z});
+  }
+  if (!with_triangles) return;
+  for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+    const aiFace& face = mesh.mFaces[k];
+    for (unsigned corner = 2; corner < face.mNumIndices; ++corner) {
+      const unsigned a = face.mIndices[0], b = face.mIndices[corner - 1], c = face.mIndices[corner];
+      if (std::max({a, b, c}) >= mesh.mNumVertices) continue;
+      surface->triangles.push_back({first + a, first + b, first + c});
+    }
+  }
+}
+
+std::variant<Surface, std::string> Read(const std::string& text, const std::string& path,
+                                        bool with_triangles) {
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // it is the importer's then
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -45,24 +66,33 @@ std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const s
       importer.ReadFileFromMemory(text.data(), text.size(), 0, EndOf(path).c_str() + 1);
   if (scene == nullptr) return std::string("it cannot be read: ") + importer.GetErrorString();
   if (scene->mRootNode == nullptr) return "there is nothing in it";
-  std::vector<std::array<double, 3>> points;
+  Surface surface;
   std::vector<std::pair<const aiNode*, aiMatrix4x4>> to_do = {{scene->mRootNode, aiMatrix4x4()}};
   while (!to_do.empty()) {
     const auto [node, above] = to_do.back();
     to_do.pop_back();
     const aiMatrix4x4 transform = above * node->mTransformation;
     for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-      const aiMesh& mesh = *scene->mMeshes[node->mMeshes[i]];
-      for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
-        const aiVector3D at = transform * mesh.mVertices[k];
-        points.push_back({at.x, at.y, at.z});
-      }
+      Append(*scene->mMeshes[node->mMeshes[i]], transform, with_triangles, &surface);
     }
     for (unsigned i = 0; i < node->mNumChildren; ++i) {
       to_do.emplace_back(node->mChildren[i], transform);
     }
   }
-  return points;
+  return surface;
+}
+
+}  // namespace
+
+std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const std::string& text,
+                                                                         const std::string& path) {
+  auto read = Read(text, path, false);
+  if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);
+  return std::move(std::get<Surface>(read).vertices);
+}
+
+std::variant<Surface, std::string> MeshSurface(const std::string& text, const std::string& path) {
+  return Read(text, path, true);
 }
 
 }  // namespace tcs

@@ -1,10 +1,12 @@
-// The points of a mesh file.
+// The points and the triangles of a mesh file.
 #pragma once
 
 #include <array>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "coordinator/models/packed_mesh.h"
 
 namespace tcs {
 
@@ -15,6 +17,9 @@ namespace tcs {
 // cannot be read.
 [[nodiscard]] std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(
     const std::string& text, const std::string& path);
+
+// The same with its triangles; polygons are made of them.
+std::variant<Surface, std::string> MeshSurface(const std::string& text, const std::string& path);
 
 // Whether that can be: by the end of the file's name.
 bool IsMeshName(const std::string& path);

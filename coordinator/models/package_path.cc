@@ -77,16 +77,16 @@ std::string PackagePath::Find(const std::string& name, const std::string& descri
     const std::string package(in_package.substr(0, slash));
     const auto found = FindPackage(package, folders_, described_in);
     if (!found) {
-      fail(
-          fmt::format("is in the package '{}', which is in none of {} folders of packages; add the "
-                      "folder that it is in to the model's key packages, or to ROS_PACKAGE_PATH",
-                      package, folders_.size()));
+      fail(fmt::format(
+          "is in the package '{}', which is in none of {} folders of packages; add the "
+          "folder that holds this package to the model's key packages, or to ROS_PACKAGE_PATH",
+          package, folders_.size()));
     }
     return (*found / in_package.substr(slash + 1)).lexically_normal();
   }
   const std::string_view absolute = WithoutPrefix(name, "file://");
   if (absolute.empty() && name.find("://") != std::string::npos) {
-    fail("is no file of this computer; write package://PACKAGE/FILE, file:///PATH or a path");
+    fail("names no file on this computer; write package://PACKAGE/FILE, file:///PATH or a path");
   }
   const fs::path path = absolute.empty() ? fs::path(name) : fs::path(absolute);
   return (fs::path(described_in).parent_path() / path).lexically_normal();

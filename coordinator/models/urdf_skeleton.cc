@@ -64,8 +64,9 @@ void UrdfSkeleton::CollectParts(const XMLDocument& document) {
     parts.push_back(e);
     if (parts.size() <= kMostLinks) continue;
     FailAt(path_, e->GetLineNum(),
-           fmt::format("this is number {} of the {}s, more than tcs takes; divide the robot",
-                       parts.size(), name));
+           fmt::format(
+               "this is number {} of the {}s, more than tcs takes; divide the robot into several",
+               parts.size(), name));
   }
 }
 

@@ -1,10 +1,10 @@
 // What DDS messages meet between robots, where they go in shared memory (`dds: endpoints`): the
 // same links as packets.
 //
-// A best-effort sample that is lost does not come. What is reliable comes later by a round trip for
-// each time that it is lost, as a reader asks for it again, and what the same process sends
-// reliably after it waits for it. News of participants and endpoints are reliable, and no sample
-// overtakes them. Pure, for the coordinator's thread only.
+// A best-effort sample that is lost does not arrive. A reliable sample arrives later by one round
+// trip for each time that it is lost, because a reader asks for it again, and later reliable
+// samples of the same process wait for it. Announcements of participants and endpoints are
+// reliable, and no sample overtakes them. Pure, for the coordinator's thread only.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,11 @@
 // One direction between two robots: how long a packet takes, and whether it arrives.
 //
-// The model is that of a line with a queue before it. A packet waits until those before it have
-// been sent, takes its bits' time at the link's bandwidth, then the latency and a share of the
-// jitter, drawn evenly for each packet. Packets arrive in the order in which they were sent. One
-// that finds the queue full is dropped; one that is lost was sent, and took its time. What is drawn
-// comes from the scenario's seed, so that the same packets at the same times have the same fate.
+// The model is a line with a queue before it. A packet waits until the packets before it have been
+// sent. Then it takes the time of its bits at the link's bandwidth, the latency, and a share of the
+// jitter, drawn evenly for each packet. Packets arrive in the order in which they were sent. A
+// packet that finds the queue full is dropped; a packet that is lost was sent, and took its time.
+// Random numbers come from the scenario's seed, so the same packets at the same times have the same
+// fate.
 //
 // Pure: no system calls, no clock. Not thread-safe.
 #pragma once
@@ -30,11 +31,11 @@ class NetworkLink {
   NetworkLink(const LinkSpec& spec, std::uint64_t seed, std::uint64_t number)
       : spec_(spec), random_(seed, RandomPurpose::kFate, number) {}
 
-  // When a packet of so many bytes, sent at that time, arrives; nothing: it does not. What is sent
-  // for an earlier time than the packet before goes after that one.
+  // When a packet of so many bytes, sent at that time, arrives; nothing: it does not arrive. A
+  // packet that is sent for an earlier time than the packet before goes after that one.
   std::optional<VirtualTime> Send(VirtualTime at, std::size_t bytes);
 
-  // The same of a message that may be larger than a packet, and goes in several.
+  // The same for a message that may be larger than a packet, and then goes in several.
   struct Passage {
     VirtualTime arrives;
     bool is_whole = true;  // none of its packets was lost or dropped

@@ -43,7 +43,7 @@ std::string RobotNetwork::Open(const Scenario& scenario) {
                             .hosts_file = hosts};
     request.others.erase(request.others.begin() + static_cast<std::ptrdiff_t>(i));
     auto made = MakeComputer(request);
-    if (auto* why_not = std::get_if<std::string>(&made)) return std::move(*why_not);
+    if (auto* why_not = std::get_if<NoComputer>(&made)) return why_not->Sentence();
     computers_.push_back(std::move(std::get<OwnComputer>(made)));
   }
   wire_.emplace(*scenario.network);

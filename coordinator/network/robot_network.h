@@ -1,8 +1,9 @@
 // The network of a run: a computer of its own for each robot (os/own_computer.h), and the wire
 // between them.
 //
-// For the coordinator's thread only. Whoever steps it says the time: a packet is sent at the time
-// at which the thread was that sent it, and received when nobody can act before it any more.
+// For the coordinator's thread only. The caller of a step says the time. A packet is sent at the
+// virtual time of the thread that sent it, and received when no leaf can act before that time any
+// more.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +25,8 @@ class RobotNetwork {
   [[nodiscard]] std::string Open(const Scenario& scenario);
   bool present() const { return wire_.has_value(); }
 
-  // Of each robot, in the scenario's order: readable once it has sent something.
+  // The descriptor of each robot, in the scenario's order: readable once the robot has sent
+  // something.
   std::vector<int> fds() const;
   // Takes what the robot has sent, all of it at that time.
   void Take(std::size_t robot, VirtualTime at);

@@ -24,8 +24,8 @@ class Wire {
  public:
   explicit Wire(const NetworkSpec& spec);
 
-  // A robot sends an IPv4 packet, at that time. To an address of nobody's it goes nowhere;
-  // broadcast and multicast go to all others, each over its own link.
+  // A robot sends an IPv4 packet, at that time. A packet to an address that no robot has goes
+  // nowhere; broadcast and multicast go to all others, each over its own link.
   void Send(std::size_t robot, std::span<const std::byte> packet, VirtualTime at);
 
   VirtualTime NextDue() const;
@@ -33,7 +33,7 @@ class Wire {
   using Receive = std::function<void(std::size_t robot, std::span<const std::byte> packet)>;
   void Arrive(VirtualTime now, const Receive& receive);
 
-  // What is between two robots, for what does not go in packets, too.
+  // The link between two robots, also for messages that do not go in packets.
   NetworkLink& Between(std::size_t from, std::size_t to) { return links_[from * robots_ + to]; }
   const NetworkLink& Between(std::size_t from, std::size_t to) const {
     return links_[from * robots_ + to];

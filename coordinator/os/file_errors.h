@@ -11,7 +11,7 @@
 namespace tcs {
 
 inline std::string FileError() {
-  return errno == 0 ? "the disk is full, or gone" : strerror(errno);
+  return errno == 0 ? "the disk is full, or does not exist any more" : strerror(errno);
 }
 
 inline std::string CannotBeWritten(const std::string& path) {
@@ -19,7 +19,7 @@ inline std::string CannotBeWritten(const std::string& path) {
 }
 
 inline std::string NotWrittenWhole(const std::string& path) {
-  return path + " was not written whole: " + FileError() +
+  return path + " was not written completely: " + FileError() +
          "; make room, or choose another folder with --out";
 }
 

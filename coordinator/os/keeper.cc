@@ -58,7 +58,7 @@ class Keeper {
       const std::int64_t now_ns = HostClockNs(CLOCK_MONOTONIC);
       if (is_stopped_) LookAtStop();
       if (now_ns >= stop_by_ns_) {
-        Kill("the run did not stop in time, and is killed");
+        Kill("the run did not stop in time and is killed");
       } else if (now_ns >= look_at_ns_) {
         Look();
       }
@@ -144,11 +144,11 @@ class Keeper {
     const bool was_held = std::exchange(was_held_, is_held);
     if (stands && is_busy) {
       Kill(
-          "the coordinator computes without getting on, and is killed; this is a fault of tcsim, "
-          "please report it");
+          "the coordinator computes without making progress, and is killed; this is a fault of "
+          "tcsim, please report it");
     } else if (stands && is_held && was_held) {
       Kill("process " + std::to_string(TracerOf(coordinator_)) +
-           " traces the coordinator and lets it stand; the run is killed");
+           " traces the coordinator and has stopped it; the run is killed");
     }
   }
 

@@ -31,7 +31,7 @@ class Message {
     rtattr attribute{static_cast<unsigned short>(RTA_LENGTH(size)), type};
     char* at = attributes_ + used_;
     memcpy(at, &attribute, sizeof attribute);
-    memcpy(at + RTA_LENGTH(0), value, size);
+    if (size > 0) memcpy(at + RTA_LENGTH(0), value, size);
     Grow(RTA_SPACE(size));
   }
   template <class Value>
@@ -60,6 +60,23 @@ class Message {
   alignas(NLMSG_ALIGNTO) char attributes_[256] = {};
   std::size_t used_ = 0;
 };
+
+// A route to the first `bits` of `to`, which is on the device's own link. Packets leave from
+// `source` where their program has not bound an address.
+Message<rtmsg> RouteOnLink(int device, unsigned char type, unsigned char table, in_addr to,
+                           unsigned bits, in_addr source) {
+  Message<rtmsg> message(RTM_NEWROUTE);
+  message.body().rtm_family = AF_INET;
+  message.body().rtm_dst_len = static_cast<unsigned char>(bits);
+  message.body().rtm_table = table;
+  message.body().rtm_protocol = RTPROT_STATIC;
+  message.body().rtm_scope = RT_SCOPE_LINK;
+  message.body().rtm_type = type;
+  message.Add(RTA_DST, to);
+  message.Add(RTA_PREFSRC, source);
+  message.Add(RTA_OIF, device);
+  return message;
+}
 
 }  // namespace
 
@@ -102,16 +119,7 @@ int Netlink::AddAddress(int device, in_addr address) {
 
 int Netlink::AddRoute(int device, in_addr to, unsigned bits, in_addr source,
                       const RouteMetrics& metrics) {
-  Message<rtmsg> message(RTM_NEWROUTE);
-  message.body().rtm_family = AF_INET;
-  message.body().rtm_dst_len = static_cast<unsigned char>(bits);
-  message.body().rtm_table = RT_TABLE_MAIN;
-  message.body().rtm_protocol = RTPROT_STATIC;
-  message.body().rtm_scope = RT_SCOPE_LINK;
-  message.body().rtm_type = RTN_UNICAST;
-  message.Add(RTA_DST, to);
-  message.Add(RTA_PREFSRC, source);
-  message.Add(RTA_OIF, device);
+  auto message = RouteOnLink(device, RTN_UNICAST, RT_TABLE_MAIN, to, bits, source);
   const std::size_t begun = message.Begin(RTA_METRICS);
   if (metrics.least_timeout_ms != 0) message.Add(RTAX_RTO_MIN, metrics.least_timeout_ms);
   if (metrics.acknowledges_at_once) message.Add(RTAX_QUICKACK, std::uint32_t{1});
@@ -120,16 +128,7 @@ int Netlink::AddRoute(int device, in_addr to, unsigned bits, in_addr source,
 }
 
 int Netlink::AddBroadcast(int device, in_addr to, in_addr source) {
-  Message<rtmsg> message(RTM_NEWROUTE);
-  message.body().rtm_family = AF_INET;
-  message.body().rtm_dst_len = 32;
-  message.body().rtm_table = RT_TABLE_LOCAL;
-  message.body().rtm_protocol = RTPROT_STATIC;
-  message.body().rtm_scope = RT_SCOPE_LINK;
-  message.body().rtm_type = RTN_BROADCAST;
-  message.Add(RTA_DST, to);
-  message.Add(RTA_PREFSRC, source);
-  message.Add(RTA_OIF, device);
+  const auto message = RouteOnLink(device, RTN_BROADCAST, RT_TABLE_LOCAL, to, 32, source);
   return Do(message.data(), message.size());
 }
 

@@ -20,17 +20,27 @@
 #include <span>
 
 #include "coordinator/os/netlink.h"
+#include "coordinator/os/own_network.h"
 #include "coordinator/os/passed_fd.h"
 
 namespace tcs {
 
 namespace {
 
+// Steps that have a mend of their own.
+constexpr char kTun[] = "/dev/net/tun", kSettingsStep[] = "/proc/sys/net";
 constexpr char kDevice[] = "eth0";
 constexpr std::uint32_t kDeviceQueue = 32768;  // packets; more than one call sends
 // Longer than any wait of the host's: the kernel's own limit.
 constexpr std::uint32_t kNoTimeoutMs = 120'000;
 constexpr std::uint32_t kHostsOfNet = 0xff;  // as network/wire.cc has them
+
+// About the interface of that name.
+ifreq RequestFor(const char* name) {
+  ifreq request{};
+  snprintf(request.ifr_name, sizeof request.ifr_name, "%s", name);
+  return request;
+}
 
 // What the host's time would have a part in, and what makes up for it. Kernels that do not have one
 // of these do not have what it turns off, either.
@@ -64,15 +74,19 @@ bool Put(const std::string& path, const std::string& text) {
   return fd && write(fd.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
-void ChangeSettings() {
+// False where none can be changed, as in a container: TCP would go by the host's clock.
+bool ChangeSettings() {
   for (const Setting& setting : kSettings) {
-    Put(std::string("/proc/sys/net/") + setting.path, setting.value);
+    if (!Put(std::string("/proc/sys/net/") + setting.path, setting.value) && errno == EROFS) {
+      return false;
+    }
   }
   // Who may send an echo request without being root; a user namespace has only one's own group.
   const std::string own = std::to_string(getegid());
   if (!Put("/proc/sys/net/ipv4/ping_group_range", "0 2147483647")) {
     Put("/proc/sys/net/ipv4/ping_group_range", own + " " + own);
   }
+  return true;
 }
 
 // What the new computer tells its maker: which step has failed, or a descriptor.
@@ -90,9 +104,9 @@ class Maker {
   const char* Make(UniqueFd* device) {
     if (unshare(CLONE_NEWNET | CLONE_NEWUTS | CLONE_NEWNS) != 0) return "unshare";
     if (sethostname(request_.name.data(), request_.name.size()) != 0) return "sethostname";
-    ChangeSettings();
+    if (!ChangeSettings()) return kSettingsStep;
     *device = MakeDevice();
-    if (!*device) return "/dev/net/tun";
+    if (!*device) return kTun;
     Netlink netlink;
     const int index = static_cast<int>(if_nametoindex(kDevice));
     errno = netlink.KeepPackets(index, kDeviceQueue);
@@ -105,9 +119,8 @@ class Maker {
 
  private:
   UniqueFd MakeDevice() {
-    UniqueFd fd(open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC));
-    ifreq wanted{};
-    strcpy(wanted.ifr_name, kDevice);
+    UniqueFd fd(open(kTun, O_RDWR | O_NONBLOCK | O_CLOEXEC));
+    ifreq wanted = RequestFor(kDevice);
     wanted.ifr_flags = IFF_TUN | IFF_NO_PI;
     if (!fd || ioctl(fd.get(), TUNSETIFF, &wanted) != 0) return {};
     return fd;
@@ -115,8 +128,7 @@ class Maker {
 
   bool Raise(const char* name) {
     const UniqueFd fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    ifreq wanted{};
-    strcpy(wanted.ifr_name, name);
+    ifreq wanted = RequestFor(name);
     if (ioctl(fd.get(), SIOCGIFFLAGS, &wanted) != 0) return false;
     wanted.ifr_flags = static_cast<short>(wanted.ifr_flags | IFF_UP);
     return ioctl(fd.get(), SIOCSIFFLAGS, &wanted) == 0;
@@ -180,44 +192,54 @@ void Tell(int socket, Told told, int fd) {
   sendmsg(socket, message.get(), MSG_NOSIGNAL);
 }
 
+Told ToldOf(const NoComputer& why) {
+  Told told{.error = why.error};
+  snprintf(told.step, sizeof told.step, "%s", why.step.c_str());
+  return told;
+}
+
 constexpr const char* kNamespaces[] = {"/proc/self/ns/net", "/proc/self/ns/uts",
                                        "/proc/self/ns/mnt"};
 
 [[noreturn]] void MakeIn(int socket, const ComputerRequest& request) {
   UniqueFd device;
   if (const char* step = Maker(request).Make(&device); step != nullptr) {
-    Told told{.error = errno};
-    snprintf(told.step, sizeof told.step, "%s", step);
-    Tell(socket, told, -1);
+    Tell(socket, ToldOf({step, errno}), -1);
     _exit(1);
   }
   Tell(socket, {}, device.get());
   for (const char* path : kNamespaces) {
     const UniqueFd fd(open(path, O_RDONLY | O_CLOEXEC));
-    Told told{.error = fd ? 0 : errno};
-    snprintf(told.step, sizeof told.step, "%s", path);
-    Tell(socket, told, fd.get());
+    Tell(socket, ToldOf({path, fd ? 0 : errno}), fd.get());
   }
   _exit(0);
 }
 
-std::string WhyNot(const Told& told) {
-  const std::string reason =
-      std::string("this host does not let a robot have a network of its own (") + told.step + ": " +
-      strerror(told.error) + "); ";
-  if (strcmp(told.step, "/dev/net/tun") == 0) {
-    return reason +
-           "load the module tun (modprobe tun), in a container add --device /dev/net/tun, or leave "
-           "`network` out of the scenario";
-  }
-  return reason +
-         "run tcsim as root, or allow user namespaces, in a container with --privileged; or leave "
-         "`network` out of the scenario";
-}
-
 }  // namespace
 
-std::variant<OwnComputer, std::string> MakeComputer(const ComputerRequest& request) {
+std::string NoComputer::Sentence() const {
+  return "this host does not let a robot have a network of its own (" + step + ": " +
+         strerror(error) + "); " + Mend() + ", or leave `network` out of the scenario";
+}
+
+std::string NoComputer::Mend() const {
+  if (step == kSettingsStep) return "mount /proc/sys for writing, in a container with --privileged";
+  if (step != kTun) {
+    return "run tcsim as root, or allow user namespaces, in a container with --privileged";
+  }
+  if (error == EACCES || error == EPERM) {
+    return "run tcsim as root, or let everybody open it (chmod 666 /dev/net/tun), in a container "
+           "with --privileged";
+  }
+  return "load the module tun (modprobe tun), in a container add --device /dev/net/tun";
+}
+
+std::optional<NoComputer> GetReadyForComputers() {
+  if (geteuid() == 0 || EnterOwnNetwork().empty()) return std::nullopt;
+  return NoComputer{"user namespace", errno};
+}
+
+std::variant<OwnComputer, NoComputer> MakeComputer(const ComputerRequest& request) {
   std::optional<SocketPair> sockets = SocketPair::Make();
   const pid_t pid = sockets ? fork() : -1;
   if (pid == 0) {
@@ -237,8 +259,32 @@ std::variant<OwnComputer, std::string> MakeComputer(const ComputerRequest& reque
     while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
-  if (!computer.files) return WhyNot(told);
+  if (!computer.files) return NoComputer{told.step, told.error};
   return computer;
+}
+
+std::optional<NoComputer> WhyNoComputer() {
+  std::optional<SocketPair> sockets = SocketPair::Make();
+  const pid_t pid = sockets ? fork() : -1;
+  if (pid == 0) {
+    std::optional<NoComputer> why = GetReadyForComputers();
+    if (!why) {
+      auto made = MakeComputer({.name = "robot", .address = "10.42.0.1", .hosts_file = ""});
+      if (auto* refused = std::get_if<NoComputer>(&made)) why = std::move(*refused);
+    }
+    Told told;
+    if (why) told = ToldOf(*why);
+    Tell(sockets->theirs.get(), told, -1);
+    _exit(0);
+  }
+  if (pid < 0) return NoComputer{"fork", errno};
+  sockets->theirs.Reset();
+  Told told{.error = EPROTO, .step = "its first process"};
+  const ssize_t size = recv(sockets->ours.get(), &told, sizeof told, 0);
+  while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  if (size == static_cast<ssize_t>(sizeof told) && told.error == 0) return std::nullopt;
+  return NoComputer{told.step, told.error};
 }
 
 bool EnterComputer(const OwnComputer& computer) {

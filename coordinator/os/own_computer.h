@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,9 +30,26 @@ struct OwnComputer {
   UniqueFd device;                     // reads and writes one packet at a time; does not wait
 };
 
-// A computer that lasts as long as its descriptors and its processes, or why there is none: one
-// sentence. Needs root, or to be root in a user namespace (EnterOwnNetwork).
-[[nodiscard]] std::variant<OwnComputer, std::string> MakeComputer(const ComputerRequest& request);
+// Why a robot cannot have a computer of its own here.
+struct NoComputer {
+  std::string step;  // what the kernel has refused
+  int error = 0;     // its errno
+
+  // One sentence, for whoever has asked for a run with such robots.
+  std::string Sentence() const;
+  // What would allow it: a clause that begins with a verb.
+  std::string Mend() const;
+};
+
+// Comes before MakeComputer, in a process that is the only thread: whoever is not root makes
+// computers in a user namespace, which the process enters for good. Nothing on success.
+[[nodiscard]] std::optional<NoComputer> GetReadyForComputers();
+
+// A computer that lasts as long as its descriptors and its processes.
+[[nodiscard]] std::variant<OwnComputer, NoComputer> MakeComputer(const ComputerRequest& request);
+
+// Makes one in a process made for that, and lets it go again. Nothing if it works.
+[[nodiscard]] std::optional<NoComputer> WhyNoComputer();
 
 // The calling process, which must be the only thread, becomes one of that computer. It keeps its
 // working directory. False: errno is set.

@@ -1,7 +1,9 @@
 #include "coordinator/perfetto/counters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -16,6 +18,9 @@ using report::CsvFields;
 using report::ReadCsv;
 using report::ToInteger;
 using report::ToReal;
+
+// Of one quantity of a sensor: some megabytes of them are slow to look at, and show nothing more.
+constexpr std::int64_t kMostValues = 20'000;
 
 using Named = std::vector<std::pair<std::string_view, std::string_view>>;
 
@@ -77,6 +82,42 @@ std::string AddJoints(const std::string& folder, EventWriter* events) {
                 Add("velocity", fields[3], &values);
                 Add("effort", fields[4], &values);
                 events->Counter(group, fields[1], *at_ns, values);
+                return true;
+              });
+}
+
+std::string AddMeasurements(const std::string& folder, EventWriter* events) {
+  const std::string path = folder + "/sensors.csv";
+  if (!report::IsFile(path)) return {};
+  const auto name_of = [](std::string_view channel, std::string_view of, std::string_view what) {
+    std::string name(channel);
+    if (!of.empty() && of != channel) name += " " + std::string(of);
+    return name + " " + std::string(what);
+  };
+  std::map<std::string, std::int64_t> count, place;
+  std::string error = Read(path, {"channel", "of", "quantity"}, [&](const CsvFields& fields) {
+    ++count[name_of(fields[0], fields[1], fields[2])];
+    return true;
+  });
+  if (!error.empty()) return error;
+  const int group = events->AddGroup("sensors");
+  return Read(path, {"time_ns", "channel", "of", "quantity", "x", "y", "z", "w"},
+              [&](const CsvFields& fields) {
+                const auto at_ns = ToInteger(fields[0]);
+                if (!at_ns) return false;
+                const std::string name = name_of(fields[1], fields[2], fields[3]);
+                const std::int64_t every = (count[name] + kMostValues - 1) / kMostValues;
+                if (place[name]++ % std::max<std::int64_t>(every, 1) != 0) return true;
+                Named values;
+                if (fields[5].empty()) {
+                  Add("value", fields[4], &values);
+                } else {
+                  for (std::size_t i = 0; i < 4; ++i) {
+                    constexpr std::string_view kAxes[] = {"x", "y", "z", "w"};
+                    if (!fields[4 + i].empty()) Add(kAxes[i], fields[4 + i], &values);
+                  }
+                }
+                events->Counter(group, name, *at_ns, values);
                 return true;
               });
 }

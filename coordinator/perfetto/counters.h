@@ -13,6 +13,9 @@ namespace tcs::perfetto {
 [[nodiscard]] std::string AddBodies(const std::string& folder, EventWriter* events);
 // joints.csv.
 [[nodiscard]] std::string AddJoints(const std::string& folder, EventWriter* events);
+// sensors.csv: what sensors measured. Of a quantity with very many values as many as every second,
+// third, … gives that are not too many.
+[[nodiscard]] std::string AddMeasurements(const std::string& folder, EventWriter* events);
 // commands.csv: what acts, from when it does.
 [[nodiscard]] std::string AddCommands(const std::string& folder, EventWriter* events);
 

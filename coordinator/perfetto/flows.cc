@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
 #include <utility>
 #include <variant>
 
@@ -14,13 +15,17 @@ namespace tcs::perfetto {
 using report::CsvFields;
 using report::ToInteger;
 
-std::string AddMessages(const std::string& folder, const Schedule& schedule, EventWriter* events) {
-  const std::string path = folder + "/messages.csv";
-  if (!report::IsFile(path)) return {};
-  const int group = events->AddGroup("age of messages when they are received");
+namespace {
+
+// Arrows of datagrams: as much as some seconds of a swarm.
+constexpr std::int64_t kMostDatagrams = 200'000;
+
+std::string AddFile(const std::string& path, std::string_view topic_column, std::int64_t most,
+                    const Schedule& schedule, int group, EventWriter* events) {
   const auto read = report::ReadCsv(
-      path, {"sent_ns", "sender", "received_ns", "receiver", "topic"},
+      path, {"sent_ns", "sender", "received_ns", "receiver", topic_column},
       [&](const CsvFields& fields) {
+        if (most-- <= 0) return true;
         const auto sent_ns = ToInteger(fields[0]), received_ns = ToInteger(fields[2]);
         if (!sent_ns || !received_ns || *sent_ns < 0 || *sent_ns > *received_ns) return false;
         const std::string sender(fields[1]), receiver(fields[3]), topic(fields[4]);
@@ -37,6 +42,21 @@ std::string AddMessages(const std::string& folder, const Schedule& schedule, Eve
       });
   const auto* error = std::get_if<LoadError>(&read);
   return error == nullptr ? "" : error->message;
+}
+
+}  // namespace
+
+std::string AddMessages(const std::string& folder, const Schedule& schedule, EventWriter* events) {
+  const std::string messages = folder + "/messages.csv", datagrams = folder + "/datagrams.csv";
+  const bool has_messages = report::IsFile(messages), has_datagrams = report::IsFile(datagrams);
+  if (!has_messages && !has_datagrams) return {};
+  const int group = events->AddGroup("age of messages when they are received");
+  std::string error;
+  if (has_messages) error = AddFile(messages, "topic", INT64_MAX, schedule, group, events);
+  if (error.empty() && has_datagrams) {
+    error = AddFile(datagrams, "channel", kMostDatagrams, schedule, group, events);
+  }
+  return error;
 }
 
 void AddOutput(const std::string& folder, const Schedule& schedule, EventWriter* events) {

@@ -1,4 +1,4 @@
-// Arrows and instants of a trace: DDS messages from who sent them to who received them, and how old
+// Arrows and instants of a trace: messages from who sent them to who received them, and how old
 // they were then; what clients wrote.
 #pragma once
 
@@ -9,7 +9,8 @@
 
 namespace tcs::perfetto {
 
-// Of messages.csv, if that is there. Empty on success, else one sentence.
+// Of messages.csv (DDS) and datagrams.csv, as far as they are there. Empty on success, else one
+// sentence. Of very many datagrams the first.
 [[nodiscard]] std::string AddMessages(const std::string& folder, const Schedule& schedule,
                                       EventWriter* events);
 // Of output.csv and the clients' logs. Of very long logs their beginnings.

@@ -22,7 +22,7 @@ std::string WriteTrace(const std::string& folder, const std::string& path) {
     EventWriter events(file, !schedule.events().empty(), schedule.last_pid());
     for (const std::string& error :
          {AddBodies(folder, &events), AddJoints(folder, &events), AddCommands(folder, &events),
-          AddMessages(folder, schedule, &events)}) {
+          AddMeasurements(folder, &events), AddMessages(folder, schedule, &events)}) {
       if (!error.empty()) return error;
     }
     AddOutput(folder, schedule, &events);

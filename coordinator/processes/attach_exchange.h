@@ -1,5 +1,5 @@
-// One exchange of shm/attach_protocol.h, as the coordinator has its part in it. Whoever can connect
-// can say anything: who it is the kernel says.
+// The coordinator's part of one exchange of shm/attach_protocol.h. A process that connects can
+// claim anything; the kernel says which process it is.
 //
 // For the coordinator's thread only. None of this waits: a client that does not read has lost the
 // answer.
@@ -15,12 +15,12 @@
 
 namespace tcs {
 
-// What it wants, as far as it has said so; nothing if that is not a hello.
+// What the process wants, as far as it has said so; nothing if that is not a hello.
 std::optional<shm::AttachHello> PeekHello(int connection);
 
 struct TakenHello {
   bool has_gone = false;
-  // Nothing: it speaks another protocol, or for somebody else.
+  // Nothing: the process speaks another protocol, or for another process.
   std::optional<shm::AttachHello> hello;
 };
 TakenHello TakeHello(int connection);

@@ -24,7 +24,7 @@ namespace tcs {
 
 class Deaths {
  public:
-  // Others who keep something for threads and processes. All must be set.
+  // Other parts that keep something for threads and processes. All must be set.
   struct Listeners {
     // The thread is running, or was right now: it is to be charged up to here.
     std::function<void(Task&)> settle;
@@ -32,7 +32,7 @@ class Deaths {
     std::function<void(Task&, Moment)> thread_ends;
     // It has: nothing is kept for it any more.
     std::function<void(Task&)> thread_has_ended;
-    // The kernel's own wake does not reach those that wait for its end, or for a lock of its.
+    // The kernel's own wake does not reach the threads that wait for its end, or for a lock of its.
     std::function<void(Task&, Moment)> wake_those_waiting_for;
     std::function<void(Process& parent, pid_t child, Moment)> child_has_ended;
     // After its threads, and after its parent was told.
@@ -45,13 +45,13 @@ class Deaths {
 
   // The thread is gone, or is about to; its number may be another's already.
   void End(Task& task, Moment moment);
-  // And nobody but the coordinator can tell those that wait for it.
+  // Only the coordinator can tell the threads that wait for it.
   void EndAndWake(Task& task, Moment moment);
 
   // The process has ended, as the kernel says.
   void ProcessEnded(std::uint32_t index, Moment moment);
   // A thread that executes another program becomes its process's first one; all others have ended,
-  // and nobody else says so. False where they have not: it has executed nothing.
+  // and no other event says so. False if they have not: then it has executed nothing.
   bool EndThreadsLostInExec(pid_t pid, Moment moment);
 
   // Between two steps of the loop: slots of processes that have ended can be read until then.

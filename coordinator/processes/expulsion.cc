@@ -22,8 +22,8 @@ void Expulsion::Expel(Process& process, const char* what) {
   if (std::exchange(process.expelled, true)) return;
   if (!std::exchange(process.client->has_erred, true))
     run_.Warn(
-        fmt::format("{} (pid {}) has written what cannot be into the memory that it shares with "
-                    "tcs ({}), and was ended; look for a pointer gone astray in it",
+        fmt::format("{} (pid {}) has written an impossible value into the memory that it shares "
+                    "with tcs ({}), and was ended; look for a stray pointer in it",
                     process.name, process.pid, what));
   syscall(SYS_pidfd_send_signal, process.pidfd.get(), SIGKILL, nullptr, 0);
   const std::vector<Task*> threads = process.robot->tasks;

@@ -106,7 +106,7 @@ void Grace::KillOverdue() {
 void Grace::WarnOfThoseLeft() {
   if (!ran_out_) return;
   for (const Process& process : run_.table.processes()) {
-    WarnOfKill(process, "the real time that there is for that");
+    WarnOfKill(process, "the limit of real time for that");
   }
 }
 

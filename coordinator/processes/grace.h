@@ -28,7 +28,7 @@ namespace tcs {
 
 class Grace {
  public:
-  // `signalled` is told that signals have been sent, to whomever.
+  // `signalled` is called when signals have been sent, to any process.
   Grace(RunState& run, Reactor& reactor, const UnknownChildren& unknown_children,
         std::function<void(Moment)> signalled)
       : run_(run),
@@ -38,8 +38,8 @@ class Grace {
 
   // RunState::grace_began is set.
   void Begin();
-  // Sets the run's end to when the next one is to be killed. False if nobody is: all have ended, or
-  // have been killed, or the grace is over.
+  // Sets the run's end to when the next client is to be killed. False if there is none: all have
+  // ended, or have been killed, or the grace is over.
   bool GoOnToNextKill();
   void KillOverdue();
   void WarnOfThoseLeft();

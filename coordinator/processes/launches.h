@@ -45,15 +45,15 @@ class Launches {
         network_(network),
         guarded_(guarded) {}
 
-  // Of all clients, once their robots are there; then starts those that start at 0. Empty on
+  // For all clients, once their robots are there; starts the clients whose start is 0. Empty on
   // success.
   [[nodiscard]] std::string Begin();
-  // Starts those of the robot that are due. An error ends the run.
+  // Starts the robot's clients that are due. An error ends the run.
   void StartDue(Robot& robot, VirtualTime now);
-  // Those that wait for the client to end, however it has ended, are started now, or later if they
-  // are to.
+  // The clients that start after this client, however it has ended, are started now, or later if
+  // their start says so.
   void ClientHasEnded(const Process& client);
-  // Nobody starts any more.
+  // No client starts any more.
   void Stop();
 
   // Whether a client is still to be started, at a time that is known.

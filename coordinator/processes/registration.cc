@@ -161,7 +161,7 @@ UniqueFd Registration::GivePorter(Process& process) {
   process.porter = Porter::Make([this, name = process.name] {
     run_.Warn(name +
               ": the process that hands over its descriptors (tcs-porter) was killed or stopped, "
-              "so that until the program's next call what it waits for takes real time");
+              "so its waits take real time until the program's next call");
   });
   return process.porter == nullptr ? UniqueFd() : process.porter->TakeClientsEnd();
 }

@@ -1,12 +1,13 @@
-// Threads that register themselves (shm/attach_protocol.h): who has connected, what it becomes, and
-// when. Whoever can connect can say anything: what the kernel says of it is what counts.
+// Threads that register themselves (shm/attach_protocol.h): which process has connected, what it
+// becomes, and when. A process that connects can claim anything; only what the kernel says of it
+// counts.
 //
 // While the kernel holds the thread whose turn it is, others of the run get the processor, and so
 // come as far as here. When they do depends on the host, so it must not show: such a thread
 // registers later, at its own first dispatch; or, if its maker runs and has not said yet that it
 // has made it, once it has.
 //
-// For the coordinator's thread only. Never waits. `moment` is when it happens, for those that did
+// For the coordinator's thread only. Never waits. `moment` is when it happens, for threads that did
 // not have to wait for it.
 #pragma once
 
@@ -52,12 +53,13 @@ class Registration {
   // The run's memory, which all that register get to see.
   void ShareMemory(int fd) { memory_fd_ = fd; }
 
-  // Somebody who has connected says what it wants, at that descriptor. True if the running thread
+  // A process that has connected says what it wants, at that descriptor. True if the running thread
   // has to be stopped.
   bool Heard(int fd, Moment moment);
   // The thread is dispatched, and registers now if it has wanted to before.
   void LetRegister(const Task& dispatched);
-  // Makers' turns are over, and they have said nothing of those who are waiting.
+  // The turns of the threads that make others are over, and they have announced none of the threads
+  // that wait to register.
   void RegisterUnannounced(Moment moment);
   // The thread has ended.
   void Forget(const Task& ended) { early_.erase(ended.tid); }

@@ -1,9 +1,10 @@
 // Where processes register (shm/attach_protocol.h): a socket for each client and all that it
-// starts, so that it is known whose descendant somebody is whose parents have ended; and those who
-// have connected, until they say what they want.
+// starts. So the client is known of which a process is a descendant, even if the process's parents
+// have ended. Also the processes that have connected, until they say what they want.
 //
-// For the coordinator's thread only. The reactor says who has come (Tag::kListener, with the
-// socket's number) and who has said something (Tag::kConnection, with the descriptor).
+// For the coordinator's thread only. The reactor says where a process has connected
+// (Tag::kListener, with the socket's number) and where one has said something (Tag::kConnection,
+// with the descriptor).
 #pragma once
 
 #include <cstdint>
@@ -21,10 +22,11 @@ namespace tcs {
 
 class RegistrationSockets {
  public:
-  // Who has connected says at once what it wants. Of those who do not the earliest are cut off.
+  // A process that has connected says at once what it wants. Of the ones that do not, the earliest
+  // are cut off.
   static constexpr std::size_t kMostSilent = 256;
 
-  // Somebody who has not said yet what it wants.
+  // A process that has not yet said what it wants.
   struct Connection {
     UniqueFd fd;
     Process* client;  // that the socket is for
@@ -35,7 +37,8 @@ class RegistrationSockets {
   // A socket for the next client and its descendants, which programs on that computer find (null:
   // on the host). Its name, or nothing: errno is set.
   std::string Open(const OwnComputer* computer);
-  // The socket that was opened last is that client's. Before anybody can have connected there.
+  // The socket that was opened last is that client's. Call it before a process can have connected
+  // there.
   void AssignTo(Process& client) { sockets_.back().client = &client; }
 
   void Accept(std::uint32_t number);

@@ -1,6 +1,6 @@
-// What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, when clients
-// were activated, who had the processor when, when they said something, and what the world did.
-// Nothing is written by a run without a folder for its results.
+// What a run writes about itself while it goes (docs/RESULTS.md): the schedule trace, the
+// activations of clients, which thread had the processor when, when clients printed something, and
+// what the world did. A run without a folder for its results writes nothing.
 //
 // For the coordinator's thread only. Errors are one sentence; empty is success.
 #pragma once

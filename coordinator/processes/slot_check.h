@@ -1,9 +1,10 @@
-// What a process can write into the memory that it shares with the coordinator, and cannot mean:
-// then a pointer has gone astray there, or the program means harm (expulsion.h). Nothing that the
-// coordinator reads there is believed before it was looked at here.
+// Impossible values in the memory that a process shares with the coordinator: a stray pointer wrote
+// there, or the program means harm (expulsion.h). The coordinator uses nothing that it reads there
+// before this class has checked it.
 //
 // Reads the slots of threads that have registered and are stopped; writes nothing, makes no system
-// call. Sentences go on after "has written what cannot be (". Times are virtual nanoseconds.
+// call. The sentences stand in the brackets of "has written an impossible value … (". Times are
+// virtual nanoseconds.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +23,14 @@ class SlotCheck {
   SlotCheck(bool is_fixed, std::function<std::int64_t()> run_ns)
       : is_fixed_(is_fixed), run_ns_(std::move(run_ns)) {}
 
-  // Of the clock of a thread that has just been stopped; null if all is well.
+  // Checks the clock of a thread that has just been stopped; null if all is well.
   const char* WhatIsImpossible(const Task& task) const;
-  // Of what a thread notifies.
+  // Checks a thread's notification.
   static const char* WhatIsImpossible(const shm::Notification& note);
 
-  // What was stolen from it, as far as that can be true; else 0.
+  // The time that was stolen from the thread, if that can be true; else 0.
   std::int64_t StolenOf(const Task& task) const;
-  // How old the oldest state was that it was given, as far as that can be true; else 0.
+  // The age of the oldest state that the thread was given, if that can be true; else 0.
   static std::int64_t StalenessOf(const Task& task);
 
  private:

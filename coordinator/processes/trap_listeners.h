@@ -24,7 +24,7 @@ class TrapListeners {
     reactor_.Add(fd, EPOLLIN, {Tag::kTrap, static_cast<std::uint32_t>(fd)});
     listeners_.push_back(std::move(listener));
   }
-  // Nobody is left whose calls could arrive there.
+  // No process is left whose calls could arrive there.
   void Close(int listener) {
     reactor_.Remove(listener);
     std::erase_if(listeners_, [listener](const UniqueFd& fd) { return fd.get() == listener; });

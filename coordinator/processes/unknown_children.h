@@ -1,6 +1,6 @@
-// Children of a bare clone, or of the system call itself, that make no call that tcs knows: nobody
-// has announced them, and they do not register. Their parent learns of their end, and time waits
-// while they run.
+// Children of a bare clone, or of the system call itself, that make no call that tcs knows: they
+// were not announced, and they do not register. Their parent learns of their end, and virtual time
+// waits while they run.
 //
 // For the coordinator's thread only. Reads /proc, and has the reactor watch for their ends
 // (Tag::kUnknownChild, with their numbers).
@@ -52,7 +52,7 @@ class UnknownChildren {
   Reactor& reactor_;
   const UnmanagedThreads& unmanaged_;
   std::map<pid_t, Child> living_;
-  std::set<pid_t> untaken_;  // those that have ended, and were not waited for yet
+  std::set<pid_t> untaken_;  // children that have ended, and were not waited for yet
 };
 
 }  // namespace tcs

@@ -1,7 +1,8 @@
-// Threads that tcs does not manage: made by a bare clone that nobody has announced, or by libraries
+// Threads that tcs does not manage: made by a bare clone that was not announced, or by libraries
 // for themselves, or computing on after they have said that they end. They have the level of the
-// thread that made them, and time waits for them; but one that computes for ever there would keep
-// the CPU from those that are dispatched, so it loses its level, and is waited for no longer.
+// thread that made them, and virtual time waits for them. But one that computes for ever at that
+// level would keep the CPU from the dispatched threads. So it loses its level, and virtual time
+// does not wait for it any longer.
 //
 // For the coordinator's thread only. Reads /proc and CPU clocks, and changes levels. Times are of
 // the host's processor.

@@ -1,5 +1,6 @@
-// What clients have used: they, and all that they have started, however far down and whoever waits
-// for it. Of those that live it is read where it arises; of those that have ended it is kept.
+// What clients have used, including all processes that they have started, at any depth and
+// whichever process waits for them. For a living process it is read where it arises; for one that
+// has ended it is kept here.
 //
 // For the coordinator's thread only. What the kernel's CPU clocks say costs a system call.
 #pragma once
@@ -16,7 +17,7 @@ class UsageBook {
  public:
   UsageBook(const TaskTable& table, const SlotCheck& check) : table_(table), check_(check) {}
 
-  // Virtual nanoseconds of its threads, those that have ended among them.
+  // Of its threads, including the threads that have ended.
   static VirtualDuration ChargedTo(const Process& process);
   // With its descendants.
   VirtualDuration ChargedToAllOf(const Process& client) const;

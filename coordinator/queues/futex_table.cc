@@ -1,6 +1,7 @@
 #include "coordinator/queues/futex_table.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace tcs {
@@ -82,6 +83,11 @@ const FutexKey& FutexTable::WordOf(Thread thread) const {
   return waiting_.at(thread).words.front();
 }
 
+const FutexKey* FutexTable::FirstWordOf(Thread thread) const {
+  const auto found = waiting_.find(thread);
+  return found == waiting_.end() ? nullptr : &found->second.words.front();
+}
+
 bool FutexTable::MayBeWaitedAt(std::uint64_t address) const {
   return waits_by_place_[PlaceInPage(address)] != 0;
 }
@@ -100,6 +106,17 @@ FutexTable::Thread FutexTable::MostUrgent(const FutexKey& word, std::uint32_t bi
     best_priority = priority;
   }
   return best;
+}
+
+std::vector<FutexKey> FutexTable::AwaitedWords() const {
+  std::vector<FutexKey> words;
+  words.reserve(queues_.size());
+  for (const auto& [word, waiters] : queues_) words.push_back(word);
+  std::sort(words.begin(), words.end(), [](const FutexKey& one, const FutexKey& other) {
+    return std::tie(one.pid, one.file, one.address) <
+           std::tie(other.pid, other.file, other.address);
+  });
+  return words;
 }
 
 std::vector<FutexTable::Thread> FutexTable::WaitersAt(const FutexKey& word) const {

@@ -28,28 +28,32 @@ class FutexTable {
 
   // The thread, which waits nowhere yet, waits at the word for a wake with one of these bits.
   void Wait(Thread thread, const FutexKey& word, std::uint32_t bits);
-  // The same at several words (futex_waitv).
+  // The thread waits at several words (futex_waitv).
   void WaitForAny(Thread thread, std::vector<FutexKey> words, std::uint32_t bits);
   // The thread, which waits, is to be moved to that lock (FUTEX_WAIT_REQUEUE_PI): wakes pass it by
   // until it is there.
   void ExpectLock(Thread thread, const FutexKey& lock);
   // Nothing happens if it does not wait.
   void Leave(Thread thread);
-  // From the one word to the other, behind those that wait there.
+  // Moves the thread from the one word to the other, behind the threads that wait there.
   void Move(Thread thread, const FutexKey& from, const FutexKey& to);
 
   bool WaitsForAny(Thread thread) const;
   std::optional<FutexKey> ExpectedLock(Thread thread) const;
-  // The word's place among those that the thread waits at; 0 if it is none of them.
+  // The word's place among the words at which the thread waits; 0 if it is none of them.
   std::size_t IndexOf(Thread thread, const FutexKey& word) const;
   // The word that it waits at, which must be one.
   const FutexKey& WordOf(Thread thread) const;
+  // The first of those that it waits at; null: none.
+  const FutexKey* FirstWordOf(Thread thread) const;
 
-  // False if nobody waits at this place of any page, and so not at this address, whatever it is
+  // False if no thread waits at this place of any page, and so none at this address, whatever it is
   // mapped to.
   bool MayBeWaitedAt(std::uint64_t address) const;
   // Whom a wake with these bits is for; kNobody: none.
   Thread MostUrgent(const FutexKey& word, std::uint32_t bits) const;
+  // Where somebody waits, each once, in the order of processes and addresses.
+  std::vector<FutexKey> AwaitedWords() const;
   // All, in the order of waiting.
   std::vector<Thread> WaitersAt(const FutexKey& word) const;
   // The same, the most urgent first.

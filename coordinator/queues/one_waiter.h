@@ -1,8 +1,8 @@
 // One event, one waiter. Of several threads that wait to take from the same descriptor (read,
-// accept, the events of an epoll set) the kernel wakes one: the one that waits longest, of those in
-// one epoll set the one that came last. To the coordinator, which polls for each of them, the event
-// comes for all. The others are passed over. What the first has left when it has tried is for the
-// next of those that were passed over for it.
+// accept, the events of an epoll set) the kernel wakes one: the one that has waited longest, or in
+// one epoll set the one that came last. The coordinator polls for each of them, so it sees the
+// event for all; it passes the others over. When the first thread has tried, what it has left is
+// for the next thread that was passed over for it.
 //
 // Pure: threads are numbers; what is at a descriptor is asked of the caller.
 #pragma once
@@ -28,14 +28,14 @@ struct EventShare {
   int passed_over_for = kNoThread;  // none: it is woken
 };
 
-// An event has come for all of these: who is woken, in the order of waiting, and who is passed over
-// for whom. `is_one_event`: whether the event of the second is the one that the first is woken for.
+// An event has come for all of these threads: which are woken, in the order of waiting, and which
+// are passed over for which. `is_one_event`: whether the event of the second is the one that the
+// first is woken for.
 std::vector<EventShare> ShareEvents(std::vector<EventWaiter> waiters,
                                     const std::function<bool(int first, int second)>& is_one_event);
 
-// The thread that these were passed over for has tried: the first of them for whom something is
-// there is next, and those behind it are passed over for it now. All others are passed over for
-// nobody any more.
+// The thread for which these were passed over has tried. The first of them that finds something is
+// next, and the ones behind it are now passed over for it. All others are not passed over any more.
 struct Rest {
   int next = kNoThread;
   std::vector<int> behind;

@@ -117,6 +117,14 @@ ProcessTimers::Setting ProcessTimers::Get(Id id) const {
   return timer == nullptr ? Setting{} : timer->setting;
 }
 
+std::vector<ProcessTimers::Armed> ProcessTimers::AllArmed() const {
+  std::vector<Armed> armed;
+  for (const auto& [id, timer] : timers_) {
+    if (timer.IsArmed()) armed.push_back({id, timer.setting, timer.kind});
+  }
+  return armed;
+}
+
 void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   Timer* timer = Find(id);
   if (timer == nullptr) return;

@@ -1,23 +1,25 @@
-// The timers of one process: setitimer's three, timer descriptors, and those of timer_create.
+// The timers of one process: the three of setitimer, timer descriptors, and the timers of
+// timer_create.
 //
 // A timer runs on the clock of its process, or on processor time, of the process or of one thread.
-// What is set and read are times of that clock. The instants of Expire, EndRests, NextExpiry and
-// NextLook are the virtual CPU's; the process's clock is ahead of it by what it was ahead
-// (its lead, --sync callback) when the timer was set.
+// A caller sets and reads times of that clock. The instants of Expire, EndRests, NextExpiry and
+// NextLook are the virtual CPU's; the process's clock is ahead of it by what it was ahead (its
+// lead, --sync callback) when the timer was set.
 //
-// - All that has run out by an instant runs out at once: a timer without interval is not armed any
-//   more, any other is set ahead to its first time after the instant. The end of all time
+// - All timers that are due at an instant run out at once. A timer without an interval is then not
+//   armed any more; any other is set to its first time after the instant. The end of all time
 //   (shm::kNeverNs) never comes.
-// - Of a timer of timer_create one signal is on its way at a time; what runs out before it is
-//   accepted is its overruns, INT_MAX at most. Of setitimer's timers one signal of each number is.
-// - A short interval (shm::kShortIntervalNs) is not lived through expiration by expiration. Whoever
-//   waits for such a timer is woken at its instant. But what runs out before the process has run
-//   again changes nothing that anybody could see but a count: until then the timer rests, and the
+// - A timer of timer_create has one signal on its way at a time. Expirations before that signal is
+//   accepted are its overruns, INT_MAX at most. The timers of setitimer have one signal of each
+//   number on its way.
+// - A short interval (shm::kShortIntervalNs) is not processed expiration by expiration. A thread
+//   that waits for such a timer is woken at its instant. But an expiration before the process has
+//   run again changes nothing that can be seen except a count: until then the timer rests, and the
 //   count is made up at once. While the process runs it is looked at now and then, for the sake of
 //   its signal.
 //
-// Pure: makes no system call. What has run out, and which signals are to be sent, it returns;
-// whether a signal was accepted it is told. Not thread-safe.
+// Pure: makes no system call. It returns which timers have run out and which signals are to be
+// sent. The caller tells it whether a signal was accepted. Not thread-safe.
 #pragma once
 
 #include <sys/types.h>
@@ -79,21 +81,30 @@ class ProcessTimers {
   Id Create(const shm::TimerKind& kind);
   // With its signal, unless that was sent.
   void Delete(Id id);
-  // Those of timer_create, which end when the process executes another program.
+  // The timers of timer_create, which end when the process executes another program.
   void DeletePosix();
 
-  // None: there is no such timer. The same in all that follow: 0, or nothing happens.
+  // None: there is no such timer. The functions below then return 0, or do nothing.
   std::optional<shm::TimerKind> KindOf(Id id) const;
   Setting Get(Id id) const;
-  // What it was set to, and its signal's overruns, are forgotten; a signal on its way is not.
+  // The timers that are armed, by their ids.
+  struct Armed {
+    Id id;
+    Setting setting;
+    shm::TimerKind kind;
+  };
+  std::vector<Armed> AllArmed() const;
+  // Forgets the timer's earlier setting and its signal's overruns, but not a signal that is on its
+  // way.
   void Set(Id id, Setting setting, VirtualDuration lead);
 
   // When the next one on the process's clock runs out.
   VirtualTime NextExpiry() const { return next_expiry_; }
-  // Whoever keeps it is told when it has become another one.
+  // The owner of that value is told when it changes.
   void TellOfNextExpiry(std::function<void()> listener) { listener_ = std::move(listener); }
   std::vector<RanOut> Expire(VirtualTime now);
-  // Whether it is of a short interval and has run out by then: whoever is to see it calls Expire.
+  // Whether it is of a short interval and has run out by then: the caller that needs to see it
+  // calls Expire.
   bool IsBehind(Id id, VirtualTime now) const;
 
   // On processor time: what may still be used before the next one runs out, at least 1 us, as what
@@ -104,7 +115,7 @@ class ProcessTimers {
 
   // A thread of the process has run until then: it may have read a timer, or handled its signal.
   void EndRests(VirtualTime now);
-  // How far a thread of the process may run before those that rest are looked at again.
+  // How far a thread of the process may run before the resting timers are looked at again.
   VirtualTime NextLook() const;
 
   // Signals that are to be sent, in the order in which they came about: takes them all. Each is
@@ -113,12 +124,13 @@ class ProcessTimers {
   std::vector<TimerSignal> TakeSignals();
   void GiveBack(const TimerSignal& signal) { signals_.push_back(signal); }
   void NoteSent(const TimerSignal& signal, pid_t to);
-  // Of timer_create's timers: those that were sent and not seen accepted yet.
+  // Of timer_create's timers: the signals that were sent and not yet seen accepted.
   std::vector<SentSignal> SentSignals() const;
   void Accept(Id id);
-  // The same by who has just accepted it: what has run out by now is the accepted signal's.
+  // The same by the thread that has just accepted the signal: the expirations until now belong to
+  // the accepted signal.
   void AcceptAt(Id id, VirtualTime now);
-  // Of the signal accepted last.
+  // The overruns of the signal that was accepted last.
   std::int64_t Overruns(Id id) const;
 
  private:

@@ -1,7 +1,7 @@
 // Which threads wait for which kernel objects that cannot be polled (System V IPC, the backlog of a
-// listener): the kernel's wait queues. Whoever changes an object wakes all that wait for it, in the
-// order in which they came. Each tries again; if the change was not for it, it comes back to its
-// place in the queue.
+// listener): the kernel's wait queues. A thread that changes an object wakes all threads that wait
+// for it, in the order in which they came. Each tries again; if the change was not for it, it
+// returns to its place in the queue.
 //
 // Pure: makes no system call. Threads are numbers. Not thread-safe.
 #pragma once
@@ -26,12 +26,13 @@ class WaitQueues {
   void Wait(Thread thread, const KernelObject& object, bool is_back);
   // It waits no longer, and may come back. Nothing happens if it does not wait.
   void Leave(Thread thread);
-  // It has ended: whoever gets its number has no place anywhere.
+  // The thread has ended: the next thread with its number has no place in any queue.
   void Forget(Thread thread) { places_.erase(thread); }
 
   // In the order in which they came.
   std::vector<Thread> WaitersFor(const KernelObject& object) const;
-  // What somebody waits for, each once, by the least of its waiters' numbers.
+  // The objects for which a thread waits, each once, ordered by the least number of its waiting
+  // threads.
   std::vector<KernelObject> AwaitedObjects() const;
 
  private:

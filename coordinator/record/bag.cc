@@ -130,7 +130,7 @@ std::string Bag::Close() {
   storage_.reset();
   WriteMetadata(Withstands::kPowerCut);
   if (failure_.empty()) return {};
-  return fmt::format("the recording {} is not whole: {}; {} of {} samples are missing", path_,
+  return fmt::format("the recording {} is incomplete: {}; {} of {} samples are missing", path_,
                      failure_, missing_, missing_ + in_batches_.messages);
 }
 

@@ -95,10 +95,15 @@ Json ToJson(const Replay& replay) {
   for (const Said& line : replay.said) {
     said.push_back({line.time_us, line.client, line.stream, line.text, line.is_mark});
   }
-  return {{"name", replay.name},           {"end", replay.end_s},
-          {"count", replay.time_s.size()}, {"times", Base64(times)},
-          {"tracks", std::move(tracks)},   {"robots", std::move(robots)},
-          {"signals", std::move(signals)}, {"said", std::move(said)},
+  return {{"name", replay.name},
+          {"end", replay.end_s},
+          {"count", replay.time_s.size()},
+          {"times", Base64(times)},
+          {"tracks", std::move(tracks)},
+          {"robots", std::move(robots)},
+          {"signals", std::move(signals)},
+          {"said", std::move(said)},
+          {"contacts", ToJson(replay.contacts, replay.time_s.size())},
           {"scene", replay.scene}};
 }
 

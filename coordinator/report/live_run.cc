@@ -41,6 +41,7 @@ struct LiveRun::Reading {
       : most_moments(MostMoments(scene)),
         bodies(folder + "/bodies.csv", kStateColumns, kStateColumns.size()),
         joints(folder + "/joints.csv", kJointColumns, kJointColumns.size()),
+        contacts(folder + "/contacts.csv", kContactColumns, kContactColumns.size()),
         commands(folder + "/commands.csv", kCommandColumns, kCommandColumns.size()),
         dispatches(folder + "/dispatches.csv", kDispatchColumns, kDispatchColumnsWithoutReal),
         said(folder) {
@@ -53,11 +54,13 @@ struct LiveRun::Reading {
   const std::size_t most_moments;
   Replay replay;
   Timeline timeline;
-  CsvTail bodies, joints, commands, dispatches;
+  CsvTail bodies, joints, contacts, commands, dispatches;
   SaidTail said;
   std::unique_ptr<ReplayReader> reader;
   TimelineBuilder slices{&timeline};
   std::size_t released = 0;  // moments of which all is known
+  // How coarse contacts were at the last look: whether there were sums alone, at which moments.
+  std::pair<bool, std::size_t> contacts_were{false, 1};
 
   // Reads on. What belongs to moments that are not there yet waits for them.
   CsvTail::Found Look() {
@@ -72,6 +75,12 @@ struct LiveRun::Reading {
       const auto time_s = ToReal(fields[0]);
       if (time_s && *time_s > last_s) return CsvTail::Taken::kLater;
       static_cast<void>(reader->TakeJoint(fields));
+      return CsvTail::Taken::kYes;
+    }));
+    static_cast<void>(contacts.Look([&](const CsvFields& fields) {
+      const auto time_s = ToReal(fields[0]);
+      if (time_s && *time_s > last_s) return CsvTail::Taken::kLater;
+      static_cast<void>(reader->TakeContact(fields));
       return CsvTail::Taken::kYes;
     }));
     static_cast<void>(commands.Look([&](const CsvFields& fields) {
@@ -91,7 +100,8 @@ struct LiveRun::Reading {
 
   // True if there was too much.
   bool MadeCoarser() {
-    bool is_coarser = false;
+    bool is_coarser =
+        contacts_were != std::pair(replay.contacts.has_sums(), replay.contacts.stride());
     while (replay.time_s.size() > most_moments) {
       reader->Thin();
       released = (released + 1) / 2;
@@ -104,6 +114,7 @@ struct LiveRun::Reading {
       timeline = std::move(one[0]);
       is_coarser = true;
     }
+    contacts_were = {replay.contacts.has_sums(), replay.contacts.stride()};
     return is_coarser;
   }
 
@@ -124,6 +135,7 @@ struct LiveRun::Reading {
     }
     part.robots = replay.robots;
     for (const Signal& signal : replay.signals) AddPart(signal, moment, &part);
+    part.contacts = replay.contacts.Part(moment, released);
     part.said.assign(replay.said.begin() + static_cast<std::ptrdiff_t>(line), replay.said.end());
     part.said_more = replay.said_more;
     if (moment == 0) part.scene = replay.scene;
@@ -171,7 +183,7 @@ void LiveRun::Look() {
   if (reading_ == nullptr) {
     // The scene is there before the first moment.
     if (!IsFile(folder_ + "/bodies.csv")) return;
-    auto scene = ReadReplayScene(folder_);
+    auto scene = ReadReplayScene(folder_, MeshLooks::kLeftOut);
     if (std::holds_alternative<LoadError>(scene)) return;
     reading_ = std::make_unique<Reading>(folder_, std::move(std::get<ReplayScene>(scene)));
   }

@@ -17,6 +17,8 @@ const std::vector<std::string_view> kStateColumns{
     "time_s", "body", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw", "vx_mps", "vy_mps", "vz_mps"};
 const std::vector<std::string_view> kJointColumns{"time_s", "joint", "position", "velocity",
                                                   "effort"};
+const std::vector<std::string_view> kContactColumns{
+    "time_s", "first", "second", "x_m", "y_m", "z_m", "force_x_n", "force_y_n", "force_z_n"};
 const std::vector<std::string_view> kCommandColumns{"acts_ns", "target", "quantity", "value"};
 
 namespace {
@@ -25,10 +27,14 @@ namespace {
 // pose and of a number take.
 constexpr double kMostPerSecond = 50;
 constexpr double kBytesOfPose = 12, kBytesOfNumber = 3;
+// Contacts are bounded beside all that: one takes some 16 bytes, and all of them a third of the
+// room.
+constexpr std::size_t kRoomPerContact = 50;
 
 void Warn(const std::string& path, std::int64_t lines, std::vector<std::string>* warnings) {
   if (lines == 0) return;
-  warnings->push_back(fmt::format("{} has {} of no use, left out", path, Count(lines, "line")));
+  warnings->push_back(
+      fmt::format("{} has {} that cannot be used; left out", path, Count(lines, "line")));
 }
 
 }  // namespace
@@ -53,8 +59,9 @@ LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name
   Replay replay;
   replay.name = name;
   replay.end_s = end_s;
+  replay.contacts = ContactTrack(most_bytes / kRoomPerContact);
   ReadSaid(folder, &replay);
-  auto scene = ReadReplayScene(folder);
+  auto scene = ReadReplayScene(folder, MeshLooks::kRead);
   if (const auto* error = std::get_if<LoadError>(&scene)) return *error;
   auto& found = std::get<ReplayScene>(scene);
   const double interval_s = IntervalOf(found, end_s, most_bytes);
@@ -67,6 +74,7 @@ LoadResult<Replay> ReadReplay(const std::string& folder, const std::string& name
   // The moments are those of the first.
   const File files[] = {{"/bodies.csv", kStateColumns, &ReplayReader::TakeState},
                         {"/joints.csv", kJointColumns, &ReplayReader::TakeJoint},
+                        {"/contacts.csv", kContactColumns, &ReplayReader::TakeContact},
                         {"/commands.csv", kCommandColumns, &ReplayReader::TakeCommand}};
   for (const File& file : files) {
     const std::string path = folder + file.name;

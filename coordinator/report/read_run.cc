@@ -170,7 +170,8 @@ class ActivationBuilder {
 
 void WarnOfLines(const std::string& path, std::int64_t lines, std::vector<std::string>* warnings) {
   if (lines == 0) return;
-  warnings->push_back(fmt::format("{} has {} of no use, left out", path, Count(lines, "line")));
+  warnings->push_back(
+      fmt::format("{} has {} that cannot be used; left out", path, Count(lines, "line")));
 }
 
 }  // namespace

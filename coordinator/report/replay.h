@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/report/contact_track.h"
 #include "coordinator/scenario/load_error.h"
 
 namespace tcs::report {
@@ -53,6 +54,7 @@ struct Replay {
   std::vector<PoseTrack> tracks;
   std::vector<RobotTracks> robots;
   std::vector<Signal> signals;
+  ContactTrack contacts;
   nlohmann::ordered_json scene;  // what to draw: "tracks" has the shapes of each, in its frame
   std::vector<Said> said;
   std::int64_t said_more = 0;  // lines that there was no room for

@@ -92,6 +92,22 @@ bool ReplayReader::TakeJoint(const CsvFields& fields) {
   return true;
 }
 
+bool ReplayReader::TakeContact(const CsvFields& fields) {
+  std::array<double, 7> numbers{};  // a time, a point, a force
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto number = ToReal(fields[i == 0 ? 0 : i + 2]);
+    if (!number) return false;
+    numbers[i] = *number;
+  }
+  const auto& [time_s, x, y, z, fx, fy, fz] = numbers;
+  if (const auto moment = MomentOf(time_s)) {
+    const std::string second(fields[2]);
+    replay_.contacts.Add(*moment, {std::string(fields[1]), second, scene_.moving.contains(second)},
+                         {x, y, z}, {fx, fy, fz});
+  }
+  return true;
+}
+
 // Holds until the next one of its kind.
 bool ReplayReader::TakeCommand(const CsvFields& fields) {
   const auto acts = ToInteger(fields[0]);
@@ -259,6 +275,7 @@ void ReplayReader::Thin() {
     thin(&signal.values);
   }
   for (PoseTrack& track : replay_.tracks) thin(&track.poses);
+  replay_.contacts.Thin();
   thin(&replay_.time_s);
 }
 

@@ -1,5 +1,6 @@
 // Makes a replay of the lines of a run's tables, one after the other: those of bodies.csv say which
-// moments there are, those of joints.csv and commands.csv are put to them.
+// moments there are, those of joints.csv, contacts.csv and
+// commands.csv are put to them.
 #pragma once
 
 #include <array>
@@ -17,7 +18,8 @@
 namespace tcs::report {
 
 // What the reader wants of each table.
-extern const std::vector<std::string_view> kStateColumns, kJointColumns, kCommandColumns;
+extern const std::vector<std::string_view> kStateColumns, kJointColumns, kContactColumns,
+    kCommandColumns;
 
 class ReplayReader {
  public:
@@ -27,6 +29,7 @@ class ReplayReader {
   // Fields under the columns above. False: the line is of no use.
   [[nodiscard]] bool TakeState(const CsvFields& fields);
   [[nodiscard]] bool TakeJoint(const CsvFields& fields);
+  [[nodiscard]] bool TakeContact(const CsvFields& fields);
   // Holds until the next one of its kind.
   [[nodiscard]] bool TakeCommand(const CsvFields& fields);
 

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "coordinator/report/csv.h"
+#include "coordinator/report/looks.h"
 #include "simbody_bridge/model/pose.h"
 
 namespace tcs::report {
@@ -37,9 +39,12 @@ Json BoxLike(const Json& body) {
 
 class Reader {
  public:
-  explicit Reader(Json scene) : scene_(std::move(scene)) {}
+  Reader(Json scene, MeshLooks looks) : scene_(std::move(scene)) {
+    if (looks == MeshLooks::kRead) looks_.emplace(CountMeshFiles());
+  }
 
   ReplayScene Read() {
+    meshes_ = scene_.at("meshes");
     for (const Json& body : scene_.at("bodies")) {
       const std::size_t track = AddTrack(body.at("name"));
       shapes_[track].push_back(BoxLike(body));
@@ -51,7 +56,7 @@ class Reader {
     AddSensors();
     found_.json = {{"region", scene_.at("region_m")},
                    {"fixtures", scene_.at("fixtures")},
-                   {"meshes", scene_.at("meshes")},
+                   {"meshes", std::move(meshes_)},
                    {"sensors", std::move(sensors_)},
                    {"tracks", std::move(tracks)}};
     return std::move(found_);
@@ -98,6 +103,13 @@ class Reader {
     }
     if (robot.tracks.empty()) return;
     robot.root = robot.tracks.front();
+    const bool stands = model.at("fixed_base").get<bool>();
+    for (const Json& link : links) {
+      const std::string name = link.at("name");
+      const auto place = places_.find(name);
+      if (place == places_.end() || (stands && place->second.track == robot.root)) continue;
+      found_.moving.insert(name);
+    }
     found_.robots.push_back(std::move(robot));
   }
 
@@ -107,14 +119,38 @@ class Reader {
     robot->joint_units[name] = link.at("kind") == "prismatic" ? "m" : "rad";
   }
 
+  std::size_t CountMeshFiles() const {
+    std::set<std::string> files;
+    for (const Json& model : scene_.at("models")) {
+      for (const Json& link : model.at("links")) {
+        for (const Json& visual : link.at("visuals")) {
+          if (visual.contains("path")) files.insert(visual.at("path").get<std::string>());
+        }
+      }
+    }
+    return files.size();
+  }
+
+  // Makes a mesh of one that is in a file. False if it is not to be had.
+  bool ReadMesh(Json* visual) {
+    if (!looks_ || !visual->contains("path")) return false;
+    const auto scale = visual->at("scale").get<std::array<double, 3>>();
+    const auto number = looks_->Take(visual->at("path"), scale, &meshes_);
+    if (!number) return false;
+    (*visual)["kind"] = "mesh";
+    (*visual)["mesh"] = *number;
+    for (const char* key : {"name", "path", "scale"}) visual->erase(key);
+    return true;
+  }
+
   // What it looks like, or where nothing is said of that, what it collides with. The colour of a
   // mesh that is not here is that of the shapes in its stead.
   void AddShapes(const Json& link, const Place& place) {
-    const Json& visuals = link.at("visuals");
+    Json visuals = link.at("visuals");
     bool is_drawn = !visuals.empty();
     Json colour;
-    for (const Json& visual : visuals) {
-      is_drawn = is_drawn && visual.at("kind") != "mesh_file";
+    for (Json& visual : visuals) {
+      if (visual.at("kind") == "mesh_file") is_drawn = is_drawn && ReadMesh(&visual);
       if (visual.contains("colour") && colour.is_null()) colour = visual.at("colour");
     }
     for (Json shape : is_drawn ? visuals : link.at("shapes")) {
@@ -138,16 +174,18 @@ class Reader {
   std::vector<Json> shapes_;  // of each track
   std::map<std::string, Place> places_;
   Json sensors_ = Json::array();
+  Json meshes_;
+  std::optional<Looks> looks_;
 };
 
 }  // namespace
 
-LoadResult<ReplayScene> ReadReplayScene(const std::string& folder) {
+LoadResult<ReplayScene> ReadReplayScene(const std::string& folder, MeshLooks looks) {
   const std::string path = folder + "/scene.json";
   const auto text = ReadFile(path);
   if (!text) return ReplayScene{};
   try {
-    return Reader(Json::parse(*text)).Read();
+    return Reader(Json::parse(*text), looks).Read();
   } catch (const std::exception&) {
     return LoadError{path + " is damaged; make the run again"};
   }

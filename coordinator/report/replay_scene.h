@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,17 @@ struct ReplayScene {
   };
   std::vector<std::string> tracks;  // names in bodies.csv
   std::vector<Robot> robots;
+  std::set<std::string> moving;  // the links that are not fixed to the world
   nlohmann::ordered_json json;
 };
 
+// Whether meshes that are only looks are read, each in a process of its own, or what collides
+// stands in their stead.
+enum class MeshLooks { kRead, kLeftOut };
+
 // What the run of `folder` wrote; nothing of it where there is no such file, as of earlier
 // versions.
-[[nodiscard]] LoadResult<ReplayScene> ReadReplayScene(const std::string& folder);
+[[nodiscard]] LoadResult<ReplayScene> ReadReplayScene(const std::string& folder, MeshLooks looks);
 
 // How far moments of a replay of so many seconds are apart, so that it takes about `most_bytes`
 // when it is encoded: what a screen shows, or more.

@@ -94,10 +94,10 @@ LoadResult<VirtualDuration> ParseDuration(std::string_view text) {
   std::string_view rest = Trim(text);
   if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
   if (!rest.empty() && rest.front() == '-') {
-    return mistake("is no duration: it must not be negative");
+    return mistake("is not a duration: it must not be negative");
   }
   std::optional<Decimal> number = TakeDecimal(&rest);
-  if (!number) return mistake("is no duration; " + std::string(kExample));
+  if (!number) return mistake("is not a duration; " + std::string(kExample));
 
   const std::string_view unit_name = Trim(rest);
   const Unit* unit = FindUnit(unit_name);
@@ -108,7 +108,7 @@ LoadResult<VirtualDuration> ParseDuration(std::string_view text) {
   if (number->digits.empty()) return VirtualDuration{};
 
   const LoadError too_long = mistake("is too long a duration; the longest is 146 years");
-  const LoadError too_fine = mistake("is finer than a nanosecond; round it to whole nanoseconds");
+  const LoadError too_fine = mistake("is not a whole number of nanoseconds; round it");
   long exponent = number->exponent + unit->power_of_ten;
   const long digits = static_cast<long>(number->digits.size());
   if (digits + exponent > 20) return too_long;

@@ -67,7 +67,8 @@ std::optional<std::string> ReadHashBang(int fd) {
 
 std::optional<LoadError> CheckPrivilege(const std::string& path, int fd) {
   struct stat status {};
-  if (fstat(fd, &status) != 0) return Mistake(path, "cannot be examined; is it being replaced?");
+  if (fstat(fd, &status) != 0)
+    return Mistake(path, "cannot be read; check whether it is being replaced, and try again");
   constexpr std::string_view kRemedy =
       ", and the loader preloads nothing into such a program; run a copy of it without";
   if ((status.st_mode & S_ISUID) != 0) {
@@ -110,7 +111,8 @@ std::optional<LoadError> Check(const std::string& path, int depth) {
   if (const int error = WhyNotExecutable(path); error != 0) return NotExecutable(path, error);
   const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) {
-    return Mistake(path, "may not be read, so tcs cannot tell how it is linked; chmod +r it");
+    return Mistake(
+        path, "may not be read, so tcs cannot tell how it is linked; make it readable (chmod +r)");
   }
   if (auto error = CheckPrivilege(path, file.get())) return error;
   if (const auto elf = ReadElfFile(file.get())) return CheckElf(path, *elf);
@@ -166,8 +168,7 @@ LoadResult<std::string> FindExecutable(const std::string& name, const std::strin
   }
   if (found_but) return *found_but;
   return LoadError{"the command '" + name +
-                   "' was not found along PATH; install it, or write its "
-                   "path with a slash, like ./" +
+                   "' was not found in PATH; install it, or write its path with a slash, like ./" +
                    name};
 }
 

@@ -52,7 +52,7 @@ struct TransformsSpec {
   std::vector<Pair> pairs;
 };
 
-// The same of what does not move, once.
+// The same for links that do not move, once.
 struct FixedTransformsSpec {
   TransformsSpec transforms;
 };

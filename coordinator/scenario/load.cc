@@ -55,7 +55,7 @@ std::string FolderOf(const std::string& path) {
 void LoadHead(const YamlMap& top, Scenario* scenario) {
   if (const YamlValue* name = top.Find("name")) {
     scenario->name = name->AsText();
-    if (scenario->name.empty()) name->Fail("is empty; name the scenario or leave the key out");
+    if (scenario->name.empty()) name->Fail("is empty; write a name, or leave the key out");
   }
   scenario->duration = top.Require("duration", "duration: 20s").AsPositiveDuration();
   if (const YamlValue* drift = top.Find("drift")) {
@@ -65,6 +65,20 @@ void LoadHead(const YamlMap& top, Scenario* scenario) {
   if (const YamlValue* period = top.Find("csv_period")) {
     scenario->csv_period = period->AsPositiveDuration();
   }
+  if (const YamlValue* contacts = top.Find("csv_contacts")) {
+    scenario->csv_contacts = contacts->AsBoolean();
+  }
+}
+
+// Free bodies pass through each other, on every engine; ODE has no others.
+void CheckContacts(const YamlMap& top, Scenario* scenario) {
+  if (!scenario->csv_contacts || (scenario->world && !scenario->world->models.empty())) return;
+  const YamlValue& contacts = *top.Find("csv_contacts");
+  scenario->warnings.push_back(
+      contacts.place().Prefix() + contacts.name() +
+      " finds none to write, for nothing touches anything: free bodies have no shapes, and there "
+      "is "
+      "no model that moves; describe what touches under models, or remove it");
 }
 
 // `mistakes`: where they are all noted; null: the first is thrown.
@@ -76,8 +90,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   Append(SettingsOfOptions(overrides.set), &settings);
   const YamlMap top =
       ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
-  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "dynamics", "bodies", "models",
-                 "robots", "network", "channels", "clock", "ros"});
+  top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "csv_contacts", "dynamics",
+                 "bodies", "models", "robots", "network", "channels", "clock", "ros"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -87,11 +101,13 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
   scenario.seed = overrides.seed.value_or(scenario.seed);
 
-  const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory};
+  const Variables variables{scenario.seed, FolderOf(path), overrides.result_directory,
+                            overrides.run};
   const YamlValue& all = top.place();
   const bool has_world = all.Try([&] { LoadWorld(top, variables, &scenario); });
   // What is on bodies that nobody has read cannot be right.
   if (!has_world) return scenario;
+  CheckContacts(top, &scenario);
   all.Try([&] { LoadRobots(top, variables, &scenario); });
   all.Try([&] { LoadNetwork(top, &scenario); });
   all.Try([&] { LoadChannels(top, variables, &scenario); });

@@ -23,17 +23,18 @@ struct ScenarioOverrides {
   std::optional<std::uint64_t> seed;  // also what ${seed} stands for
   // Absolute: what ${result_dir} stands for, where clients may have folders.
   std::string result_directory;
+  std::uint32_t run = 0;  // what ${run} and ${loopback} stand for (substitute.h)
 };
 
 // Loads and checks the scenario in the file `path`: whatever it returns can be run, unless the
 // files it names change or the ports it names are taken. The first mistake is the error, one
 // sentence beginning "PATH:LINE: " (a file that cannot be read has no line: "PATH: "), or "--set
-// KEY=VALUE: " where the value does not come from a file. Reads the
-// environment (PATH, ${NAME}); not thread-safe against those who change it.
+// KEY=VALUE: " where the value does not come from a file. Reads the environment (PATH, ${NAME});
+// not thread-safe against threads that change it.
 [[nodiscard]] LoadResult<Scenario> LoadScenario(const std::string& path,
                                                 const ScenarioOverrides& overrides = {});
 
-// The same, with all mistakes that can be told apart, in the order of the file; not empty.
+// The same, but returns all mistakes that can be told apart, in the order of the file; not empty.
 [[nodiscard]] std::variant<Scenario, std::vector<LoadError>> CheckScenario(
     const std::string& path, const ScenarioOverrides& overrides = {});
 

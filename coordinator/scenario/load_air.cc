@@ -19,7 +19,7 @@ WindSpec LoadWind(const YamlValue& value, std::uint64_t seed) {
   }
   if (const YamlValue* v = map.Find("gust_time")) {
     wind.gust_time = v->AsPositiveDuration();
-    if (wind.gusts_mps == 0) v->Fail("is of gusts, and there are none; add gusts, like gusts: 1.5");
+    if (wind.gusts_mps == 0) v->Fail("needs gusts, but there are none; add gusts, like gusts: 1.5");
   }
   return wind;
 }

@@ -216,7 +216,7 @@ std::vector<int> FindBodies(const YamlValue& value, const Scenario& scenario) {
 
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario) {
   const std::optional<NetworkSpec>& network = scenario->network;
-  Ends ends{UdpEndpoints(network), UnixNames(variables, network.has_value()), {}, {}};
+  Ends ends{UdpEndpoints(variables, network), UnixNames(variables, network.has_value()), {}, {}};
   if (const YamlValue* clock = top.Find("clock")) scenario->clock = LoadClock(*clock, &ends.topics);
   if (const YamlValue* ros = top.Find("ros")) scenario->ros = LoadRosRelease(*ros);
   const YamlValue* channels = top.Find("channels");

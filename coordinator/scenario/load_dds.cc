@@ -121,7 +121,8 @@ dds::SensorMessage LoadSensorMessage(const YamlValue& value) {
   const std::vector<std::string>& all = dds::SensorMessageNames();
   const std::string name = dds::FullMessageName(value.AsText());
   if (std::find(all.begin() + dds::kBodyMessages, all.end(), name) != all.end()) {
-    value.Fail("is " + name + ", which a robot's own sensors write; say which, like kind: lidar");
+    value.Fail("is " + name +
+               ", which only sensors on a robot's links write; name the sensor, like kind: lidar");
   }
   return static_cast<dds::SensorMessage>(
       LoadMessage(value, {all.begin(), all.begin() + dds::kBodyMessages}));
@@ -284,11 +285,11 @@ void CheckDdsTransports(const YamlMap& top, Scenario* scenario) {
       "); remove it for a Cyclone DDS program, and give any other one channels of the type "
       "udp_json";
   if (by_sockets.size() == clients) {
-    by_sockets[0].Fail("is sockets, as for all clients, so that nobody" + rest);
+    by_sockets[0].Fail("is sockets, as for all clients, so no client" + rest);
   }
   for (const YamlValue& dds : by_sockets) {
     scenario->warnings.push_back(dds.place().Prefix() + dds.name() +
-                                 " is sockets, so that nothing of this client's" + rest);
+                                 " is sockets, so nothing of this client's" + rest);
   }
 }
 

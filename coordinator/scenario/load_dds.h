@@ -39,7 +39,8 @@ ClockSpec LoadClock(const YamlValue& value, DdsTopics* topics);
 dds::RosRelease LoadRosRelease(const YamlValue& value);
 
 // Once all else is loaded: clients that use sockets never meet the scenario's own topics. A warning
-// for each, as it may have others to talk to; a mistake where nobody is left who meets them.
+// for each, because it may have other programs to talk to; a mistake if no client is left that
+// meets them.
 void CheckDdsTransports(const YamlMap& top, Scenario* scenario);
 
 }  // namespace tcs

@@ -1,5 +1,5 @@
-// What is wrong with something the user gave: one sentence for the user, which says where it is and
-// how to mend it. A scenario's mistakes begin with "FILE:LINE: ".
+// A mistake in something that the user gave: one sentence for the user, which says what is wrong,
+// where, and how to mend it. A scenario's mistakes begin with "FILE:LINE: ".
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@ int LoadLink(const YamlValue& value, const Scenario& scenario, std::string* name
 // Whether the channel with the keys of `map` is about such a sensor.
 bool IsAboutInstrument(const YamlMap& map);
 
-// The keys that the kind in `map` has beside those of the transport.
+// The keys of the kind in `map`, without the keys of the transport.
 std::vector<std::string> InstrumentKeys(const YamlMap& map);
 
 // The sensor, and what is wrong with what it measures, into `channel`, whose period is known; where

@@ -17,12 +17,11 @@ bool IsOfModel(const YamlMap& map, const char* body_key);
 // `model` and `joints`: all that have one coordinate, where none are named.
 JointGroup LoadJointGroup(const YamlMap& map, const Scenario& scenario);
 
-// Of a channel that drives joints: the keys that it can have, which are others where they are
-// wheels.
+// The keys that a channel which drives joints can have; for wheels these are other keys.
 std::vector<std::string> JointDriveKeys(const YamlMap& map);
 
-// The same of joints that can be driven; `drive`, `stiffness`, `damping` and `lag`. With
-// `drive: differential` the joints are wheels, and the keys say of which robot.
+// The same for joints that can be driven; `drive`, `stiffness`, `damping` and `lag`. With `drive:
+// differential` the joints are wheels, and the keys say of which robot.
 JointDriveSpec LoadJointDrive(const YamlMap& map, const Scenario& scenario);
 // Gives the joints the lag of the channel that drives them. All channels of a joint have one.
 void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scenario);
@@ -30,7 +29,7 @@ void SetDriveLag(const YamlMap& map, const JointDriveSpec& spec, Scenario* scena
 // The index of the model that `value` names.
 std::size_t FindModel(const YamlValue& value, const Scenario& scenario);
 
-// `model`, and `left` and `right`: wheels, those on the left first.
+// `model`, and `left` and `right`: wheels, the left ones first.
 struct WheelGroup {
   JointGroup group;
   std::size_t left = 0;

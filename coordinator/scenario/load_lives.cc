@@ -78,7 +78,7 @@ void LoadOwnFolder(const YamlValue& value, const Variables& variables, ClientSpe
         "has neither fresh: true nor copy_of: FOLDER; write one of them, or a folder's name");
   }
   if (fresh != nullptr && !fresh->AsBoolean())
-    fresh->Fail("is false, but copies are fresh; remove it");
+    fresh->Fail("is false, but a copy is always fresh; remove it");
   client->folder = ClientFolder::kFresh;
   client->working_directory = variables.result_directory + "/" + FileNameOf(*client);
   if (copy_of == nullptr) return;
@@ -119,7 +119,7 @@ std::string FindClient(const YamlValue& value, const std::string& robot, const S
   }
   if (meant.size() == 1) return meant[0];
   if (meant.size() > 1) {
-    value.Fail("is '" + text + "', which may be " + meant[0] + " or " + meant[1] +
+    value.Fail("is '" + text + "', which can mean " + meant[0] + " or " + meant[1] +
                "; write ROBOT/CLIENT");
   }
   // A slip of the fingers in the client's name alone is one, too.
@@ -173,7 +173,7 @@ void LoadOrder(const YamlMap& robots, Scenario* scenario) {
       if (const YamlValue* v = map.Find("after")) {
         after[client.name] = client.after = FindClient(*v, robot.key, *scenario);
         if (const std::string way = WayBack(client.name, after); !way.empty()) {
-          v->Fail("makes a cycle, in which nobody starts: " + way +
+          v->Fail("makes a cycle, so none of them would start: " + way +
                   "; let one of them start without another");
         }
       }

@@ -33,7 +33,8 @@ class Models {
   void Add(const YamlMap::Entry& entry) {
     CheckName(entry);
     for (const BodySpec& body : world_.bodies) {
-      if (body.name == entry.key) entry.value.Fail("has the name of a body; rename one of them");
+      if (body.name == entry.key)
+        entry.value.Fail("has the same name as a body; rename one of them");
     }
     const YamlMap map = entry.value.AsMap();
     const YamlValue& what = WhatOf(map);
@@ -66,7 +67,7 @@ class Models {
           .FailPlainly("unknown key '" + entry.key + "' in " + map.place().name() +
                        "; did you mean '" + *nearest + "'?");
     }
-    map.place().Fail("says not what it is; add one of urdf, " + List(kShapes));
+    map.place().Fail("does not say what it is; add one of urdf, " + List(kShapes));
   }
 
   static std::string List(const std::vector<std::string>& names) {
@@ -94,12 +95,12 @@ class Models {
     for (const char* key : {"linear_velocity", "angular_velocity"}) {
       const YamlValue* v = map.Find(key);
       if (v == nullptr) continue;
-      if (model->has_fixed_base) v->Fail("is of a base that does not move; remove it");
+      if (model->has_fixed_base) v->Fail("is for a base that does not move; remove it");
       (key[0] == 'l' ? model->linear_velocity_mps : model->angular_velocity_radps) = v->AsVector3();
     }
   }
 
-  PackagePath PackagesOf(const YamlMap& map) const {
+  std::vector<std::string> PackagesOf(const YamlMap& map) const {
     std::vector<std::string> folders;
     if (const YamlValue* packages = map.Find("packages")) {
       for (const YamlValue& folder : packages->AsList("[../install/share]")) {
@@ -109,7 +110,7 @@ class Models {
         }
       }
     }
-    return PackagePath(std::move(folders));
+    return folders;
   }
 
   void AddRobot(const YamlMap::Entry& entry, const YamlMap& map, const YamlValue& urdf) {
@@ -118,8 +119,10 @@ class Models {
     UrdfUse use;
     if (const YamlValue* v = map.Find("fixed_base")) use.has_fixed_base = v->AsBoolean();
     if (const YamlValue* v = map.Find("friction")) use.friction = v->AsNonNegativeNumber("");
-    RobotModel model = Read(urdf, use, PackagesOf(map));
+    std::vector<std::string> packages = PackagesOf(map);
+    RobotModel model = Read(urdf, use, PackagePath(packages));
     model.name = entry.key;
+    scenario_.urdf_packages[model.name] = std::move(packages);
     scenario_.urdf_files[model.name] = PathOf(urdf);
     if (const YamlValue* v = map.Find("at")) {
       const YamlMap at = v->AsMap();
@@ -182,7 +185,7 @@ class Models {
     for (std::size_t i = 0; i < model.joints.size(); ++i) {
       const Joint& joint = model.joints[i];
       if (joint.name == entry.key && joint.kind == JointKind::kFixed) {
-        entry.value.Fail("is of a fixed joint, which has no position; remove it");
+        entry.value.Fail("is for a fixed joint, which has no position; remove it");
       }
       if (joint.name == entry.key) return i;
       if (joint.kind != JointKind::kFixed) known.push_back(joint.name);
@@ -251,17 +254,17 @@ class Models {
     if (is_static != nullptr && !is_static->AsBoolean() && is_plane) {
       is_static->Fail("is false, but a plane has no end and cannot move; remove it");
     }
-    if (is_plane && mass != nullptr) mass->Fail("is of a plane, which cannot move; remove it");
+    if (is_plane && mass != nullptr) mass->Fail("is for a plane, which cannot move; remove it");
     const bool stands = is_plane || (is_static != nullptr && is_static->AsBoolean());
     if (stands && mass != nullptr) {
-      mass->Fail("is of what does not move; remove it, or remove static");
+      mass->Fail("is for something that does not move; remove it, or remove static");
     }
     if (!stands && mass == nullptr) {
       map.place().Fail("has neither mass nor static; add mass: 1.0, or static: true");
     }
     for (const char* key : {"linear_velocity", "angular_velocity"}) {
       const YamlValue* v = map.Find(key);
-      if (stands && v != nullptr) v->Fail("is of what does not move; remove it");
+      if (stands && v != nullptr) v->Fail("is for something that does not move; remove it");
     }
     return stands;
   }
@@ -318,7 +321,7 @@ class Models {
   // The way up from the plane is its normal; it goes through `position`.
   static Pose PoseOfPlane(const YamlValue& plane, const YamlMap& map) {
     if (const YamlValue* v = map.Find("orientation")) {
-      v->Fail("is of a plane, whose normal says it; remove it");
+      v->Fail("is for a plane, whose normal says it already; remove it");
     }
     Pose pose = PoseOf(map);
     const auto [x, y, z] = plane.AsVector3();

@@ -163,7 +163,7 @@ void RefuseAddresses(const YamlMap& top) {
   for (const YamlMap::Entry& robot : robots.entries()) {
     const YamlMap map = robot.value.AsMap();
     if (const YamlValue* address = map.Find("address")) {
-      address->Fail("is for scenarios with a network; add network: {} at the top");
+      address->Fail("is for scenarios with a network; add network: {} at the top level");
     }
   }
 }

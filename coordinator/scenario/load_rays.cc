@@ -121,7 +121,7 @@ ReachSpec LoadReach(const YamlMap& map, ReachSpec reach) {
   const std::vector<double> numbers = value->AsNumbers(2, "[0.1, 30] (metres)");
   reach = {numbers[0], numbers[1]};
   if (reach.least_m < 0 || !(reach.most_m > reach.least_m)) {
-    value->Fail("is no reach; give the least and the most distance in metres, like [0.1, 30]");
+    value->Fail("is not a range; give the least and the most distance in metres, like [0.1, 30]");
   }
   return reach;
 }

@@ -15,7 +15,7 @@ Mount LoadMount(const YamlMap& map, const Scenario& scenario);
 // `range`: over what `reach` says already.
 ReachSpec LoadReach(const YamlMap& map, ReachSpec reach);
 
-// Those that cast rays.
+// The sensors that cast rays.
 InstrumentSpec LoadLidar(const YamlMap& map, const Scenario& scenario, VirtualDuration period);
 InstrumentSpec LoadLidar3d(const YamlMap& map, const Scenario& scenario, VirtualDuration period);
 InstrumentSpec LoadRange(const YamlMap& map, const Scenario& scenario, VirtualDuration period);

@@ -21,7 +21,7 @@ void LoadCpu(const YamlValue& value, RobotSpec* robot) {
   if (!value.IsMap()) {
     robot->is_ideal = value.AsText() == "ideal";
     if (robot->is_ideal) return;
-    value.Fail("is '" + value.AsText() + "'; write ideal, or how it is: {cores: 1, speed: 1.0}");
+    value.Fail("is '" + value.AsText() + "'; write ideal, or a map like {cores: 1, speed: 1.0}");
   }
   const YamlMap map = value.AsMap();
   map.AllowOnly({"cores", "speed"});
@@ -66,13 +66,14 @@ void LoadDeadline(const YamlMap::Entry& entry, const YamlMap& map, SchedulerPoli
   const YamlValue* deadline = map.Find("deadline");
   const bool is_edf = scheduler == SchedulerPolicy::kEarliestDeadlineFirst;
   if (deadline != nullptr && !is_edf) {
-    deadline->Fail("is for robots with `scheduler: edf`; by fixed priorities it means nothing");
+    deadline->Fail(
+        "is for robots with `scheduler: edf`; with fixed priorities it has no effect; remove it");
   }
   if (deadline != nullptr) {
     client->deadline = deadline->AsPositiveDuration();
   } else if (is_edf && client->client_class == ClientClass::kPeriodic) {
     entry.value.Fail(
-        "has no deadline, which `scheduler: edf` orders periodic clients by; add one, as in "
+        "has no deadline, by which `scheduler: edf` orders periodic clients; add one, as in "
         "deadline: 10ms");
   }
 }

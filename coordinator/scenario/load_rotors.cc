@@ -56,11 +56,11 @@ void Mount(const YamlMap::Entry& entry, const YamlMap& map, const RobotModel& mo
   const YamlValue* link = map.Find("link");
   const YamlValue* at = map.Find("at");
   if (link == nullptr) {
-    if (at != nullptr) at->Fail("says where on a link it is, but not on which; add link");
+    if (at != nullptr) at->Fail("says where on a link it is, but not on which link; add link");
     const auto joint = std::ranges::find(model.joints, entry.key, &Joint::name);
     if (joint == model.joints.end()) {
-      entry.value.Fail("says not where it is; add link: " + model.links[0].name +
-                       ", or call it as the joint is called that it is at");
+      entry.value.Fail("does not say where it is; add link: " + model.links[0].name +
+                       ", or give it the name of the joint at which it is");
     }
     MountAt(*joint, rotor);
     return;
@@ -136,7 +136,7 @@ RotorDriveSpec LoadRotorDrive(const YamlMap& map, const Scenario& scenario) {
     }
     if (spec.is_normalised && most_radps == kNoLimit) {
       drive->Fail("is normalised, but the rotor '" + value.AsText() +
-                  "' has no limit that it could be a share of; give it one");
+                  "' has no limit to be a share of; give it a limit");
     }
     spec.rotors.push_back(first + rotor);
     spec.names.push_back(value.AsText());

@@ -34,7 +34,7 @@ std::array<double, 3> LoadAxes(const YamlValue& value, std::string_view unit) {
 std::array<double, 3> LoadLimit(const YamlValue& value, std::string_view unit) {
   const std::array<double, 3> limit = LoadAxes(value, unit);
   if (std::any_of(limit.begin(), limit.end(), [](double axis) { return axis < 0; })) {
-    value.Fail("is negative; a limit holds both ways");
+    value.Fail("is negative, but a limit holds in both directions; write a positive number");
   }
   return limit;
 }
@@ -116,7 +116,8 @@ SensorErrors LoadSensorErrors(const YamlMap& map, const std::string& name, std::
   errors.seed = SeedOf(seed, name);
   if (const YamlValue* value = map.Find("dropout")) {
     errors.dropout = value->AsNonNegativeNumber(" (the share of samples that are lost)");
-    if (errors.dropout > 1) value->Fail("is above 1, at which all samples are lost");
+    if (errors.dropout > 1)
+      value->Fail("is above 1; it is a share, from 0 to 1 (all samples lost)");
   }
   if (const YamlValue* value = map.Find("jitter")) errors.jitter = value->AsDuration();
   return errors;

@@ -27,7 +27,7 @@ struct NamedError {
 void LoadFieldErrors(const YamlMap& map, std::span<const NamedError> fields);
 
 // `latency`, `axes`, `lag` and `limits`: what becomes of a command before it acts. Axes are the
-// world's or those of `own`, a "body" or a "link".
+// world's, or the axes of `own`, a "body" or a "link".
 void LoadCommandEffect(const YamlMap& map, const std::string& own, CommandChannelSpec* command);
 
 }  // namespace tcs

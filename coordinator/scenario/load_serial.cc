@@ -64,7 +64,7 @@ SerialPort SerialPorts::Load(const YamlMap& map, bool for_commands, const Scenar
   });
   if (same != uses_.end()) port = same->port;
   const auto differs = [&](const YamlValue& value) {
-    value.Fail("is another one than that of " + same->name + " " + same->place.Reference() +
+    value.Fail("differs from that of " + same->name + " " + same->place.Reference() +
                " for the same device; a line has one");
   };
   const auto take = [&](const char* key, int* of, auto load) {

@@ -11,9 +11,11 @@ namespace {
 
 constexpr std::string_view kAnyAddress = "0.0.0.0";
 
-UdpEndpoint LoadEndpoint(const YamlValue& value) {
+}  // namespace
+
+UdpEndpoint UdpEndpoints::LoadEndpoint(const YamlValue& value) const {
   constexpr std::string_view kExample = "write ADDRESS:PORT, like \"127.0.0.1:47010\"";
-  const std::string text = value.AsText();
+  const std::string text = Substitute(value, variables_);
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) {
     value.Fail("is '" + text + "', which has no port; " + std::string(kExample));
@@ -33,8 +35,6 @@ UdpEndpoint LoadEndpoint(const YamlValue& value) {
   }
   return endpoint;
 }
-
-}  // namespace
 
 UdpEndpoint UdpEndpoints::Load(const YamlValue& value) {
   const UdpEndpoint endpoint = LoadEndpoint(value);

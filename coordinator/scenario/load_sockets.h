@@ -17,10 +17,11 @@ namespace tcs {
 class UdpEndpoints {
  public:
   // With a network each is at the address of a robot. It outlives this.
-  explicit UdpEndpoints(const std::optional<NetworkSpec>& network) : network_(network) {}
+  UdpEndpoints(Variables variables, const std::optional<NetworkSpec>& network)
+      : variables_(std::move(variables)), network_(network) {}
 
   UdpEndpoint Load(const YamlValue& value);
-  // One that can be sent to.
+  // An address to which datagrams can be sent.
   UdpEndpoint LoadReceiver(const YamlValue& value);
 
  private:
@@ -29,11 +30,14 @@ class UdpEndpoints {
     std::string name;
     Place place;
   };
+  UdpEndpoint LoadEndpoint(const YamlValue& value) const;
+
+  Variables variables_;
   const std::optional<NetworkSpec>& network_;
   std::vector<Use> uses_;
 };
 
-// The same of UNIX sockets' names.
+// The same for names of UNIX sockets.
 class UnixNames {
  public:
   // With a network, names without a file are each robot's own.

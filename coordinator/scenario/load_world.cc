@@ -136,7 +136,7 @@ void LoadTogether(const YamlValue& value, Scenario* scenario) {
     const std::vector<YamlValue> names = list.AsList("[predator, prey]");
     if (names.size() < 2) {
       list.Fail("names one " + std::string(world.bodies.empty() ? "model" : "body") +
-                ", which is by itself already; name two or more");
+                ", which is alone already; name two or more");
     }
     const auto is_model = [&world](const YamlValue& name) {
       return world.bodies.empty() || std::ranges::find(world.models, name.AsText(),
@@ -147,14 +147,14 @@ void LoadTogether(const YamlValue& value, Scenario* scenario) {
     for (const YamlValue& name : names) {
       if (is_model(name) != of_models) {
         name.Fail("names '" + name.AsText() + "' beside '" + names.front().AsText() +
-                  "', and one of them is a body, the other one a model; free bodies touch nothing, "
-                  "so give each kind lists of its own");
+                  "', but one of them is a body and the other one a model; free bodies touch "
+                  "nothing, so give bodies and models separate lists");
       }
       island.push_back(of_models ? static_cast<int>(FindModel(name, *scenario))
                                  : FindBody(name, *scenario));
       if (!placed.insert(name.AsText()).second) {
         name.Fail("names the " + std::string(of_models ? "model" : "body") + " '" + name.AsText() +
-                  "' a second time; those that all belong together stand in one list");
+                  "' a second time; write all names that belong together in one list");
       }
     }
   }
@@ -210,7 +210,7 @@ void LoadWorld(const YamlMap& top, const Variables& variables, Scenario* scenari
       wind != nullptr && std::none_of(world.bodies.begin(), world.bodies.end(), feels_air)) {
     scenario->warnings.push_back(
         wind->place().Prefix() + wind->name() +
-        " moves no body, for none has drag; give one a drag, like drag: {linear: 0.3}");
+        " moves no body because no body has drag; give one a drag, like drag: {linear: 0.3}");
   }
   scenario->world = std::move(world);
   if (models != nullptr) models->Try([&] { LoadModels(*models, variables, scenario); });

@@ -27,7 +27,8 @@ class Mistakes {
   bool IsOfMissing(std::string_view text) const;
 
   bool empty() const { return all_.empty(); }
-  // Their sentences, in the order of the lines of `file`; those of other places follow.
+  // The sentences of all mistakes, in the order of the lines of `file`; mistakes in other places
+  // follow.
   std::vector<std::string> Sentences(const std::string& file) const;
 
  private:

@@ -33,12 +33,12 @@ class Overlay {
       if (!pair.first.Mark().is_null()) line = pair.first.Mark().line + 1;
       const std::string place = Place{file_, line}.Prefix();
       if (!pair.first.IsScalar() || pair.first.Scalar().empty()) {
-        throw ScenarioMistake{place + "this key is not a text; write one"};
+        throw ScenarioMistake{place + "this key is not a text; write a text"};
       }
       if (depth == kDeepest || settings_.size() == kMost) {
         throw ScenarioMistake{place +
-                              "this is deeper, or more, than a scenario has; look for "
-                              "aliases that repeat themselves"};
+                              "this is deeper or larger than any scenario; look for YAML aliases "
+                              "that repeat themselves"};
       }
       const std::string key = path.empty() ? pair.first.Scalar() : path + "." + pair.first.Scalar();
       if (pair.second.IsMap()) {

@@ -1,8 +1,8 @@
-// --overlay FILE: a piece of a scenario, whose values replace those of the scenario file.
+// --overlay FILE: a piece of a scenario, whose values replace values of the scenario file.
 //
-// It has the scenario's form, but only the keys that are to be others; maps are gone into, all
-// else (numbers, texts, lists) replaces what stands there, and null removes it. What it names, a
-// robot or a client, must be there.
+// It has the scenario's form, but only the keys that are to change. Maps are merged key by key. All
+// other values (numbers, texts, lists) replace the value that is there, and null removes it. A
+// robot or client that it names must exist.
 //
 // Internal to the loader: mistakes are thrown as ScenarioMistake.
 #pragma once

@@ -14,7 +14,7 @@ struct Place {
   std::string Prefix() const {
     return IsOption() ? source + ": " : source + ":" + std::to_string(line) + ": ";
   }
-  // What it says of another place: "on line 7" or "by --set KEY=VALUE".
+  // How a sentence refers to another place: "on line 7" or "by --set KEY=VALUE".
   std::string Reference() const {
     return IsOption() ? "by " + source : "on line " + std::to_string(line);
   }

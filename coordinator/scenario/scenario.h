@@ -58,7 +58,7 @@ struct ClientSpec {
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.
   VirtualDuration fixed_call_cost = VirtualDuration::Microseconds(1);
-  // The same of one memory allocation; 0: none.
+  // The same for one memory allocation; 0: none.
   VirtualDuration fixed_allocation_cost = VirtualDuration::Microseconds(2);
   bool patch_vdso = true;  // reading the clock past the C library's symbols is virtual, too
   DdsTransport dds = DdsTransport::kEndpoints;
@@ -96,7 +96,7 @@ struct UdpEndpoint {
   std::uint16_t port = 0;
 };
 
-// Of a UNIX socket: a file, or a name in the abstract namespace, which has no file.
+// The name of a UNIX socket: a file, or a name in the abstract namespace, which has no file.
 struct UnixName {
   static constexpr std::size_t kLongest = 107;  // as the kernel has it
 
@@ -153,8 +153,8 @@ inline constexpr std::size_t kSensorFields = static_cast<std::size_t>(SensorFiel
 // As in scenarios and in JSON: "position".
 const char* NameOf(SensorField field);
 
-// What is wrong with the readings of a sensor, drawn from the scenario's seed. Units are those of
-// the field; of the orientation radians about the body's axes.
+// What is wrong with the readings of a sensor, drawn from the scenario's seed. Units are the
+// field's; for the orientation, radians about the body's axes.
 struct FieldError {
   double noise = 0;              // standard deviation, of each reading anew
   double bias_deviation = 0;     // standard deviation of a bias that is drawn once a run
@@ -231,7 +231,7 @@ struct SensorChannelSpec {
   VirtualDuration latency{};
   SensorErrors errors;
   SensorEnd to;
-  // Of those on JSON.
+  // For channels on JSON.
   std::vector<SensorField> fields = {SensorField::kPosition, SensorField::kOrientation,
                                      SensorField::kLinearVelocity, SensorField::kAngularVelocity};
 };
@@ -272,6 +272,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::optional<WorldSpec> world;                 // none: no dynamics
   std::map<std::string, std::string> urdf_files;  // of the models that come from such
+  // Of these the folders, in `packages`, that their meshes' packages may be in.
+  std::map<std::string, std::vector<std::string>> urdf_packages;
   std::vector<RobotSpec> robots;
   std::optional<NetworkSpec> network;  // none: all robots share the host's
   std::vector<SensorChannelSpec> sensors;
@@ -280,6 +282,7 @@ struct Scenario {
   dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
+  bool csv_contacts = false;              // contact forces are written, too
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
 };

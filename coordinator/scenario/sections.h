@@ -28,7 +28,8 @@ void LoadNetwork(const YamlMap& top, Scenario* scenario);
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
-// Of the scenario's seed, that of the part of this name: each has randomness of its own.
+// The seed of the part with this name, made from the scenario's seed: each part has random numbers
+// of its own.
 std::uint64_t SeedOf(std::uint64_t seed, std::string_view name);
 
 // The index of the body that `value` names.

@@ -49,7 +49,8 @@ class SetOption {
     const std::string text = option.substr(equals + 1);
     try {
       const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-      if (documents.empty()) Fail("there is no value; give one, or null to remove the key");
+      if (documents.empty())
+        Fail("there is no value; write KEY=VALUE, or KEY=null to remove the key");
       if (documents.size() > 1) Fail("the value is more than one YAML document; give one");
       value_ = documents[0];
     } catch (const YAML::Exception& error) {
@@ -84,7 +85,7 @@ class SetOption {
     if (rest.empty()) return Ours(value_);
     if (node.IsSequence()) return ChangedList(node, path, rest);
     if (node.IsMap() || node.IsNull()) return ChangedMap(node, path, rest);
-    Fail(path + " has no keys or elements; end the path there");
+    Fail(path + " has no keys or elements; end the key there");
   }
 
   YAML::Node ChangedMap(const YAML::Node& map, const std::string& path, std::string_view rest) {
@@ -146,7 +147,7 @@ class SetOption {
     }
     if (longest) return *longest;
     const std::string_view key = rest.substr(0, rest.find_first_of(".["));
-    if (key.empty()) Fail(Quote(path_) + " is no path: a key is missing in it");
+    if (key.empty()) Fail(Quote(path_) + " is not a key path: a key is missing in it");
     if (rest.substr(key.size()).starts_with('[')) Fail(ThereIsNo(std::string(key), map, path));
     return std::string(key);
   }

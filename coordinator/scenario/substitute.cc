@@ -1,5 +1,7 @@
 #include "coordinator/scenario/substitute.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <string_view>
 
@@ -15,6 +17,8 @@ std::string Lookup(const YamlValue& value, const std::string& name, const Variab
   if (name == "seed") return std::to_string(variables.seed);
   if (name == "scenario_dir") return variables.scenario_directory;
   if (name == "result_dir") return variables.result_directory;
+  if (name == "run") return RunName(variables.run);
+  if (name == "loopback") return LoopbackAddressOf(variables.run);
   const char* found = std::getenv(name.c_str());
   if (found == nullptr) {
     value.Fail("uses ${" + name + "}, which is not set; set that environment variable, or write " +
@@ -24,6 +28,20 @@ std::string Lookup(const YamlValue& value, const std::string& name, const Variab
 }
 
 }  // namespace
+
+std::string RunName(std::uint32_t run) { return fmt::format("{:08x}", run); }
+
+// Of as many digits whatever the run: how long a program's arguments are, its memory shows.
+std::string LoopbackAddressOf(std::uint32_t run) {
+  constexpr std::uint32_t kFirst = 100, kCount = 156;
+  const auto part = [&run] {
+    const std::uint32_t value = kFirst + run % kCount;
+    run /= kCount;
+    return value;
+  };
+  const std::uint32_t last = part(), middle = part(), first = part();
+  return fmt::format("127.{}.{}.{}", first, middle, last);
+}
 
 std::string Substitute(const YamlValue& value, const Variables& variables) {
   const std::string text = value.AsText();

@@ -254,7 +254,7 @@ YamlMap YamlValue::AsMap() const {
     previous_line = key_line;
     const Place key_place = PlaceOf(pair.second, key_line);
     if (!pair.first.IsScalar()) {
-      At(key_place).Fail("has a key that is not a text; write one");
+      At(key_place).Fail("has a key that is not a text; write a text");
     }
     const std::string key = pair.first.Scalar();
     const YamlValue value(PlaceOf(pair.second, LineOfValue(pair.second, key_line)),

@@ -42,15 +42,15 @@ class YamlValue {
   // The name for a sentence.
   std::string Described() const { return name_.empty() ? "the scenario" : name_; }
 
-  // The same value, its mistakes reported for another place.
+  // The same value; its mistakes are reported for another place.
   YamlValue At(const Place& place) const { return YamlValue(place, name_, node_, reading_); }
 
   // Throws "PLACE: NAME SENTENCE".
   [[noreturn]] void Fail(std::string_view sentence) const;
   // Throws "PLACE: SENTENCE".
   [[noreturn]] void FailPlainly(std::string_view sentence) const;
-  // Where all mistakes are asked for, those that `read` throws are noted; what it has not read is
-  // left out. False if there was one.
+  // Where all mistakes are asked for, the mistakes that `read` throws are noted, and what it has
+  // not read is left out. False if there was one.
   template <class Read>
   bool Try(Read read) const {
     Mistakes* mistakes = reading_->mistakes;
@@ -66,7 +66,7 @@ class YamlValue {
       return false;
     }
   }
-  // The same of what `read` reads as the part `name` of the scenario.
+  // The same for what `read` reads as the part `name` of the scenario.
   template <class Read>
   void TryPart(const std::string& name, Read read) const {
     if (!Try(read)) reading_->mistakes->AddMissing(name);

@@ -74,7 +74,7 @@ std::string SecondsText(std::int64_t ns) {
 LoadResult<RecordedState> ReadState(const std::string& folder, std::optional<std::int64_t> at_ns) {
   const std::string bodies_csv = folder + "/bodies.csv", joints_csv = folder + "/joints.csv";
   if (!report::IsFile(bodies_csv)) {
-    return LoadError{bodies_csv + " is not there; give the folder of a run that had a world"};
+    return LoadError{bodies_csv + " does not exist; give the folder of a run that had a world"};
   }
   const auto bodies_at = [&bodies_csv](std::optional<std::int64_t> ns) {
     return ReadMoment(bodies_csv,

@@ -116,7 +116,8 @@ LoadResult<std::string> WorldAt(const std::string& folder, std::optional<std::in
   } catch (const Mistake& mistake) {
     return LoadError{folder + ": " + mistake.what};
   } catch (const Json::exception&) {
-    return LoadError{scene_file + " is not as this tcsim writes it; run the scenario again"};
+    return LoadError{scene_file +
+                     " was not written by this version of tcsim; run the scenario again"};
   }
 }
 

@@ -30,6 +30,7 @@ enum class Tag : std::uint32_t {
   kGraceRanOut,
   kDetector,
   kDetectorEnd,
+  kStateAsked,
   kCount
 };
 

@@ -68,6 +68,10 @@ WaitText TextOfWait(const Task& task, bool has_child) {
   }
   if (task.state == TaskState::kStarting) return {8, "is being started"};
   if (task.state != TaskState::kWaiting) return {9, "is about to act"};
+  return TextOfAwaited(task, has_child);
+}
+
+WaitText TextOfAwaited(const Task& task, bool has_child) {
   if (const auto* wait = task.Awaits<awaited::Descriptors>(); wait != nullptr) {
     return {2, DescriptorsOf(task, *wait)};
   }
@@ -76,7 +80,7 @@ WaitText TextOfWait(const Task& task, bool has_child) {
   }
   if (task.Awaits<awaited::Messages>() != nullptr) return {6, "waits for DDS messages"};
   if (task.Awaits<awaited::Room>() != nullptr) {
-    return {3, "waits until others have taken its DDS messages"};
+    return {3, "waits (back-pressure) until other programs have taken its DDS messages"};
   }
   if (const auto* wait = task.Awaits<awaited::Child>(); wait != nullptr) {
     return {4, wait->which > 0 ? fmt::format("waits for its child {} to end", wait->which)
@@ -84,9 +88,10 @@ WaitText TextOfWait(const Task& task, bool has_child) {
   }
   if (const auto* wait = task.Awaits<awaited::Futex>(); wait != nullptr) {
     if (wait->names_tid > 0) return {5, fmt::format("waits for thread {}", wait->names_tid)};
-    return {5, "waits for a lock or a condition that nobody gives it"};
+    return {5, "waits for a lock or a condition that no thread gives it"};
   }
-  return {7, has_child ? "waits for a signal, as of a child's end" : "waits for a signal"};
+  return {7,
+          has_child ? "waits for a signal, such as that of a child's end" : "waits for a signal"};
 }
 
 }  // namespace tcs

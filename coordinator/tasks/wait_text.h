@@ -16,6 +16,9 @@ struct WaitText {
   auto operator<=>(const WaitText&) const = default;
 };
 
+// What its wait is for, of a thread that waits. `has_child`: as below. Looks at no other process.
+WaitText TextOfAwaited(const Task& task, bool has_child);
+
 // `has_child`: its process has a child that lives. For the coordinator's thread; reads /proc.
 WaitText TextOfWait(const Task& task, bool has_child);
 

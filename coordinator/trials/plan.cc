@@ -80,7 +80,7 @@ std::string ParseVary(const std::string& text, Vary* vary) {
   const bool has_key = equals != std::string::npos && equals > 0;
   if (has_key) *vary = {text.substr(0, equals), Split(text.substr(equals + 1))};
   if (!has_key || std::count(vary->values.begin(), vary->values.end(), "") > 0) {
-    return "--vary: '" + text + "' is not a key and its values; write it like drift=1ms,10ms";
+    return "--vary: '" + text + "' is not KEY=V1,V2; write it like drift=1ms,10ms";
   }
   if (vary->key == "seed") {
     return "--vary: the seeds are set by --trials and --first-seed; vary another key";

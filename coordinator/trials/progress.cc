@@ -61,6 +61,7 @@ std::string ProgressLine(const TrialsProgress& progress, std::size_t columns) {
   std::string text =
       fmt::format("[{:.<{}}] {} of {} done, {} running", std::string(std::min(full, kBar), '#'),
                   kBar, progress.done, progress.total, progress.running.size());
+  if (progress.queued > 0) text += fmt::format(", {} queued", progress.queued);
   if (progress.failed > 0) text += fmt::format(", {} failed", progress.failed);
   text += "  " + AsTime(progress.elapsed_seconds);
   if (const auto left = RemainingSeconds(progress)) text += ", about " + AsTime(*left) + " to go";

@@ -20,6 +20,7 @@ struct TrialsProgress {
   std::vector<double> finished_seconds;  // how long the trials took that are done
   double elapsed_seconds = 0.0;
   int at_once = 1;
+  int queued = 0;  // jobs of a cluster that have not begun
 };
 
 // What is still to be waited for; none while nothing is known.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/trials/outcome.h"
+#include "coordinator/trials/slurm/work_folder.h"
 
 namespace tcs {
 
@@ -59,16 +60,15 @@ std::string GoOnWith(const std::string& path, TrialsRecord* record, ResultFolder
   auto read = RecordFromJson(ReadText(file));
   if (const auto* error = std::get_if<std::string>(&read)) {
     return fmt::format(
-        "{} is not what tcsim wrote ({}); choose another folder with --out, or "
-        "throw its trials away with --restart",
+        "{} is not what tcsim wrote ({}); choose another folder with --out, or delete its trials "
+        "with --restart",
         file, *error);
   }
   const auto& before = std::get<TrialsRecord>(read);
   if (const std::string difference = WhatDiffers(before, *record); !difference.empty()) {
     return fmt::format(
-        "'{}' {}; choose another folder with --out, or throw its trials away with "
-        "--restart",
-        path, difference);
+        "'{}' {}; choose another folder with --out, or delete its trials with --restart", path,
+        difference);
   }
   folder->has_trials = true;
   folder->changed_program = ChangedProgram(before, *record);
@@ -95,6 +95,7 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
   });
   if (fs::path file = fs::path(path) / kRecord; fs::exists(file)) {
     if (restart) {
+      folder->left_jobs = RetireWorkFolders(path);
       try {
         RemoveTrials(path);
       } catch (const fs::filesystem_error& error) {
@@ -105,9 +106,10 @@ std::string EnterResultFolder(const std::string& path, bool restart, TrialsRecor
       return error;
     }
   } else if (!entries.empty()) {
-    return fmt::format("the folder '{}' holds other things than trials; choose another with --out",
-                       path);
+    return fmt::format(
+        "the folder '{}' holds other files than trials; choose another folder with --out", path);
   }
+  if (!restart) folder->left_jobs = RetireWorkFolders(path);
   return WriteWhole(path + "/" + kRecord, ToJson(record));
 }
 

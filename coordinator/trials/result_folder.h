@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "coordinator/os/files.h"
 #include "coordinator/trials/record.h"
@@ -12,6 +13,9 @@ struct ResultFolder {
   FolderLock lock;              // one `tcsim trials` at a time
   bool has_trials = false;      // of an earlier call, which this one goes on with
   std::string changed_program;  // since those; empty if none is known to have changed
+  // Of Slurm, that an earlier call has left (slurm/work_folder.h). They can change nothing any
+  // more.
+  std::vector<std::string> left_jobs;
 };
 
 // Makes or takes up the folder `path` for the trials of `record`, and writes its trials.json; with

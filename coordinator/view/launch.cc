@@ -73,7 +73,8 @@ bool TakePort(std::string_view text, int* port) {
 std::string TakeViewAddress(const std::string& text, ViewRequest* request) {
   if (text.empty() || TakePort(text, &request->port)) return {};
   const std::string mistake =
-      "'" + text + "' is no place to listen at: give a port, an address or both, such as 8080, " +
+      "'" + text +
+      "' is not a place to listen at: give a port, an address or both, such as 8080, " +
       "192.0.2.7, 192.0.2.7:8080 or [::1]:8080";
   const std::string_view whole = text;
   const bool is_bracketed = whole.front() == '[';

@@ -40,7 +40,7 @@ int ServeRun(const std::string& folder, const std::string& address, int port, in
   auto* page = static_cast<tcs::ControlPage*>(at);
   if (at == MAP_FAILED || page->magic != tcs::ControlPage::kMagic ||
       page->version != tcs::ControlPage::kVersion) {
-    say("!tcsim-view is of another version than tcsim; build tcs again");
+    say("!tcsim-view has another version than tcsim; build tcs again");
     return 2;
   }
   tcs::ViewServer server(folder, page);
@@ -69,7 +69,7 @@ int ServeFolder(const std::string& folder, const std::string& address, int port)
 
 int main(int argc, char** argv) {
   if (argc != 4 && argc != 6) {
-    tcs::Say("tcsim-view is started by tcsim: call `tcsim run --view` or `tcsim view`");
+    tcs::Say("only tcsim starts tcsim-view: call `tcsim run --view` or `tcsim view`");
     return 2;
   }
   LimitMemory();

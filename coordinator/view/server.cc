@@ -97,7 +97,7 @@ std::string ViewServer::Bind(const std::string& address, int port) {
   if (bound <= 0) {
     return fmt::format(
         "the page cannot be shown at {}, port {}: {}; choose another one with --view=PORT", address,
-        port, errno != 0 ? strerror(errno) : "it cannot be listened there");
+        port, errno != 0 ? strerror(errno) : "it cannot listen there");
   }
   std::string token = MakeToken();
   if (token.empty())

@@ -12,6 +12,10 @@ std::string Times(std::int64_t count) {
   return count == 1 ? "once" : count == 2 ? "twice" : fmt::format("{} times", count);
 }
 
+bool HasComputedBetween(const CommandSender& one, const CommandSender& next) {
+  return one.id == next.id && one.ran_ns != next.ran_ns;
+}
+
 }  // namespace
 
 std::size_t ActuatorAccount::Add(const std::string& name, const std::string& channel) {
@@ -24,12 +28,13 @@ std::size_t ActuatorAccount::Add(const std::string& name, const std::string& cha
   return static_cast<std::size_t>(known - actuators_.begin());
 }
 
-void ActuatorAccount::Take(std::size_t index, VirtualTime at) {
+void ActuatorAccount::Take(std::size_t index, VirtualTime at, const CommandSender& by) {
   Actuator& actuator = actuators_[index];
-  if (actuator.commands++ > 0 && actuator.last == at && actuator.again++ == 0) {
-    actuator.first_again = at;
-  }
+  const bool is_again =
+      actuator.commands++ > 0 && actuator.last == at && !HasComputedBetween(actuator.last_by, by);
+  if (is_again && actuator.again++ == 0) actuator.first_again = at;
   actuator.last = at;
+  actuator.last_by = by;
 }
 
 void ActuatorAccount::TakeBeyond(std::size_t index, VirtualTime at, const std::string& asked,
@@ -57,16 +62,15 @@ std::vector<std::string> ActuatorAccount::Complaints() const {
                                       actuator.name, fmt::join(actuator.channels, " and ")));
     }
     if (actuator.again > 0) {
-      sentences.push_back(fmt::format(
-          "{} was commanded {} at an instant for which it had a command already, the first time "
-          "at {:.9g} s (channel {}); the last one acted",
-          actuator.name, Times(actuator.again), actuator.first_again.seconds(),
-          fmt::join(actuator.channels, " and ")));
+      sentences.push_back(
+          fmt::format("{} was commanded {} at an instant for which it already had a command, first "
+                      "at {:.9g} s (channel {}); the last command acted",
+                      actuator.name, Times(actuator.again), actuator.first_again.seconds(),
+                      fmt::join(actuator.channels, " and ")));
     }
     if (actuator.beyond > 0) {
       sentences.push_back(fmt::format(
-          "{} was commanded {} beyond what it can do, the first time at {:.9g} s: {}, of which it "
-          "was given {}",
+          "{} was commanded {} beyond its limit, first at {:.9g} s: {}, of which it got {}",
           actuator.name, Times(actuator.beyond), actuator.first_beyond.seconds(), actuator.asked,
           actuator.given));
     }

@@ -5,16 +5,16 @@
 
 namespace tcs {
 
-void CommandQueue::Add(std::size_t channel, VirtualTime sent, What what) {
-  const auto later = std::ranges::upper_bound(kept_, sent, {}, &Sent::at);
+void CommandQueue::Add(std::size_t channel, const CommandSent& sent, What what) {
+  const auto later = std::ranges::upper_bound(kept_, sent.at, {}, TimeOf);
   kept_.insert(later, {sent, channel, std::move(what)});
 }
 
 bool CommandQueue::PassOn(VirtualTime until, const std::function<void(VirtualTime)>& before) {
-  const auto end = std::ranges::upper_bound(kept_, until, {}, &Sent::at);
-  for (auto sent = kept_.begin(); sent != end; ++sent) {
-    before(sent->at);
-    std::visit([&](const auto& what) { to_.Take(sent->channel, sent->at, what); }, sent->what);
+  const auto end = std::ranges::upper_bound(kept_, until, {}, TimeOf);
+  for (auto kept = kept_.begin(); kept != end; ++kept) {
+    before(kept->sent.at);
+    std::visit([&](const auto& what) { to_.Take(kept->channel, kept->sent, what); }, kept->what);
   }
   const bool had_any = end != kept_.begin();
   kept_.erase(kept_.begin(), end);

@@ -23,16 +23,18 @@ class CommandQueue final : public CommandSink {
   // `to` outlives this.
   explicit CommandQueue(CommandSink& to) : to_(to) {}
 
-  void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override {
+  void Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) override {
     Add(channel, sent, wrench);
   }
-  void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override {
+  void Take(std::size_t channel, const CommandSent& sent,
+            std::span<const JointGoal> goals) override {
     Add(channel, sent, std::vector<JointGoal>(goals.begin(), goals.end()));
   }
-  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override {
+  void Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) override {
     Add(channel, sent, speed);
   }
-  void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) override {
+  void Take(std::size_t channel, const CommandSent& sent,
+            const JointTrajectory& trajectory) override {
     Add(channel, sent, trajectory);
   }
   std::optional<GoalNames> GoalsOf(std::size_t channel) const override {
@@ -42,21 +44,24 @@ class CommandQueue final : public CommandSink {
   void Refuse(std::size_t channel, const std::string& why) override { to_.Refuse(channel, why); }
   void Note(const std::string& sentence) override { to_.Note(sentence); }
 
+  std::size_t size() const { return kept_.size(); }
+
   // Gives on what was sent by `until`; `before` is told of each one's time first. False if there
   // was nothing.
   bool PassOn(VirtualTime until, const std::function<void(VirtualTime)>& before);
 
  private:
   using What = std::variant<Wrench, std::vector<JointGoal>, PlanarSpeed, JointTrajectory>;
-  struct Sent {
-    VirtualTime at;
+  struct Kept {
+    CommandSent sent;
     std::size_t channel;
     What what;
   };
-  void Add(std::size_t channel, VirtualTime sent, What what);
+  static VirtualTime TimeOf(const Kept& kept) { return kept.sent.at; }
+  void Add(std::size_t channel, const CommandSent& sent, What what);
 
   CommandSink& to_;
-  std::vector<Sent> kept_;  // in the order of their times
+  std::vector<Kept> kept_;  // in the order of their times
 };
 
 }  // namespace tcs

@@ -55,7 +55,7 @@ void Commands::Open(const std::vector<CommandChannelSpec>& specs, std::vector<st
   }
 }
 
-void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) {
+void Commands::Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) {
   Channel& on = channels_[channel];
   ++on.taken;
   ++taken_;
@@ -65,15 +65,15 @@ void Commands::Take(std::size_t channel, VirtualTime sent, const Wrench& wrench)
     limited.force_n[i] = std::clamp(wrench.force_n[i], -force, force);
     limited.torque_nm[i] = std::clamp(wrench.torque_nm[i], -torque, torque);
   }
-  Log(on, sent, limited);
+  Log(on, sent.at, limited);
   if (on.spec.link) {
     const auto frame = on.spec.in_body_frame ? WrenchFrame::kLink : WrenchFrame::kWorld;
-    push_(sent, on.spec.latency, on.spec.link->link, frame, limited);
+    push_(sent.at, on.spec.latency, on.spec.link->link, frame, limited);
     return;
   }
   limited.in_body_frame = on.spec.in_body_frame;
   limited.lag = on.spec.lag;
-  act_(sent, on.spec.latency, on.spec.body, limited);
+  act_(sent.at, on.spec.latency, on.spec.body, limited);
 }
 
 void Commands::Log(const Channel& on, VirtualTime sent, const Wrench& wrench) {
@@ -89,24 +89,25 @@ void Commands::Log(const Channel& on, VirtualTime sent, const Wrench& wrench) {
   }
 }
 
-void Commands::Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) {
+void Commands::Take(std::size_t channel, const CommandSent& sent,
+                    std::span<const JointGoal> goals) {
   Channel& on = channels_[channel];
   if (on.spec.rotors) {
     for (const JointGoal& goal : goals) {
       if (goal.velocity && !goal.position && !goal.effort) continue;
-      Refuse(channel, "a command wants something else of rotor '" +
-                          on.spec.rotors->names[goal.joint] + "' than a speed");
+      Refuse(channel, "a command sets something other than a speed for rotor '" +
+                          on.spec.rotors->names[goal.joint] + "'");
       return;
     }
   }
   ++on.taken;
   ++taken_;
   for (const JointGoal& goal : goals) {
-    account_.Take(on.accounts[goal.joint], sent + on.spec.latency);
+    account_.Take(on.accounts[goal.joint], sent.at + on.spec.latency, sent.by);
     if (on.spec.rotors) {
-      SpinRotor(on, sent, goal);
+      SpinRotor(on, sent.at, goal);
     } else {
-      DriveJoint(on, sent, goal);
+      DriveJoint(on, sent.at, goal);
     }
   }
 }
@@ -141,21 +142,22 @@ void Commands::SpinRotor(const Channel& on, VirtualTime sent, const JointGoal& g
   spin_(sent, on.spec.latency, rotors.rotors[goal.joint], speed_radps);
 }
 
-void Commands::Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) {
+void Commands::Take(std::size_t channel, const CommandSent& sent,
+                    const JointTrajectory& trajectory) {
   Channel& on = channels_[channel];
   ++on.taken;
   ++taken_;
-  on.follower->Follow(sent, trajectory);
+  on.follower->Follow(sent.at, trajectory);
 }
 
-void Commands::Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) {
+void Commands::Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) {
   Channel& on = channels_[channel];
   ++on.taken;
   ++taken_;
-  if (on.halts < sent) Halt(&on);
-  Turn(on, sent, speed);
+  if (on.halts < sent.at) Halt(&on);
+  Turn(on, sent.at, speed);
   const VirtualDuration timeout = on.spec.joints->wheels->timeout;
-  if (timeout > VirtualDuration{}) on.halts = sent + timeout;
+  if (timeout > VirtualDuration{}) on.halts = sent.at + timeout;
 }
 
 // Makes all wheels turn as the robot is to go.
@@ -218,10 +220,8 @@ std::string Commands::ComplaintAbout(std::size_t channel, const Inlet::Place& pl
                                      const std::string& body) const {
   const Channel& on = channels_[channel];
   if (on.taken + on.refused == 0) {
-    return fmt::format(
-        "channel {}: nothing came in {}, so that no command moved {}; let a client "
-        "{}",
-        on.spec.name, place.where, body, place.mend);
+    return fmt::format("channel {}: nothing came in {}, so no command moved {}; let a client {}",
+                       on.spec.name, place.where, body, place.mend);
   }
   if (on.refused <= 1) return {};
   return fmt::format("channel {}: {} of the {} messages that came in were no commands",

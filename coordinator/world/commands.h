@@ -49,10 +49,12 @@ class Commands final : public CommandSink {
   // What is given to the physics is written there, too.
   CommandLog& log() { return log_; }
 
-  void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override;
-  void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override;
-  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override;
-  void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) override;
+  void Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) override;
+  void Take(std::size_t channel, const CommandSent& sent,
+            std::span<const JointGoal> goals) override;
+  void Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) override;
+  void Take(std::size_t channel, const CommandSent& sent,
+            const JointTrajectory& trajectory) override;
   std::optional<GoalNames> GoalsOf(std::size_t channel) const override;
   void Refuse(std::size_t channel, const std::string& why) override;
   void Note(const std::string& sentence) override { warn_(sentence); }

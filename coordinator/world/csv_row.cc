@@ -7,6 +7,12 @@
 
 namespace tcs {
 
+CsvTime::CsvTime(VirtualTime at) {
+  const auto end =
+      fmt::format_to_n(text_, sizeof text_, "{:.9f}", static_cast<double>(at.ns()) * 1e-9).out;
+  size_ = static_cast<std::size_t>(end - text_);
+}
+
 void AppendBodiesCsvRow(VirtualTime at, std::string_view name,
                         const std::array<double, 3>& position_m,
                         const std::array<double, 4>& orientation_xyzw,

@@ -1,7 +1,8 @@
-// A line of bodies.csv.
+// A line of bodies.csv, and the times of all tables of the world.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,17 @@ namespace tcs {
 
 inline constexpr std::string_view kBodiesCsvHead =
     "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
+
+// A time in seconds, as all of them have it.
+class CsvTime {
+ public:
+  explicit CsvTime(VirtualTime at);
+  std::string_view text() const { return {text_, size_}; }
+
+ private:
+  char text_[32];
+  std::size_t size_;
+};
 
 void AppendBodiesCsvRow(VirtualTime at, std::string_view name,
                         const std::array<double, 3>& position_m,

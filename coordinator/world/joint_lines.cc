@@ -1,6 +1,6 @@
 #include "coordinator/world/joint_lines.h"
 
-#include <fmt/format.h>
+#include "coordinator/world/csv_row.h"
 
 namespace tcs {
 
@@ -21,15 +21,10 @@ JointLines::JointLines(const WorldSpec& world) {
 void JointLines::Write(Dynamics& dynamics, CsvFile* file) {
   if (joints_.empty()) return;
   dynamics.ReadJoints(dynamics.Now(), joints_, states_);
-  // As in bodies.csv.
-  char time[32];
-  const auto end =
-      fmt::format_to_n(time, sizeof time, "{:.9f}", static_cast<double>(dynamics.Now().ns()) * 1e-9)
-          .out;
-  const std::string_view time_s(time, static_cast<std::size_t>(end - time));
+  const CsvTime time_s(dynamics.Now());
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const JointState& s = states_[i];
-    file->Line(time_s, names_[i], s.position, s.velocity, s.effort);
+    file->Line(time_s.text(), names_[i], s.position, s.velocity, s.effort);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/models/model_mistake.h"
+#include "coordinator/models/package_path.h"
 #include "coordinator/models/urdf_visuals.h"
 #include "coordinator/world/link_lines.h"
 #include "simbody_bridge/model/joint_kinds.h"
@@ -53,9 +55,12 @@ class SceneWriter {
     for (const Joint& joint : model.joints) above[static_cast<std::size_t>(joint.child)] = &joint;
     Json links = Json::array();
     const auto file = scenario_.urdf_files.find(model.name);
-    auto visuals_of = file == scenario_.urdf_files.end()
-                          ? std::map<std::string, std::vector<Visual>>{}
-                          : ReadVisuals(file->second);
+    const std::string urdf = file == scenario_.urdf_files.end() ? "" : file->second;
+    auto visuals_of =
+        urdf.empty() ? std::map<std::string, std::vector<Visual>>{} : ReadVisuals(urdf);
+    const auto packages = scenario_.urdf_packages.find(model.name);
+    const PackagePath files(packages == scenario_.urdf_packages.end() ? std::vector<std::string>{}
+                                                                      : packages->second);
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       const Link& link = model.links[i];
       Json entry{{"name", link_names_[first_link + i]}};
@@ -69,13 +74,19 @@ class SceneWriter {
       Json& shapes = entry["shapes"] = Json::array();
       for (const Shape& shape : link.shapes) shapes.push_back(ShapeJson(shape));
       Json& visuals = entry["visuals"] = Json::array();
-      for (const Visual& visual : visuals_of[link.name]) visuals.push_back(VisualJson(visual));
+      for (const Visual& visual : visuals_of[link.name]) {
+        visuals.push_back(VisualJson(visual));
+        const auto* mesh = std::get_if<MeshFile>(&visual.geometry);
+        if (mesh == nullptr) continue;
+        const std::string path = PathOf(*mesh, files, urdf);
+        if (!path.empty()) visuals.back()["path"] = path;
+      }
       links.push_back(std::move(entry));
     }
     return {{"name", model.name},
             {"root", model.root},
             {"fixed_base", model.has_fixed_base},
-            {"urdf", file != scenario_.urdf_files.end()},
+            {"urdf", !urdf.empty()},
             {"links", std::move(links)}};
   }
 
@@ -84,6 +95,16 @@ class SceneWriter {
     if (!shape.name.empty()) json["name"] = shape.name;
     json["pose"] = PoseJson(shape.pose);
     return json;
+  }
+
+  // Where the file is, for whoever draws it; empty: nobody knows.
+  static std::string PathOf(const MeshFile& mesh, const PackagePath& files,
+                            const std::string& urdf) {
+    try {
+      return files.Find(mesh.name, urdf);
+    } catch (const ModelMistake&) {
+      return {};
+    }
   }
 
   Json VisualJson(const Visual& visual) {

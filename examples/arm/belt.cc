@@ -2,7 +2,7 @@
 // of what becomes of them. A part is taken when the cup is at it, moves with it and is turned as it
 // is; one at a time, until the arm has let go of it over the bin.
 //
-//   belt SEED PARTS
+//   belt SEED PARTS [PREFIX]     PREFIX: what comes before the sockets' names
 //   in   line/tool      {"position": [...], "orientation": [...], "linear_velocity": [...]} of the
 //   cup
 //        line/given_up  {"part": NUMBER, "why": TEXT}, by the arm's planner
@@ -18,6 +18,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "examples/arm/cell.h"
@@ -62,7 +63,8 @@ struct OnBelt {
 
 class Line {
  public:
-  Line(unsigned seed, int parts) : random_(seed), left_(parts), next_s_(Seconds() + 1) {}
+  Line(unsigned seed, int parts, std::string prefix)
+      : prefix_(std::move(prefix)), random_(seed), left_(parts), next_s_(Seconds() + 1) {}
 
   bool IsOver() const { return left_ == 0 && belt_.empty() && Seconds() > over_s_; }
 
@@ -105,12 +107,12 @@ class Line {
     belt_.push_back(part);
     next_s_ += Draw(3.6, 5);
     const Vector3d at = part.At(part.seen_s);
-    tool_.Send("arm/parts", {{"part", part.number},
-                             {"x", at.x()},
-                             {"y", at.y()},
-                             {"yaw", part.yaw_rad},
-                             {"time", part.seen_s},
-                             {"belt", kBeltMps}});
+    tool_.Send(prefix_ + "arm/parts", {{"part", part.number},
+                                       {"x", at.x()},
+                                       {"y", at.y()},
+                                       {"yaw", part.yaw_rad},
+                                       {"time", part.seen_s},
+                                       {"belt", kBeltMps}});
   }
 
   void Judge(const Tool& tool) {
@@ -147,7 +149,8 @@ class Line {
     belt_.pop_front();
   }
 
-  Socket tool_{"line/tool"}, given_up_{"line/given_up"};
+  const std::string prefix_;  // of the sockets' names
+  Socket tool_{prefix_ + "line/tool"}, given_up_{prefix_ + "line/given_up"};
   std::mt19937 random_;
   int left_;
   double next_s_, over_s_ = 0;
@@ -162,7 +165,7 @@ class Line {
 
 int main(int argc, char** argv) {
   arm::Line line(argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 1,
-                 argc > 2 ? std::atoi(argv[2]) : 12);
+                 argc > 2 ? std::atoi(argv[2]) : 12, argc > 3 ? argv[3] : "");
   examples::Ticks ticks(500);
   while (!line.IsOver()) {
     ticks.WaitForNext();

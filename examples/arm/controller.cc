@@ -1,7 +1,7 @@
 // The arm's controller, 250 times a second: leads the joints along trajectories by the efforts that
 // the motion takes, and by more where they are not where they should be (computed torque).
 //
-//   controller
+//   controller [PREFIX]     PREFIX: what comes before the sockets' names
 //   in   arm/joints      {"joints": {NAME: {"position": rad, "velocity": rad/s}, ...}}
 //        arm/trajectory  {"joints": [all, in order], "start": s, "points": [{"positions": [...],
 //                        "velocities": [...], "time_from_start": s}, ...]}
@@ -9,6 +9,7 @@
 //   out  arm/efforts     {NAME: N m, ...}
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "examples/arm/inverse_dynamics.h"
 #include "examples/arm/trajectory.h"
@@ -46,8 +47,8 @@ Joints EffortsTowards(const Motion& wanted, const Reading& is) {
   return EffortsFor(is.position, is.velocity, acceleration);
 }
 
-void Run() {
-  Socket joints("arm/joints"), trajectories("arm/trajectory");
+void Run(const std::string& prefix) {
+  Socket joints(prefix + "arm/joints"), trajectories(prefix + "arm/trajectory");
   std::deque<Trajectory> followed;  // what goes on, and what is to start later
   Ticks ticks(250);
   for (;;) {
@@ -65,11 +66,11 @@ void Run() {
     for (int i = 0; i < kJoints; ++i) {
       command[kArm[static_cast<std::size_t>(i)].name] = efforts[i];
     }
-    joints.Send("arm/efforts", command);
+    joints.Send(prefix + "arm/efforts", command);
   }
 }
 
 }  // namespace
 }  // namespace arm
 
-int main() { arm::Run(); }
+int main(int argc, char** argv) { arm::Run(argc > 1 ? argv[1] : ""); }

@@ -3,7 +3,7 @@
 // will be then, and gives the part up when it has become too late for it. While the arm goes to a
 // part, its way to the bin is planned; while it goes to the bin, its way to the next part.
 //
-//   planner SEED
+//   planner SEED [PREFIX]     PREFIX: what comes before the sockets' names
 //   in   arm/planner_joints  {"joints": {NAME: {"position": rad}, ...}}
 //        arm/parts           {"part": NUMBER, "x": m, "y": m, "yaw": rad, "time": s, "belt": m/s}
 //   out  arm/trajectory      (trajectory.h)
@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <deque>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -76,7 +77,10 @@ Points Joined(Points points, const Points& more) {
 
 class Picker {
  public:
-  Picker() : paths_(std::max(1u, std::thread::hardware_concurrency()), kTries) {
+  // What comes before the sockets' names.
+  explicit Picker(std::string prefix)
+      : prefix_(std::move(prefix)),
+        paths_(std::max(1u, std::thread::hardware_concurrency()), kTries) {
     for (const double near_rad : kNearRad) {
       const auto over_bin = ToolDownAt(kOverBin, 0, near_rad);
       if (over_bin && IsFree(*over_bin)) over_bin_.push_back(*over_bin);
@@ -181,14 +185,14 @@ class Picker {
   void Send(double start_s, const Points& points) {
     const Trajectory trajectory(start_s, points);
     const double before_s = Seconds();
-    joints_.Send("arm/trajectory", trajectory.ToJson());
+    joints_.Send(prefix_ + "arm/trajectory", trajectory.ToJson());
     spare_s_ = kSpareS + 3 * (Seconds() - before_s);
     free_s_ = trajectory.end_s();
     rest_ = points.back().position;
   }
 
   void GiveUp(const Part& part, const char* why) {
-    joints_.Send("line/given_up", {{"part", part.number}, {"why", why}});
+    joints_.Send(prefix_ + "line/given_up", {{"part", part.number}, {"why", why}});
     std::printf("%.3f s: part %d: %s\n", Seconds(), part.number, why);
     std::fflush(stdout);
   }
@@ -199,7 +203,8 @@ class Picker {
     std::fflush(stdout);
   }
 
-  Socket joints_{"arm/planner_joints"}, parts_in_{"arm/parts"};
+  const std::string prefix_;
+  Socket joints_{prefix_ + "arm/planner_joints"}, parts_in_{prefix_ + "arm/parts"};
   PathPlanner paths_;
   std::vector<Joints> over_bin_;
   std::deque<Part> parts_;
@@ -215,5 +220,5 @@ class Picker {
 int main(int argc, char** argv) {
   ompl::msg::noOutputHandler();
   ompl::RNG::setSeed(argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 1);
-  arm::Picker().Run();
+  arm::Picker(argc > 2 ? argv[2] : "").Run();
 }

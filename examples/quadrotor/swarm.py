@@ -22,7 +22,7 @@ def one_of_many(entry, number, hz):
     x, y = number % 6, number // 6
     entry = entry.replace("position: [0, 0,", f"position: [{x}, {y},")
     entry = entry.replace('"0", "0", "2"', f'"{x}", "{y}", "2", "{PLANS_HZ}"')
-    entry = entry.replace("[./rate_loop, drone]", f'[./rate_loop, drone, "{hz}"]')
+    entry = entry.replace('[./rate_loop, "${run}/drone"]', f'[./rate_loop, "${{run}}/drone", "{hz}"]')
     entry = entry.replace("rate: 1000,", f"rate: {hz},")
     return entry.replace("drone", f"drone{number}")
 

@@ -1,8 +1,8 @@
 // Not the rover's: those who cross its way, to and fro, each at a pace of its own that the seed
 // says.
 //
-//   crowd SEED
-//   out  crowd/walk  {"walker1": {"position": m, "velocity": m/s}, ...}
+//   crowd SEED [NAME]     NAME: what its socket's name begins with, else "crowd"
+//   out  NAME/walk  {"walker1": {"position": m, "velocity": m/s}, ...}
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i <= kWalkers; ++i) {
     walkers.push_back({"walker" + std::to_string(i), rate_radps(random), phase_rad(random)});
   }
+  const std::string name = argc > 2 ? argv[2] : "crowd";
   examples::Socket socket;
   const double start_s = examples::Seconds();
   for (examples::Ticks ticks(50);; ticks.WaitForNext()) {
@@ -43,6 +44,6 @@ int main(int argc, char** argv) {
                             {"velocity", kFarM * (begin * walker.rate_radps * std::cos(angle) +
                                                   std::exp(-t) * std::sin(angle))}};
     }
-    socket.Send("crowd/walk", steps);
+    socket.Send(name + "/walk", steps);
   }
 }

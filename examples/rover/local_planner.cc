@@ -1,16 +1,17 @@
 // Drives a rover to and fro between two places, around whatever its lidar sees: for each scan it
 // looks how all arcs would end that the rover can drive, and takes the best one (a dynamic window).
 //
-//   local_planner
-//   in   rover/scan   {"angle_min": rad, "angle_increment": rad, "ranges": [m or null, ...],
-//                     "time": s}
-//        rover/pose   {"position": [...], "orientation": [...]}
-//   out  rover/drive  {"linear": [m/s, 0, 0], "angular": [0, 0, rad/s]}
+//   local_planner [NAME]     NAME: what its sockets' names begin with, else "rover"
+//   in   NAME/scan   {"angle_min": rad, "angle_increment": rad, "ranges": [m or null, ...],
+//                    "time": s}
+//        NAME/pose   {"position": [...], "orientation": [...]}
+//   out  NAME/drive  {"linear": [m/s, 0, 0], "angular": [0, 0, rad/s]}
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "examples/common/datagrams.h"
@@ -145,8 +146,8 @@ Speed BestArc(const std::vector<Obstacle>& obstacles, const Point& goal) {
   return best;
 }
 
-void Run() {
-  Socket scans("rover/scan"), poses("rover/pose");
+void Run(const std::string& name) {
+  Socket scans(name + "/scan"), poses(name + "/pose");
   std::vector<Cluster> before;
   double before_s = 0;
   Place place;
@@ -168,7 +169,7 @@ void Run() {
     const Speed best = BestArc(ObstaclesOf(now, before, now_s - before_s, place), goal);
     before = now;
     before_s = now_s;
-    scans.Send("rover/drive",
+    scans.Send(name + "/drive",
                {{"linear", {best.ahead_mps, 0, 0}}, {"angular", {0, 0, best.turn_radps}}});
     std::printf("%.3f s: at %.2f %.2f, %.2f m/s, %.2f rad/s, after %.1f ms\n", start_s, place.x,
                 place.y, best.ahead_mps, best.turn_radps, 1e3 * (Seconds() - start_s));
@@ -179,4 +180,4 @@ void Run() {
 }  // namespace
 }  // namespace rover
 
-int main() { rover::Run(); }
+int main(int argc, char** argv) { rover::Run(argc > 1 ? argv[1] : "rover"); }

@@ -1,6 +1,6 @@
 // Tells the other processes what the program has.
 //
-// For whoever is awake (cyclone.h) or holds the entity otherwise.
+// The caller is awake (cyclone.h), or holds the entity otherwise.
 #pragma once
 
 #include "libtcs_preload/dds/guid.h"
@@ -18,8 +18,8 @@ void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type);
 void AnnounceChange(const ddsi_topic& topic);
 void AnnounceReader(const ddsi_reader& reader);
 
-// The same again with other QoS. Who matches whom is not changed by that: Cyclone refuses changes
-// of policies that would.
+// Announces the same endpoint again with other QoS. That does not change which endpoints match:
+// Cyclone refuses changes of policies that would.
 void AnnounceChange(const ddsi_writer& writer);
 void AnnounceChange(const ddsi_reader& reader);
 

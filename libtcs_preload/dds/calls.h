@@ -1,17 +1,17 @@
 // The functions of Cyclone DDS (libddsc) that the shim stands before.
 //
 // The shim (entry.cc) exports them all. A process whose DDS goes by endpoints has hooks for them in
-// libtcs_dds.so; everybody else is led straight to libddsc. A hook that libtcs_dds.so does not have
-// is libddsc's own function as well.
+// libtcs_dds.so; all other processes are led straight to libddsc. A hook that libtcs_dds.so does
+// not have is libddsc's own function as well.
 #pragma once
 
-// Those that may be a program's first: DDS by endpoints starts at them.
+// The calls that may be a program's first: DDS by endpoints starts at them.
 #define TCS_DDS_STARTING_CALLS(X) \
   X(dds_create_participant)       \
   X(dds_create_domain)            \
   X(dds_create_domain_with_rawconfig)
 
-// Those that make, change and end what other processes see. The ones that begin with ddsi_ and
+// The calls that make, change and end what other processes see. The ones that begin with ddsi_ and
 // rtps_ are libddsc's own inner seams: libddsc calls them through its PLT.
 #define TCS_DDS_CHANGING_CALLS(X)  \
   X(dds_create_topic_sertype)      \
@@ -42,7 +42,7 @@
   X(ddsrt_prng_makeseed)           \
   X(rtps_config_prep)
 
-// Those that look at what has come.
+// The calls that look at what has come.
 #define TCS_DDS_READING_CALLS(X)               \
   X(dds_read)                                  \
   X(dds_read_wl)                               \
@@ -94,7 +94,7 @@
   X(dds_wait_for_acks)                         \
   X(dds_reader_wait_for_historical_data)
 
-// Those that write, by the entity that is their first argument.
+// The calls that write, by the entity that is their first argument.
 #define TCS_DDS_WRITING_CALLS(X) \
   X(dds_write)                   \
   X(dds_write_ts)                \

@@ -6,9 +6,10 @@
 // So a transient-local shadow writer's samples are dropped until its process has sent the real
 // history, addressed to this reader, and then kHistoryEnd.
 //
-// And how a reader takes its time that is reliable and has as many samples as its resource limits
-// allow: Cyclone would have the deliverer wait for it with its locks held, and the program could
-// not even delete the reader. So the cover takes notice, and the deliverer tries again.
+// It also handles back-pressure of a reliable reader that has as many samples as its resource
+// limits allow. Cyclone would have the deliverer wait for that reader with Cyclone's locks held,
+// and the program could not even delete the reader. So the cover takes notice, and the deliverer
+// tries again.
 #pragma once
 
 #include <vector>

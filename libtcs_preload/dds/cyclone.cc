@@ -18,11 +18,11 @@ constexpr char kFile[] = "libddsc.so." DDS_VERSION;
 RealCalls g_real;
 
 bool FindAll(const Link& link, void* library) {
-#define TCS_DDS_FIND(name)                                                             \
-  g_real.name = reinterpret_cast<decltype(g_real.name)>(link.look_up(library, #name)); \
-  if (g_real.name == nullptr) {                                                        \
-    Say("the program's %s has no %s, and DDS uses sockets", kLibrary, #name);          \
-    return false;                                                                      \
+#define TCS_DDS_FIND(name)                                                                \
+  g_real.name = reinterpret_cast<decltype(g_real.name)>(link.look_up(library, #name));    \
+  if (g_real.name == nullptr) {                                                           \
+    Say("the program's %s has no function %s, so its DDS uses sockets", kLibrary, #name); \
+    return false;                                                                         \
   }
   TCS_DDS_CALLS(TCS_DDS_FIND)
 #undef TCS_DDS_FIND
@@ -37,7 +37,7 @@ bool FindCyclone(const Link& link) {
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   link_map* map = nullptr;
   if (library == nullptr || dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) {
-    Say("this program has no %s, and DDS uses sockets", kLibrary);
+    Say("this program has no %s, so its DDS uses sockets", kLibrary);
     return false;
   }
   // The package's file carries the version in its name; nothing else in the library does.
@@ -45,7 +45,7 @@ bool FindCyclone(const Link& link) {
   const char* base = file != nullptr ? strrchr(file, '/') : nullptr;
   const bool same = base != nullptr && strcmp(base + 1, kFile) == 0;
   if (!same) {
-    Say("DDS without a network is written for %s, this program has %s: it uses sockets", kFile,
+    Say("DDS in shared memory needs %s, but this program has %s, so its DDS uses sockets", kFile,
         file != nullptr ? file : map->l_name);
   }
   free(file);

@@ -46,7 +46,7 @@ const RealCalls& Real();
 // inner structures this library was compiled with.
 bool FindCyclone(const Link& link);
 
-// The same of what can be seen only once there is a participant: whether its structures lie where
+// The same for what can be seen only once there is a participant: whether its structures lie where
 // the headers say.
 bool LayoutIsAsCompiled(const ddsi_domaingv& gv, const ddsi_participant& participant);
 

@@ -44,7 +44,8 @@ dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags
   const Awake awake(gv);
   const ddsi_participant* made = entidx_lookup_participant_guid(gv->entity_index, guid);
   if (made == nullptr || !LayoutIsAsCompiled(*gv, *made)) {
-    Say("this libddsc is not laid out as Debian's %s is: run the program with DDS over sockets",
+    Say("this libddsc has another layout than Debian's %s: run the program with DDS over sockets "
+        "(dds: sockets)",
         DDS_VERSION);
     Real().ddsi_delete_participant(gv, guid);
     return DDS_RETCODE_PRECONDITION_NOT_MET;

@@ -160,13 +160,14 @@ const dds::Hook* Load(const char* path) {
   // libtcs_dds.so depends on this library: it must not bring in a second one.
   void* library = dlopen(kLibrary, RTLD_LAZY | RTLD_NOLOAD);
   if (library == nullptr) {
-    Say("tcs: this program's Cyclone DDS is not Debian's libddsc.so.0debian: it uses sockets.\n");
+    Say("tcs: this program's Cyclone DDS is not Debian's libddsc.so.0debian, so its DDS uses "
+        "sockets.\n");
     TellOfSockets(shm::WhySockets::kOtherLibrary);
     return kNoHooks;
   }
   void* hooks = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (hooks == nullptr) {
-    Say("tcs: cannot load libtcs_dds.so, and DDS uses sockets: ");
+    Say("tcs: cannot load libtcs_dds.so, so this program's DDS uses sockets: ");
     Say(dlerror());
     Say("\n");
     TellOfSockets(shm::WhySockets::kNoLibraryOfOurs);
@@ -191,7 +192,7 @@ void Start() {
 void StartPastUs() {
   char buffer[kDdsPathSize];
   if (DdsLibrary(buffer) != nullptr) {
-    Say("tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets.\n");
+    Say("tcs: this program looks up Cyclone DDS's functions by itself, so its DDS uses sockets.\n");
     TellOfSockets(shm::WhySockets::kLooksUpItself);
   }
   __atomic_store_n(&g_hooks, &kNoHooks[0], __ATOMIC_RELEASE);

@@ -28,8 +28,8 @@ class ShadowMatches {
   ddsi_domaingv* gv_;
 };
 
-// While it lives, the calling thread makes an endpoint of the program's, with qos(). `others`:
-// those of the program that it may match.
+// While it lives, the calling thread makes an endpoint of the program's, with qos(). `others`: the
+// endpoints of the program that it may match.
 class OwnMatches {
  public:
   OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others);

@@ -51,7 +51,8 @@ std::uint32_t Join() {
     g_area = MapArea(process);
   }
   if (g_area != nullptr) return process;
-  static const char kLine[] = "tcs: there is no room for this program's DDS: it uses sockets.\n";
+  static const char kLine[] =
+      "tcs: the run's shared memory has no room for this program's DDS, so its DDS uses sockets.\n";
   RawSyscall(SYS_write, STDERR_FILENO, Arg(kLine), sizeof kLine - 1);
   TellOfSockets(tcs::shm::WhySockets::kNoRoom);
   return 0;

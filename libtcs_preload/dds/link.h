@@ -37,7 +37,8 @@ struct Link {
   // or its listeners need.
   void (*sync)();
 
-  // The same for what is due by now: does not wait for what others may still send from before.
+  // The same for messages that are due by now: does not wait for messages that others may still
+  // send for an earlier time.
   void (*settle)();
 
   // The calling thread has taken samples, which may be the beginning of an activation.

@@ -87,7 +87,7 @@ void SayUnreadable(const DecodedEndpoint& what, bool has_been_said) {
   const bool is_nodes = what.topic == "ros_discovery_info";
   Say("a sample of DDS topic %s cannot be read as %s: the programs' types differ%s",
       what.topic.c_str(), what.type.c_str(),
-      is_nodes ? "; say in the scenario which release of ROS 2 they have, like ros: humble" : "");
+      is_nodes ? "; name the release of ROS 2 in the scenario, as in ros: humble" : "");
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class Mirrors {
     bool warned = false;
     bool looked_at = false;  // one of its samples, whether the program's type of that name reads it
   };
-  // Of those that are made known by themselves; without a handle in the program.
+  // A topic that is announced by itself; it has no handle in the program.
   struct Topic {
     Guid participant{};
     std::uint32_t domain;

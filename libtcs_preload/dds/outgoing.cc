@@ -58,8 +58,8 @@ void Send(shm::DdsMessage& message, const Payload& payload) {
     if (MeetsItself(message.domain)) message.flags |= shm::kDdsToSender;
   }
   if (!SendParts(message, payload.data(), payload.size())) {
-    Say("the QoS of a DDS entity is too large to be told to others (%zu bytes), which will not "
-        "find it",
+    Say("the QoS of a DDS entity is too large to be announced (%zu bytes), so other programs will "
+        "not find it",
         payload.size());
   }
 }

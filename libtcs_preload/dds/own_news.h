@@ -22,7 +22,8 @@ struct OwnNews {
 // Before it is sent.
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
 
-// What is there, in the order in which it came, of domains in which the program meets itself.
+// The announcements that are there, in the order in which they came, of domains in which the
+// program meets itself.
 std::vector<OwnNews> NewsForItself();
 
 }  // namespace tcs::dds

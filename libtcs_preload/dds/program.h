@@ -1,7 +1,8 @@
 // What the program has: its participants, topics and endpoints, as the hooks see them come and go.
 //
-// Those of other processes are mirrored by *shadows* in here (mirrors.h), which Cyclone takes for
-// the program's own. They pass through the same hooks and are told apart by their participant.
+// The endpoints of other processes are mirrored by *shadows* in this process (mirrors.h), which
+// Cyclone takes for the program's own. They pass through the same hooks and are told apart by their
+// participant.
 //
 // Thread-safe, by a lock that is held for look-ups only: everything here may be called from inside
 // Cyclone.
@@ -63,7 +64,7 @@ std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic);
 // make and collect one for each write. Kind of writer: unknown, to be announced first.
 enum class Carries { kNo, kYes, kUnknownWriter };
 struct WriterKeeps {
-  std::uint32_t last = 0;  // samples of an instance for who has not taken them yet; 0: all
+  std::uint32_t last = 0;  // samples kept of an instance until they are taken; 0: all
   bool promised = false;   // to a reader of that process: both are reliable
 };
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
@@ -87,7 +88,8 @@ struct LateReader {
   Guid guid{};
   std::uint32_t process;
 };
-// Those whose shadow reader is complete; the others hear of a new writer when theirs is.
+// The readers whose shadow reader is complete; the others are told of a new writer when their
+// shadow reader is.
 std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic);
 // The shadow reader is complete: the transient-local writers that it has met. In one step, so that
 // a writer that is made meanwhile is told of by the one or by the other.

@@ -11,7 +11,7 @@ namespace tcs::dds {
 
 using Payload = std::vector<std::byte>;
 
-// Empty: the type has none, as those that a language binding without XTypes makes.
+// Empty: the type has none, as a type that a language binding without XTypes makes.
 struct TypeCode {
   Payload information;
   Payload mapping;
@@ -21,7 +21,7 @@ struct TypeCode {
 
 TypeCode CodeOf(const ddsi_sertype* type);
 
-// The same if Cyclone can read it, else an empty one: Cyclone trusts what it takes a type from.
+// The same if Cyclone can read it, else empty: Cyclone trusts the bytes from which it makes a type.
 TypeCode Checked(TypeCode code);
 
 // Null if it is empty. The caller owns them.

@@ -5,7 +5,8 @@ namespace {
 
 int Shifted(int index, std::size_t by) { return index < 0 ? index : index + static_cast<int>(by); }
 
-void Plant(const RobotModel& model, int index, Forest* forest) {
+// `first_link` is the number of the model's first link among those of all models.
+void Plant(const RobotModel& model, int index, int first_link, Forest* forest) {
   RigidTree tree = MakeTree(model);
   const std::size_t bodies = forest->bodies.size(), joints = forest->joints.size();
   for (TreeBody& body : tree.bodies) {
@@ -19,7 +20,8 @@ void Plant(const RobotModel& model, int index, Forest* forest) {
     link.body = Shifted(link.body, bodies);
     forest->links.push_back(link);
     for (const Shape& shape : model.links[i].shapes) {
-      forest->shapes.push_back({&shape, link.body, Times(link.pose, shape.pose), index});
+      forest->shapes.push_back({&shape, link.body, Times(link.pose, shape.pose), index,
+                                first_link + static_cast<int>(i)});
     }
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
@@ -41,17 +43,25 @@ bool AreJoined(const Forest& forest, int a, int b) {
 
 Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indices,
                   std::span<const Shape> fixtures) {
+  std::vector<int> first_link = {0};
+  for (const RobotModel& model : models) {
+    first_link.push_back(first_link.back() + static_cast<int>(model.links.size()));
+  }
   Forest forest;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    Plant(models[static_cast<std::size_t>(indices[i])], static_cast<int>(i), &forest);
+    const auto model = static_cast<std::size_t>(indices[i]);
+    Plant(models[model], static_cast<int>(i), first_link[model], &forest);
   }
-  AddFixtures(fixtures, &forest);
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    forest.shapes.push_back(
+        {&fixtures[i], kWorldBody, Times(Pose{}, fixtures[i].pose), -1, -1, static_cast<int>(i)});
+  }
   return forest;
 }
 
-void AddFixtures(std::span<const Shape> fixtures, Forest* forest) {
-  for (const Shape& fixture : fixtures) {
-    forest->shapes.push_back({&fixture, kWorldBody, Times(Pose{}, fixture.pose), -1});
+void AddFixtures(std::span<const StaticShape> shapes, Forest* forest) {
+  for (const auto& [shape, link] : shapes) {
+    forest->shapes.push_back({&shape, kWorldBody, Times(Pose{}, shape.pose), -1, link});
   }
 }
 

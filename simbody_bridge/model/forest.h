@@ -21,6 +21,9 @@ struct ForestShape {
   int body = kWorldBody;
   Pose pose;       // in the body's frame, or in the world
   int model = -1;  // -1: a fixture of the world
+  // Whose it is: a link, as Dynamics numbers those of all models, or one of the world's fixtures,
+  // by index; the other one is -1.
+  int link = -1, fixture = -1;
 };
 
 struct Forest {
@@ -32,12 +35,12 @@ struct Forest {
   std::vector<bool> has_self_collision;  // of each model
 };
 
-// Of the models of these indices, which have passed CheckModel.
+// Of the models of these indices among all, which have passed CheckModel.
 Forest MakeForest(std::span<const RobotModel> models, std::span<const int> indices,
                   std::span<const Shape> fixtures);
 
-// More of these, in the world's frame; they outlive the forest.
-void AddFixtures(std::span<const Shape> fixtures, Forest* forest);
+// More that do not move, whose links are numbered as Dynamics does; they outlive the forest.
+void AddFixtures(std::span<const StaticShape> shapes, Forest* forest);
 
 // Whether two shapes can ever be in contact: they are of different bodies, one of which moves, that
 // no joint joins; and if they are of one model, it collides with itself.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "simbody_bridge/model/rigid_tree.h"
 #include "simbody_bridge/model/vectors.h"
 
 namespace tcs {
@@ -53,14 +52,14 @@ std::vector<ShapeOnLink> MovingShapesOf(const RobotModel& model) {
   return shapes;
 }
 
-std::vector<Shape> StaticShapesOf(const RobotModel& model) {
+std::vector<StaticShape> StaticShapesOf(const RobotModel& model) {
   const RigidTree tree = MakeTree(model);
-  std::vector<Shape> shapes;
+  std::vector<StaticShape> shapes;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     if (tree.links[i].body != kWorldBody) continue;
     for (const Shape& shape : model.links[i].shapes) {
-      shapes.push_back(shape);
-      shapes.back().pose = Times(tree.links[i].pose, shape.pose);
+      shapes.push_back({shape, static_cast<int>(i)});
+      shapes.back().shape.pose = Times(tree.links[i].pose, shape.pose);
     }
   }
   return shapes;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simbody_bridge/dynamics.h"
+#include "simbody_bridge/model/rigid_tree.h"
 #include "simbody_bridge/model/robot_model.h"
 
 namespace tcs {
@@ -39,8 +40,8 @@ struct ShapeOnLink {
 };
 // Those that move: links that are fixed to the world have others.
 std::vector<ShapeOnLink> MovingShapesOf(const RobotModel& model);
-// Those that never do, in the world's frame.
-std::vector<Shape> StaticShapesOf(const RobotModel& model);
+// Those that never do.
+std::vector<StaticShape> StaticShapesOf(const RobotModel& model);
 // The ball that such a shape is in.
 Ball BallOf(const Shape& in_world);
 MovingBall BallOf(const ShapeOnLink& shape, const LinkState& link);

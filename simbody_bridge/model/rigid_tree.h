@@ -40,6 +40,12 @@ struct RigidTree {
   std::vector<int> body_of_joint;  // of each joint of the model; of a fixed one kWorldBody
 };
 
+// A shape of a link that is fixed to the world.
+struct StaticShape {
+  Shape shape;   // its pose in the world's frame
+  int link = 0;  // whose it is
+};
+
 // `model` has passed CheckModel.
 RigidTree MakeTree(const RobotModel& model);
 

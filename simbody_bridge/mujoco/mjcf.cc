@@ -150,11 +150,12 @@ class Writer {
   }
 
   void WriteShapes(int body, int model) {
-    for (const ForestShape& shape : forest_.shapes) {
+    for (std::size_t i = 0; i < forest_.shapes.size(); ++i) {
+      const ForestShape& shape = forest_.shapes[i];
       if (shape.body != body || shape.model != model) continue;
       // Of two geoms that touch the friction of the one with the higher priority acts: the smaller.
-      text_ += fmt::format("<geom {} {} friction='{:.17g} 0.005 0.0001' priority='{}'/>",
-                           TextOf(shape.shape->geometry), PlaceText(shape.pose),
+      text_ += fmt::format("<geom name='s{}' {} {} friction='{:.17g} 0.005 0.0001' priority='{}'/>",
+                           i, TextOf(shape.shape->geometry), PlaceText(shape.pose),
                            shape.shape->friction, priority_.at(shape.shape->friction));
     }
   }

@@ -1,3 +1,4 @@
+#include "simbody_bridge/contact_forces.h"
 #include "simbody_bridge/forest_engine.h"
 #include "simbody_bridge/mujoco/mujoco_engine.h"
 #include "simbody_bridge/mujoco/mujoco_system.h"
@@ -12,6 +13,16 @@ class MujocoModels : public SetStepEngine<ForestEngine<MujocoSystem>> {
       : SetStepEngine(world.integrator.StepOr(kMujocoStep), world, islands) {}
 
   IslandStart StartOf(int island) override { return {At(island).start(), 0}; }
+
+  void ReadContacts(const IslandStep& step, VirtualDuration after,
+                    std::vector<ContactForce>* contacts) override {
+    if (ForestOf(step.island).shapes.size() < 2) return;
+    std::vector<ShapeContact> found;
+    const double seconds = after.seconds();
+    At(step.island)
+        .FindForces(step.from, LoadsOn(step.island).MeanOver(step, seconds), seconds, &found);
+    AppendForces(ForestOf(step.island), found, contacts);
+  }
 
  private:
   void Advance(const IslandStep& step, double seconds, std::vector<double>* to) override {

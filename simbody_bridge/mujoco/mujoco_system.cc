@@ -50,7 +50,8 @@ MujocoSystem::MujocoSystem(const Forest& forest, const std::array<double, 3>& gr
     : forest_(forest),
       model_(Compile(MjcfOf(forest, gravity_mps2))),
       data_(mj_makeData(model_.get())) {
-  if (data_ == nullptr) throw DynamicsError("MuJoCo makes no data; is there memory left?");
+  if (data_ == nullptr)
+    throw DynamicsError("MuJoCo cannot make its data; check whether memory is left");
   FindIds();
   SetStart();
 }
@@ -72,6 +73,10 @@ void MujocoSystem::FindIds() {
         body == kWorldBody ? -1 : IdOf(mjOBJ_JOINT, 'b', static_cast<std::size_t>(body));
     positions_.push_back(joint < 0 ? -1 : model_->jnt_qposadr[joint]);
     speeds_.push_back(joint < 0 ? -1 : model_->jnt_dofadr[joint]);
+  }
+  shapes_.resize(forest_.shapes.size());
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    shapes_[static_cast<std::size_t>(IdOf(mjOBJ_GEOM, 's', i))] = i;
   }
 }
 
@@ -249,8 +254,9 @@ bool MujocoSystem::ReachLimits(std::span<const Wrench> acting, double seconds) {
   return is_new;
 }
 
-void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
-                        double seconds, std::vector<double>* to) {
+// All that the two kinds of steps have in common.
+void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> acting,
+                         double seconds) {
   for (mjWarningStat& warning : data_->warning) warning.number = 0;
   SetState(from);
   ActOnLinks(acting);
@@ -265,6 +271,11 @@ void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> ac
   mj_checkPos(model_.get(), data_.get());
   mj_checkVel(model_.get(), data_.get());
   mj_fwdPosition(model_.get(), data_.get());
+}
+
+void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
+                        double seconds, std::vector<double>* to) {
+  Begin(from, acting, seconds);
   if (IsSmooth(acting, seconds)) {
     StepSmoothly();
   } else {
@@ -277,6 +288,62 @@ void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> ac
   to->assign(data_->qpos, data_->qpos + model_->nq);
   to->insert(to->end(), data_->qvel, data_->qvel + model_->nv);
   to->insert(to->end(), data_->qacc_warmstart, data_->qacc_warmstart + model_->nv);
+}
+
+// MuJoCo's normal points from the first geom to the second one, and its force acts on the second.
+void MujocoSystem::AddForces(double share, std::vector<ShapeContact>* contacts) const {
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    if (contact.efc_address < 0) continue;
+    std::array<double, 6> by_axis{};  // force and torque along the axes of the contact's frame
+    mj_contactForce(model_.get(), data_.get(), i, by_axis.data());
+    ShapeContact found{shapes_[static_cast<std::size_t>(contact.geom2)],
+                       shapes_[static_cast<std::size_t>(contact.geom1)],
+                       {},
+                       {},
+                       {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      found.point_m[k] = contact.pos[k];
+      found.normal[k] = contact.frame[k];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        found.force_n[k] += share * by_axis[axis] * contact.frame[3 * axis + k];
+      }
+    }
+    contacts->push_back(found);
+  }
+}
+
+// A smooth step begins without contacts, but may come to some: they are those of the stages of
+// Runge-Kutta 4, each as far as it counts.
+void MujocoSystem::AddForcesOfStages(double seconds, std::vector<ShapeContact>* contacts) {
+  const auto positions = static_cast<std::size_t>(model_->nq);
+  const auto speeds = static_cast<std::size_t>(model_->nv);
+  const std::vector<double> q(data_->qpos, data_->qpos + positions);
+  const std::vector<double> u(data_->qvel, data_->qvel + speeds);
+  mj_forward(model_.get(), data_.get());
+  constexpr std::array<std::pair<double, double>, 3> kStages = {
+      {{0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};  // how far on, and how much it counts
+  for (const auto& [on, share] : kStages) {
+    const std::vector<double> speed(data_->qvel, data_->qvel + speeds);
+    const std::vector<double> rate(data_->qacc, data_->qacc + speeds);
+    std::copy(q.begin(), q.end(), data_->qpos);
+    mj_integratePos(model_.get(), data_->qpos, speed.data(), on * seconds);
+    for (std::size_t i = 0; i < speeds; ++i) data_->qvel[i] = u[i] + on * seconds * rate[i];
+    mj_forward(model_.get(), data_.get());
+    AddForces(share, contacts);
+  }
+}
+
+void MujocoSystem::FindForces(std::span<const double> from, std::span<const Wrench> acting,
+                              double seconds, std::vector<ShapeContact>* contacts) {
+  contacts->clear();
+  Begin(from, acting, seconds);
+  if (IsSmooth(acting, seconds)) {
+    AddForcesOfStages(seconds, contacts);
+  } else {
+    StepImplicitly(acting, seconds);
+    AddForces(1, contacts);
+  }
 }
 
 void MujocoSystem::CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,

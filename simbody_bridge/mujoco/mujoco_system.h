@@ -9,10 +9,12 @@
 
 #include <mujoco/mujoco.h>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "simbody_bridge/contact_forces.h"
 #include "simbody_bridge/load.h"
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
@@ -30,6 +32,9 @@ class MujocoSystem {
   // Not finite where MuJoCo cannot go on. `acting` is by place.
   void Step(std::span<const double> from, std::span<const Wrench> acting, double seconds,
             std::vector<double>* to);
+  // What touches in such a step, with the mean of its force over the step.
+  void FindForces(std::span<const double> from, std::span<const Wrench> acting, double seconds,
+                  std::vector<ShapeContact>* contacts);
 
   // What of a state is a body's, into a state of another system, in which it is `to_body`.
   void CopyBody(std::size_t body, std::span<const double> state, const MujocoSystem& to,
@@ -55,7 +60,10 @@ class MujocoSystem {
   void ActInWorld(const TreeLink& link, const Load& load);
   JointDrive DriveOf(std::span<const Wrench> acting, std::size_t joint) const;
   void SetDrive(std::size_t joint, const JointDrive& drive);
+  void Begin(std::span<const double> from, std::span<const Wrench> acting, double seconds);
   bool IsSmooth(std::span<const Wrench> acting, double seconds) const;
+  void AddForces(double share, std::vector<ShapeContact>* contacts) const;
+  void AddForcesOfStages(double seconds, std::vector<ShapeContact>* contacts);
   void StepSmoothly();
   void StepImplicitly(std::span<const Wrench> acting, double seconds);
   bool ReachLimits(std::span<const Wrench> acting, double seconds);
@@ -67,6 +75,7 @@ class MujocoSystem {
   std::vector<int> bodies_, body_actuators_;  // MuJoCo's, of each of the forest's bodies
   std::vector<int> joint_actuators_;          // of each joint; -1: none
   std::vector<int> positions_, speeds_;       // where those of each joint are; -1: fixed
+  std::vector<std::size_t> shapes_;           // of the forest, of each of MuJoCo's geoms
   std::vector<double> start_;
   std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
   std::vector<Load> along_body_;  // memory of ActOnLinks

@@ -41,7 +41,7 @@ void OpenOde() {
           "Debian's libode-dev and build tcs again");
     }
     if (dInitODE2(0) == 0 || dAllocateODEDataForThread(dAllocateFlagBasicData) == 0) {
-      throw DynamicsError("libode cannot be initialised; is there memory left?");
+      throw DynamicsError("libode cannot be initialised; check whether memory is left");
     }
     dSetErrorHandler(&ThrowError);
     dSetDebugHandler(&ThrowError);

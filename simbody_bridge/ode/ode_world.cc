@@ -49,7 +49,7 @@ void OdeWorld::Destroy::operator()(dxWorld* world) const { dWorldDestroy(world);
 // speed, putting bodies at rest to sleep. Those are its defaults, but for the last, which is
 // written down because a sleeping body would ignore commands.
 OdeWorld::OdeWorld(const WorldSpec& world) : spec_(world), world_(dWorldCreate()) {
-  if (!world_) throw DynamicsError("ODE makes no world; is there memory left?");
+  if (!world_) throw DynamicsError("ODE cannot make its world; check whether memory is left");
   const auto& g = world.gravity_mps2;
   dWorldSetGravity(world_.get(), g[0], g[1], g[2]);
   dWorldSetAutoDisableFlag(world_.get(), 0);
@@ -70,7 +70,7 @@ void OdeWorld::Step(double seconds, const std::vector<Load>& loads,
     dBodySetTorque(bodies_[i], torque[0], torque[1], torque[2]);
   }
   if (dWorldStep(world_.get(), seconds) == 0) {
-    throw DynamicsError("ODE cannot take its step; is there memory left?");
+    throw DynamicsError("ODE cannot take its step; check whether memory is left");
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) (*states)[i] = ReadBody(bodies_[i]);
 }

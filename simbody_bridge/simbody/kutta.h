@@ -27,16 +27,13 @@ void KuttaEnd(const IslandStep& step, const std::vector<double>& middle_rate, do
 void KuttaStep(const std::vector<double>& middle_rate, const std::vector<double>& end_rate,
                double h, IslandStep* step);
 
-// Of a step of `h` seconds that has been tried: the greatest error among `count` bodies or joints,
-// of coordinates or of speeds, relative for speeds above 1. `slots_of` gives the StateSlots of
-// each.
-template <class SlotsOf>
-double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate, double h,
-                  std::size_t count, const SlotsOf& slots_of) {
+// The greatest error among `count` bodies or joints, of coordinates or of speeds, relative for
+// speeds above 1: NaN or infinite if any is. `error(i)` is that of number i of the state,
+// `slots_of` gives the StateSlots of each.
+template <class Error, class SlotsOf>
+double GreatestError(const IslandStep& step, const Error& error, std::size_t count,
+                     const SlotsOf& slots_of) {
   const auto square = [](double x) { return x * x; };
-  const auto error = [&](std::size_t i) {
-    return step.to[i] - (step.from[i] + h * middle_rate[i]);
-  };
   double greatest = 0, all = 0;
   for (std::size_t index = 0; index < count; ++index) {
     const StateSlots slots = slots_of(index);
@@ -50,6 +47,16 @@ double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate
     all += coordinates + speeds;
   }
   return std::isfinite(all) ? std::sqrt(greatest) : all;
+}
+
+// Of a step of `h` seconds that has been tried.
+template <class SlotsOf>
+double KuttaError(const IslandStep& step, const std::vector<double>& middle_rate, double h,
+                  std::size_t count, const SlotsOf& slots_of) {
+  const auto error = [&](std::size_t i) {
+    return step.to[i] - (step.from[i] + h * middle_rate[i]);
+  };
+  return GreatestError(step, error, count, slots_of);
 }
 
 // Shorter steps lead nowhere: islands count whole nanoseconds.

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "tests/bench/attempt.h"
 #include "tests/bench/tcsim_run.h"
 
 namespace tcs::bench {
@@ -46,11 +45,7 @@ std::string ScenarioFor(const FleetCase& fleet, double virtual_s) {
       .dump();
 }
 
-struct Numbers {
-  double speed, real_us, programs_us, world_us, coordinating_us, dispatches;
-};
-
-std::optional<Numbers> RunOnce(const FleetCase& fleet, double virtual_s) {
+std::optional<RunCosts> RunOnce(const FleetCase& fleet, double virtual_s) {
   const auto run = TcsimRun::Of("fleet", ScenarioFor(fleet, virtual_s));
   if (!run) return std::nullopt;
   const auto number = [&run](const char* key) { return run->summary().at(key).get<double>(); };
@@ -60,44 +55,19 @@ std::optional<Numbers> RunOnce(const FleetCase& fleet, double virtual_s) {
     fmt::print(stderr, "tcs_bench: fleet: {} samples, but {} commands\n", samples, commands);
     return std::nullopt;
   }
-  const auto each_us = [&](const char* key) { return number(key) / 1e3 / samples; };
-  return Numbers{number("virtual_ns") / number("real_ns"),
-                 each_us("real_ns"),
-                 each_us("clients_ns"),
-                 each_us("dynamics_ns"),
-                 each_us("coordinating_ns"),
-                 number("dispatches") / samples};
-}
-
-FleetRow RowOf(const FleetCase& fleet, const std::vector<Numbers>& rounds) {
-  const auto spread = [&rounds](double Numbers::*number) {
-    std::vector<double> values;
-    for (const Numbers& round : rounds) values.push_back(round.*number);
-    return SpreadOf(values);
-  };
-  return {.fleet = fleet,
-          .speed = spread(&Numbers::speed),
-          .real_us = spread(&Numbers::real_us).median,
-          .programs_us = spread(&Numbers::programs_us).median,
-          .world_us = spread(&Numbers::world_us).median,
-          .coordinating_us = spread(&Numbers::coordinating_us).median,
-          .dispatches = spread(&Numbers::dispatches).median};
+  return RunCosts::Of(run->summary(), samples);
 }
 
 }  // namespace
 
 std::optional<FleetRows> MeasureFleets(int rounds, bool quick) {
   FleetRows results{.rounds = rounds, .virtual_s = quick ? 0.1 : 10, .rows = {}};
-  std::array<std::vector<Numbers>, kFleets.size()> all;
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < kFleets.size(); ++i) {
-      const auto got = Attempt([&] { return RunOnce(kFleets[i], results.virtual_s); });
-      if (!got) return std::nullopt;
-      all[i].push_back(*got);
-    }
-  }
+  const auto fleets = CostsInTurns(kFleets.size(), rounds, [&results](std::size_t i) {
+    return RunOnce(kFleets[i], results.virtual_s);
+  });
+  if (!fleets) return std::nullopt;
   for (std::size_t i = 0; i < kFleets.size(); ++i) {
-    results.rows.push_back(RowOf(kFleets[i], all[i]));
+    results.rows.push_back({kFleets[i], (*fleets)[i]});
   }
   return results;
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "tests/bench/spread.h"
+#include "tests/bench/run_costs.h"
 
 namespace tcs::bench {
 
@@ -26,11 +26,9 @@ inline constexpr std::array<FleetCase, 5> kFleets{{{.rate_hz = 1000, .answers = 
 
 struct FleetRow {
   FleetCase fleet;
-  Spread speed;  // virtual time to real time
-  // Of the processor, for each sample and the command that answers it; medians. What is left of the
-  // real time is switching between programs, and waiting for the host.
-  double real_us = 0, programs_us = 0, world_us = 0, coordinating_us = 0;
-  double dispatches = 0;  // for each sample
+  // For each sample and the command that answers it. What is left of the real time is switching
+  // between programs, and waiting for the host.
+  CostsSpread costs;
 };
 
 struct FleetRows {

@@ -134,18 +134,29 @@ std::string DispatchTable(const DispatchRows& dispatches) {
   return text;
 }
 
+// How a line of a table goes on that says what runs cost, and the head of these columns.
+constexpr char kCostColumns[] = "{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
+
+std::string CostTitles() {
+  return fmt::format(kCostColumns, "x real time", "", "goal", "real µs", "programs", "world",
+                     "coordinating", "dispatches");
+}
+
+std::string CostCells(const CostsSpread& costs, double goal) {
+  return fmt::format(kCostColumns, Brief(costs.speed.median),
+                     fmt::format("{}-{}", Brief(costs.speed.lowest), Brief(costs.speed.highest)),
+                     goal > 0 ? fmt::format(">= {:g}", goal) : "", Brief(costs.real_us),
+                     Brief(costs.programs_us), Brief(costs.world_us), Brief(costs.coordinating_us),
+                     Brief(costs.dispatches));
+}
+
 std::string FleetTable(const FleetRows& fleets) {
-  static constexpr char kLine[] =
-      "{:>6}{:>6}{:>9}{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
-  std::string text = fmt::format(kLine, "robots", "Hz", "answers", "x real time", "", "goal",
-                                 "real µs", "programs", "world", "coordinating", "dispatches");
+  static constexpr char kCase[] = "{:>6}{:>6}{:>9}";
+  std::string text = fmt::format(kCase, "robots", "Hz", "answers") + CostTitles();
   for (const FleetRow& row : fleets.rows) {
-    const std::string goal = row.fleet.goal > 0 ? fmt::format(">= {:g}", row.fleet.goal) : "";
-    text += fmt::format(kLine, row.fleet.robots, row.fleet.rate_hz,
-                        row.fleet.answers ? "yes" : "no", Brief(row.speed.median),
-                        fmt::format("{}-{}", Brief(row.speed.lowest), Brief(row.speed.highest)),
-                        goal, Brief(row.real_us), Brief(row.programs_us), Brief(row.world_us),
-                        Brief(row.coordinating_us), Brief(row.dispatches));
+    text +=
+        fmt::format(kCase, row.fleet.robots, row.fleet.rate_hz, row.fleet.answers ? "yes" : "no") +
+        CostCells(row.costs, row.fleet.goal);
   }
   text += fmt::format(
       "Robots with a body and a program each, which answers each sample by a command or sleeps, "
@@ -169,18 +180,11 @@ std::string RobotTables(const RobotRows& robots) {
                         Brief(row.ratio.median),
                         fmt::format("{}-{}", Brief(row.ratio.lowest), Brief(row.ratio.highest)));
   }
-  static constexpr char kSwarmLine[] =
-      "{:>6}{:>6}{:>6}{:>13}  {:<11}{:>6}{:>9}{:>10}{:>7}{:>14}{:>12}\n";
-  text += "\n";
-  text += fmt::format(kSwarmLine, "drones", "Hz", "CPUs", "x real time", "", "goal", "real µs",
-                      "programs", "world", "coordinating", "dispatches");
+  static constexpr char kSwarm[] = "{:>6}{:>6}{:>6}";
+  text += "\n" + fmt::format(kSwarm, "drones", "Hz", "CPUs") + CostTitles();
   for (const SwarmRow& row : robots.swarms) {
-    const std::string goal = row.swarm.goal > 0 ? fmt::format(">= {:g}", row.swarm.goal) : "";
-    text += fmt::format(kSwarmLine, row.swarm.drones, row.swarm.rate_hz, row.swarm.host_cpus,
-                        Brief(row.speed.median),
-                        fmt::format("{}-{}", Brief(row.speed.lowest), Brief(row.speed.highest)),
-                        goal, Brief(row.real_us), Brief(row.programs_us), Brief(row.world_us),
-                        Brief(row.coordinating_us), Brief(row.dispatches));
+    text += fmt::format(kSwarm, row.swarm.drones, row.swarm.rate_hz, row.swarm.host_cpus) +
+            CostCells(row.costs, row.swarm.goal);
   }
   text += fmt::format(
       "Physics: processor time of a robot that is read at that rate, and commanded 0.05 ms (the\n"
@@ -218,6 +222,17 @@ Json ToJson(const std::vector<DdsRow>& rows) {
     to["ratio"] = ToJson(row.ratio);
   }
   return json;
+}
+
+// A row that says which runs these were, and what they cost.
+Json WithCosts(Json row, const CostsSpread& costs) {
+  row["times_real_time"] = ToJson(costs.speed);
+  row["real_us"] = costs.real_us;
+  row["programs_us"] = costs.programs_us;
+  row["world_us"] = costs.world_us;
+  row["coordinating_us"] = costs.coordinating_us;
+  row["dispatches"] = costs.dispatches;
+  return row;
 }
 
 }  // namespace
@@ -297,15 +312,10 @@ std::string ToJson(const Results& results) {
           {"virtual_seconds", fleets->virtual_s},
           {"rows", Json::array()}};
     for (const FleetRow& row : fleets->rows) {
-      to["rows"].push_back({{"robots", row.fleet.robots},
-                            {"rate_hz", row.fleet.rate_hz},
-                            {"answers", row.fleet.answers},
-                            {"times_real_time", ToJson(row.speed)},
-                            {"real_us", row.real_us},
-                            {"programs_us", row.programs_us},
-                            {"world_us", row.world_us},
-                            {"coordinating_us", row.coordinating_us},
-                            {"dispatches", row.dispatches}});
+      to["rows"].push_back(WithCosts({{"robots", row.fleet.robots},
+                                      {"rate_hz", row.fleet.rate_hz},
+                                      {"answers", row.fleet.answers}},
+                                     row.costs));
     }
   }
   if (const auto& robots = results.robots; robots.has_value()) {
@@ -323,15 +333,10 @@ std::string ToJson(const Results& results) {
                               {"goal", row.goal}});
     }
     for (const SwarmRow& row : robots->swarms) {
-      to["swarms"].push_back({{"drones", row.swarm.drones},
-                              {"rate_hz", row.swarm.rate_hz},
-                              {"host_cpus", row.swarm.host_cpus},
-                              {"times_real_time", ToJson(row.speed)},
-                              {"real_us", row.real_us},
-                              {"programs_us", row.programs_us},
-                              {"world_us", row.world_us},
-                              {"coordinating_us", row.coordinating_us},
-                              {"dispatches", row.dispatches}});
+      to["swarms"].push_back(WithCosts({{"drones", row.swarm.drones},
+                                        {"rate_hz", row.swarm.rate_hz},
+                                        {"host_cpus", row.swarm.host_cpus}},
+                                       row.costs));
     }
   }
   return json.dump(2) + "\n";

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "tests/bench/attempt.h"
 #include "tests/bench/child.h"
 #include "tests/bench/model_work.h"
 #include "tests/bench/tcsim_run.h"
@@ -64,46 +63,21 @@ std::optional<std::string> ScenarioOf(const SwarmCase& swarm) {
   return printed.output;
 }
 
-struct Numbers {
-  double speed, real_us, programs_us, world_us, coordinating_us, dispatches;
-};
-
-std::optional<Numbers> RunOnce(const SwarmCase& swarm, double virtual_s) {
+std::optional<RunCosts> RunOnce(const SwarmCase& swarm, double virtual_s) {
   const auto scenario = ScenarioOf(swarm);
   if (!scenario) return std::nullopt;
   const auto run = TcsimRun::Of("robots", *scenario,
                                 {"--set", fmt::format("duration={}s", virtual_s), "--host-cpus",
                                  std::to_string(swarm.host_cpus)});
   if (!run) return std::nullopt;
-  const auto number = [&run](const char* key) { return run->summary().at(key).get<double>(); };
+  const auto commands = run->summary().at("commands").get<double>();
   const double ticks = swarm.drones * swarm.rate_hz * virtual_s;
   // Each tick of a rate loop sends a command; the first ones come before the programs have begun.
-  if (number("commands") < 0.5 * ticks) {
-    fmt::print(stderr, "tcs_bench: robots: {} commands in {} ticks\n", number("commands"), ticks);
+  if (commands < 0.5 * ticks) {
+    fmt::print(stderr, "tcs_bench: robots: {} commands in {} ticks\n", commands, ticks);
     return std::nullopt;
   }
-  const auto each_us = [&](const char* key) { return number(key) / 1e3 / ticks; };
-  return Numbers{number("virtual_ns") / number("real_ns"),
-                 each_us("real_ns"),
-                 each_us("clients_ns"),
-                 each_us("dynamics_ns"),
-                 each_us("coordinating_ns"),
-                 number("dispatches") / ticks};
-}
-
-SwarmRow RowOf(const SwarmCase& swarm, const std::vector<Numbers>& rounds) {
-  const auto spread = [&rounds](double Numbers::*number) {
-    std::vector<double> values;
-    for (const Numbers& round : rounds) values.push_back(round.*number);
-    return SpreadOf(values);
-  };
-  return {.swarm = swarm,
-          .speed = spread(&Numbers::speed),
-          .real_us = spread(&Numbers::real_us).median,
-          .programs_us = spread(&Numbers::programs_us).median,
-          .world_us = spread(&Numbers::world_us).median,
-          .coordinating_us = spread(&Numbers::coordinating_us).median,
-          .dispatches = spread(&Numbers::dispatches).median};
+  return RunCosts::Of(run->summary(), ticks);
 }
 
 }  // namespace
@@ -116,16 +90,12 @@ std::optional<RobotRows> MeasureRobots(int rounds, bool quick) {
     if (!row) return std::nullopt;
     results.models.push_back(std::move(*row));
   }
-  std::array<std::vector<Numbers>, kSwarms.size()> all;
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < kSwarms.size(); ++i) {
-      const auto got = Attempt([&] { return RunOnce(kSwarms[i], results.virtual_s); });
-      if (!got) return std::nullopt;
-      all[i].push_back(*got);
-    }
-  }
+  const auto swarms = CostsInTurns(kSwarms.size(), rounds, [&results](std::size_t i) {
+    return RunOnce(kSwarms[i], results.virtual_s);
+  });
+  if (!swarms) return std::nullopt;
   for (std::size_t i = 0; i < kSwarms.size(); ++i) {
-    results.swarms.push_back(RowOf(kSwarms[i], all[i]));
+    results.swarms.push_back({kSwarms[i], (*swarms)[i]});
   }
   return results;
 }

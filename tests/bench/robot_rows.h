@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/run_costs.h"
 #include "tests/bench/spread.h"
 
 namespace tcs::bench {
@@ -35,10 +36,7 @@ inline constexpr std::array<SwarmCase, 5> kSwarms{
 
 struct SwarmRow {
   SwarmCase swarm;
-  Spread speed;  // virtual time to real time
-  // Of processors, for each tick of a rate loop and what belongs to it; medians.
-  double real_us = 0, programs_us = 0, world_us = 0, coordinating_us = 0;
-  double dispatches = 0;  // for each tick
+  CostsSpread costs;  // for each tick of a rate loop and what belongs to it
 };
 
 struct RobotRows {

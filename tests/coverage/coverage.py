@@ -58,8 +58,9 @@ def read_families():
 def page(families):
     yield "# Coverage"
     yield ""
-    yield "What becomes of every call that reads time, sleeps, waits or arms a timer, and the test that shows it."
-    yield "Written by `tests/coverage/coverage.py write` from `tests/coverage/coverage.txt`: edit that."
+    yield "What tcs does with every call that reads time, sleeps, waits or arms a timer, and the tests that show it."
+    yield "[LIMITATIONS.md](LIMITATIONS.md) says where a treatment is not exact."
+    yield "`tests/coverage/coverage.py write` writes this page from `tests/coverage/coverage.txt`: edit that file."
     for family in families:
         yield f"\n## {family.title[0].upper()}{family.title[1:]}\n"
         yield "| call | time | treatment | test |"

@@ -89,6 +89,8 @@ for (let record; (record = stream.nextRecord()); ) {
   say({ of: channel.topic, stamp: record.logTime, ...what });
 }
 
+const end = { profile: header.profile, messages, chunks };
+
 // By the index, which checks the summary's checksum.
 if (kind !== "cut-off") {
   if (!stream.done()) fail("it does not end as it should");
@@ -120,8 +122,7 @@ if (kind !== "cut-off") {
   }
   if (indexed.dataSectionCrc === undefined || indexed.footer.summaryCrc === 0) fail("a checksum is missing");
   await file.close();
-  say({ profile: header.profile, library: header.library, messages, chunks, crc: indexed.dataSectionCrc });
-} else {
-  say({ profile: header.profile, library: header.library, messages, chunks });
+  end.crc = indexed.dataSectionCrc;
 }
+say(end);
 process.stdout.write(lines.join("\n") + "\n");

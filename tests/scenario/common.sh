@@ -13,3 +13,23 @@ fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 # What is in /dev/shm by now and was not when the test began: other runs' files come and go.
 shared_at_start=$(ls /dev/shm)
 new_in_shm() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort); }
+# Runs a scenario on one processor of the host, and again on two, where threads compute ahead: into the folders 1 and
+# 2 of the one that is given.
+run_on_one_and_two() {  # SCENARIO FOLDER
+  local cpus
+  (($(nproc) > 1)) || { echo "this machine has one processor"; exit 77; }
+  for cpus in 1 2; do
+    "$tcsim" run "$1" --host-cpus "$cpus" --out "$2/$cpus" >"$2/said" 2>&1 || fail "$(cat "$2/said")"
+  done
+}
+# Kills the coordinator of a run in the background once its bag has more messages than that.
+kill_once_recorded() {  # TCSIM_PID BAG MESSAGES
+  local _
+  # It may have to wait for a processor first.
+  for _ in $(seq 600); do
+    [[ -e $2/metadata.yaml && $(sed -n 's/^  message_count: //p' "$2/metadata.yaml") -gt $3 ]] && break
+    sleep 0.1
+  done
+  kill -9 "$(coordinator_of "$1")"
+  wait "$1" 2>/dev/null || true
+}

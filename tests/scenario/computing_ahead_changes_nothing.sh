@@ -3,7 +3,6 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two robots whose planners compute, a controller of 100 Hz beside each, and a body that moves: what they are charged is
 # what they have computed, and the run's invariants hold, with one processor of the host and with two,
 # where planners compute ahead.
-(($(nproc) > 1)) || { echo "this machine has one processor"; exit 77; }
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 {
@@ -18,10 +17,7 @@ trap 'rm -rf "$out"' EXIT
     echo "      controller: {command: [$build/bin/soak_client, periodic, \"2\"], priority: 80}"
   done
 } >"$out/scenario.yaml"
-for cpus in 1 2; do
-  "$tcsim" run "$out/scenario.yaml" --host-cpus "$cpus" --out "$out/$cpus" >"$out/said" 2>&1 ||
-    fail "$(cat "$out/said")"
-done
+run_on_one_and_two "$out/scenario.yaml" "$out"
 python3 - "$out" <<'PY' || fail "$(cat "$out/said")"
 import json, sys
 one, two = (json.load(open(f"{sys.argv[1]}/{cpus}/summary.json")) for cpus in (1, 2))

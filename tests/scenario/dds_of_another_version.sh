@@ -11,7 +11,7 @@ cp "$debians" "$work/libddsc.so.9.9.9"
 ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
 said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
   "ddsperf -D 2 pong & ddsperf -D 2 ping 100Hz; wait" 2>&1)
-[[ $(grep -c 'tcs: DDS without a network is written for '"${debians##*/}"', this program has .*/libddsc.so.9.9.9: it uses sockets' \
+[[ $(grep -c 'tcs: DDS in shared memory needs '"${debians##*/}"', but this program has .*/libddsc.so.9.9.9, so its DDS uses sockets' \
   <<<"$said") == 2 ]] || fail "not told once by each program: $said"
 grep -Eq 'recvUC|mean .* cnt ' <<<"$said" || fail "they have not met: $said"
 
@@ -33,7 +33,7 @@ clock: {}
 robots: {r: {clients: {it: $2, other: {command: [sleep, "1"]}}}}
 YAML
   "$build/bin/in_own_network" "$tcsim" run "$work/scenario.yaml" --out "$work/run" >"$work/said" 2>&1 || fail "$(cat "$work/said")"
-  [[ $(grep -c "^tcsim: warning: the DDS of r/it uses sockets, as $1, so that it never meets the scenario's topics in shared memory (/clock); .*udp_json$" \
+  [[ $(grep -c "^tcsim: warning: the DDS of r/it uses sockets because $1, so it never meets the scenario's topics in shared memory (/clock); .*udp_json$" \
     "$work/said") == 1 ]] || fail "not warned, or not once: $(cat "$work/said" "$work/run/"*.err.log)"
   grep -q "the DDS of r/it uses sockets" "$work/run/summary.json" || fail "the summary does not have the warning"
 }
@@ -49,7 +49,7 @@ ddsc = ctypes.CDLL(sys.argv[1])
 participant = ddsc.dds_create_participant(0, None, None)
 print("participant", participant > 0, "deleted", ddsc.dds_delete(participant))
 ' "$work/libddsc-bundled.so" 2>&1)
-grep -q "tcs: this program looks up Cyclone DDS's functions by itself: its DDS uses sockets" <<<"$said" ||
+grep -q "tcs: this program looks up Cyclone DDS's functions by itself, so its DDS uses sockets" <<<"$said" ||
   fail "not told: $said"
 grep -q 'participant True deleted 0' <<<"$said" || fail "it does not work: $said"
 warned_of "it looks up Cyclone DDS's functions by itself, as Python's ctypes does" \

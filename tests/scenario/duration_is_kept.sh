@@ -47,7 +47,7 @@ clients="$sleeping, $looking" sync=callback lasts held_up 1.5 fixed
 clients='a: {command: [sh, -c, "for i in 1 2 3; do sleep 1; echo $i; done"]}'
 printf '%s\n' 'duration: 100s' "robots: {r: {clients: {$clients}}}" >"$out/ends.yaml"
 timeout 60 "$tcsim" run "$out/ends.yaml" --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
-grep -q 'ended before its 100.000 s, as all programs had ended' "$out/said" || fail "$(cat "$out/said")"
+grep -q 'ended before its 100.000 s because all programs had ended' "$out/said" || fail "$(cat "$out/said")"
 python3 -c '
 import json, sys
 ns = json.load(open(sys.argv[1]))["virtual_ns"]

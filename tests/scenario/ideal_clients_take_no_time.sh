@@ -70,6 +70,6 @@ run() {  # COMMANDS
 }
 sed -i 's/asks.py/-c, "import time; time.sleep(9)"/' "$out/s.yaml"
 run 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}'
-grep -Eq 'warning: world/(talker|other) has been busy for 10 s at one instant: its robot is ideal, .* from 0.000 s on it goes on without' "$out/said" || fail "$(cat "$out/said")"
+grep -Eq 'warning: world/(talker|other) has been busy for 10 s at one instant of virtual time; its robot is ideal, .* from 0.000 s on the world goes on without' "$out/said" || fail "$(cat "$out/said")"
 run 'spinner: {command: [python3, -c, "while True: pass"]}'
-grep -q 'warning: world/spinner has computed for 10 s at one instant: its robot is ideal' "$out/said" || fail "$(cat "$out/said")"
+grep -q 'warning: world/spinner has computed for 10 s at one instant of virtual time; its robot is ideal' "$out/said" || fail "$(cat "$out/said")"

@@ -33,7 +33,7 @@ for language in python c; do
   )
 done
 ! "$installed" new c 2>"$work/said" || fail "tcsim new writes into a folder that is there"
-grep -q "'c' is here already" "$work/said" || fail "it says instead: $(cat "$work/said")"
+grep -q "'c' exists already" "$work/said" || fail "it says instead: $(cat "$work/said")"
 
 # A project of somebody else's, by CMake and by pkg-config.
 cmake -S "$source_root/tests/scenario/outside" -B outside -DCMAKE_PREFIX_PATH="$prefix" >"$work/said" 2>&1 &&

@@ -79,6 +79,19 @@ def starts_standing(browser, run):
     assert until(browser, "return tcs.time === 1.1"), "the page does not go with the run"
 
 
+def shows_forces(browser, run):
+    """Which the other run did not record: the bytes are the same."""
+    held = until(browser, """const found = tcs.contactsAt(tcs.run, tcs.time);
+        return found.length > 2 && found.filter(each => each.first.startsWith('rover/')).reduce((sum, each) => sum + each.force[2], 0);""")
+    assert held > 10, held
+    assert not browser.js("return document.querySelector('.of-forces').hidden")
+    before = pixels(browser)
+    browser.js("document.querySelector('[data-set=forces]').click()")
+    browser.after_pictures()
+    assert sum(abs(a - b) > 12 for a, b in zip(before, pixels(browser))) > 10, "the arrows are not seen"
+    browser.js("document.querySelector('[data-set=forces]').click()")
+
+
 def goes_on(browser, run):
     before = pixels(browser)
     choose(browser, "pace", "1")
@@ -179,8 +192,8 @@ def is_shown_again(browser):
 
 os.mkdir(f"{OUT}/profile")
 with Browser(f"{OUT}/profile") as its_browser:
-    with LiveRun(TCSIM, SCENARIO, f"{OUT}/run", "--duration", "20s", "--pause") as its_run:
-        for check in (starts_standing, goes_on):
+    with LiveRun(TCSIM, SCENARIO, f"{OUT}/run", "--duration", "20s", "--pause", "--set", "csv_contacts=true") as its_run:
+        for check in (starts_standing, shows_forces, goes_on):
             check(its_browser, its_run)
             print(check.__name__, flush=True)
         looks_back(its_browser)

@@ -43,7 +43,7 @@ def server_of(run):
 
 def steps():
     with start("steps", "--pause") as run:
-        assert "where it stands until it is let go on" in run.words()
+        assert "where it is paused until the page lets it go on" in run.words()
         run.stands_at(0)
         assert run.news()["to"]["moments"] == 0 and run.news()["to"]["slices"] == 0, "something happened before the start"
         at = 0
@@ -167,8 +167,8 @@ def sentences():
         lines = done.stderr.splitlines()
         assert done.returncode == 2 and len(lines) == 1, (words, done)
         return lines[0]
-    assert "give --view, too" in fails("run", SCENARIO, "--pause", "--out", f"{OUT}/none")
-    assert "is no place to listen at" in fails("run", SCENARIO, "--view=here", "--out", f"{OUT}/none")
+    assert "--pause needs --view" in fails("run", SCENARIO, "--pause", "--out", f"{OUT}/none")
+    assert "is not a place to listen at" in fails("run", SCENARIO, "--view=here", "--out", f"{OUT}/none")
     assert "choose another one" in fails("run", SCENARIO, "--view=192.0.2.1:80", "--out", f"{OUT}/none")
     assert "--pace" in fails("run", SCENARIO, "--pace", "0", "--out", f"{OUT}/none")
     with open(f"{OUT}/flat.yaml", "w") as file:
@@ -178,7 +178,7 @@ def sentences():
         words = fails("run", SCENARIO, f"--view={taken.getsockname()[1]}", "--out", f"{OUT}/none")
         assert "choose another one" in words, words
     os.makedirs(f"{OUT}/empty")
-    assert "is nothing that `tcsim run` writes" in fails("view", f"{OUT}/empty")
+    assert "is no result of `tcsim run`" in fails("view", f"{OUT}/empty")
 
 
 for check in (steps, pauses, bad_watchers, a_dead_server, an_end_while_it_stands, computing_is_charged, sentences):

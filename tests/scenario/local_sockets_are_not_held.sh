@@ -69,13 +69,15 @@ for number, delay in enumerate((0.2505, 0.0203)):
     send(str(number).encode())
     print(number, began, now(), flush=True)
 PY
-dispatches_of() {  # TICKS
+dispatches_of() {  # TICKS [NAMES [NETWORK]]: what the sockets of each robot are called
+  local names=(${2:-a b c})
   cat >"$out/ticks.yaml" <<YAML
 duration: 1s
+${3:-}
 robots:
-  a: {clients: {c: {command: [python3, ticks.py, a, "$1"]}}}
-  b: {clients: {c: {command: [python3, ticks.py, b, "$1"]}}}
-  c: {clients: {c: {command: [python3, ticks.py, c, "$1"]}}}
+  a: {clients: {c: {command: [python3, ticks.py, ${names[0]}, "$1"]}}}
+  b: {clients: {c: {command: [python3, ticks.py, ${names[1]}, "$1"]}}}
+  c: {clients: {c: {command: [python3, ticks.py, ${names[2]}, "$1"]}}}
 YAML
   "$tcsim" run "$out/ticks.yaml" --accounting fixed --out "$out/run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["dispatches"])' "$out/run/summary.json"
@@ -83,6 +85,11 @@ YAML
 # What the interpreters' starts take is in both.
 few=$(dispatches_of 100) many=$(dispatches_of 500)
 ((many - few < 1300)) || fail "1200 ticks took $((many - few)) dispatches"
+# Where each robot is a host of its own, one name is another socket on each: all stay local.
+if "$source_root/tests/scenario/can_have_networks.sh"; then
+  few=$(dispatches_of 100 "x x x" "network: {}") many=$(dispatches_of 500 "x x x" "network: {}")
+  ((many - few < 1300)) || fail "with one name on three hosts 1200 ticks took $((many - few)) dispatches"
+fi
 
 for way in sendto connect sendmsg raw; do
   cat >"$out/$way.yaml" <<YAML

@@ -41,13 +41,6 @@ grep -q mcap "$out/said" || fail "$(cat "$out/said")"
 "$build/bin/in_own_network" "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --accounting fixed \
   --duration 1h --record mcap --out "$out/killed" >"$out/said" 2>&1 &
 run=$!
-bag=$out/killed/bag
-# It may have to wait for a processor first.
-for _ in $(seq 600); do
-  [[ -e $bag/metadata.yaml && $(sed -n 's/^  message_count: //p' "$bag/metadata.yaml") -gt 1000 ]] && break
-  sleep 0.1
-done
-kill -9 "$(coordinator_of "$run")"
-wait "$run" 2>/dev/null || true
+kill_once_recorded "$run" "$out/killed/bag" 1000
 run=
 check cut-off "$out/killed"

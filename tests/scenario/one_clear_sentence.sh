@@ -32,8 +32,8 @@ refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --o
 touch "$out/file"
 refused "'$out/file'.*--out" "$tcsim" run "$out/scenario.yaml" --out "$out/file"
 refused '\{measured,fixed\}' "$tcsim" exec --accounting guessed -- true
-refused 'above 0' "$tcsim" run "$out/scenario.yaml" --drift 0ms
-refused 'call-cost.*above 0' "$tcsim" exec --call-cost 0ns -- true
+refused 'is not positive' "$tcsim" run "$out/scenario.yaml" --drift 0ms
+refused 'call-cost.*is not positive' "$tcsim" exec --call-cost 0ns -- true
 refused "no command 'rnu'; did you mean 'run'" "$tcsim" rnu "$out/scenario.yaml"
 refused "run has no option --durations; did you mean '--duration'" "$tcsim" run --durations=3s "$out/scenario.yaml"
 mkdir "$out/empty"

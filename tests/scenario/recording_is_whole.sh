@@ -36,13 +36,6 @@ check witness "$out/told" "$out/told/r-witness.out.log"
 "$tcsim" run "$out/scenario.yaml" --duration 1h --set robots.r.clients.witness.command.1=1000000 \
   --record --out "$out/killed" >"$out/said" 2>&1 &
 run=$!
-bag=$out/killed/bag
-# It may have to wait for a processor first.
-for _ in $(seq 600); do
-  [[ -e $bag/metadata.yaml && $(sed -n 's/^  message_count: //p' "$bag/metadata.yaml") -gt 500 ]] && break
-  sleep 0.1
-done
-kill -9 "$(coordinator_of "$run")"
-wait "$run" 2>/dev/null || true
+kill_once_recorded "$run" "$out/killed/bag" 500
 run=
 check cut-off "$out/killed"

@@ -1,4 +1,4 @@
-"""The checks of replay_in_a_browser.sh, on the pages rover.html and talk.html of the folder that is given."""
+"""The checks of replay_in_a_browser.sh, on the pages rover.html, talk.html and crates.html of the folder that is given."""
 import base64
 import csv
 import json
@@ -178,6 +178,75 @@ def rays(browser):
     browser.js("document.querySelector('[data-set=rays]').click()")
 
 
+# Where on the stage the colour of forces is: how many pixels, and the least and the most of their places, across
+# and down.
+ARROWS = """const canvas = document.querySelector('.stage canvas'), width = canvas.clientWidth, height = canvas.clientHeight;
+    const copy = document.createElement('canvas'); copy.width = width; copy.height = height;
+    const context = copy.getContext('2d'); context.drawImage(canvas, 0, 0, width, height);
+    const hex = getComputedStyle(document.documentElement).getPropertyValue('--force').trim();
+    const colour = [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));
+    const data = context.getImageData(0, 0, width, height).data;
+    let count = 0, left = 1e9, right = 0, top = 1e9, bottom = 0;
+    for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+      const at = 4 * (y * width + x);
+      if (Math.abs(data[at] - colour[0]) + Math.abs(data[at + 1] - colour[1]) + Math.abs(data[at + 2] - colour[2]) > 90) continue;
+      ++count; left = Math.min(left, x); right = Math.max(right, x); top = Math.min(top, y); bottom = Math.max(bottom, y);
+    }
+    return {count, left, right, top, bottom};"""
+
+
+def forces(browser):
+    """Arrows that hold a crate up, as long as the scale says, from the floor into the crate; two ways between two crates."""
+    browser.open(f"{FOLDER}/crates.html")
+    browser.js("tcs.view.options.trails = tcs.view.options.names = false; document.querySelector('[data-look=side]').click(); tcs.seek(0.3)")
+    assert browser.after_pictures(ARROWS)["count"] == 0, "forces are shown before somebody asks"
+    assert browser.js("return document.querySelector('.force-scale').hidden")
+    before = pixels(browser)
+    left, top, width, height = browser.rect("[data-set=forces]")
+    browser.click(left + width / 2, top + height / 2)
+    shown = browser.after_pictures(ARROWS)
+    assert changed(before, pixels(browser)) > 12 and shown["count"] > 100, shown
+    at = "return tcs.contactsAt(tcs.run, tcs.time).map(c => [c.first, c.second, c.force[2]])"
+    found = browser.js(at)
+    assert all(first == "crate" and second == "floor" and up > 0 for first, second, up in found), found
+    assert abs(sum(up for *_, up in found) - 2 * 9.81) < 0.02 * 2 * 9.81, found
+    # From the side: from the floor upwards, and nothing below it.
+    floor = browser.js("return tcs.view.project(0, -0.2).y")
+    assert abs(shown["bottom"] - floor) < 12 and shown["top"] < floor - 20, (shown, floor)
+    # The scale says how long a round force is.
+    bar, text = browser.js("const s = document.querySelector('.force-scale'); return [s.querySelector('i').getBoundingClientRect().width, s.textContent]")
+    newtons = float(text.split("\u00a0N")[0])
+    longest = max(up for *_, up in found)
+    wanted = bar / newtons * longest
+    # Near arrows are longer than far ones, and stand lower.
+    assert 0.7 * wanted < shown["bottom"] - shown["top"] < 2 * wanted, (shown, bar, newtons, longest)
+    # The lid falls, and then pushes the crate as hard as the crate holds it up.
+    browser.js("tcs.seek(1.8)")
+    found = browser.js(at)
+    assert {(first, second) for first, second, _ in found} == {("crate", "floor"), ("crate", "lid")}, found
+    assert abs(sum(up for _, second, up in found if second == "floor") - 3 * 9.81) < 0.05 * 9.81, found
+    assert abs(sum(up for _, second, up in found if second == "lid") + 9.81) < 0.05 * 9.81, found
+    between = browser.js("return tcs.view.project(0, 0.2).y")
+    both = browser.after_pictures(ARROWS)
+    assert both["top"] < between - 5 < between + 5 < both["bottom"], (both, between)
+    # In the dark and at 400 pixels they are there, too.
+    browser.media(dark=True)
+    browser.resize(400, 800, mobile=True)
+    small = browser.after_pictures(ARROWS)
+    assert small["count"] > 60, small
+    left, top, width, height = browser.rect(".force-scale")
+    assert left >= 0 and left + width <= 400 and browser.js("return document.scrollingElement.scrollWidth") == 400
+    browser.media()
+    browser.resize(1000, 900)
+    browser.js("tcs.seek(0.3)")
+    browser.after_pictures()
+    left, top, width, height = browser.rect("[data-set=forces]")
+    browser.click(left + width / 2, top + height / 2)
+    assert browser.after_pictures(ARROWS)["count"] == 0, "they stay"
+    browser.open(f"{FOLDER}/rover.html")
+    assert browser.js("return document.querySelector('.of-forces').hidden"), "nobody has recorded the rover's"
+
+
 def small_and_touched(browser):
     browser.resize(400, 800, mobile=True)
     browser.open(f"{FOLDER}/rover.html")
@@ -250,7 +319,7 @@ def main():
     import os
     os.mkdir(FOLDER + "/flat")
     with Browser(FOLDER) as browser:
-        for check in (the_world, the_picture, slider_and_keys, speed, timeline, rays, small_and_touched, dark, in_print, what_was_said):
+        for check in (the_world, the_picture, slider_and_keys, speed, timeline, rays, forces, small_and_touched, dark, in_print, what_was_said):
             check(browser)
             print(check.__name__, flush=True)
         complaints = browser.complaints()

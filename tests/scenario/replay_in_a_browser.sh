@@ -2,7 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The world of a run, shown again in a browser: the robot is where bodies.csv says, whichever way the time
 # is set (slider, keys, playing, a click in the timeline or on what a program said); at 400 pixels, by
-# touch, in the dark, in print, and without WebGL.
+# touch, in the dark, in print, and without WebGL. Contact forces are arrows, which point where they push.
 for command in chromium chromedriver; do
   command -v "$command" >/dev/null || fail "$command is not installed (cmake/packages.txt)"
 done
@@ -19,7 +19,18 @@ robots:
       talker: {command: [python3, -u, -c, "import time\nfor i in range(4):\n  time.sleep(0.4)\n  print('mark: half way' if i == 1 else 'tick <%.6f>' % time.monotonic())"]}
 YAML
 "$tcsim" run "$out/talk.yaml" --accounting fixed --out "$out/talk" >"$out/said" || fail "$(cat "$out/said")"
-for run in rover talk; do
+cat >"$out/crates.yaml" <<'YAML'
+duration: 2s
+csv_contacts: true
+dynamics: {gravity: [0, 0, -9.81]}
+models:
+  floor: {plane: [0, 0, 1]}
+  crate: {box: [0.4, 0.4, 0.4], mass: 2, position: [0, 0, 0.2]}
+  lid: {box: [0.2, 0.2, 0.2], mass: 1, position: [0, 0, 1.2]}
+robots: {r: {clients: {c: {command: [sleep, "2"]}}}}
+YAML
+"$tcsim" run "$out/crates.yaml" --accounting fixed --out "$out/crates" >"$out/said" || fail "$(cat "$out/said")"
+for run in rover talk crates; do
   "$tcsim" report "$out/$run" --out "$out/$run.html" >"$out/said" || fail "$(cat "$out/said")"
   (($(stat -c %s "$out/$run.html") < 2000000)) || fail "the page of a few seconds is large"
 done

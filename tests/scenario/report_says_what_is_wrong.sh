@@ -34,7 +34,7 @@ refused "no folder 'nowhere'" nowhere
 refused "'other' is no result folder" other
 refused 'damaged/summary.json is damaged' damaged
 refused 'no body .predator. in run; it has none' run --bodies predator,prey
-refused '--bodies wants two' run --bodies predator
+refused '--bodies needs two' run --bodies predator
 refused 'cannot be written' run --out no/such/page.html
 refused '\{svg,png\}' run --figures gif
 refused 'mark' run --mark -1

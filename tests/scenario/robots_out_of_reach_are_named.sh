@@ -20,8 +20,8 @@ hover ''
 [[ $status == 0 && ! -s stderr ]] || fail "a robot in reach: status $status, $(cat stderr)"
 
 hover 's/41010/41019/'
-says 'warning: channel sensors: nobody listens on 127.0.0.1:41019'
-says 'warning: channel thrusters: nothing came in on 127.0.0.1:41011, so that no command moved drone'
+says 'warning: channel sensors: no program listens on 127.0.0.1:41019'
+says 'warning: channel thrusters: nothing came in on 127.0.0.1:41011, so no command moved drone'
 [[ $status == 0 ]] || fail "a warning became status $status"
 
 # What is no command is said once, and counted.
@@ -35,9 +35,9 @@ says 'warning: channel thrusters: ([0-9]+) of the \1 messages that came in were 
 hover 's/hover.py/-c, "raise SystemExit(\x27no map here\x27)"/'
 says 'drone/controller ended at .* with exit status 1: "no map here" \(run/drone-controller.err.log\)'
 (($(wc -l <stderr) == 1)) || fail "not one line: $(cat stderr)"
-grep -q '^ended before its 0.500 s, as all programs had ended' stdout || fail "$(cat stdout)"
+grep -q '^ended before its 0.500 s because all programs had ended' stdout || fail "$(cat stdout)"
 hover 's/hover.py/-c, "raise SystemExit(3)"/'
-says 'drone/controller ended at .* with exit status 3: it said nothing'
+says 'drone/controller ended at .* with exit status 3: it printed nothing'
 
 # A run that is killed leaves no summary of the one before it.
 mv hover.py.bak hover.py

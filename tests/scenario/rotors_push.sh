@@ -40,9 +40,9 @@ for engine in "${engines[@]}"; do
   [[ $engine == mujoco ]] && extra=(--set dynamics.engine=mujoco --set dynamics.accuracy=null)
   "$tcsim" run "$out/s.yaml" --accounting fixed --out "$out/run" "${extra[@]}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   for sentence in \
-    "rotor 'right' of craft was commanded once at an instant for which it had a command already, the first time at 0.1" \
-    "rotor 'right' of craft was commanded once beyond what it can do, the first time at 0.1" \
-    "the speed 2, of which it was given 1" "rotor 'idle' of craft was never commanded, though others of channel motors were"; do
+    "rotor 'right' of craft was commanded once at an instant for which it already had a command, first at 0.1" \
+    "rotor 'right' of craft was commanded once beyond its limit, first at 0.1" \
+    "the speed 2, of which it got 1" "rotor 'idle' of craft was never commanded, though others of channel motors were"; do
     grep -q "$sentence" "$out/said" || fail "$engine: no '$sentence' in: $(cat "$out/said")"
   done
   python3 - "$out/run" <<'PY' || fail "$engine: $(cat "$out/said")"

@@ -76,11 +76,11 @@ done
 awk -F, '$2 == "pendulum/hinge" && $3 == 0.1 && $4 == -2.5 { found = 1; exit } END { exit !found }' "$out/simbody/joints.csv" ||
   fail "$(head -n 4 "$out/simbody/joints.csv")"
 
-refused "programs cannot be taken back" run --from "$out/whole@1.2s"
-refused "programs cannot be taken back" run "$example" --from "$out/whole@1.2s"
+refused "programs cannot go back" run --from "$out/whole@1.2s"
+refused "programs cannot go back" run "$example" --from "$out/whole@1.2s"
 refused "has no line of 1.205s: next to it are 1.2s and 1.21s" snapshot "$out/whole@1.205s"
 refused "has no line of 5s: next to it are 1.5s" snapshot "$out/whole@5s"
 refused "give the folder of a run that had a world" snapshot "$out/nowhere@1s"
 refused "is after the end, 20s" run "$example" --stop-at 21s
 refused "at 1.2s and at 1.21s, but not at 1.205s" run "$example" --stop-at 1.205s
-refused "is not above 0" run "$example" --stop-at 0s
+refused "is not positive" run "$example" --stop-at 0s

@@ -26,20 +26,20 @@ names() {
   run=''
   [[ $(grep -Ec "$pattern" "$file") == 1 ]] || fail "not once: $(cat "$file")"
 }
-stood='^tcsim: virtual time has stood still at [0-9.]+ s for [0-9]+ s: nothing can happen any more but from outside; '
+stood='^tcsim: virtual time has stood still at [0-9.]+ s for [0-9]+ s: only input from outside could make it go on; '
 asks='; Ctrl-C ends the run$'
 
 exec 9<>"$out/never"  # so that opening it does not wait
 input=$out/never names "$out/stderr" "${stood}cat waits for input at descriptor 0 \(a pipe\)$asks" \
   "$tcsim" exec -- cat
-names "$out/stderr" "${stood}python3 waits for a lock or a condition that nobody gives it$asks" \
+names "$out/stderr" "${stood}python3 waits for a lock or a condition that no thread gives it$asks" \
   "$tcsim" exec -- python3 -c 'import threading; l = threading.Lock(); l.acquire(); l.acquire()'
-names "$out/stderr" "${stood}sh waits for a signal, as of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
+names "$out/stderr" "${stood}sh waits for a signal, such as that of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
   "$tcsim" exec -- sh -c 'sleep 5 & kill -STOP $!; wait'
 names "$out/stderr" '^tcsim: sh has ended; the run goes on for what it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
   "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
 
-names "$out/stderr" '^tcsim: virtual time has .* it waits for what computes without tcs.s knowing of it: python3[.0-9]* \(pid' \
+names "$out/stderr" '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: python3[.0-9]* \(pid' \
   "$tcsim" exec -- python3 -c '
 import ctypes, os, signal, time
 if ctypes.CDLL(None).syscall(56, signal.SIGCHLD, 0, 0, 0, 0) == 0:  # a bare clone

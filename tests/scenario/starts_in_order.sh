@@ -71,7 +71,7 @@ assert last[2] == folder + "/shared/deep", last
 never = summary["clients"]["r/never"]
 assert (never["started_at_ns"], never["ended_at_ns"], never["charged_ns"]) == (-1, -1, 0), never
 assert not os.path.exists(folder + "/r-never.out.log")
-assert [w for w in summary["warnings"] if "r/never was never started: it is to start after r/busy" in w]
+assert [w for w in summary["warnings"] if "r/never was never started, because it starts after r/busy" in w]
 PY
   [[ -e $out/scenarios/maps/by-first ]] && fail "the copied folder was written to"
   true
@@ -86,7 +86,7 @@ for world in "" $'dynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}'; do
   printf '%s\n' 'duration: 100s' "$world" 'robots: {r: {clients: {a: {command: [date, +%s], start: 70s}, b: {command: ["true"]}}}}' >"$out/late.yaml"
   timeout 60 "$tcsim" run "$out/late.yaml" --accounting fixed --out "$out/late" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
   [[ $(cat "$out/late/r-a.out.log") == $((1704067200 + 70)) ]] || fail "it saw $(cat "$out/late/r-a.out.log")"
-  grep -q 'ended before its 100.000 s, as all programs had ended' "$out/said" || fail "$(cat "$out/said")"
+  grep -q 'ended before its 100.000 s because all programs had ended' "$out/said" || fail "$(cat "$out/said")"
 done
 
 # Each trial has folders of its own.

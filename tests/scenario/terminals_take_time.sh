@@ -115,9 +115,9 @@ tail -2 "$out/run/bodies.csv" | grep -Eq '^4.000000000,ship,.*,2\.98[0-9]*,0,0,0
 # What a line cannot carry is left out and named, and so is a program that sets another rate.
 scenario '[python3, -c, "import os, termios; fd = os.open(\"/dev/ttyUSB0\", os.O_RDWR); a = termios.tcgetattr(fd); a[4] = a[5] = termios.B9600; termios.tcsetattr(fd, 0, a); n = sum(len(os.read(fd, 64)) for i in range(2000))"]' 100 >"$out/s.yaml"
 run --accounting fixed --set channels.eyes.sensors.fifo=16 --duration 2s
-grep -q 'warning: a program of r has set /dev/ttyUSB0 to 9600 baud, but in the scenario the line has 115200' "$out/said" || fail "$(cat "$out/said")"
-grep -Eq 'warning: channel eyes: 100 of its 200 readings were left out, because the line was not free: one of 17[0-9] bytes takes 15.[0-9] ms at 115200 baud, and they are 10.0 ms apart; lower the rate' "$out/said" || fail "$(cat "$out/said")"
-grep -q 'warning: channel others: no program of q has /dev/ttyUSB0 open, so that its samples are lost; let a client open it' "$out/said" || fail "$(cat "$out/said")"
+grep -q 'warning: a program of r has set /dev/ttyUSB0 to 9600 baud, but the line has 115200 in the scenario' "$out/said" || fail "$(cat "$out/said")"
+grep -Eq 'warning: channel eyes: 100 of its 200 readings were left out because the line was busy: a reading of 17[0-9] bytes takes 15.[0-9] ms at 115200 baud, and readings are 10.0 ms apart; lower the rate' "$out/said" || fail "$(cat "$out/said")"
+grep -q 'warning: channel others: no program of q has opened /dev/ttyUSB0, so the samples for it are lost; let a client open it' "$out/said" || fail "$(cat "$out/said")"
 
 command -v socat >/dev/null || { echo "socat is not installed"; exit 77; }
 scenario '[sh, -c, "(sleep 1; echo \"{\\\"force\\\": [1, 0, 0]}\"; sleep 9) | socat - /dev/ttyUSB0,raw,echo=0,b115200"]' 10 >"$out/s.yaml"

@@ -2,7 +2,6 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Threads that compute ahead, on a second processor of the host, and end there, each while others compute on: their
 # program joins them, and takes as long as on one processor.
-(($(nproc) > 1)) || { echo "this machine has one processor"; exit 77; }
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/scenario.yaml" <<END
@@ -14,10 +13,7 @@ robots:
       planner: {command: [$build/bin/ending_threads, "20"]}
       controller: {command: [$build/bin/soak_client, periodic, "3"], priority: 80}
 END
-for cpus in 1 2; do
-  "$tcsim" run "$out/scenario.yaml" --host-cpus "$cpus" --out "$out/$cpus" >"$out/said" 2>&1 ||
-    fail "$(cat "$out/said")"
-done
+run_on_one_and_two "$out/scenario.yaml" "$out"
 python3 - "$out" <<'PY' || fail "$(cat "$out/said")"
 import json, sys
 one, two = (json.load(open(f"{sys.argv[1]}/{cpus}/summary.json")) for cpus in (1, 2))

@@ -28,9 +28,28 @@ for table in bodies commands messages output; do truncate -s -7 "$out/cut/$table
 "$tcsim" trace "$out/cut" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 gzip -t "$out/cut/trace.json.gz" || fail "the trace of a killed run is not whole"
 
+# Of a recorded run: datagrams, between programs and with the world, and what sensors measured. To be recorded changes
+# nothing else, and repeats.
+hover() { "$tcsim" run "$build/examples/quadrotor/scenario.yaml" --accounting fixed --duration 1s --out "$out/$1" "${@:2}" \
+  >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
+hover recorded --record
+hover again --record
+hover plain
+for table in datagrams sensors; do
+  cmp "$out/recorded/$table.csv" "$out/again/$table.csv" || fail "a second run writes another $table.csv"
+  [[ ! -e $out/plain/$table.csv ]] || fail "$table.csv is there without a recording"
+done
+for table in bodies commands activations; do
+  cmp "$out/recorded/$table.csv" "$out/plain/$table.csv" || fail "recorded, $table.csv is another one"
+done
+"$tcsim" trace "$out/recorded" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+python3 -B "$(dirname -- "${BASH_SOURCE[0]}")/trace_shows_datagrams.py" "$out/recorded" || fail "the trace of datagrams is wrong"
+size=$(stat -c %s "$out/recorded/trace.json.gz")
+((size < 1000000)) || fail "a second of a quadrotor is $size bytes"
+
 mkdir "$out/empty"
 refused "give a folder that .tcsim run. wrote" "$out/empty"
 echo nonsense >"$out/empty/trace.json"
 refused "is no schedule of a run" "$out/empty"
-refused "was not written whole" "$out/run" --out /dev/full
+refused "was not written completely" "$out/run" --out /dev/full
 refused "cannot be written" "$out/run" --out "$out/nowhere/trace.gz"

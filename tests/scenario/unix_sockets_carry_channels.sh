@@ -65,20 +65,20 @@ refused() {  # PATTERN ARGUMENTS...
   ((status == 2)) && [[ $(wc -l <"$out/said") == 1 ]] && grep -q "$pattern" "$out/said" || fail "status $status: $(cat "$out/said")"
 }
 touch "$out/file"
-refused "'$out/file' is there and is no socket" --set channels.hands.commands.listen=file
+refused "'$out/file' exists and is not a socket" --set channels.hands.commands.listen=file
 [[ -f $out/file ]] || fail "a file that was in the way was removed"
-refused "'$out/nowhere/s' cannot be made, because its folder is not there; make it" --set channels.hands.commands.listen=nowhere/s
+refused "'$out/nowhere/s' cannot be made because its folder does not exist; make the folder" --set channels.hands.commands.listen=nowhere/s
 refused "longer than a UNIX socket's name may be (107 bytes)" --set "channels.hands.commands.listen=$(printf '%0110d' 0)"
 python3 -c '
 import socket, sys, time
 s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM); s.bind(sys.argv[1])
 print("bound", flush=True); time.sleep(60)' "$out/hands.sock" >"$out/holder" &
 for _ in $(seq 100); do grep -q bound "$out/holder" && break; sleep 0.05; done
-refused "'$out/hands.sock' is taken by another program; end that one, or choose another path"
+refused "'$out/hands.sock' is taken by another program; end that program, or choose another path"
 [[ -S $out/hands.sock ]] || fail "a socket that another program has was removed"
 
 # Nobody listens, and nobody commands.
 rm "$out/hands.sock"
 "$tcsim" run "$out/unix.yaml" --set 'robots.r.clients.c.command=[sleep, "3"]' --out "$out/run" >"$out/said" 2>&1 || true
-grep -q "channel eyes: nobody has the UNIX socket $out/eyes.sock, so that its samples are lost; let a client bind it" "$out/said" || fail "$(cat "$out/said")"
-grep -q "channel hands: nothing came in on the UNIX socket $out/hands.sock, so that no command moved ship" "$out/said" || fail "$(cat "$out/said")"
+grep -q "channel eyes: no program has bound the UNIX socket $out/eyes.sock, so the samples for it are lost; let a client bind it" "$out/said" || fail "$(cat "$out/said")"
+grep -q "channel hands: nothing came in on the UNIX socket $out/hands.sock, so no command moved ship" "$out/said" || fail "$(cat "$out/said")"

@@ -94,8 +94,8 @@ class DdsChannels::CommandInlet final : public Inlet {
 
   int fd() const override { return -1; }
 
-  void Receive(VirtualTime now, CommandSink& sink) override {
-    while (const auto sample = transport_.ends_.Take(now.ns())) {
+  void Receive(const CommandSent& now, CommandSink& sink) override {
+    while (const auto sample = transport_.ends_.Take(now.at.ns())) {
       for (const Actuator& actuator : transport_.actuators_) {
         const auto& readers = sample->readers;
         if (std::find(readers.begin(), readers.end(), actuator.reader) == readers.end()) continue;
@@ -117,8 +117,10 @@ class DdsChannels::CommandInlet final : public Inlet {
         sink.Refuse(actuator.channel,
                     fmt::format("a sample on {} {}", actuator.end->end.topic, error->message));
       } else {
-        sink.Take(actuator.channel, VirtualTime::FromNanoseconds(sample.at_ns),
-                  std::get<0>(decoded));
+        sink.Take(
+            actuator.channel,
+            {VirtualTime::FromNanoseconds(sample.at_ns), {sample.writer, sample.sender_ran_ns}},
+            std::get<0>(decoded));
       }
     };
     const dds::CommandMessage message = actuator.end->message;

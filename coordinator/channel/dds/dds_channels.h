@@ -1,8 +1,8 @@
 // The robots' channels on DDS: sensors, the clock, commands (docs/SCENARIO.md), as the
 // coordinator's own endpoints.
 //
-// Stamps are virtual CLOCK_REALTIME. What is sent goes to the hub at once, which has it arrive when
-// it is due.
+// Stamps are virtual CLOCK_REALTIME. A message goes to the hub at once, and the hub delivers it
+// when it is due.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class DdsChannels final : public Transport {
   std::unique_ptr<Outlet> OutletOf(const SensorChannelSpec& spec);
   // None where the scenario has no clock.
   std::unique_ptr<Outlet> Clock();
-  // Of all channels that carry commands on DDS: their samples come in one order.
+  // All channels that carry commands on DDS: their samples come in one order.
   std::unique_ptr<Inlet> Commands();
 
  private:

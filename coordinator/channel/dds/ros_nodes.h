@@ -1,6 +1,6 @@
 // What ROS 2's graph tools are told of the simulation's own endpoints, on `ros_discovery_info`: to
-// which node each belongs. A robot's are those of the node /ROBOT/tcsim; what no robot's client has
-// as its body, and the clock, are the node /tcsim's.
+// which node each belongs. The endpoints of a robot belong to the node /ROBOT/tcsim; endpoints of
+// bodies that no robot's client has, and the clock's, belong to the node /tcsim.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class RosNodes {
   void Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpoint, dds::EndpointKind kind,
            int domain, std::optional<int> body);
 
-  // Tells them, in each domain, whoever comes and whenever. `timestamp_ns` is DDS's source
+  // Announces them in each domain, also to programs that join later. `timestamp_ns` is DDS's source
   // timestamp.
   void Announce(dds::OwnEndpoints& ends, std::int64_t timestamp_ns) const;
 

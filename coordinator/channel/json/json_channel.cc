@@ -10,11 +10,16 @@ bool JsonOutlet::Send(const Reading& reading, VirtualTime arrives) {
 }
 
 bool JsonOutlet::HandOver(VirtualTime now) {
-  return on_the_way_.Arrive(now, [this](const std::string& datagram) { sender_->Send(datagram); });
+  return on_the_way_.Arrive(now, [this, now](const std::string& datagram) {
+    const bool is_there = sender_->Send(datagram);
+    if (is_there && watch_ != nullptr && sender_->IsHeard())
+      watch_->WorldSent(channel_, sender_->To(), now);
+  });
 }
 
-void JsonInlet::Receive(VirtualTime now, CommandSink& sink) {
+void JsonInlet::Receive(const CommandSent& now, CommandSink& sink) {
   while (const auto datagram = receiver_->Receive()) {
+    if (watch_ != nullptr) watch_->WorldReceived(channel_, now);
     TakeCommand("the command datagram", *datagram, channel_, now, sink);
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/channel/channel.h"
+#include "coordinator/channel/datagram_watch.h"
 #include "coordinator/channel/on_the_way.h"
 #include "coordinator/scenario/scenario.h"
 
@@ -17,8 +18,12 @@ namespace tcs {
 class DatagramSender {
  public:
   virtual ~DatagramSender() = default;
-  // Without waiting. What nobody has room for is lost, as on a network.
-  virtual void Send(const std::string& datagram) = 0;
+  // Does not wait. False: the datagram is lost, because the receiver has no room, as on a network.
+  virtual bool Send(const std::string& datagram) = 0;
+  virtual shm::ReceiverAddress To() const = 0;
+  // False: what was sent so far is lost, because no program had the address. Asked only where that
+  // matters.
+  virtual bool IsHeard() { return true; }
   virtual std::string WhyUnheard() const = 0;  // as Outlet's
 };
 
@@ -40,22 +45,30 @@ class JsonOutlet final : public Outlet {
   bool Send(const Reading& reading, VirtualTime arrives) override;
   VirtualTime NextDue() const override { return on_the_way_.NextDue(); }
   bool HandOver(VirtualTime now) override;
+  std::size_t Kept() const override { return on_the_way_.size(); }
   std::string WhyUnheard() const override { return sender_->WhyUnheard(); }
+  void TellOf(DatagramWatch& watch, const std::string& channel) override {
+    watch_ = &watch;
+    channel_ = channel;
+  }
 
  private:
   std::unique_ptr<DatagramSender> sender_;
   const std::vector<SensorField> fields_;
   OnTheWay on_the_way_;
+  DatagramWatch* watch_ = nullptr;
+  std::string channel_;  // for it
 };
 
 class JsonInlet final : public Inlet {
  public:
-  // Of the scenario's commands, the channel of that number.
+  // The channel with that number among the scenario's command channels.
   JsonInlet(std::unique_ptr<DatagramReceiver> receiver, std::size_t channel)
       : receiver_(std::move(receiver)), channel_(channel) {}
 
   int fd() const override { return receiver_->fd(); }
-  void Receive(VirtualTime now, CommandSink& sink) override;
+  void Receive(const CommandSent& now, CommandSink& sink) override;
+  void TellOf(DatagramWatch& watch) override { watch_ = &watch; }
   Place PlaceOf(std::size_t) const override {
     return {receiver_->Where(), "send its commands there"};
   }
@@ -63,6 +76,7 @@ class JsonInlet final : public Inlet {
  private:
   std::unique_ptr<DatagramReceiver> receiver_;
   std::size_t channel_;
+  DatagramWatch* watch_ = nullptr;
 };
 
 }  // namespace tcs

@@ -315,7 +315,7 @@ std::variant<JointTrajectory, DecodeError> DecodeTrajectory(std::string_view tex
 }
 
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
-                 VirtualTime sent, CommandSink& sink) {
+                 const CommandSent& sent, CommandSink& sink) {
   const auto give = [&](const auto& decoded) {
     if (const auto* error = std::get_if<DecodeError>(&decoded)) {
       sink.Refuse(channel, std::string(what) + " " + error->message);

@@ -32,8 +32,8 @@ struct DecodeError {
   std::string message;  // the rest of a sentence that begins with what was decoded; quotes little
 };
 
-// {"force":[x,y,z],"torque":[x,y,z]}; either may be left out and is zero then. The text is
-// whatever somebody sent: anything else, numbers that are not finite included, is an error.
+// {"force":[x,y,z],"torque":[x,y,z]}; either may be left out and is zero then. The text may be
+// anything that a program sent: all else, including numbers that are not finite, is an error.
 [[nodiscard]] std::variant<Wrench, DecodeError> DecodeCommand(std::string_view text);
 
 // {"NAME":1.5} or {"NAME":{"position":q,"velocity":v,"effort":e}} for any of `joints`: a number by
@@ -53,6 +53,6 @@ struct DecodeError {
 
 // Gives the channel's command `text` to `sink`, or refuses it; `what` it is begins the sentence.
 void TakeCommand(std::string_view what, std::string_view text, std::size_t channel,
-                 VirtualTime sent, CommandSink& sink);
+                 const CommandSent& sent, CommandSink& sink);
 
 }  // namespace tcs

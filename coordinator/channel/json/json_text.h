@@ -11,8 +11,9 @@
 
 namespace tcs {
 
-// In as few digits as read back as the same double, and with a point or an exponent: JSON readers
-// of some languages make an integer of what has neither. What is not finite is null.
+// The number in the fewest digits that read back as the same double, with a point or an exponent,
+// because JSON readers of some languages make an integer of a number without both. A number that is
+// not finite is null.
 void AppendNumber(double value, std::string& text);
 void AppendList(std::span<const double> values, std::string& text);
 

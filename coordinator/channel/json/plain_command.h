@@ -1,5 +1,5 @@
-// Commands as nearly everybody writes them, read without a tree of JSON values: a fleet sends
-// thousands of these a second.
+// Commands in their usual form, read without a tree of JSON values: a fleet sends thousands of
+// these a second.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ namespace tcs {
 // same: an escape in a key, a number beyond doubles.
 [[nodiscard]] std::optional<Wrench> ReadPlainCommand(std::string_view text);
 
-// The same of DecodeJointCommand and {"NAME":1.5} for any of `joints`, none of them twice.
+// The same for DecodeJointCommand and {"NAME":1.5} for any of `joints`, none of them twice.
 [[nodiscard]] std::optional<std::vector<JointGoal>> ReadPlainGoals(
     std::string_view text, std::span<const std::string> joints, JointQuantity quantity);
 

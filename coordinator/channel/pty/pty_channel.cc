@@ -74,6 +74,9 @@ class PtyChannels::DeviceOutlet final : public Outlet {
     return false;
   }
   VirtualTime NextDue() const override { return std::min(waiting_.NextDue(), device_.NextDue()); }
+  std::size_t Kept() const override {
+    return waiting_.size() + (device_.NextDue().IsNever() ? 0 : 1);
+  }
   bool HandOver(VirtualTime now) override {
     waiting_.Arrive(now, [&](const std::string& line) { Begin(line, now); });
     return device_.HandOver(now);
@@ -82,15 +85,16 @@ class PtyChannels::DeviceOutlet final : public Outlet {
   std::string WhatWasLost() const override {
     if (lost_ == 0) return {};
     return fmt::format(
-        "{} of its {} readings were left out, because the line was not free: one of {} bytes takes "
-        "{:.1f} ms at {} baud, and they are {:.1f} ms apart; lower the rate, or raise the baud",
+        "{} of its {} readings were left out because the line was busy: a reading of {} bytes "
+        "takes {:.1f} ms at {} baud, and readings are {:.1f} ms apart; lower the rate, or raise "
+        "the baud rate",
         lost_, count_, longest_, Milliseconds(device_.TimeOf(longest_)), device_.port().baud,
         Milliseconds(period_));
   }
   std::string WhyUnheard() const override {
     if (device_.terminal().IsOpen()) return {};
     return fmt::format(
-        "no program of {} has {} open, so that its samples are lost; let a client open it",
+        "no program of {} has opened {}, so the samples for it are lost; let a client open it",
         device_.port().robot, device_.port().path);
   }
 
@@ -123,13 +127,13 @@ class PtyChannels::DeviceInlet final : public Inlet {
   int fd() const override { return device_.terminal().fd(); }
   bool IsTerminal() const override { return true; }
 
-  void Receive(VirtualTime now, CommandSink& sink) override {
+  void Receive(const CommandSent& now, CommandSink& sink) override {
     const std::string bytes = device_.terminal().Read();
     CheckBaud(sink);
     for (const char byte : bytes) {
-      const VirtualTime gone = device_.Gone(now);
+      const VirtualTime gone = device_.Gone(now.at);
       if (byte == '\n') {
-        TakeLine(gone, sink);
+        TakeLine({gone, now.by}, sink);
         line_.clear();
       } else if (line_.size() <= kLongestLine) {
         line_ += byte;
@@ -143,7 +147,7 @@ class PtyChannels::DeviceInlet final : public Inlet {
   }
 
  private:
-  void TakeLine(VirtualTime sent, CommandSink& sink) {
+  void TakeLine(const CommandSent& sent, CommandSink& sink) {
     if (!channel_.has_value()) return;
     if (line_.find_first_not_of(" \t\r") == std::string::npos) return;
     TakeCommand("the command line", line_, *channel_, sent, sink);
@@ -154,8 +158,8 @@ class PtyChannels::DeviceInlet final : public Inlet {
     if (has_warned_ || baud == device_.port().baud) return;
     has_warned_ = true;
     sink.Note(fmt::format(
-        "a program of {} has set {} to {} baud, but in the scenario the line has {}, with which "
-        "it goes on; on a real line neither would understand the other: set one as the other",
+        "a program of {} has set {} to {} baud, but the line has {} in the scenario and keeps it; "
+        "on a real line the two ends would not understand each other: use one rate in both",
         device_.port().robot, device_.port().path, baud, device_.port().baud));
   }
 

@@ -26,7 +26,8 @@ class Terminal {
   // What programs open: "/dev/pts/3".
   const std::string& path() const { return path_; }
 
-  // To the program. What it has no room for, because nobody reads, is lost.
+  // Writes to the program. Bytes for which the terminal has no room, because no program reads, are
+  // lost.
   void Write(std::string_view bytes) const;
   // All that programs have written.
   std::string Read() const;

@@ -55,6 +55,7 @@ class ChannelRecords::WrappedOutlet final : public Outlet {
     return outlet_->Send(reading, arrives);
   }
   VirtualTime NextDue() const override { return outlet_->NextDue(); }
+  std::size_t Kept() const override { return outlet_->Kept(); }
   bool HandOver(VirtualTime now) override { return outlet_->HandOver(now); }
   std::string WhyUnheard() const override { return outlet_->WhyUnheard(); }
   std::string WhatWasLost() const override { return outlet_->WhatWasLost(); }
@@ -112,22 +113,24 @@ class ChannelRecords::Listener final : public CommandSink {
   Listener(ChannelRecords& records, std::vector<Topic>& topics, CommandSink& sink)
       : records_(records), topics_(topics), sink_(sink) {}
 
-  void Take(std::size_t channel, VirtualTime sent, const Wrench& wrench) override {
-    Note(channel, sent, dds::CommandMessage::kWrench, [&] { return dds::ToMessage(wrench); });
+  void Take(std::size_t channel, const CommandSent& sent, const Wrench& wrench) override {
+    Note(channel, sent.at, dds::CommandMessage::kWrench, [&] { return dds::ToMessage(wrench); });
     sink_.Take(channel, sent, wrench);
   }
-  void Take(std::size_t channel, VirtualTime sent, std::span<const JointGoal> goals) override {
-    Note(channel, sent, dds::CommandMessage::kJointState, [&] {
-      return dds::ToMessage(records_.sink_->StampOf(sent), sink_.GoalsOf(channel)->names, goals);
+  void Take(std::size_t channel, const CommandSent& sent,
+            std::span<const JointGoal> goals) override {
+    Note(channel, sent.at, dds::CommandMessage::kJointState, [&] {
+      return dds::ToMessage(records_.sink_->StampOf(sent.at), sink_.GoalsOf(channel)->names, goals);
     });
     sink_.Take(channel, sent, goals);
   }
-  void Take(std::size_t channel, VirtualTime sent, const PlanarSpeed& speed) override {
-    Note(channel, sent, dds::CommandMessage::kTwist, [&] { return dds::ToMessage(speed); });
+  void Take(std::size_t channel, const CommandSent& sent, const PlanarSpeed& speed) override {
+    Note(channel, sent.at, dds::CommandMessage::kTwist, [&] { return dds::ToMessage(speed); });
     sink_.Take(channel, sent, speed);
   }
-  void Take(std::size_t channel, VirtualTime sent, const JointTrajectory& trajectory) override {
-    Note(channel, sent, dds::CommandMessage::kJointTrajectory, [&] {
+  void Take(std::size_t channel, const CommandSent& sent,
+            const JointTrajectory& trajectory) override {
+    Note(channel, sent.at, dds::CommandMessage::kJointTrajectory, [&] {
       const auto offset = VirtualDuration::Nanoseconds(records_.sink_->StampOf({}));
       return dds::ToMessage(offset, sink_.GoalsOf(channel)->names, trajectory);
     });
@@ -162,7 +165,7 @@ class ChannelRecords::WrappedInlet final : public Inlet {
 
   int fd() const override { return inlet_->fd(); }
   bool IsTerminal() const override { return inlet_->IsTerminal(); }
-  void Receive(VirtualTime now, CommandSink& sink) override {
+  void Receive(const CommandSent& now, CommandSink& sink) override {
     Listener listener(records_, topics_, sink);
     inlet_->Receive(now, listener);
   }

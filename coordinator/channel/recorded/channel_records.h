@@ -7,7 +7,7 @@
 //   /channels/NAME/BODY    where it has several bodies
 //   .../imu                what such a body feels, where the channel carries that besides
 //
-// Of a body's state what the channel does not carry is NaN.
+// Numbers of a body's state that the channel does not carry are NaN.
 #pragma once
 
 #include <cstddef>

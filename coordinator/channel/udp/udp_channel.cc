@@ -22,17 +22,23 @@ class UdpSender final : public DatagramSender {
  public:
   UdpSender(UdpSocket socket, UdpEndpoint to) : socket_(std::move(socket)), to_(std::move(to)) {}
 
-  void Send(const std::string& datagram) override { (void)socket_.SendTo(to_, datagram); }
+  bool Send(const std::string& datagram) override {
+    return !socket_.SendTo(to_, datagram).has_value();
+  }
+  shm::ReceiverAddress To() const override { return KernelAddressOf(to_); }
+  // To have been bound once is enough.
+  bool IsHeard() override { return is_heard_ = is_heard_ || IsListenedTo(to_); }
   std::string WhyUnheard() const override {
     if (IsListenedTo(to_)) return {};
     return fmt::format(
-        "nobody listens on {}, so that its samples are lost; let a client bind that port",
+        "no program listens on {}, so the samples for it are lost; let a client bind that port",
         NameOf(to_));
   }
 
  private:
   UdpSocket socket_;
   UdpEndpoint to_;
+  bool is_heard_ = false;
 };
 
 class UdpReceiver final : public DatagramReceiver {

@@ -41,11 +41,12 @@ SocketError CannotBind(const UdpEndpoint& endpoint, int error) {
   const std::string port = "port " + std::to_string(endpoint.port) + " on " + endpoint.host;
   switch (error) {
     case EADDRINUSE:
-      return {port + " is taken by another program; choose another port or end that program",
+      return {port +
+                  " is taken by another program; choose another port or end that program (with "
+                  "${loopback} as the address each run has ports of its own)",
               error};
     case EADDRNOTAVAIL:
-      return {port + " cannot be listened on: this machine has no such address; use 127.0.0.1",
-              error};
+      return {port + " cannot be bound: this machine has no such address; use 127.0.0.1", error};
     case EACCES:
       return {port + " is reserved for root; choose a port above 1023", error};
     default:
@@ -101,7 +102,7 @@ std::optional<SocketError> UdpSocket::SendTo(const UdpEndpoint& to, std::string_
   const std::string target = to.host + ":" + std::to_string(to.port);
   if (error == EMSGSIZE) {
     return SocketError{"a datagram of " + std::to_string(payload.size()) + " bytes for " + target +
-                           " is longer than UDP carries; send fewer bodies in one channel",
+                           " is longer than a UDP datagram; send fewer bodies in one channel",
                        error};
   }
   return SocketError{"cannot send to " + target + ": " + std::strerror(error), error};
@@ -148,6 +149,11 @@ bool IsListenedTo(const UdpEndpoint& endpoint) {
     }
   }
   return false;
+}
+
+shm::ReceiverAddress KernelAddressOf(const UdpEndpoint& endpoint) {
+  const auto address = ToAddress(endpoint);
+  return address ? shm::AddressOf(&*address, sizeof *address) : shm::ReceiverAddress{};
 }
 
 }  // namespace tcs

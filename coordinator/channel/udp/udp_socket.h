@@ -12,6 +12,7 @@
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
+#include "shm/own_receivers.h"
 
 namespace tcs {
 
@@ -53,5 +54,8 @@ class UdpSocket {
 // Whether some socket of this machine gets what is sent to `endpoint`; true where that is not for
 // this machine to know.
 [[nodiscard]] bool IsListenedTo(const UdpEndpoint& endpoint);
+
+// As the kernel has it.
+shm::ReceiverAddress KernelAddressOf(const UdpEndpoint& endpoint);
 
 }  // namespace tcs

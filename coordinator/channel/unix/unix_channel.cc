@@ -18,11 +18,13 @@ class UnixSender final : public DatagramSender {
  public:
   UnixSender(UnixSocket socket, UnixName to) : socket_(std::move(socket)), to_(std::move(to)) {}
 
-  void Send(const std::string& datagram) override { (void)socket_.SendTo(to_, datagram); }
+  bool Send(const std::string& datagram) override { return socket_.SendTo(to_, datagram); }
+  shm::ReceiverAddress To() const override { return KernelAddressOf(to_); }
   std::string WhyUnheard() const override {
     if (IsListenedTo(to_)) return {};
     return fmt::format(
-        "nobody has the UNIX socket {}, so that its samples are lost; let a client bind it",
+        "no program has bound the UNIX socket {}, so the samples for it are lost; let a client "
+        "bind it",
         to_.Text());
   }
 

@@ -38,15 +38,18 @@ std::string CannotBind(const UnixName& name, int error) {
   switch (error) {
     case EADDRINUSE:
       return what +
-             " is taken by another program; end that one, or choose another path (with "
-             "${result_dir} in it each run has its own)";
+             " is taken by another program; end that program, or choose another path (with "
+             "${result_dir} or ${run} in it, each run has its own)";
     case ENOENT:
     case ENOTDIR:
-      return what + " cannot be made, because its folder is not there; make it, or choose another";
+      return what +
+             " cannot be made because its folder does not exist; make the folder, or choose "
+             "another path";
     case EACCES:
     case EPERM:
     case EROFS:
-      return what + " cannot be made: " + strerror(error) + "; choose a folder that you may write";
+      return what + " cannot be made: " + strerror(error) +
+             "; choose a folder in which you may write";
     default:
       return what + " cannot be made: " + strerror(error);
   }
@@ -73,8 +76,8 @@ std::variant<UnixSocket, std::string> UnixSocket::Bind(const UnixName& name) {
     error = RemoveStale(name);
     if (error == EEXIST) {
       return "'" + name.Text() +
-             "' is there and is no socket, so that no UNIX socket can be made of it; choose "
-             "another path";
+             "' exists and is not a socket, so no UNIX socket can be made there; choose another "
+             "path";
     }
     if (error == 0) error = bind(bound.fd(), address.get(), address.size) == 0 ? 0 : errno;
   }
@@ -126,6 +129,12 @@ bool IsListenedTo(const UnixName& name) {
   const Address address(name);
   return connect(std::get<UniqueFd>(opened).get(), address.get(), address.size) == 0 ||
          (errno != ECONNREFUSED && errno != ENOENT);
+}
+
+shm::ReceiverAddress KernelAddressOf(const UnixName& name) {
+  const Address address(name);
+  const std::size_t size = address.size - (name.is_abstract ? 0 : 1);
+  return shm::AddressOf(address.get(), size);
 }
 
 }  // namespace tcs

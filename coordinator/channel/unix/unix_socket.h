@@ -13,13 +13,14 @@
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
+#include "shm/own_receivers.h"
 
 namespace tcs {
 
 class UnixSocket {
  public:
-  // A socket that receives what is sent to `name`. A file of a socket that nobody has open any more
-  // is replaced.
+  // A socket that receives what is sent to `name`. The file of a socket that no program has open
+  // any more is replaced.
   [[nodiscard]] static std::variant<UnixSocket, std::string> Bind(const UnixName& name);
   // A socket for sending only; it has no name.
   [[nodiscard]] static std::variant<UnixSocket, std::string> ForSending();
@@ -32,8 +33,8 @@ class UnixSocket {
   // For epoll; stays the socket's.
   int fd() const { return fd_.get(); }
 
-  // Sends one datagram without waiting. False where nobody has the name, or no room for it: errno
-  // says which.
+  // Sends one datagram without waiting. False if no program has bound the name, or it has no room:
+  // errno says which.
   [[nodiscard]] bool SendTo(const UnixName& to, std::string_view payload);
 
   // The next datagram, whole; none if nothing has come.
@@ -48,5 +49,8 @@ class UnixSocket {
 
 // Whether some socket gets what is sent to `name`.
 [[nodiscard]] bool IsListenedTo(const UnixName& name);
+
+// As the kernel has it.
+shm::ReceiverAddress KernelAddressOf(const UnixName& name);
 
 }  // namespace tcs

@@ -108,7 +108,7 @@ std::string Heading(const DescribedOption& option) {
 
 std::string FullText(const DescribedOption& option) {
   if (option.unless_told.empty()) return option.text;
-  return option.text + "; " + option.unless_told + " unless told";
+  return option.text + " (default: " + option.unless_told + ")";
 }
 
 }  // namespace tcs

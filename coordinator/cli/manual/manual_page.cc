@@ -75,7 +75,7 @@ std::string ManualPage(const DescribedCommand& command, const std::string& paren
   if (is_program) {
     page +=
         ".SH DESCRIPTION\n"
-        "tcs runs robot programs that nobody recompiled (controllers, planners, DDS nodes) in a "
+        "tcs runs unmodified robot programs (controllers, planners, DDS nodes) in a "
         "simulation in which computing takes time: a planner that needs 0.8 s of processor time "
         "finds the world 0.8 s older when it is done. Programs run in virtual time; a scheduler "
         "runs them against the physics and charges the processor time that they really use.\n"

@@ -46,15 +46,50 @@ const tcs = (() => {
     return {...signal, data: null, values};
   }
 
+  // Of a mesh that is only looks; hulls are as they are. See looks.cc.
+  function decodeMesh(mesh) {
+    if (typeof mesh.vertices !== 'string') return mesh;
+    const corners = numbersIn(mesh.vertices), indices = numbersIn(mesh.triangles), vertices = [], triangles = [];
+    for (const sums = [0, 0, 0]; !corners.isAtEnd();) {
+      vertices.push([0, 1, 2].map(axis => mesh.least[axis] + (sums[axis] += corners.signed()) * mesh.step[axis]));
+    }
+    for (let last = 0; !indices.isAtEnd();) triangles.push([0, 1, 2].map(() => last += indices.signed()));
+    return {vertices, triangles, isLooks: true};
+  }
+
+  // Of each moment the contacts that are shown there, [pair, x, y, z, force along x, y, z] after each
+  // other, and how strong they all are. See contact_track.cc.
+  function decodeContacts(contacts, moments) {
+    if (!contacts) return {pairs: [], stride: 1, sums: false, of: [], sizes: []};
+    const {least, step} = contacts, numbers = numbersIn(contacts.data), before = contacts.pairs.map(() => []);
+    const of = [], sizes = [];
+    for (let moment = 0; moment < moments; ++moment) {
+      const count = numbers.number(), found = new Float32Array(7 * count), seen = new Map();
+      for (let at = 0; at < found.length; at += 7) {
+        const pair = numbers.number(), number = seen.get(pair) || 0;
+        seen.set(pair, number + 1);
+        const sums = before[pair][number] = before[pair][number] || [0, 0, 0, 0, 0, 0];
+        found[at] = pair;
+        for (let i = 0; i < 6; ++i) found[at + 1 + i] = least[i] + (sums[i] += numbers.signed()) * step[i];
+        sizes.push(Math.hypot(found[at + 4], found[at + 5], found[at + 6]));
+      }
+      of.push(found);
+    }
+    const pairs = contacts.pairs.map(([first, second, secondMoves]) => ({first, second, secondMoves}));
+    return {pairs, stride: contacts.stride, sums: contacts.sums, of, sizes};
+  }
+
   function decode(run) {
     const numbers = numbersIn(run.times);
     run.time = new Float64Array(run.count);
     for (let i = 0, us = 0; i < run.count; ++i) run.time[i] = (us += numbers.number()) / 1e6;
     run.tracks = run.tracks.map(decodeTrack);
     run.signals = run.signals.map(decodeSignal);
+    run.contacts = decodeContacts(run.contacts, run.count);
     run.said = run.said.map(([us, client, stream, text, isMark]) => ({time: us / 1e6, client, stream, text, isMark}));
     run.end = Math.max(run.end, run.count ? run.time[run.count - 1] : 0, 1e-6);
     run.scene = run.scene || {region: null, fixtures: [], meshes: [], sensors: [], tracks: []};
+    run.scene.meshes = run.scene.meshes.map(decodeMesh);
     return run;
   }
 
@@ -93,6 +128,17 @@ const tcs = (() => {
     size = Math.sqrt(size) || 1;
     for (let i = 3; i < 7; ++i) pose[i] /= size;
     return pose;
+  }
+
+  // What touches what: where, and what the first one feels. Of the last moment that has any, not
+  // between two: contacts come and go.
+  function contactsAt(run, time) {
+    const {pairs, stride, of} = run.contacts, moment = momentAt(run, time);
+    const found = of[moment - moment % stride] || [], list = [];
+    for (let at = 0; at < found.length; at += 7) {
+      list.push({...pairs[found[at]], point: [...found.subarray(at + 1, at + 4)], force: [...found.subarray(at + 4, at + 7)]});
+    }
+    return list;
   }
 
   // --- The moment ----------------------------------------------------------------------------------
@@ -170,6 +216,11 @@ const tcs = (() => {
       if (known) known.values.push(...signal.values);
       else run.signals.push({...signal, first: signal.first + run.count});
     }
+    const {contacts} = run, missing = run.count - contacts.of.length;
+    for (let i = 0; i < missing; ++i) contacts.of.push(new Float32Array(0));
+    run.contacts = {...contacts, stride: part.contacts.stride, sums: part.contacts.sums,
+                    pairs: part.contacts.pairs.length ? part.contacts.pairs : contacts.pairs,
+                    of: contacts.of.concat(part.contacts.of), sizes: contacts.sizes.concat(part.contacts.sizes)};
     run.time = joined(run.time, part.time);
     run.count += part.count;
     run.said.push(...part.said);
@@ -226,7 +277,7 @@ const tcs = (() => {
 
   return Object.assign(state, {
     grow, follow,
-    numbersIn, momentAt, poseAt, seek, step, play, pause,
+    numbersIn, momentAt, poseAt, contactsAt, seek, step, play, pause,
     on: listener => listeners.push(listener),
     toggle: () => state.isPlaying ? pause() : play(),
     setSpeed: speed => { state.speed = speed; tell('playing'); },

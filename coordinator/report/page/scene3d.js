@@ -7,7 +7,7 @@
   const stage = replay.querySelector('.stage');
   const canvas = replay.querySelector('canvas');
   const nameLayer = replay.querySelector('.names');
-  const options = {follow: false, trails: true, names: true, rays: false};
+  const options = {follow: false, trails: true, names: true, rays: false, forces: false};
   replay.hidden = false;
 
   // --- What is chosen, with or without WebGL -------------------------------------------------------
@@ -18,6 +18,11 @@
     set('robot').value = tcs.robot;
     set('robot').closest('label').hidden = tcs.run.robots.length < 2;
     replay.querySelector('.of-rays').hidden = tcs.run.scene.sensors.length === 0;
+    offerForces();
+  }
+  // Of a run that goes on, from the first contact on.
+  function offerForces() {
+    replay.querySelector('.of-forces').hidden = tcs.run.contacts.sizes.length === 0;
   }
   tcs.runs.forEach((run, i) => set('run').add(new Option(run.name, i)));
   replay.querySelector('.of-run').hidden = tcs.runs.length < 2;
@@ -36,7 +41,7 @@
         'The views from above and from the side, below, follow the time all the same.';
     stage.classList.add('is-flat');
     stage.removeAttribute('tabindex');
-    ['follow', 'trails', 'names', 'rays'].forEach(name => { set(name).closest('label').hidden = true; });
+    ['follow', 'trails', 'names', 'rays', 'forces'].forEach(name => { set(name).closest('label').hidden = true; });
     tcs.on(what => { if (what === 'run') fillRobots(); });
     tcs.view = null;
     return;
@@ -47,7 +52,7 @@
   const colours = {};
   function readColours() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ['paper', 'ink', 'faint', 'grid', 'panel', 's0', 's1', 's2', 's3', 's4', 's5', 's6']) {
+    for (const name of ['paper', 'ink', 'faint', 'grid', 'panel', 'force', 's0', 's1', 's2', 's3', 's4', 's5', 's6']) {
       colours[name] = new THREE.Color(style.getPropertyValue(`--${name}`).trim());
     }
     colours.stage = new THREE.Color(style.getPropertyValue('--stage').trim());
@@ -62,7 +67,7 @@
   const camera = new THREE.PerspectiveCamera(40, 16 / 9, 0.01, 5000);
   camera.up.set(0, 0, 1);
   const orbit = {target: new THREE.Vector3(), radius: 10, turn: -2.2, height: 0.5};
-  let scene = null, groups = [], trails = [], stalks = [], rays = null, bounds = null, names = [], reaches = [];
+  let scene = null, groups = [], trails = [], stalks = [], rays = null, arrows = null, bounds = null, names = [], reaches = [];
 
   const vector = list => new THREE.Vector3(...list);
   const place = (object, pose) => {
@@ -143,10 +148,12 @@
     const given = shape.colour;
     const material = new THREE.MeshLambertMaterial({color: given ? new THREE.Color(...given.slice(0, 3)) : colour});
     if (given && given[3] < 1) Object.assign(material, {transparent: true, opacity: given[3]});
+    const isLooks = shape.kind === 'mesh' && meshes[shape.mesh].isLooks;
+    if (isLooks) material.side = THREE.DoubleSide;  // files turn their triangles either way
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = mesh.receiveShadow = true;
     place(mesh, shape.pose);
-    if (shape.kind !== 'sphere' && shape.kind !== 'capsule') {
+    if (shape.kind !== 'sphere' && shape.kind !== 'capsule' && !isLooks) {
       const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 30),
                                            new THREE.LineBasicMaterial({color: colours.ink, transparent: true, opacity: 0.3}));
       mesh.add(edges);
@@ -304,6 +311,7 @@
       return label;
     });
     rays = null;
+    makeArrows(run);
     draw();
   }
 
@@ -363,6 +371,89 @@
     scene.add(rays);
   }
 
+  // --- Contact forces --------------------------------------------------------------------------------
+
+  // The strength that nine of ten contacts stay below, rounded up, is an arrow about as long as a
+  // robot, and seen from afar, too; blows are cut.
+  const MOST = 2.5;
+  function scaleArrows(run) {
+    const {sizes} = run.contacts, stride = Math.ceil(sizes.length / 5000);
+    const some = sizes.filter((size, i) => i % stride === 0).sort((a, b) => a - b);
+    const usual = some.length ? Math.max(1e-6, some[Math.floor(0.9 * (some.length - 1))]) : 1;
+    const power = Math.pow(10, Math.floor(Math.log10(usual)));
+    const round = [1, 2, 5, 10].map(f => f * power).find(size => size >= usual * (1 - 1e-9));
+    const length = Math.max(0.9 * Math.max(...reaches, 0.02), 0.05 * bounds.getSize(new THREE.Vector3()).length());
+    const isCut = sizes.some(size => size > MOST * round);
+    Object.assign(arrows, {perNewton: length / round, length, most: MOST * round, isCut});
+  }
+  function makeArrows(run) {
+    const geometry = new THREE.BufferGeometry();
+    // What they are in shall not hide them.
+    const material = new THREE.MeshBasicMaterial({color: colours.force, transparent: true, opacity: 0.9, depthTest: false, side: THREE.DoubleSide});
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 1;
+    arrows = {mesh, room: 0};
+    scaleArrows(run);
+    scene.add(mesh);
+  }
+
+  const RIM = [0, 1, 2, 3, 4, 5, 6].map(i => [Math.cos(i * Math.PI / 3), Math.sin(i * Math.PI / 3)]);
+  const NUMBERS = 6 * 4 * 9;  // of an arrow: for each side two triangles of the shaft and two of the head
+  function putArrow(array, at, from, force, pixel) {
+    const size = force.length();
+    if (!(size > 0)) return at;
+    const towards = force.clone().divideScalar(size), long = Math.min(size, arrows.most) * arrows.perNewton;
+    const aside = new THREE.Vector3(Math.abs(towards.x) < 0.7 ? 1 : 0, Math.abs(towards.x) < 0.7 ? 0 : 1, 0).cross(towards).normalize();
+    const other = towards.clone().cross(aside);
+    // A short one is small as a whole, and the thinnest can be seen.
+    const wide = Math.min(arrows.length, 2 * long), head = 0.26 * wide, neck = long - head;
+    const put = (along, radius, [c, s]) => {
+      for (const axis of ['x', 'y', 'z']) array[at++] = from[axis] + along * towards[axis] + radius * (c * aside[axis] + s * other[axis]);
+    };
+    for (let i = 0; i < 6; ++i) {
+      const thin = Math.max(0.022 * wide, 0.7 * pixel), thick = Math.max(0.085 * wide, 2.2 * pixel), [a, b] = [RIM[i], RIM[i + 1]];
+      put(0, thin, a); put(0, thin, b); put(neck, thin, a);
+      put(neck, thin, a); put(0, thin, b); put(neck, thin, b);
+      put(neck, thick, a); put(neck, thick, b); put(long, 0, a);
+      put(neck, 0, a); put(neck, thick, b); put(neck, thick, a);
+    }
+    return at;
+  }
+
+  function showForces() {
+    const scale = replay.querySelector('.force-scale');
+    arrows.mesh.visible = options.forces;
+    scale.hidden = !options.forces;
+    if (!options.forces) return;
+    const found = tcs.contactsAt(tcs.run, tcs.time), {geometry} = arrows.mesh;
+    if (2 * found.length > arrows.room || !arrows.room) {
+      arrows.room = Math.max(64, 4 * found.length);
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(NUMBERS * arrows.room), 3));
+    }
+    const {position} = geometry.attributes, pixel = 1 / pixelsPerMetre();
+    let at = 0;
+    for (const {point, force, secondMoves} of found) {
+      at = putArrow(position.array, at, vector(point), vector(force), pixel);
+      if (secondMoves) at = putArrow(position.array, at, vector(point), vector(force).negate(), pixel);
+    }
+    geometry.setDrawRange(0, at / 3);
+    position.needsUpdate = true;
+    showScale(scale);
+  }
+  // Where the camera looks.
+  const pixelsPerMetre = () => stage.clientHeight / (2 * orbit.radius * Math.tan(camera.fov * Math.PI / 360));
+  // A round number of newtons, as long as it is where the camera looks.
+  function showScale(scale) {
+    const pixels = pixelsPerMetre() * arrows.perNewton;
+    const power = Math.pow(10, Math.floor(Math.log10(90 / pixels)));
+    const newtons = [5, 2, 1].map(f => f * power).find(n => n * pixels <= 90);
+    const text = n => `${Number(n.toPrecision(2)).toLocaleString('en', {maximumFractionDigits: 9})}\u00a0N`;
+    scale.querySelector('i').style.width = `${(newtons * pixels).toFixed(1)}px`;
+    scale.querySelector('span').textContent = text(newtons) + (arrows.isCut ? `, cut at ${text(arrows.most)}` : '') +
+        (tcs.run.contacts.sums ? ', summed' : '');
+  }
+
   function showNames() {
     const {clientWidth: width, clientHeight: height} = stage;
     const many = names.length > 8;
@@ -417,6 +508,7 @@
     }
     showRays();
     aim();
+    showForces();
     renderer.render(scene, camera);
     showNames();
     if (++pictures === 1) document.documentElement.dataset.firstPicture = Math.round(performance.now());
@@ -543,7 +635,7 @@
     options.follow = set('follow').checked = false;
     lookAt(button.dataset.look);
   }));
-  for (const name of ['follow', 'trails', 'names', 'rays']) {
+  for (const name of ['follow', 'trails', 'names', 'rays', 'forces']) {
     set(name).addEventListener('change', () => {
       options[name] = set(name).checked;
       if (name === 'follow' && options.follow) orbit.radius = Math.min(orbit.radius, bounds.getSize(new THREE.Vector3()).length() * 0.35);
@@ -556,6 +648,10 @@
       fillRobots();
       build();
       if (!tcs.isLive) lookAt('free');
+    }
+    if (what === 'grown') {
+      offerForces();
+      scaleArrows(tcs.run);
     }
     if (what === 'grown' && !(isInBounds() && trails.every(lengthen))) build();
     if ((what === 'grown' || (what === 'run' && tcs.isLive)) && !isAimed && !options.follow && !bounds.equals(fitted)) {

@@ -20,6 +20,7 @@ namespace {
 constexpr double kPeriodS = 0.01;
 
 struct Options {
+  std::string address = "127.0.0.1";
   std::uint16_t sensors_port = 0;
   std::uint16_t commands_port = 0;
   PreyOptions prey;
@@ -35,8 +36,8 @@ void WaitForEither(int first, int second) {
 }
 
 void Run(const Options& options) {
-  UdpSocket sensors = UdpSocket::BoundTo(options.sensors_port);
-  UdpSocket commands = UdpSocket::ConnectedTo(options.commands_port);
+  UdpSocket sensors = UdpSocket::BoundTo(options.address, options.sensors_port);
+  UdpSocket commands = UdpSocket::ConnectedTo(options.address, options.commands_port);
   PeriodicTimer timer(kPeriodS);
   FleeOrWander behaviour(options.prey);
   std::optional<SensorReading> seen;
@@ -63,6 +64,8 @@ int main(int argc, char** argv) {
   PreyOptions& prey = options.prey;
   CommandLine command_line("Controls the prey: flees from the predator or wanders.",
                            "prey_controller");
+  command_line.AddText("--address", options.address, "IPv4 address of both ports",
+                       [](const std::string&) { return std::string(); });
   command_line.AddPort("--sensors-port", options.sensors_port,
                        "UDP port to receive sensor readings on");
   command_line.AddPort("--commands-port", options.commands_port,

@@ -1,5 +1,6 @@
 #include "examples/predator_prey/prey_controller/udp_socket.h"
 
+#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -15,11 +16,13 @@ std::system_error SystemError(const std::string& what) {
   return std::system_error(errno, std::generic_category(), what);
 }
 
-sockaddr_in Loopback(std::uint16_t port) {
+sockaddr_in AddressOf(const std::string& host, std::uint16_t port) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) {
+    throw std::system_error(EINVAL, std::generic_category(), "no IPv4 address: " + host);
+  }
   return address;
 }
 
@@ -31,18 +34,18 @@ UniqueFd OpenUdp() {
 
 }  // namespace
 
-UdpSocket UdpSocket::BoundTo(std::uint16_t port) {
+UdpSocket UdpSocket::BoundTo(const std::string& host, std::uint16_t port) {
   UdpSocket socket(OpenUdp());
-  const sockaddr_in address = Loopback(port);
+  const sockaddr_in address = AddressOf(host, port);
   if (::bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     throw SystemError("cannot receive on UDP port " + std::to_string(port));
   }
   return socket;
 }
 
-UdpSocket UdpSocket::ConnectedTo(std::uint16_t port) {
+UdpSocket UdpSocket::ConnectedTo(const std::string& host, std::uint16_t port) {
   UdpSocket socket(OpenUdp());
-  const sockaddr_in address = Loopback(port);
+  const sockaddr_in address = AddressOf(host, port);
   if (::connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     throw SystemError("cannot send to UDP port " + std::to_string(port));
   }

@@ -1,4 +1,4 @@
-// A UDP socket on the loopback interface. Owns its descriptor. For one thread.
+// A UDP socket of this computer. Owns its descriptor. For one thread.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@ namespace predator_prey {
 
 class UdpSocket {
  public:
-  // Receives on `port`. Throws std::system_error, which says which port, when it is taken.
-  static UdpSocket BoundTo(std::uint16_t port);
+  // Receives on `port` of `address`, IPv4 in numbers. Throws std::system_error, which says which
+  // port, when it is taken.
+  static UdpSocket BoundTo(const std::string& address, std::uint16_t port);
 
-  // Sends to `port`.
-  static UdpSocket ConnectedTo(std::uint16_t port);
+  // Sends to `port` of `address`.
+  static UdpSocket ConnectedTo(const std::string& address, std::uint16_t port);
 
   int fd() const { return fd_.get(); }
 

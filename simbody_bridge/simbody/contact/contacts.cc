@@ -110,8 +110,8 @@ void Contacts::Find(const SimTK::State& state, std::vector<Contact>* contacts) {
     touches_.clear();
     FindTouches(a, b, &touches_);
     for (const Touch& touch : touches_) {
-      contacts->push_back(
-          {first.body, second.body, touch, pair.friction, pair.stiffness_npm, pair.damping_nspm});
+      contacts->push_back({first.body, second.body, pair.first, pair.second, touch, pair.friction,
+                           pair.stiffness_npm, pair.damping_nspm});
     }
   }
 }

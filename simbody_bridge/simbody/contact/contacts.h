@@ -1,6 +1,7 @@
 // What touches what among the bodies of an island and the world's fixtures.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace tcs {
 
 // A touch as two bodies feel it: a spring with a damper along the normal, and friction across it.
 struct Contact {
-  int first = kWorldBody, second = kWorldBody;  // bodies of the forest
+  int first = kWorldBody, second = kWorldBody;    // bodies of the forest
+  std::size_t first_shape = 0, second_shape = 0;  // and their shapes
   Touch touch;
   double friction = 0;
   double stiffness_npm = 0, damping_nspm = 0;

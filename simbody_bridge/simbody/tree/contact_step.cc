@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simbody_bridge/simbody/tree/mimics.h"
+#include "simbody_bridge/simbody/vectors.h"
+
 namespace tcs {
 namespace {
 
@@ -17,32 +20,6 @@ constexpr double kStickMps = 1e-4;
 Vector3d ToEigen(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
-
-void ContactStep::Reduce(const SimbodyTree& tree) {
-  const SimTK::State& state = tree.evaluated();
-  const Forest& forest = tree.forest();
-  const int all = state.getNU();
-  std::vector<int> leader(static_cast<std::size_t>(all), -1);
-  std::vector<double> multiplier(static_cast<std::size_t>(all), 1);
-  for (const ForestJoint& joint : forest.joints) {
-    if (joint.leader < 0) continue;
-    const int body = forest.joints[static_cast<std::size_t>(joint.leader)].body;
-    const auto own = static_cast<std::size_t>(int{tree.body(joint.body).getFirstUIndex(state)});
-    leader[own] = tree.body(body).getFirstUIndex(state);
-    multiplier[own] = joint.joint->mimic->multiplier;
-  }
-  std::vector<int> column(static_cast<std::size_t>(all), -1);
-  int columns = 0;
-  for (int u = 0; u < all; ++u) {
-    if (leader[static_cast<std::size_t>(u)] < 0) column[static_cast<std::size_t>(u)] = columns++;
-  }
-  reduction_.setZero(all, columns);
-  for (int u = 0; u < all; ++u) {
-    const auto i = static_cast<std::size_t>(u);
-    const int of = leader[i] < 0 ? column[i] : column[static_cast<std::size_t>(leader[i])];
-    reduction_(u, of) = multiplier[i];
-  }
-}
 
 void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact) {
   const SimTK::State& state = tree.evaluated();
@@ -95,13 +72,15 @@ void ContactStep::Assemble(SimbodyTree& tree, double h) {
 void ContactStep::Solve(double h) {
   system_ = mass_;
   change_ = force_;
-  for (const Row& row : rows_) {
+  for (Row& row : rows_) {
+    row.is_solved_for = !row.is_open;
     if (row.is_open) continue;
     const Contact& contact = row.contact;
     const Vector3d normal = ToEigen(contact.touch.normal);
     const double weight = contact.touch.weight;
     const double along = weight * (contact.damping_nspm + h * contact.stiffness_npm);
     const double across = contact.friction * row.normal_n / std::max(kStickMps, row.sliding.norm());
+    row.across_nspm = across;
     const Matrix3d slope =
         (along - across) * normal * normal.transpose() + across * Matrix3d::Identity();
     const Vector3d force =
@@ -123,6 +102,7 @@ bool ContactStep::Update(double h) {
     const double pushes =
         contact.touch.weight * (contact.stiffness_npm * (contact.touch.depth - h * leaving) -
                                 contact.damping_nspm * leaving);
+    row.along_n = pushes;
     const bool was_open = row.is_open;
     row.is_open = pushes <= 0;
     const double before_n = row.normal_n;
@@ -135,6 +115,21 @@ bool ContactStep::Update(double h) {
   return has_changed;
 }
 
+void ContactStep::FindForces(std::vector<ShapeContact>* contacts) const {
+  contacts->clear();
+  for (const Row& row : rows_) {
+    if (!row.is_solved_for) continue;
+    const Contact& contact = row.contact;
+    const Vector3d normal = ToEigen(contact.touch.normal);
+    const Vector3d force = row.along_n * normal - row.across_nspm * row.sliding;
+    contacts->push_back({contact.first_shape,
+                         contact.second_shape,
+                         ToArray(contact.touch.point),
+                         ToArray(contact.touch.normal),
+                         {force[0], force[1], force[2]}});
+  }
+}
+
 void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   const std::size_t size = step.from.size();
   step.from_rate.resize(size);
@@ -142,13 +137,14 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
   const SimTK::State& state = tree.evaluated();
   step.length_s = h;
   step.next_try_s = step.try_s;
+  step.course.clear();
   step.to = step.from;
+  rows_.clear();
   const bool is_known = std::isfinite(step.from_rate.back());
   if (is_known) {
-    Reduce(tree);
+    Reduce(tree, &reduction_);
     Assemble(tree, h);
     tree.contacts().Find(state, &contacts_);
-    rows_.clear();
     for (const Contact& contact : contacts_) AddRow(tree, contact);
     for (int round = 0; round < kRounds; ++round) {
       Solve(h);

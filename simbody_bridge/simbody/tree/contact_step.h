@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "simbody_bridge/contact_forces.h"
 #include "simbody_bridge/island_engine.h"
 #include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/simbody/tree/tree.h"
@@ -20,6 +21,8 @@ class ContactStep {
  public:
   // Takes a step as long as `length_s`, within step.limit.
   void Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
+  // What touched in the step that was taken last, with the forces that its speeds come from.
+  void FindForces(std::vector<ShapeContact>* contacts) const;
 
  private:
   // A contact's two bodies in one: velocities of the first beside the second at the point.
@@ -30,14 +33,17 @@ class ContactStep {
     double normal_n = 0;                                // force along the normal
     Eigen::Vector3d sliding = Eigen::Vector3d::Zero();  // across it, as in the last round
     bool is_open = false;                               // it would pull
+    // In the last round.
+    bool is_solved_for = false;  // it was not open
+    double across_nspm = 0;      // of friction, by the speed of sliding
+    double along_n = 0;          // what the spring and the damper give; may be negative
   };
-  void Reduce(const SimbodyTree& tree);
   void Assemble(SimbodyTree& tree, double h);
   void AddRow(const SimbodyTree& tree, const Contact& contact);
   void Solve(double h);
   bool Update(double h);
 
-  // The speeds are `reduction_` times those of joints that mimic no other.
+  // See mimics.h.
   Eigen::MatrixXd reduction_;
   Eigen::MatrixXd mass_, system_;
   Eigen::VectorXd force_, change_;

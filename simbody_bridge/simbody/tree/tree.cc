@@ -169,6 +169,34 @@ void SimbodyTree::EvaluateOrRecall(std::span<const double> state, std::span<cons
   std::copy(recalled_.rate.begin(), recalled_.rate.end(), rate);
 }
 
+void SimbodyTree::CoordinateRates(std::span<const double> state, std::span<const double> speeds,
+                                  std::span<double> rates) const {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const StateSlots& slots = slots_[i];
+    const double* of_body = &speeds[slots.u - static_cast<std::size_t>(state_.getNQ())];
+    double* into = &rates[slots.q];
+    if (forest_.bodies[i].kind == JointKind::kFloating) {
+      const SimTK::Vec4 wxyz = SimTK::Vec4::getAs(&state[slots.q]);
+      SimTK::Vec4::updAs(into) =
+          SimTK::Rotation::calcUnnormalizedNForQuaternion(wxyz) * SimTK::Vec3::getAs(of_body);
+      into += 4, of_body += 3;
+      std::copy_n(of_body, 3, into);
+    } else {
+      std::copy_n(of_body, slots.u_count, into);
+    }
+  }
+}
+
+void SimbodyTree::Linearise(std::span<const double> state, std::span<const Wrench> acting,
+                            SimTK::Matrix* mass, std::vector<double>* by_speed,
+                            std::vector<double>* by_coordinate) {
+  acting_ = acting;
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Position);
+  matter_.calcM(state_, *mass);
+  joint_force_->Slopes(state_, by_speed, by_coordinate);
+}
+
 void SimbodyTree::NormaliseQuaternions(std::span<double> state) const {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (forest_.bodies[i].kind != JointKind::kFloating) continue;

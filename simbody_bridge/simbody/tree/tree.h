@@ -34,6 +34,13 @@ class SimbodyTree {
   // one before has ended.
   void EvaluateOrRecall(std::span<const double> state, std::span<const Wrench> acting,
                         double* rate);
+  // How fast the coordinates of `state` grow at these speeds.
+  void CoordinateRates(std::span<const double> state, std::span<const double> speeds,
+                       std::span<double> rates) const;
+  // For steps that are implicit in what acts along the joints: the mass matrix at `state`, and
+  // JointForce::Slopes there where `acting` acts.
+  void Linearise(std::span<const double> state, std::span<const Wrench> acting, SimTK::Matrix* mass,
+                 std::vector<double>* by_speed, std::vector<double>* by_coordinate);
   // Makes quaternions unit length again.
   void NormaliseQuaternions(std::span<double> state) const;
   // The same, and takes joints that mimic others to where these are.

@@ -6,6 +6,7 @@
 #include "simbody_bridge/one_line.h"
 #include "simbody_bridge/simbody/steps.h"
 #include "simbody_bridge/simbody/tree/contact_step.h"
+#include "simbody_bridge/simbody/tree/servo_steps.h"
 #include "simbody_bridge/simbody/tree/tree_steps.h"
 
 namespace tcs {
@@ -19,7 +20,24 @@ constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 struct SteppedTree : SimbodyTree {
   using SimbodyTree::SimbodyTree;
 
+  // Takes a step in which nothing touches.
+  void TakeControlled(ModelLoads& loads, IslandStep& step, double accuracy, double limit_s) {
+    if (ServoSteps::AreFor(*this, loads.At(step, 0))) {
+      servo_steps.TakeControlled(*this, loads, step, accuracy, limit_s);
+    } else {
+      steps.TakeControlled(*this, loads, step, accuracy, limit_s);
+    }
+  }
+  void TakeWhole(ModelLoads& loads, IslandStep& step) {
+    if (ServoSteps::AreFor(*this, loads.At(step, 0))) {
+      servo_steps.TakeWhole(*this, loads, step);
+    } else {
+      steps.TakeWhole(*this, loads, step);
+    }
+  }
+
   TreeSteps steps;
+  ServoSteps servo_steps;
   ContactStep contact_step;
   IslandStep shortened;
 };
@@ -39,22 +57,17 @@ class TreeEngine : public ForestEngine<SteppedTree> {
   void Take(IslandStep& step) override {
     SteppedTree& tree = At(step.island);
     ModelLoads& loads = LoadsOn(step.island);
-    const double limit_s = step.limit.seconds();
     const double free_s = tree.TimeToTouch(step.from);
-    if (has_set_steps_) {
-      if (free_s < limit_s) {
-        tree.contact_step.Take(tree, loads, step, limit_s);
-      } else {
-        tree.steps.TakeWhole(tree, loads, step);
-      }
-    } else if (free_s < std::min(kContactStep, step.limit).seconds()) {
-      tree.contact_step.Take(tree, loads, step, std::min(kContactStep, step.limit).seconds());
+    if (const double contact_s = ContactStepOf(step).seconds(); free_s < contact_s) {
+      tree.contact_step.Take(tree, loads, step, contact_s);
+    } else if (has_set_steps_) {
+      tree.TakeWhole(loads, step);
     } else {
-      tree.steps.TakeControlled(tree, loads, step, accuracy_, std::min(limit_s, free_s));
+      tree.TakeControlled(loads, step, accuracy_, std::min(step.limit.seconds(), free_s));
       // It was pushed harder than is trusted.
       while (step.length_s > kContactStep.seconds() &&
              tree.MayHaveTouched(step.to, step.length_s)) {
-        tree.steps.TakeControlled(tree, loads, step, accuracy_, step.length_s / 2);
+        tree.TakeControlled(loads, step, accuracy_, step.length_s / 2);
       }
     }
   }
@@ -64,11 +77,34 @@ class TreeEngine : public ForestEngine<SteppedTree> {
       TakeShortened(*this, step, after, &At(step.island).shortened, state);
       return;
     }
-    InterpolateNumbers(step, after.seconds(), state);
-    At(step.island).NormaliseQuaternions(*state);
+    SteppedTree& tree = At(step.island);
+    if (ServoSteps::Took(step)) {
+      tree.servo_steps.Within(tree, step, after.seconds(), state);
+    } else {
+      InterpolateNumbers(step, after.seconds(), state);
+    }
+    tree.NormaliseQuaternions(*state);
+  }
+
+  void ReadContacts(const IslandStep& step, VirtualDuration after,
+                    std::vector<ContactForce>* contacts) override {
+    SteppedTree& tree = At(step.island);
+    IslandStep again = step;
+    if (has_set_steps_) again.limit = after;
+    const double contact_s = ContactStepOf(again).seconds();
+    if (tree.TimeToTouch(again.from) >= contact_s) return;
+    tree.contact_step.Take(tree, LoadsOn(step.island), again, contact_s);
+    std::vector<ShapeContact> found;
+    tree.contact_step.FindForces(&found);
+    AppendForces(ForestOf(step.island), found, contacts);
   }
 
  private:
+  // How long a step is that is one of contact.
+  VirtualDuration ContactStepOf(const IslandStep& step) const {
+    return has_set_steps_ ? step.limit : std::min(kContactStep, step.limit);
+  }
+
   const bool has_set_steps_;
   const VirtualDuration longest_step_;
   const double accuracy_;

@@ -1,5 +1,5 @@
 // Simbody as an engine of islands of models: it gives their derivatives, and the steps are
-// Runge-Kutta 3's.
+// Runge-Kutta 3's, of the exponential kind where servos act.
 #pragma once
 
 #include <memory>

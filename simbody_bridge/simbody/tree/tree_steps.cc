@@ -1,25 +1,15 @@
 #include "simbody_bridge/simbody/tree/tree_steps.h"
 
-#include <algorithm>
-
 #include "simbody_bridge/simbody/kutta.h"
+#include "simbody_bridge/simbody/tree/try_lengths.h"
 
 namespace tcs {
-namespace {
-
-// In whole nanoseconds, as islands count: the next step then begins where this one ends, and its
-// first derivatives are known.
-double WholeNanoseconds(double seconds) {
-  const auto ns = static_cast<std::int64_t>(seconds * 1e9);
-  return ns > 0 ? VirtualDuration::Nanoseconds(ns).seconds() : seconds;
-}
-
-}  // namespace
 
 void TreeSteps::Begin(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
   const std::size_t size = step.from.size();
   step.to.resize(size);
   step.from_rate.resize(size);
+  step.course.clear();
   state_.resize(size);
   middle_rate_.resize(size);
   end_rate_.resize(size);
@@ -43,14 +33,10 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
 void TreeSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
                                double accuracy, double limit_s) {
   Begin(tree, loads, step);
-  StepLength length(step,
-                    std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
-  if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
-  for (;;) {
-    Try(tree, loads, step, length.seconds());
-    if (length.Judge(ErrorOf(tree, step, length.seconds()), accuracy, &step)) break;
-    length.Set(WholeNanoseconds(length.seconds()));
-  }
+  TryLengths(tree, accuracy, limit_s, &step, [&](double h) {
+    Try(tree, loads, step, h);
+    return ErrorOf(tree, step, h);
+  });
   tree.Project(step.to);
   step.to_rate.resize(step.to.size());
   tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());

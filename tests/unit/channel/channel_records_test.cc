@@ -64,7 +64,7 @@ class Told final : public Inlet {
   explicit Told(Giving give) : give_(std::move(give)) {}
   int fd() const override { return 42; }
   bool IsTerminal() const override { return true; }
-  void Receive(VirtualTime, CommandSink& sink) override { give_(sink); }
+  void Receive(const CommandSent&, CommandSink& sink) override { give_(sink); }
   Place PlaceOf(std::size_t) const override { return {"there", "mend it"}; }
 
  private:
@@ -73,10 +73,10 @@ class Told final : public Inlet {
 
 class Taker final : public CommandSink {
  public:
-  void Take(std::size_t, VirtualTime, const Wrench&) override { ++taken; }
-  void Take(std::size_t, VirtualTime, std::span<const JointGoal>) override { ++taken; }
-  void Take(std::size_t, VirtualTime, const PlanarSpeed&) override { ++taken; }
-  void Take(std::size_t, VirtualTime, const JointTrajectory&) override { ++taken; }
+  void Take(std::size_t, const CommandSent&, const Wrench&) override { ++taken; }
+  void Take(std::size_t, const CommandSent&, std::span<const JointGoal>) override { ++taken; }
+  void Take(std::size_t, const CommandSent&, const PlanarSpeed&) override { ++taken; }
+  void Take(std::size_t, const CommandSent&, const JointTrajectory&) override { ++taken; }
   std::optional<GoalNames> GoalsOf(std::size_t) const override { return GoalNames{joints}; }
   void Refuse(std::size_t, const std::string&) override { ++refused; }
   void Note(const std::string&) override { ++notes; }

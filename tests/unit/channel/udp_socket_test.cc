@@ -83,7 +83,7 @@ TEST(UdpSocket, DatagramsTooLongAreExplained) {
   UdpSocket socket = Bound();
   const auto error = socket.SendTo(socket.LocalEndpoint(), std::string(65508, 'x'));
   ASSERT_TRUE(error);
-  EXPECT_THAT(error->message, AllOf(HasSubstr("65508 bytes"), HasSubstr("longer than UDP")));
+  EXPECT_THAT(error->message, AllOf(HasSubstr("65508 bytes"), HasSubstr("longer than a UDP")));
 }
 
 TEST(UdpSocket, SendingToNobodyIsNoError) {

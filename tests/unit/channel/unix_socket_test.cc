@@ -68,12 +68,12 @@ TEST_F(UnixSocketTest, MovesWithItsFile) {
 
 TEST_F(UnixSocketTest, WhatIsInItsWayIsNamed) {
   const UnixSocket holder = Bound(Name("s"));
-  EXPECT_THAT(Complaint(Name("s")), HasSubstr("is taken by another program; end that one"));
+  EXPECT_THAT(Complaint(Name("s")), HasSubstr("is taken by another program; end that program"));
   EXPECT_TRUE(IsListenedTo(Name("s")));
   std::ofstream(Name("file").name) << "kept";
-  EXPECT_THAT(Complaint(Name("file")), HasSubstr("is there and is no socket"));
+  EXPECT_THAT(Complaint(Name("file")), HasSubstr("exists and is not a socket"));
   EXPECT_TRUE(std::filesystem::exists(Name("file").name));
-  EXPECT_THAT(Complaint(Name("nowhere/s")), HasSubstr("its folder is not there"));
+  EXPECT_THAT(Complaint(Name("nowhere/s")), HasSubstr("its folder does not exist"));
   const UnixName abstract{"tcs-test2" + folder_, true};
   const UnixSocket other = Bound(abstract);
   EXPECT_THAT(Complaint(abstract), HasSubstr("'@tcs-test2" + folder_ + "' is taken"));

@@ -47,7 +47,7 @@ TEST(Description, HasWhatPeopleAreToSee) {
   EXPECT_EQ(Heading(up.options[1]), "--mode straight|round");
   EXPECT_THAT(up.options[1].choices, ElementsAre("straight", "round"));
   EXPECT_EQ(Heading(up.options[2]), "--out FOLDER");
-  EXPECT_EQ(FullText(up.options[2]), "for what was seen; out unless told");
+  EXPECT_EQ(FullText(up.options[2]), "for what was seen (default: out)");
   EXPECT_EQ(Heading(up.options[3]), "--fast");
   EXPECT_EQ(UsageOf(up, "fly"), "fly up [OPTIONS] plan");
 }
@@ -71,7 +71,7 @@ TEST(ManualPage, SaysTheSameAsHelp) {
   const std::string page = ManualPage(fly.Up(), "fly", fly.All(), "1.2");
   EXPECT_THAT(page, HasSubstr(".SH NAME\nfly\\-up \\- go up\n"));
   EXPECT_THAT(page,
-              HasSubstr("\\fB\\-\\-out\\fR \\fIFOLDER\\fR\nFor what was seen; out unless told.\n"));
+              HasSubstr("\\fB\\-\\-out\\fR \\fIFOLDER\\fR\nFor what was seen (default: out).\n"));
   EXPECT_THAT(page, HasSubstr(".SH EXAMPLES\n.TP\n\\fBfly up plan.txt\\fR\nAs planned.\n"));
   EXPECT_THAT(page, Not(HasSubstr("hidden")));
 }

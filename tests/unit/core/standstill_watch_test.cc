@@ -54,8 +54,8 @@ TEST_F(StandstillWatchTest, SaysOnceWhatIsWaitedForWhenPatienceIsOver) {
   watch_.Look(At(kHostSecond + kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0],
-            "virtual time has stood still at 2.000 s for 5 s: nothing can happen any more but from "
-            "outside; planner waits for DDS messages; Ctrl-C ends the run");
+            "virtual time has stood still at 2.000 s for 5 s: only input from outside could make "
+            "it go on; planner waits for DDS messages; Ctrl-C ends the run");
   watch_.Look(At(kHostSecond + 3 * kPatience), kTwoSeconds);
   EXPECT_EQ(told_.size(), 1u);
 }

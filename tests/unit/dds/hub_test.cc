@@ -330,7 +330,7 @@ TEST(DdsHub, WhatOneProcessSaysOfItsEndpointsHasALimit) {
     refused = a.Send(made, {endpoint});
   }
   EXPECT_EQ(made, 16);
-  EXPECT_THAT(refused, HasSubstr("takes 16 MiB: nobody is told of further ones"));
+  EXPECT_THAT(refused, HasSubstr("take 16 MiB: other programs are not told of further ones"));
   endpoint.subject[1] = 0;
   EXPECT_EQ(a.Send(200, {endpoint}), "") << "another QoS of one that is known";
   endpoint.flags = shm::kDdsGone;

@@ -44,6 +44,11 @@ TEST(Doctor, TheFairServerDoesNotHeedTheThrottlesSetting) {
     const Finding server = JudgeThrottling("-1\n", "1000000\n", release);
     EXPECT_EQ(server.verdict, Verdict::kWarning) << release;
     EXPECT_NE(server.mend.find("fair_server"), std::string::npos);
+    EXPECT_EQ(server.mend.find("sched_rt_runtime_us"), std::string::npos) << "it is off";
+    // Kernels with real-time groups do heed it.
+    const Finding both = JudgeThrottling("950000\n", "1000000\n", release);
+    EXPECT_NE(both.mend.find("fair_server"), std::string::npos);
+    EXPECT_NE(both.mend.find("sched_rt_runtime_us=-1"), std::string::npos);
   }
 }
 
@@ -70,7 +75,7 @@ TEST(Doctor, AnIsolatedProcessorIsFoundInTheKernelsList) {
 TEST(Doctor, WherePidfdGetfdIsRefusedAProcessBesideEachProgramHandsDescriptorsOver) {
   const Finding permitted = JudgeDescriptors(0, 0, false);
   EXPECT_EQ(permitted.verdict, Verdict::kOk);
-  EXPECT_NE(permitted.found.find("would hand them over"), std::string::npos);
+  EXPECT_NE(permitted.found.find("would hand descriptors over"), std::string::npos);
   const Finding refused = JudgeDescriptors(EPERM, 0, true);
   EXPECT_EQ(refused.verdict, Verdict::kWarning);
   EXPECT_NE(refused.found.find("SCHED_FIFO is not used"), std::string::npos);
@@ -93,6 +98,28 @@ TEST(Doctor, AnAddressLayoutThatCannotBeFixedIsAWarning) {
   EXPECT_EQ(random.verdict, Verdict::kWarning);
   EXPECT_NE(random.found.find("personality is refused"), std::string::npos);
   EXPECT_TRUE(CanRun({random}));
+}
+
+TEST(Doctor, WhatRobotsWithNetworksLackIsNamedWithItsMend) {
+  EXPECT_EQ(JudgeNetworks(std::nullopt, true).verdict, Verdict::kOk);
+  EXPECT_NE(JudgeNetworks(std::nullopt, false).found.find("user namespaces"), std::string::npos);
+  struct Case {
+    NoComputer why_not;
+    const char *found, *mend;
+  };
+  const Case cases[] = {
+      {{"/dev/net/tun", ENOENT}, "(/dev/net/tun: No such file", "modprobe tun"},
+      {{"/dev/net/tun", EACCES}, "(/dev/net/tun: Permission denied)", "chmod 666 /dev/net/tun"},
+      {{"/proc/sys/net", EROFS}, "Read-only", "mount /proc/sys for writing"},
+      {{"user namespace", EPERM}, "(user namespace: ", "allow user namespaces"},
+  };
+  for (const Case& c : cases) {
+    const Finding missing = JudgeNetworks(c.why_not, false);
+    EXPECT_EQ(missing.verdict, Verdict::kWarning);
+    EXPECT_NE(missing.found.find(c.found), std::string::npos) << missing.found;
+    EXPECT_NE(missing.mend.find(c.mend), std::string::npos) << missing.mend;
+    EXPECT_TRUE(CanRun({missing})) << "scenarios without `network` run";
+  }
 }
 
 TEST(Doctor, AnOldCLibraryIsAWarning) {

@@ -1,8 +1,11 @@
 // Scenes of contact on each engine: how they go is left to the engine, how they end is not.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "simbody_bridge/model/model_check.h"
 #include "tests/unit/dynamics/test_models.h"
@@ -145,6 +148,35 @@ TEST_P(ContactScenes, AQuadrupedThatFallsOntoItsFeetStands) {
   EXPECT_NEAR(state.pose.position_m[2], straight, 0.03);
   EXPECT_GT(Rotate(state.pose.orientation_xyzw, {0, 0, 1})[2], 0.995) << "upright";
   for (const double speed : state.linear_velocity_mps) EXPECT_NEAR(speed, 0, 2e-3);
+
+  // Its feet alone touch the floor, and carry all of it.
+  double mass_kg = 0, held_n = 0;
+  for (const Link& link : quadruped.links) mass_kg += link.inertial ? link.inertial->mass_kg : 0;
+  std::vector<ContactForce> contacts;
+  dynamics->ReadContacts(AtMs(3000), &contacts);
+  std::set<int> feet;
+  for (const ContactForce& contact : contacts) {
+    const Link& link = world.models[0].links[static_cast<std::size_t>(contact.first)];
+    EXPECT_THAT(link.name, testing::HasSubstr("foot"));
+    EXPECT_EQ(contact.fixture, 0);
+    feet.insert(contact.first);
+    held_n += contact.force_n[2];
+  }
+  EXPECT_EQ(feet.size(), 4u);
+  EXPECT_NEAR(held_n, mass_kg * kG, 0.01 * mass_kg * kG);
+}
+
+TEST_P(ContactScenes, AQuadrupedTouchesNothingBeforeItLands) {
+  RobotModel quadruped = Zoo("quadruped.urdf");
+  quadruped.at.position_m = {0, 0, 1};
+  WorldSpec world = WorldOf({quadruped}, GetParam());
+  world.fixtures = {Floor()};
+  auto dynamics = MakeDynamics(world);
+  std::vector<ContactForce> contacts;
+  dynamics->ReadContacts(AtMs(200), &contacts);
+  EXPECT_TRUE(contacts.empty());
+  dynamics->ReadContacts(AtMs(700), &contacts);
+  EXPECT_FALSE(contacts.empty());
 }
 
 // Limp, it lies on its belly.

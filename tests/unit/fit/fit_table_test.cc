@@ -64,7 +64,7 @@ TEST(FitWarnings, NameWhoseCallsDoNotTell) {
   client.whole = {100'000, 20, 0};
   const MeasuredRun run = RunOf("r/moody", client);
   EXPECT_THAT(FitWarnings(run, FitAll(run)),
-              ElementsAre(HasSubstr("each by itself 100 % more or less")));
+              ElementsAre(HasSubstr("a single one 100 % more or less")));
 }
 
 TEST(Fragment, IsAPieceOfAScenario) {

@@ -74,7 +74,7 @@ TEST_F(MeasuredRunTest, LinesOfNoUseAreLeftOut) {
   ASSERT_EQ(Complaint(read), "");
   const auto& run = std::get<MeasuredRun>(read);
   EXPECT_EQ(run.clients.at("r/planner").activations.size(), 1u);
-  EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("7 lines of no use, left out")));
+  EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("7 lines that cannot be used; left out")));
 }
 
 TEST_F(MeasuredRunTest, WhatIsNoResultFolderIsSaid) {

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -73,9 +74,34 @@ TEST_F(FurtherCpuTest, AThreadIsNotOrdinaryOnTheHomeProcessor) {
   CPU_ZERO(&when_let_go);
   executor_.lets_go = [&](pid_t tid) { sched_getaffinity(tid, sizeof when_let_go, &when_let_go); };
   ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+  AwaitAt(cpu_->cpu());
+  cpu_->BringHome();
   EXPECT_TRUE(CPU_ISSET(cpu_->cpu(), &when_let_go));
   EXPECT_FALSE(CPU_ISSET(home_, &when_let_go));
+}
+
+// The kernel may let the coordinator stand at any place for 50 ms.
+TEST_F(FurtherCpuTest, AThreadIsHeldUntilItIsGuarded) {
+  thread_.may_run = true;
+  std::vector<std::string> before;
+  executor_.lets_go = [&](pid_t) { before = executor_.Told(); };
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), kMs));
+  EXPECT_FALSE(thread_.may_run);
+  while (!cpu_->HasLeft()) sched_yield();
+  EXPECT_EQ(before, std::vector{"hold " + std::to_string(thread_.tid)});
+  EXPECT_EQ(executor_.Told(), before) << "by the warden, at home";
   cpu_->BringHome();
+}
+
+TEST_F(FurtherCpuTest, OneThatIsWantedBackAtOnceComesBack) {
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
+    if (i % 20 == 1) AwaitAt(cpu_->cpu());
+    cpu_->BringHome();
+    ASSERT_FALSE(cpu_->HasLeft());
+    ASSERT_TRUE(cpu_->IsFreeAt(__rdtsc()));
+  }
+  AwaitAt(home_);
 }
 
 TEST_F(FurtherCpuTest, WhoIsAllowedMoreGoesOn) {

@@ -71,8 +71,9 @@ TEST(MeshLibrary, ReadsEachFileOnceAndSharesWhatIsScaledTheSame) {
 TEST(MeshLibrary, SaysWhatCannotBeUsed) {
   const ModelFolder folder;
   EXPECT_THAT(Complaint(folder.Path("none.stl")), HasSubstr("No such file"));
-  EXPECT_THAT(Complaint(folder.Write("a.ply", "ply")), HasSubstr("give one of .stl, .obj or .dae"));
-  EXPECT_THAT(Complaint(folder.Write("a", "x")), HasSubstr("no mesh that tcs reads"));
+  EXPECT_THAT(Complaint(folder.Write("a.ply", "ply")),
+              HasSubstr("give a file of .stl, .obj or .dae"));
+  EXPECT_THAT(Complaint(folder.Write("a", "x")), HasSubstr("not a mesh that tcs reads"));
   EXPECT_THAT(Complaint(folder.Write("b.stl", "")), HasSubstr("cannot be used"));
   EXPECT_THAT(Complaint(folder.Write("c.stl", "solid x\nendsolid x\n")),
               HasSubstr("cannot be used"));

@@ -71,7 +71,7 @@ TEST_F(PackagePathTest, WhatIsNotThereIsSaid) {
   EXPECT_THAT(Find("package://others"), HasSubstr("names no file in a package"));
   EXPECT_THAT(Find("package:///x"), HasSubstr("names no file in a package"));
   EXPECT_THAT(Find("package://"), HasSubstr("no file"));
-  EXPECT_THAT(Find("http://example.org/x.stl"), HasSubstr("is no file of this computer"));
+  EXPECT_THAT(Find("http://example.org/x.stl"), HasSubstr("names no file on this computer"));
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ const Mistake kLinkMistakes[] = {
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"robot.urdf\"/>",
      6,
-     {"no mesh that tcs reads", ".stl, .obj or .dae"}},
+     {"not a mesh that tcs reads", ".stl, .obj or .dae"}},
     {"MeshIsAFolder",
      "<box size=\"1 1 0.1\"/>",
      "<mesh filename=\"/tmp/.stl\"/>",
@@ -390,7 +390,7 @@ TEST(Urdf, AFileThatIsNotThereIsNamed) {
   EXPECT_EQ(LoadFile("/none/robot.urdf").mistake,
             "/none/robot.urdf: cannot be read: No such file or directory; give the path of a URDF "
             "file");
-  EXPECT_THAT(LoadFile("/tmp").mistake, HasSubstr("/tmp: is no ordinary file"));
+  EXPECT_THAT(LoadFile("/tmp").mistake, HasSubstr("/tmp: is not a regular file"));
 }
 
 }  // namespace

@@ -3,19 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sqlite3.h>
-#include <stdlib.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "coordinator/dds/robot_topics.h"
 #include "coordinator/record/message_definitions.h"
+#include "tests/unit/record/bag_fixture.h"
 
 namespace tcs::record {
 namespace {
@@ -23,15 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
-constexpr std::int64_t kPeriod = 10'000'000;
-
-std::vector<std::byte> Sample(int number) {
-  BodyState state;
-  state.position_m = {static_cast<double>(number), 0, 0};
-  return dds::ToCdr(dds::ToOdometry(kStart + number * kPeriod, "hunter", state));
-}
 
 // The database as somebody else reads it.
 class Reader {
@@ -81,32 +67,9 @@ class Reader {
   sqlite3* database_ = nullptr;
 };
 
-class BagTest : public testing::Test {
+class BagTest : public BagFixture {
  protected:
-  BagTest() {
-    std::string name = (fs::temp_directory_path() / "tcs_bag_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-    root_ = name;
-  }
-  ~BagTest() override { fs::remove_all(root_); }
-
-  std::string Folder() const { return root_ + "/flight"; }
-  std::string Database() const { return Folder() + "/flight_0.db3"; }
-  YAML::Node Metadata() const {
-    return YAML::LoadFile(Folder() + "/metadata.yaml")["rosbag2_bagfile_information"];
-  }
-
-  // `count` odometry samples, 100 in a second.
-  void Record(int count) {
-    Bag bag;
-    ASSERT_EQ(bag.Open(Folder()), "");
-    const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-    bag.AddOffer(odom, {});
-    for (int i = 0; i < count; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-    EXPECT_EQ(bag.Close(), "");
-  }
-
-  std::string root_;
+  BagTest() : BagFixture(StorageKind::kSqlite3, "flight_0.db3") {}
 };
 
 TEST_F(BagTest, IsAFolderOfTwoFiles) {
@@ -119,7 +82,7 @@ TEST_F(BagTest, IsAFolderOfTwoFiles) {
 
 TEST_F(BagTest, HasTheTablesOfRosbag2) {
   Record(3);
-  const Reader reader(Database());
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("PRAGMA integrity_check"), ElementsAre("ok"));
   EXPECT_THAT(reader.Rows("SELECT schema_version, ros_distro FROM schema"), ElementsAre("4|iron"));
   // Name, type, and whether NULL is refused, of each column.
@@ -146,7 +109,7 @@ TEST_F(BagTest, HasTheTablesOfRosbag2) {
 TEST_F(BagTest, HoldsEverySampleWithItsTime) {
   constexpr int kSamples = 1234;  // of several batches
   Record(kSamples);
-  const Reader reader(Database());
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("SELECT id, name, type, serialization_format FROM topics"),
               ElementsAre("1|/odom|nav_msgs/msg/Odometry|cdr"));
   // As rosbag2 reads.
@@ -173,14 +136,14 @@ TEST_F(BagTest, CountsItsSamplesInTheMetadata) {
   EXPECT_EQ(info["duration"]["nanoseconds"].as<std::int64_t>(), 300 * kPeriod);
   EXPECT_EQ(info["relative_file_paths"][0].as<std::string>(), "flight_0.db3");
   EXPECT_EQ(info["topics_with_message_count"][0]["message_count"].as<int>(), 301);
-  const Reader reader(Database());
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("SELECT metadata_version FROM metadata"), ElementsAre("5"));
   const YAML::Node inside = YAML::Load(reader.Rows("SELECT metadata FROM metadata").at(0));
   EXPECT_EQ(YAML::Dump(inside), YAML::Dump(info));
 }
 
 TEST_F(BagTest, KeepsEachOfferOnce) {
-  Bag bag;
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
   dds::Qos other;
@@ -190,7 +153,7 @@ TEST_F(BagTest, KeepsEachOfferOnce) {
   bag.AddOffer(odom, {});
   EXPECT_EQ(bag.Close(), "");
   const std::string expected = OfferedQosYaml(std::vector{dds::Qos(), other});
-  EXPECT_THAT(Reader(Database()).Rows("SELECT offered_qos_profiles FROM topics"),
+  EXPECT_THAT(Reader(File()).Rows("SELECT offered_qos_profiles FROM topics"),
               ElementsAre(expected));
   EXPECT_EQ(Metadata()["topics_with_message_count"][0]["topic_metadata"]["offered_qos_profiles"]
                 .as<std::string>(),
@@ -203,7 +166,7 @@ TEST_F(BagTest, DefinesEachTypeOnce) {
   for (const char* topic : {"/one", "/other"}) bag.AddTopic(topic, "sensor_msgs/msg/Range");
   bag.AddTopic("/own", "my_robot/msg/State");
   EXPECT_EQ(bag.Close(), "");
-  const Reader reader(Database());
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("SELECT schema_version, ros_distro FROM schema"),
               ElementsAre("4|humble"));
   const std::string range = DefinitionOf("sensor_msgs/msg/Range", dds::RosRelease::kHumble);
@@ -215,7 +178,7 @@ TEST_F(BagTest, DefinesEachTypeOnce) {
 }
 
 TEST_F(BagTest, NamesOneTopicOfTwoTypesTwice) {
-  Bag bag;
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   const int first = bag.AddTopic("/state", "a/msg/A");
   const int second = bag.AddTopic("/state", "a/msg/B");
@@ -224,12 +187,12 @@ TEST_F(BagTest, NamesOneTopicOfTwoTypesTwice) {
   EXPECT_EQ(bag.AddTopic("/state", "a/msg/B"), second);
   EXPECT_EQ(bag.AddTopic("/state", "a/msg/C"), third);
   EXPECT_EQ(bag.Close(), "");
-  EXPECT_THAT(Reader(Database()).Rows("SELECT name, type FROM topics ORDER BY id"),
+  EXPECT_THAT(Reader(File()).Rows("SELECT name, type FROM topics ORDER BY id"),
               ElementsAre("/state|a/msg/A", "/state_2|a/msg/B", "/state_3|a/msg/C"));
 }
 
 TEST_F(BagTest, TakesSamplesThatAreNotInOrderOrEmpty) {
-  Bag bag;
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   const int topic = bag.AddTopic("/t", "a/msg/A");
   const std::vector<std::byte> one = {std::byte{1}}, none;
@@ -240,32 +203,20 @@ TEST_F(BagTest, TakesSamplesThatAreNotInOrderOrEmpty) {
   EXPECT_EQ(bag.Close(), "");
   EXPECT_EQ(Metadata()["starting_time"]["nanoseconds_since_epoch"].as<std::int64_t>(), kStart);
   EXPECT_EQ(Metadata()["duration"]["nanoseconds"].as<std::int64_t>(), 3'000'000'000);
-  EXPECT_THAT(Reader(Database()).Rows("SELECT length(data) FROM messages ORDER BY timestamp"),
+  EXPECT_THAT(Reader(File()).Rows("SELECT length(data) FROM messages ORDER BY timestamp"),
               ElementsAre("0", "1", "1", "1"));
 }
 
 TEST_F(BagTest, ReplacesAnEarlierOne) {
   Record(50);
   Record(3);
-  EXPECT_THAT(Reader(Database()).Rows("SELECT count(*) FROM messages"), ElementsAre("3"));
+  EXPECT_THAT(Reader(File()).Rows("SELECT count(*) FROM messages"), ElementsAre("3"));
   EXPECT_EQ(Metadata()["message_count"].as<int>(), 3);
 }
 
 TEST_F(BagTest, OfAKilledWriterCanBeOpened) {
-  constexpr int kSamples = 350;  // three and a half batches
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    Bag bag;
-    if (!bag.Open(Folder()).empty()) _exit(1);
-    const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-    for (int i = 0; i < kSamples; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-    kill(getpid(), SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  const Reader reader(Database());
+  RecordUntilKilled(350);  // three and a half batches
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("PRAGMA integrity_check"), ElementsAre("ok"));
   // All but the last batch; and the metadata say the same.
   EXPECT_THAT(reader.Rows("SELECT count(*) FROM messages"), ElementsAre("300"));
@@ -274,60 +225,38 @@ TEST_F(BagTest, OfAKilledWriterCanBeOpened) {
 }
 
 TEST_F(BagTest, WritesLargeSamplesBeforeTheSecondIsOver) {
-  Bag bag;
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   const int topic = bag.AddTopic("/cloud", "sensor_msgs/msg/PointCloud2");
   const std::vector<std::byte> megabyte(1 << 20);
   for (int i = 0; i < 5; ++i) bag.Write(topic, kStart, megabyte);
   EXPECT_EQ(Metadata()["message_count"].as<int>(), 4);
-  EXPECT_THAT(Reader(Database()).Rows("SELECT count(*) FROM messages"), ElementsAre("4"));
+  EXPECT_THAT(Reader(File()).Rows("SELECT count(*) FROM messages"), ElementsAre("4"));
   EXPECT_EQ(bag.Close(), "");
   EXPECT_EQ(Metadata()["message_count"].as<int>(), 5);
 }
 
 TEST_F(BagTest, OnAFullDiskSaysWhatIsMissing) {
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    // No file grows beyond 64 KiB, as on a disk without more room.
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{1 << 16, 1 << 16};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    Bag bag;
-    std::string error = bag.Open(Folder());
-    if (error.empty()) {
-      const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-      for (int i = 0; i < 1000; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-      error = bag.Close();
-    }
-    const bool is_one_sentence = error.find("flight_0.db3 is not whole: ") != std::string::npos &&
-                                 error.find(" of 1000 samples are missing") != std::string::npos &&
-                                 error.find('\n') == std::string::npos;
-    if (!is_one_sentence) fputs((error + "\n").c_str(), stderr);
-    _exit(is_one_sentence ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
-  const Reader reader(Database());
+  ExpectSaysWhatIsMissingBeyond(1 << 16);
+  const Reader reader(File());
   EXPECT_THAT(reader.Rows("PRAGMA integrity_check"), ElementsAre("ok"));
   EXPECT_EQ(reader.Rows("SELECT count(*) FROM messages").at(0),
             Metadata()["message_count"].as<std::string>());
 }
 
 TEST_F(BagTest, ThatCannotBeMadeIsOneSentence) {
-  Bag bag;
+  Bag bag = NewBag();
   const std::string error = bag.Open("/proc/no/such");
   EXPECT_THAT(error, HasSubstr("/proc/no/such"));
   EXPECT_EQ(error.find('\n'), std::string::npos);
-  fs::create_directories(Database());  // a folder where the file should be
-  fs::create_directories(Database() + "/full");
+  fs::create_directories(File());  // a folder where the file should be
+  fs::create_directories(File() + "/full");
   EXPECT_THAT(bag.Open(Folder()), HasSubstr("cannot be replaced"));
   EXPECT_FALSE(bag.is_open());
 }
 
 TEST_F(BagTest, IsCalledAfterItsFolder) {
-  Bag bag;
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(root_ + "/run.1/"), "");
   EXPECT_EQ(bag.Close(), "");
   EXPECT_TRUE(fs::exists(root_ + "/run.1/run.1_0.db3"));

@@ -2,12 +2,6 @@
 // survives its writer.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <stdlib.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-#include <yaml-cpp/yaml.h>
 
 #include <array>
 #include <cstdio>
@@ -15,11 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <stdexcept>
 
-#include "coordinator/dds/robot_topics.h"
-#include "coordinator/record/bag.h"
 #include "coordinator/record/message_definitions.h"
+#include "tests/unit/record/bag_fixture.h"
 
 namespace tcs::record {
 namespace {
@@ -27,9 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr std::int64_t kStart = 1'700'000'000'000'000'000;
-constexpr std::int64_t kPeriod = 10'000'000;
 
 // What a command prints, without the newline at the end, and whether it failed.
 struct Said {
@@ -50,37 +39,20 @@ Said Execute(const std::string& command) {
   return said;
 }
 
-std::vector<std::byte> Sample(int number) {
-  BodyState state;
-  state.position_m = {static_cast<double>(number), 0.1, 0};
-  return dds::ToCdr(dds::ToOdometry(kStart + number * kPeriod, "hunter", state));
-}
-
 std::string Contents(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
 }
 
-class McapTest : public testing::Test {
+class McapTest : public BagFixture {
  protected:
-  McapTest() {
-    std::string name = (fs::temp_directory_path() / "tcs_mcap_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-    root_ = name;
-  }
-  ~McapTest() override { fs::remove_all(root_); }
+  McapTest() : BagFixture(StorageKind::kMcap, "flight_0.mcap") {}
 
   void SetUp() override {
     const Said installed = Execute(TCS_MCAP_INSTALL " '" TCS_BUILD "'");
     if (installed.failed) GTEST_SKIP() << installed.text;
     reader_ = "node '" + installed.text + "/read.mjs' ";
-  }
-
-  std::string Folder() const { return root_ + "/flight"; }
-  std::string File() const { return Folder() + "/flight_0.mcap"; }
-  YAML::Node Metadata() const {
-    return YAML::LoadFile(Folder() + "/metadata.yaml")["rosbag2_bagfile_information"];
   }
 
   struct Read {
@@ -104,15 +76,6 @@ class McapTest : public testing::Test {
     return read;
   }
 
-  // `count` odometry samples, 100 in a second.
-  void Record(int count) {
-    Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
-    ASSERT_EQ(bag.Open(Folder()), "");
-    const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-    bag.AddOffer(odom, {});
-    for (int i = 0; i < count; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-    EXPECT_EQ(bag.Close(), "");
-  }
   // That the first `count` of them are there.
   static void ExpectSamples(const Read& read, int count) {
     ASSERT_EQ(read.messages.size(), static_cast<std::size_t>(count));
@@ -129,7 +92,7 @@ class McapTest : public testing::Test {
     }
   }
 
-  std::string root_, reader_;
+  std::string reader_;
 };
 
 TEST_F(McapTest, IsReadByOthers) {
@@ -201,7 +164,7 @@ TEST_F(McapTest, KeepsTopicsApartAndThoseWithoutMessages) {
 }
 
 TEST_F(McapTest, IsEmptyWhereNothingWasWritten) {
-  Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   EXPECT_EQ(bag.Close(), "");
   const Read read = ReadAll();
@@ -210,19 +173,7 @@ TEST_F(McapTest, IsEmptyWhereNothingWasWritten) {
 }
 
 TEST_F(McapTest, OfAKilledWriterIsReadToItsLastChunk) {
-  constexpr int kSamples = 350;  // three and a half chunks
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
-    if (!bag.Open(Folder()).empty()) _exit(1);
-    const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-    for (int i = 0; i < kSamples; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-    kill(getpid(), SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  RecordUntilKilled(350);  // three and a half chunks
   ExpectSamples(ReadAll("cut-off"), 300);
   EXPECT_EQ(Metadata()["message_count"].as<int>(), 300);
 }
@@ -258,7 +209,7 @@ TEST_F(McapTest, IsTheSameOfTheSameSamples) {
 }
 
 TEST_F(McapTest, WritesLargeSamplesBeforeTheSecondIsOver) {
-  Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
+  Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");
   const int topic = bag.AddTopic("/cloud", "my_robot/msg/Cloud");
   std::vector<std::byte> megabyte(1 << 20);
@@ -274,29 +225,7 @@ TEST_F(McapTest, WritesLargeSamplesBeforeTheSecondIsOver) {
 }
 
 TEST_F(McapTest, OnAFullDiskSaysWhatIsMissing) {
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    // No file grows beyond 8 KiB, as on a disk without more room.
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{1 << 13, 1 << 13};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
-    std::string error = bag.Open(Folder());
-    if (error.empty()) {
-      const int odom = bag.AddTopic("/odom", "nav_msgs/msg/Odometry");
-      for (int i = 0; i < 1000; ++i) bag.Write(odom, kStart + i * kPeriod, Sample(i));
-      error = bag.Close();
-    }
-    const bool is_one_sentence = error.find("flight_0.mcap is not whole: ") != std::string::npos &&
-                                 error.find(" of 1000 samples are missing") != std::string::npos &&
-                                 error.find('\n') == std::string::npos;
-    if (!is_one_sentence) fputs((error + "\n").c_str(), stderr);
-    _exit(is_one_sentence ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  ExpectSaysWhatIsMissingBeyond(1 << 13);
   // All chunks before the one that had no room.
   const int kept = Metadata()["message_count"].as<int>();
   EXPECT_GT(kept, 0);
@@ -306,7 +235,7 @@ TEST_F(McapTest, OnAFullDiskSaysWhatIsMissing) {
 }
 
 TEST_F(McapTest, ThatCannotBeMadeIsOneSentence) {
-  Bag bag(dds::RosRelease::kIron, StorageKind::kMcap);
+  Bag bag = NewBag();
   const std::string error = bag.Open("/proc/no/such");
   EXPECT_THAT(error, HasSubstr("/proc/no/such"));
   EXPECT_EQ(error.find('\n'), std::string::npos);

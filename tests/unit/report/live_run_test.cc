@@ -86,6 +86,16 @@ TEST_F(LiveRunTest, WhatIsReadInPiecesIsWhatIsReadAtOnce) {
            text += fmt::format("{:.2f},a/j,{},0.5,{}\n", i * 0.01, i, 300 - i);
          return text;
        }()},
+      {"run/contacts.csv",
+       [] {
+         std::string text = "time_s,first,second,x_m,y_m,z_m,force_x_n,force_y_n,force_z_n\n";
+         for (int i = 1; i < 300; ++i) {
+           for (int k = 0; k < i % 3; ++k)
+             text +=
+                 fmt::format("{:.2f},a,floor,{},{},0,0,1,{}\n", i * 0.01, i * 0.1, k, 9 + i % 7);
+         }
+         return text;
+       }()},
       {"run/commands.csv",
        "acts_ns,target,quantity,value\n300000000,a,force_x,2\n310000000,a,force_x,3\n"
        "2000000000,a,force_y,-1\n"},
@@ -127,6 +137,7 @@ TEST_F(LiveRunTest, WhatIsReadInPiecesIsWhatIsReadAtOnce) {
     sorted(&whole);
     sorted(&live);
     EXPECT_EQ(whole, live) << piece;
+    EXPECT_EQ(live["contacts"]["pairs"][0][1], "floor");
     EXPECT_EQ(run.place().slices, 2u);
   }
 }

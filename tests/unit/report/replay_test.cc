@@ -168,6 +168,53 @@ TEST_F(ReplayTest, LooksAreShownRatherThanWhatCollides) {
   EXPECT_EQ(replay.scene["tracks"][1][0]["colour"][0], 1);
 }
 
+TEST_F(ReplayTest, MeshesThatAreOnlyLooksAreReadOnce) {
+  Write("run/roof.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 4\nf 2 3 4\n");
+  const auto mesh = [&](const std::string& file, double scale) {
+    return json{{"kind", "mesh_file"},           {"name", "package://it/" + file},
+                {"path", Path("run/" + file)},   {"scale", {scale, scale, scale}},
+                {"pose", {0, 0, 3, 0, 0, 0, 1}}, {"colour", {0, 1, 0, 1}}};
+  };
+  json scene = Scene();
+  const auto add = [&](const char* name, const json& visual) {
+    json link = Link(name);
+    link["shapes"].push_back(Box(1));
+    link["visuals"].push_back(visual);
+    scene["models"].push_back(
+        {{"name", name}, {"root", 0}, {"fixed_base", false}, {"links", {link}}});
+    State(0, name, 0);
+  };
+  add("a", mesh("roof.obj", 1));
+  add("b", mesh("roof.obj", 1));
+  add("c", mesh("roof.obj", -0.5));
+  add("d", mesh("gone.obj", 1));
+  Write("run/scene.json", scene.dump());
+  const Replay replay = Read();
+  const json tracks = replay.scene["tracks"];
+  EXPECT_EQ(tracks[0][0]["kind"], "mesh");
+  EXPECT_EQ(tracks[0][0]["pose"][2], 3);
+  EXPECT_EQ(tracks[0][0]["colour"][1], 1);
+  EXPECT_FALSE(tracks[0][0].contains("path")) << "nobody needs to know where it was";
+  EXPECT_EQ(tracks[1][0]["mesh"], tracks[0][0]["mesh"]);
+  EXPECT_NE(tracks[2][0]["mesh"], tracks[0][0]["mesh"]);
+  EXPECT_EQ(tracks[3][0]["kind"], "box") << "what collides, for one that is not there";
+  ASSERT_THAT(replay.scene["meshes"], SizeIs(2));
+  const json first = replay.scene["meshes"][0];
+  std::vector<double> corners;
+  std::array<std::int64_t, 3> sums{};
+  for (const std::int64_t number : Decoded(first["vertices"])) {
+    const std::size_t axis = corners.size() % 3;
+    sums[axis] += number;
+    corners.push_back(first["least"][axis].get<double>() +
+                      static_cast<double>(sums[axis]) * first["step"][axis].get<double>());
+  }
+  const double wanted[] = {0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 2, 0};
+  EXPECT_THAT(corners, Pointwise(DoubleNear(1e-4), wanted));
+  EXPECT_THAT(Decoded(first["triangles"]), ElementsAre(0, 1, 1, -1, 2, -1));
+  // A mirror turns them round.
+  EXPECT_THAT(Decoded(replay.scene["meshes"][1]["triangles"]), ElementsAre(0, 2, -1, 0, 1, 1));
+}
+
 TEST_F(ReplayTest, ABodyLooksLikeABoxOfItsMoments) {
   json scene = Scene();
   // Of 12 kg, 1 m by 2 m by 3 m.
@@ -239,6 +286,37 @@ TEST_F(ReplayTest, JointsHaveTheirUnits) {
   EXPECT_TRUE(panels.contains("commanded joint speeds [m/s]lift_joint"));
   // What stands is drawn by what moves on it.
   EXPECT_THAT(replay.robots[0].paths, ElementsAre(1));
+}
+
+TEST_F(ReplayTest, ContactsAreThoseOfItsMoments) {
+  json scene = Scene();
+  json table = Link("table"), cart = Link("cart/base"), wheel = Link("cart/wheel", "continuous", 0);
+  scene["models"] = {
+      {{"name", "table"}, {"root", 0}, {"fixed_base", true}, {"links", {table}}},
+      {{"name", "cart"}, {"root", 0}, {"fixed_base", false}, {"links", {cart, wheel}}}};
+  Write("run/scene.json", scene.dump());
+  for (int i = 0; i < 3; ++i) {
+    for (const char* link : {"table", "cart/base", "cart/wheel"}) State(i * 0.02, link, i);
+  }
+  Write("run/contacts.csv",
+        "time_s,first,second,x_m,y_m,z_m,normal_x,normal_y,normal_z,force_x_n,force_y_n,force_z_n\n"
+        "0.010000000,cart/wheel,floor,9,9,9,0,0,1,9,9,9\n"
+        "0.020000000,cart/base,cart/wheel,1,0,0,0,0,1,0,0,-3\n"
+        "0.020000000,cart/wheel,table,0.25,-1,0.5,0,0,1,1,0,20\n"
+        "0.020000000,cart/wheel,table,0.5,-1,0.5,0,0,1,nonsense,0,20\n"
+        "0.040000000,cart/wheel,table,0.5,-1,0.5,0,0,1,-1,0,21\n");
+  const Replay replay = Read();
+  ASSERT_THAT(replay.contacts.points(), SizeIs(3));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("contacts.csv has 1 line of no use")));
+  const json encoded = json::parse(Encoded(replay))["contacts"];
+  EXPECT_EQ(encoded["pairs"], json::parse(R"([["cart/base","cart/wheel",true],)"
+                                          R"(["cart/wheel","table",false]])"));
+  EXPECT_EQ(encoded["stride"], 1);
+}
+
+TEST_F(ReplayTest, WithoutContactsThePageHasNone) {
+  State(0, "a", 0);
+  EXPECT_TRUE(json::parse(Encoded(Read()))["contacts"].is_null());
 }
 
 TEST_F(ReplayTest, LinesCountFromWhenTheirEndWasThere) {

@@ -46,7 +46,7 @@ channels:
   eyes: {type: udp_json, sensors: {bodies: [drone], rate: 50, to: "127.0.0.1:0"}}
   hands: {type: tcp, commands: {body: drone, listen: "127.0.0.1:47011"}}
 )"),
-              ElementsAre(HasSubstr("s.yaml:1: duration: '-3s' is no duration"),
+              ElementsAre(HasSubstr("s.yaml:1: duration: '-3s' is not a duration"),
                           HasSubstr("s.yaml:2: unknown key 'sed'; did you mean 'seed'?"),
                           HasSubstr("s.yaml:3: dynamics.engine is the unknown 'simbodi'"),
                           HasSubstr("s.yaml:5: unknown key 'positon' in bodies.drone"),

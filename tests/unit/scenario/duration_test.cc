@@ -58,12 +58,12 @@ TEST(Duration, IsExactToTheNanosecond) {
 }
 
 TEST(Duration, ThatIsNoDurationIsExplained) {
-  EXPECT_THAT(ComplaintAbout(""), HasSubstr("is no duration; write it like 20s"));
-  EXPECT_THAT(ComplaintAbout("soon"), HasSubstr("'soon' is no duration"));
-  EXPECT_THAT(ComplaintAbout("."), HasSubstr("is no duration"));
-  EXPECT_THAT(ComplaintAbout("1e"), HasSubstr("is no duration"));
-  EXPECT_THAT(ComplaintAbout("1e99999999999"), HasSubstr("is no duration"));
-  EXPECT_THAT(ComplaintAbout("nan"), HasSubstr("is no duration"));
+  EXPECT_THAT(ComplaintAbout(""), HasSubstr("is not a duration; write it like 20s"));
+  EXPECT_THAT(ComplaintAbout("soon"), HasSubstr("'soon' is not a duration"));
+  EXPECT_THAT(ComplaintAbout("."), HasSubstr("is not a duration"));
+  EXPECT_THAT(ComplaintAbout("1e"), HasSubstr("is not a duration"));
+  EXPECT_THAT(ComplaintAbout("1e99999999999"), HasSubstr("is not a duration"));
+  EXPECT_THAT(ComplaintAbout("nan"), HasSubstr("is not a duration"));
   EXPECT_THAT(ComplaintAbout("-1s"), HasSubstr("must not be negative"));
 }
 
@@ -76,11 +76,11 @@ TEST(Duration, WithAnUnknownUnitListsTheUnits) {
 }
 
 TEST(Duration, FinerThanANanosecondIsAnError) {
-  EXPECT_THAT(ComplaintAbout("0.5ns"), HasSubstr("finer than a nanosecond"));
-  EXPECT_THAT(ComplaintAbout("1.0000000001s"), HasSubstr("finer than a nanosecond"));
+  EXPECT_THAT(ComplaintAbout("0.5ns"), HasSubstr("not a whole number of nanoseconds"));
+  EXPECT_THAT(ComplaintAbout("1.0000000001s"), HasSubstr("not a whole number of nanoseconds"));
   EXPECT_THAT(ComplaintAbout("0.1111111111111111111111111111111111111111"),
-              HasSubstr("finer than a nanosecond"));
-  EXPECT_THAT(ComplaintAbout("1e-300"), HasSubstr("finer than a nanosecond"));
+              HasSubstr("not a whole number of nanoseconds"));
+  EXPECT_THAT(ComplaintAbout("1e-300"), HasSubstr("not a whole number of nanoseconds"));
 }
 
 TEST(Duration, OfMoreThan146YearsIsAnError) {

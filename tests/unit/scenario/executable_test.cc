@@ -136,7 +136,7 @@ TEST_F(ExecutableTest, NamesWithoutASlashAreSearchedAlongPath) {
     const PathVariable path(folder_.path() + ":/no/such/folder:" + other.path());
     EXPECT_EQ(Found(FindExecutable("tool", "/")), other.Path("tool"));
     EXPECT_THAT(Found(FindExecutable("tcs_no_such_tool", "/")),
-                AllOf(HasSubstr("'tcs_no_such_tool' was not found along PATH"),
+                AllOf(HasSubstr("'tcs_no_such_tool' was not found in PATH"),
                       HasSubstr("./tcs_no_such_tool")));
   }
   {

@@ -29,7 +29,7 @@ TEST_F(CommandTest, MissingPrograms) {
   EXPECT_THAT(ComplaintAboutCommand("[./none]"),
               AllOf(StartsWith(kPlace), HasSubstr("there is no program '" + folder_.path())));
   EXPECT_THAT(ComplaintAboutCommand("[tcs_none]"),
-              AllOf(StartsWith(kPlace), HasSubstr("'tcs_none' was not found along PATH")));
+              AllOf(StartsWith(kPlace), HasSubstr("'tcs_none' was not found in PATH")));
 }
 
 TEST_F(CommandTest, ProgramsThatCannotBeRun) {

@@ -61,9 +61,11 @@ TEST_F(LoadLivesTest, SignalsHaveTheirNames) {
 
 TEST_F(LoadLivesTest, TimesAreNotNegative) {
   EXPECT_EQ(First(", start: 1.5s, stop_grace: 20ms").start, VirtualDuration::Milliseconds(1500));
-  EXPECT_THAT(Wrong(", start: -1s"), HasSubstr("s.yaml:5: robots.r.clients.a.start: '-1s' is no "
-                                               "duration: it must not be negative"));
-  EXPECT_THAT(Wrong(", stop_grace: -1s"), HasSubstr("stop_grace: '-1s' is no duration"));
+  EXPECT_THAT(
+      Wrong(", start: -1s"),
+      HasSubstr(
+          "s.yaml:5: robots.r.clients.a.start: '-1s' is not a duration: it must not be negative"));
+  EXPECT_THAT(Wrong(", stop_grace: -1s"), HasSubstr("stop_grace: '-1s' is not a duration"));
 }
 
 TEST_F(LoadLivesTest, AStartBehindTheEndIsAWarning) {
@@ -90,13 +92,13 @@ TEST_F(LoadLivesTest, OfTwoWithOneNameTheOneBesideItIsMeant) {
   EXPECT_EQ(Load(text).robots[1].clients[1].after, "s/a");
   EXPECT_EQ(
       Complaint(folder_, text + "  t: {clients: {b: {command: [sh], after: a}}}\n"),
-      "s.yaml:5: robots.t.clients.b.after is 'a', which may be r/a or s/a; write ROBOT/CLIENT");
+      "s.yaml:5: robots.t.clients.b.after is 'a', which can mean r/a or s/a; write ROBOT/CLIENT");
 }
 
 TEST_F(LoadLivesTest, ACycleIsAMistake) {
   EXPECT_EQ(Wrong(", after: b", ", after: c", ", after: a"),
-            "s.yaml:9: robots.q.clients.c.after makes a cycle, in which nobody starts: q/c after "
-            "r/a after r/b after q/c; let one of them start without another");
+            "s.yaml:9: robots.q.clients.c.after makes a cycle, so none of them would start: q/c "
+            "after r/a after r/b after q/c; let one of them start without another");
   EXPECT_THAT(Wrong(", after: a"), HasSubstr("r/a after r/a; let"));
   EXPECT_EQ(Wrong(", after: b", "", ", after: a"), "");
 }

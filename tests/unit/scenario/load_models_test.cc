@@ -98,7 +98,7 @@ TEST(LoadModels, ABodyAndAModelDoNotStandTogether) {
   const auto loaded = LoadScenario(folder.Write("s.yaml", text));
   ASSERT_TRUE(std::holds_alternative<LoadError>(loaded));
   EXPECT_THAT(std::get<LoadError>(loaded).message,
-              testing::HasSubstr("names 'crate' beside 'ship', and one of them is a body"));
+              testing::HasSubstr("names 'crate' beside 'ship', but one of them is a body"));
 }
 
 TEST(LoadModels, ARobotStandsWhereTheScenarioSays) {
@@ -256,7 +256,7 @@ const Mistake kMistakes[] = {
      "sphere: 0.5, ",
      "",
      "s.yaml:13",
-     {"models.ball says not what it is", "urdf"}},
+     {"models.ball does not say what it is", "urdf"}},
     {"Misspelt", "sphere: 0.5", "spere: 0.5", "s.yaml:13", {"'spere'", "did you mean 'sphere'?"}},
     {"TwoShapes", "sphere: 0.5,", "sphere: 0.5, box: [1, 1, 1],", "s.yaml:13", {"beside"}},
     {"UnknownKey", "fixed_base", "fixed_bass", "s.yaml:7", {"'fixed_bass'", "'fixed_base'?"}},
@@ -270,7 +270,7 @@ const Mistake kMistakes[] = {
      "models:",
      "bodies: {ball: {mass: 1, inertia: [1, 1, 1]}}\nmodels:",
      "s.yaml:14",
-     {"models.ball has the name of a body"}},
+     {"models.ball has the same name as a body"}},
     {"TogetherWithAStranger",
      "gravity: [0, 0, -9.81]",
      "together: [[ball, cam]]",
@@ -306,7 +306,7 @@ const Mistake kMistakes[] = {
      "{elbow: 1.5}",
      "{elbow: 1, flange: 0}",
      "s.yaml:8",
-     {"joints.flange is of a fixed joint"}},
+     {"joints.flange is for a fixed joint"}},
     {"StartBeyondLimits",
      "{elbow: 1.5}",
      "{elbow: 3}",
@@ -482,7 +482,7 @@ const Mistake kRotorMistakes[] = {
      "      shoulder: {thrust: 1e-5}",
      "      tail: {thrust: 1e-5}",
      "s.yaml:11",
-     {"says not where it is; add link: base"}},
+     {"does not say where it is; add link: base"}},
     {"AtOfNoLink", "{link: base, at", "{at", "s.yaml:10", {"add link"}},
     {"DragWithoutDirection", " direction: cw,", "", "s.yaml:10", {"lacks the key 'direction'"}},
     {"UnknownDirection", "direction: cw", "direction: wc", "s.yaml:10", {"unknown 'wc'", "cw"}},

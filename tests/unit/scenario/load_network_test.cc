@@ -81,9 +81,9 @@ TEST_F(LoadNetworkTest, MistakesAreSentencesWithTheirPlace) {
 }
 
 TEST_F(LoadNetworkTest, AddressesAreOfOneRobotEachAndNeedANetwork) {
-  EXPECT_EQ(
-      Refusal("", "address: 10.42.0.1, "),
-      "s.yaml:4: robots.a.address is for scenarios with a network; add network: {} at the top");
+  EXPECT_EQ(Refusal("", "address: 10.42.0.1, "),
+            "s.yaml:4: robots.a.address is for scenarios with a network; add network: {} at the "
+            "top level");
   EXPECT_EQ(
       Refusal("network: {}", "address: 127.0.0.1, "),
       "s.yaml:4: robots.a.address is '127.0.0.1'; write the IPv4 address of one computer, like "

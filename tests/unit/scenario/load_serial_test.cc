@@ -62,7 +62,7 @@ TEST_F(LoadSerialTest, LinesHaveDefaults) {
 
 TEST_F(LoadSerialTest, ALineHasOneRate) {
   EXPECT_THAT(Complaint("device: /dev/a, baud: 9600", "device: /dev/a, baud: 19200"),
-              HasSubstr("s.yaml:7: channels.hands.commands.baud is another one than that of "
+              HasSubstr("s.yaml:7: channels.hands.commands.baud differs from that of "
                         "channels.eyes.sensors on line 6 for the same device"));
 }
 

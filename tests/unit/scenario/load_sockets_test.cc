@@ -50,6 +50,30 @@ TEST_F(LoadSocketsTest, AnAbstractNameHasNoFolder) {
   EXPECT_EQ(Loaded("@hands").Text(), "@hands");
 }
 
+// So that runs beside each other meet in no socket.
+TEST_F(LoadSocketsTest, ARunHasNamesAndAnAddressOfItsOwn) {
+  const std::string path = folder_.Write(
+      "own.yaml",
+      "duration: 1\ndynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}\n"
+      "robots: {r: {clients: {c: {command: [sh, \"${run}/eyes\", \"${loopback}\"]}}}}\nchannels:\n"
+      "  eyes: {type: unix_json, sensors: {bodies: [b], to: \"@${run}/eyes\"}}\n"
+      "  hands: {type: udp_json, commands: {body: b, listen: \"${loopback}:5000\"}}\n");
+  const auto load = [&](std::uint32_t run) { return ScenarioOf(LoadScenario(path, {.run = run})); };
+  const Scenario one = load(0x1234abcd), next = load(0x1234abce);
+  EXPECT_EQ(one.robots[0].clients[0].command[1], "1234abcd/eyes");
+  EXPECT_EQ(std::get<UnixName>(one.sensors[0].to).name, "1234abcd/eyes");
+  EXPECT_EQ(std::get<UnixName>(next.sensors[0].to).name, "1234abce/eyes");
+  const auto from = std::get<UdpEndpoint>(one.commands[0].from);
+  EXPECT_EQ(from.host, one.robots[0].clients[0].command[2]);
+  EXPECT_EQ(from.port, 5000);
+  EXPECT_TRUE(from.host.starts_with("127."));
+  EXPECT_NE(from.host, std::get<UdpEndpoint>(next.commands[0].from).host);
+  for (const std::uint32_t run : {0u, 155u, 156u, 4'000'000'000u}) {
+    EXPECT_EQ(std::get<UdpEndpoint>(load(run).commands[0].from).host.size(), from.host.size())
+        << "a program's arguments are as long in every run";
+  }
+}
+
 TEST_F(LoadSocketsTest, LongNamesAreRefused) {
   EXPECT_EQ(Loaded("/" + std::string(106, 'x')).name.size(), 107u);
   EXPECT_THAT(Complaint("/" + std::string(107, 'x')),

@@ -13,6 +13,8 @@ namespace tcs {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Pair;
 
 class LoadTest : public testing::Test {
@@ -111,6 +113,26 @@ TEST_F(LoadTest, TheChannelsAreAsWritten) {
   EXPECT_EQ(std::get<UdpEndpoint>(hands.from).port, 47011);
 }
 
+TEST_F(LoadTest, ContactsAreWrittenIfAskedFor) {
+  const std::string world =
+      "dynamics: {}\nmodels: {floor: {plane: [0, 0, 1]}, box: {box: [1, 1, 1], mass: 1}}\n";
+  const std::string rest = "duration: 1\nrobots: {r: {clients: {c: {command: [sh]}}}}\n";
+  const Scenario scenario = Load(rest + world + "csv_contacts: true\n");
+  EXPECT_TRUE(scenario.csv_contacts);
+  EXPECT_THAT(scenario.warnings, IsEmpty());
+  EXPECT_FALSE(Load(rest + world).csv_contacts);
+  EXPECT_FALSE(Load(rest + world + "csv_contacts: false\n").csv_contacts);
+  // Where nothing can touch it is hardly what was meant, on ODE, too.
+  const std::string body = "bodies: {b: {mass: 1, inertia: [1, 1, 1]}}\ncsv_contacts: true\n";
+  for (const char* dynamics : {"dynamics: {}\n", "dynamics: {engine: ode}\n"}) {
+    EXPECT_THAT(Load(rest + dynamics + body).warnings,
+                ElementsAre(HasSubstr("s.yaml:5: csv_contacts finds none to write")));
+  }
+  EXPECT_THAT(Load(rest + "csv_contacts: true\n").warnings,
+              ElementsAre(HasSubstr("s.yaml:3: csv_contacts finds none to write")));
+  EXPECT_THAT(Load(rest + "csv_contacts: false\n").warnings, IsEmpty());
+}
+
 TEST_F(LoadTest, WhatIsLeftOutHasDefaults) {
   const Scenario scenario = Load("duration: 1\nrobots: {r: {clients: {c: {command: [sh]}}}}\n");
   EXPECT_EQ(scenario.name, "s");
@@ -171,10 +193,10 @@ TEST_F(LoadTest, TheAirIsAsWritten) {
   EXPECT_EQ(Load(blowing).world->wind.seed, Load(blowing).world->wind.seed);
   EXPECT_NE(Load(blowing).world->wind.seed, Load(blowing, {.seed = 8}).world->wind.seed);
   EXPECT_TRUE(Load(blowing).warnings.empty());
-  EXPECT_THAT(Load(WithReplaced("gravity: [0, 0, -9.81]", "wind: [1, 0, 0]")).warnings,
-              ElementsAre(folder_.Path("s.yaml") +
-                          ":9: dynamics.wind moves no body, for none has drag; give one a drag, "
-                          "like drag: {linear: 0.3}"));
+  EXPECT_THAT(
+      Load(WithReplaced("gravity: [0, 0, -9.81]", "wind: [1, 0, 0]")).warnings,
+      ElementsAre(folder_.Path("s.yaml") + ":9: dynamics.wind moves no body because no body has "
+                                           "drag; give one a drag, like drag: {linear: 0.3}"));
 }
 
 TEST_F(LoadTest, BodiesThatStandTogetherAreOneIsland) {

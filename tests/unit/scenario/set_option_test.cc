@@ -178,7 +178,7 @@ TEST_F(SetTest, UnknownPathsAskWhatWasMeant) {
   EXPECT_EQ(Complaint({"bodies.prei=null"}),
             "--set bodies.prei=null: there is no 'prei' in bodies; did you mean 'prey'?");
   EXPECT_EQ(Complaint({"duration.seconds=4"}),
-            "--set duration.seconds=4: duration has no keys or elements; end the path there");
+            "--set duration.seconds=4: duration has no keys or elements; end the key there");
   EXPECT_EQ(Complaint({"robots.hunter.clients.controller.command.9=x"}),
             "--set robots.hunter.clients.controller.command.9=x: "
             "robots.hunter.clients.controller.command is a list of 3; write "
@@ -193,14 +193,13 @@ TEST_F(SetTest, WhatIsNoKeyAndValueSaysSo) {
             "--set =3: this is not KEY=VALUE; write it like --set "
             "dynamics.step=1ms");
   EXPECT_EQ(Complaint({"seed="}),
-            "--set seed=: there is no value; give one, or null to remove the key");
+            "--set seed=: there is no value; write KEY=VALUE, or KEY=null to remove the key");
   EXPECT_EQ(Complaint({"seed. =4"}),
-            "--set seed. =4: seed has no keys or elements; end the path "
-            "there");
+            "--set seed. =4: seed has no keys or elements; end the key there");
   EXPECT_EQ(Complaint({"dynamics.=4"}),
             "--set dynamics.=4: 'dynamics.' ends with '.'; say what follows");
   EXPECT_EQ(Complaint({"dynamics..step=4"}),
-            "--set dynamics..step=4: 'dynamics..step' is no path: a key is missing in it");
+            "--set dynamics..step=4: 'dynamics..step' is not a key path: a key is missing in it");
   EXPECT_THAT(Complaint({"bodies.predator.position=[1, 2"}),
               AllOf(StartsWith("--set bodies.predator.position=[1, 2: the value is not valid YAML"),
                     HasSubstr("quote a text")));

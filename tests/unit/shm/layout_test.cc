@@ -12,14 +12,16 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 17u);
+  EXPECT_EQ(kVersion, 18u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
-  EXPECT_EQ(sizeof(ThreadSlot), 1152u);
+  EXPECT_EQ(sizeof(ThreadSlot), 3264u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
   EXPECT_EQ(offsetof(RunHeader, sync), 52u);
   EXPECT_EQ(offsetof(RunHeader, has_porters), 76u);
+  EXPECT_EQ(offsetof(RunHeader, names_by_robot), 80u);
+  EXPECT_EQ(offsetof(RunHeader, notes_datagrams), 84u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
@@ -34,6 +36,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
   EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
+  EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1152u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSockets) {
@@ -43,7 +46,7 @@ TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSo
   EXPECT_EQ(sizeof(OwnReceivers), 8u + 1024u * 112u);
   EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245896u);
   EXPECT_EQ(sizeof(LocalSockets), 2u * 8192u * 16u);
-  EXPECT_EQ(kProcessMemorySize, 4096u * 1152u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 3264u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {

@@ -27,6 +27,16 @@ TEST(LocalSockets, AreToldByAbstractNamesAlone) {
   EXPECT_EQ(HashOf("\0drone/imu"sv, AF_INET), 0u);
 }
 
+TEST(LocalSockets, HaveNamesOfTheirRobotWhereEachIsAHostOfItsOwn) {
+  using namespace std::literals;
+  const std::uint64_t imu = HashOf("\0imu"sv), pose = HashOf("\0pose"sv);
+  EXPECT_EQ(NumberOfName(imu, 1, false), NumberOfName(imu, 2, false));
+  EXPECT_NE(NumberOfName(imu, 1, true), NumberOfName(imu, 2, true));
+  EXPECT_EQ(NumberOfName(imu, 1, true), NumberOfName(imu, 1, true));
+  EXPECT_NE(NumberOfName(imu, 1, true), NumberOfName(pose, 1, true));
+  EXPECT_EQ(NumberOfName(0, 1, true), 0u) << "a file";
+}
+
 TEST(LocalSockets, AreFoundByTheirNumbers) {
   const auto table = std::make_unique<RobotByNumber>();
   EXPECT_EQ(RobotOf(*table, 7), kNoRobot);

@@ -106,7 +106,7 @@ TEST_F(TopicsFileTest, OfNothingIsEmpty) {
 }
 
 TEST_F(TopicsFileTest, ThatIsMissingIsExplained) {
-  EXPECT_THAT(Complaint(), HasSubstr("has no topics.json: no program of the run spoke DDS"));
+  EXPECT_THAT(Complaint(), HasSubstr("has no topics.json: no program of the run used DDS"));
   const auto nowhere = ReadTopics("/no/such");
   EXPECT_EQ(std::get<LoadError>(nowhere).message,
             "there is no folder '/no/such'; give one that tcsim run has written");
@@ -140,7 +140,7 @@ TEST_F(TopicsFileTest, ThatIsNotOursIsDamagedWhateverItHolds) {
 
 TEST_F(TopicsFileTest, OfALaterVersionIsRefused) {
   std::ofstream(Path()) << R"({"version": 2, "topics": "something else"})";
-  EXPECT_THAT(Complaint(), HasSubstr("topics.json is of a later tcsim"));
+  EXPECT_THAT(Complaint(), HasSubstr("topics.json was written by a later tcsim"));
 }
 
 TEST(TopicReport, HasTheRateBetweenItsFirstAndItsLastSample) {

@@ -83,7 +83,7 @@ TEST(TopicWarnings, NameATopicOfTwoTypes) {
   EXPECT_THAT(
       TopicWarnings({written, read}),
       ElementsAre("/odom: hunter/planner reads nav_msgs/msg/Odometry there, but tcsim writes "
-                  "sensor_msgs/msg/Imu, so that nothing gets across; use one type at both "
+                  "sensor_msgs/msg/Imu, so no sample arrives; use one type at both "
                   "ends"));
   read.domain = 7;
   EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());
@@ -96,10 +96,11 @@ TEST(TopicWarnings, NameTwoTopicsThatLookLikeOne) {
   written.endpoints = {{EndpointKind::kWriter, "tcsim", "", {}},
                        {EndpointKind::kReader, "tcsim", "", all}};  // a recording
   read.endpoints = {{EndpointKind::kReader, "hunter/planner", "hunter", {}}};
-  EXPECT_THAT(TopicWarnings({written, read}),
-              ElementsAre("/odom: hunter/planner reads it, and nobody writes it; /odomm: tcsim "
-                          "writes it with the same type, and nobody reads it; if they are meant "
-                          "for each other, use one name"));
+  EXPECT_THAT(
+      TopicWarnings({written, read}),
+      ElementsAre(
+          "/odom: hunter/planner reads it, and no program writes it; /odomm: tcsim writes it with "
+          "the same type, and no program reads it; if they belong together, use one name"));
   // Programs may leave topics to others that are not there.
   written.endpoints[0].process = "hunter/controller";
   EXPECT_THAT(TopicWarnings({written, read}), IsEmpty());

@@ -153,7 +153,7 @@ TEST_F(LogsTest, AFullDiskIsSaid) {
   CsvFile file;
   ASSERT_EQ(file.Open("/dev/full", "number"), "");
   file.Line(1);
-  EXPECT_NE(file.Close().find("/dev/full was not written whole"), std::string::npos);
+  EXPECT_NE(file.Close().find("/dev/full was not written completely"), std::string::npos);
 }
 
 TEST_F(LogsTest, AFolderThatIsNotThereIsSaid) {

@@ -55,6 +55,11 @@ TEST(TrialsLine, FitsIntoTheTerminal) {
   EXPECT_EQ(ProgressLine({.total = 4}, 30), "[........................] 0 o");
 }
 
+TEST(TrialsLine, CountsTheJobsThatWaitInAClustersQueue) {
+  EXPECT_THAT(ProgressLine({.total = 4, .running = {{1.0, 0.0}}, .queued = 3}, 200),
+              HasSubstr("0 of 4 done, 1 running, 3 queued"));
+}
+
 TEST(TrialsLine, ATrialAheadOfItsEndDoesNotOverflowTheBar) {
   EXPECT_THAT(ProgressLine({.total = 1, .running = {{1.0, 1.5}}}, 200),
               HasSubstr("[########################] 0 of 1"));

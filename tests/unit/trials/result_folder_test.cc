@@ -89,8 +89,8 @@ TEST_F(TrialsFolderTest, RestartThrowsTheTrialsAwayAndNothingElse) {
 
 TEST_F(TrialsFolderTest, SomebodyElsesFolderIsRefusedEvenForARestart) {
   Put("seed-0001/thesis.tex");
-  EXPECT_THAT(Enter(), HasSubstr("holds other things than trials"));
-  EXPECT_THAT(Enter(true), HasSubstr("holds other things than trials"));
+  EXPECT_THAT(Enter(), HasSubstr("holds other files than trials"));
+  EXPECT_THAT(Enter(true), HasSubstr("holds other files than trials"));
   EXPECT_TRUE(Has("seed-0001/thesis.tex"));
 }
 

@@ -25,7 +25,8 @@ TEST(ViewAddressTest, WhatIsNoneIsSaid) {
   for (const char* text : {"65536", "-1", "http://a", "localhost:80", "192.0.2:80", "192.0.2.7:",
                            "192.0.2.7:x", "[::1", "[::1]8080", "::1", ":8080", "[192.0.2.7]:80"}) {
     ViewRequest request;
-    EXPECT_NE(TakeViewAddress(text, &request).find("is no place to listen at"), std::string::npos)
+    EXPECT_NE(TakeViewAddress(text, &request).find("is not a place to listen at"),
+              std::string::npos)
         << text;
   }
 }

@@ -11,6 +11,7 @@ namespace tcs {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
 
@@ -54,8 +55,8 @@ TEST_F(CommandsTest, ActOnTheirChannelsBody) {
 }
 
 TEST_F(CommandsTest, ActAsTheirChannelSays) {
-  commands_.Take(0, {}, {.force_n = {1, 2, 3}});
-  commands_.Take(1, {}, {.force_n = {1, -2, 3}, .torque_nm = {7, 0, 0}});
+  commands_.Take(0, VirtualTime{}, {.force_n = {1, 2, 3}});
+  commands_.Take(1, VirtualTime{}, {.force_n = {1, -2, 3}, .torque_nm = {7, 0, 0}});
   EXPECT_EQ(acted_[0].wrench, (Wrench{.force_n = {1, 2, 3}}));
   EXPECT_EQ(acted_[1].wrench, (Wrench{.force_n = {1, -1, 1},
                                       .torque_nm = {7, 0, 0},
@@ -65,16 +66,16 @@ TEST_F(CommandsTest, ActAsTheirChannelSays) {
 
 TEST_F(CommandsTest, WhatIsNoneIsNamedOnceAndCounted) {
   for (int i = 0; i < 3; ++i) commands_.Refuse(1, "it is no JSON");
-  commands_.Take(1, {}, Wrench{});
+  commands_.Take(1, VirtualTime{}, Wrench{});
   EXPECT_THAT(warnings_, ElementsAre("channel stern: it is no JSON"));
   EXPECT_EQ(Complaint(1), "channel stern: 3 of the 4 messages that came in were no commands");
 }
 
 TEST_F(CommandsTest, ASilentChannelIsNamedAtTheEnd) {
   EXPECT_EQ(Complaint(0),
-            "channel bow: nothing came in there, so that no command moved ship; let a client send "
+            "channel bow: nothing came in there, so no command moved ship; let a client send "
             "some");
-  commands_.Take(0, {}, Wrench{});
+  commands_.Take(0, VirtualTime{}, Wrench{});
   EXPECT_EQ(Complaint(0), "");
 }
 
@@ -99,7 +100,7 @@ TEST(JointCommandsTest, DriveTheJointsOfTheirChannelWithItsGains) {
   EXPECT_EQ(commands.GoalsOf(0)->names[1], "wrist");
   EXPECT_FALSE(commands.GoalsOf(1).has_value());
   const std::vector<JointGoal> goals = {{.joint = 1, .position = 0.5}, {.joint = 0, .effort = 3}};
-  commands.Take(0, {}, goals);
+  commands.Take(0, VirtualTime{}, goals);
   ASSERT_EQ(driven.size(), 2u);
   EXPECT_EQ(driven[0].latency, VirtualDuration::Milliseconds(2));
   EXPECT_EQ(driven[0].joint, 5);
@@ -164,8 +165,9 @@ TEST_F(ActuatorsTest, RotorsHaveSpeedsAlone) {
   const std::vector<JointGoal> goals = {{.joint = 1, .position = 2}};
   commands_.Take(1, AtMs(1), goals);
   EXPECT_THAT(spun_, IsEmpty());
-  EXPECT_THAT(warnings_, ElementsAre("channel motors: a command wants something else of rotor "
-                                     "'right' than a speed"));
+  EXPECT_THAT(
+      warnings_,
+      ElementsAre("channel motors: a command sets something other than a speed for rotor 'right'"));
 }
 
 TEST_F(ActuatorsTest, LinksArePushedWithinTheLimits) {
@@ -184,10 +186,29 @@ TEST_F(ActuatorsTest, WhatIsBeyondTheLimitsIsCutAndSaid) {
       driven_[0],
       (JointDrive{.effort = 30, .stiffness = 100, .position = 2, .damping = 10, .velocity = -4}));
   EXPECT_THAT(commands_.ComplaintsAboutActuators(),
-              ElementsAre("joint 'elbow' of arm was commanded once beyond what it can do, the "
-                          "first time at 0.03 s: the position 3, of which it was given 2",
-                          "rotor 'left' of drone was commanded twice beyond what it can do, the "
-                          "first time at 0.012 s: the speed 1.5, of which it was given 1"));
+              ElementsAre("joint 'elbow' of arm was commanded once beyond its limit, first at 0.03 "
+                          "s: the position 3, of which it got 2",
+                          "rotor 'left' of drone was commanded twice beyond its limit, first at "
+                          "0.012 s: the speed 1.5, of which it got 1"));
+}
+
+// A thread's clock stands still where it has shown stolen time, or has come to its horizon.
+TEST_F(ActuatorsTest, CommandsBetweenWhichTheirSenderHasComputedAreForDifferentInstants) {
+  constexpr std::uint64_t kOne = 7, kOther = 8;
+  const std::vector<JointGoal> left = {{.joint = 0, .velocity = 0.1}};
+  commands_.Take(1, AtMs(1), Speeds(0.1, 0.2));
+  commands_.Take(1, {AtMs(10), {kOne, 5000}}, left);
+  commands_.Take(1, {AtMs(10), {kOne, 5100}}, left);
+  commands_.Take(1, {AtMs(10), {kOne, 5050}}, left);
+  EXPECT_THAT(commands_.ComplaintsAboutActuators(), IsEmpty());
+  commands_.Take(1, {AtMs(20), {kOne, 6000}}, left);
+  commands_.Take(1, {AtMs(20), {kOther, 5050}}, left);
+  EXPECT_THAT(commands_.ComplaintsAboutActuators(),
+              ElementsAre(HasSubstr("rotor 'left' of drone was commanded once at an instant for "
+                                    "which it had a command already, the first time at 0.022 s")));
+  commands_.Take(1, {AtMs(30), {kOther, 7000}}, left);
+  commands_.Take(1, {AtMs(30), {kOther, 7000}}, left);
+  EXPECT_THAT(commands_.ComplaintsAboutActuators(), ElementsAre(HasSubstr("twice at an instant")));
 }
 
 TEST_F(ActuatorsTest, WhatIsCommandedAgainAtOneInstantIsSaid) {
@@ -195,13 +216,13 @@ TEST_F(ActuatorsTest, WhatIsCommandedAgainAtOneInstantIsSaid) {
   commands_.Take(3, AtMs(10), Speeds(100, 200));
   commands_.Take(3, AtMs(10), std::vector<JointGoal>{{.joint = 1, .velocity = 300}});
   commands_.Take(3, AtMs(11), Speeds(100, 200));
-  EXPECT_THAT(commands_.ComplaintsAboutActuators(),
-              ElementsAre("rotor 'left' of drone was commanded once at an instant for which it had "
-                          "a command already, the first time at 0.012 s (channel motors and "
-                          "again); the last one acted",
-                          "rotor 'right' of drone was commanded twice at an instant for which it "
-                          "had a command already, the first time at 0.012 s (channel motors and "
-                          "again); the last one acted"));
+  EXPECT_THAT(
+      commands_.ComplaintsAboutActuators(),
+      ElementsAre(
+          "rotor 'left' of drone was commanded once at an instant for which it already had a "
+          "command, first at 0.012 s (channel motors and again); the last command acted",
+          "rotor 'right' of drone was commanded twice at an instant for which it already had a "
+          "command, first at 0.012 s (channel motors and again); the last command acted"));
 }
 
 // Of a channel on which nothing comes in another sentence tells.

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "coordinator/world/commands.h"
+#include "coordinator/world/contact_lines.h"
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/scene_text.h"
 #include "simbody_bridge/engines.h"
@@ -85,6 +86,7 @@ TEST(SceneTest, HasAllThatIsToBeSeen) {
                          "filename='mast.stl'/></geometry><material name='m'><color rgba='1 0.5 0 "
                          "1'/></material></visual></link></robot>";
   scenario.urdf_files["cart"] = urdf;
+  scenario.urdf_packages["cart"] = {};
   SensorChannelSpec scan{.name = "scan"};
   scan.instrument = LidarSpec{.mount = {.link = 2, .at = {}, .frame = {}}, .rays = 9};
   scenario.sensors = {scan};
@@ -110,6 +112,8 @@ TEST(SceneTest, HasAllThatIsToBeSeen) {
   EXPECT_EQ(links[2]["parent"], 0);
   EXPECT_EQ(links[2]["pose"][2], 7);
   EXPECT_EQ(links[2]["visuals"][0]["name"], "mast.stl");
+  EXPECT_EQ(links[2]["visuals"][0]["path"],
+            (std::filesystem::path(urdf).parent_path() / "mast.stl").string());
   EXPECT_EQ(links[2]["visuals"][0]["colour"][1], 0.5);
   EXPECT_EQ(scene["sensors"][0]["link"], "cart/wheel");
   EXPECT_EQ(scene["sensors"][0]["rays"], 9);
@@ -135,6 +139,46 @@ TEST_F(RecordsTest, JointsThatMoveHaveALineEach) {
                        "0.010000000,cart/axle,0.0"))
       << text;
   EXPECT_EQ(text.find("weld"), std::string::npos);
+}
+
+TEST_F(RecordsTest, ContactsHaveALineEach) {
+  WorldSpec world;
+  world.gravity_mps2 = {0, 0, -9.81};
+  world.fixtures = {{.name = "floor", .geometry = PlaneShape{}}};
+  RobotModel ball;
+  ball.name = "stone";
+  ball.links = {
+      {.name = "stone",
+       .inertial =
+           Inertial{.mass_kg = 1, .frame = {}, .ixx_kgm2 = 0.1, .iyy_kgm2 = 0.1, .izz_kgm2 = 0.1},
+       .shapes = {{.geometry = SphereShape{0.5}}}}};
+  ball.at.position_m = {1, 2, 0.5};
+  RobotModel cart = Cart();
+  cart.at.position_m = {1, 2, 9};
+  world.models = {ball, cart};
+  ContactLines lines(world);
+  CsvFile file;
+  ASSERT_EQ(file.Open(path_, kContactsCsvHead), "");
+  const auto dynamics = MakeDynamics(world);
+  lines.Write(*dynamics, &file);
+  dynamics->AdvanceTo(At(500'000'000));
+  lines.Write(*dynamics, &file);
+  ASSERT_EQ(file.Close(), "");
+  std::istringstream text(Written());
+  std::string head, line;
+  std::getline(text, head);
+  EXPECT_EQ(
+      head,
+      "time_s,first,second,x_m,y_m,z_m,normal_x,normal_y,normal_z,force_x_n,force_y_n,force_z_"
+      "n");
+  std::getline(text, line);
+  EXPECT_TRUE(line.starts_with("0.500000000,stone,floor,")) << line;
+  std::vector<double> numbers;
+  std::istringstream rest(line.substr(std::string("0.500000000,stone,floor,").size()));
+  for (std::string number; std::getline(rest, number, ',');) numbers.push_back(std::stod(number));
+  const double wanted[] = {1, 2, 0, 0, 0, 1, 0, 0, 9.81};
+  EXPECT_THAT(numbers, testing::Pointwise(testing::DoubleNear(2e-3), wanted));
+  EXPECT_FALSE(std::getline(text, line)) << "the cart is in the air: " << line;
 }
 
 class CommandRecords : public RecordsTest {

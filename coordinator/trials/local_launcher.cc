@@ -1,76 +1,50 @@
-#include "coordinator/trials/runner.h"
+#include "coordinator/trials/local_launcher.h"
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
 #include <string.h>
-#include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <list>
-#include <system_error>
 #include <utility>
 
 #include "coordinator/os/cpu_places.h"
-#include "coordinator/os/files.h"
 #include "coordinator/os/host.h"
-#include "coordinator/os/stop_request.h"
-#include "coordinator/os/unique_fd.h"
 #include "coordinator/trials/run_process.h"
+#include "coordinator/trials/stop_signals.h"
+#include "coordinator/trials/trial_folder.h"
 
 namespace tcs {
 
 namespace {
 
 constexpr int kLookMs = 200;
-// A run that somebody killed ends within ten seconds (os/guardian.h).
-constexpr int kDyingRunLooks = 75;
 
 double SecondsSince(std::int64_t start_ns) {
   return static_cast<double>(HostClockNs(CLOCK_MONOTONIC) - start_ns) * 1e-9;
 }
 
-// The folder is empty afterwards, and no run of before writes into it any more. The sentence, if
-// that cannot be had.
-std::string MakeAnew(const std::string& folder) {
-  for (int look = 0; !FolderLock(folder).IsOurs(); ++look) {
-    if (look == kDyingRunLooks) {
-      return "a run that was started before still writes to " + folder + "; end it";
-    }
-    poll(nullptr, 0, kLookMs);
-  }
-  std::error_code error;
-  std::filesystem::remove_all(folder, error);
-  return error ? folder + " cannot be removed: " + error.message() : MakeFolder(folder);
-}
-
 class Runner {
  public:
-  Runner(const TrialsPlan& plan, const std::string& folder, std::vector<Trial> todo,
-         const std::vector<TrialOutcome>& earlier, const std::vector<std::int64_t>& duration_ns,
-         const RunnerOptions& options, const RunnerEvents& events)
-      : plan_(plan),
-        folder_(folder),
-        todo_(std::move(todo)),
-        duration_ns_(duration_ns),
+  Runner(const TrialsWork& work, const LocalOptions& options, const LauncherEvents& events)
+      : work_(work),
+        todo_(work.todo),
         options_(options),
         events_(events),
         cpus_(CpuPlaces()),
         places_(static_cast<std::size_t>(options.at_once), false) {
-    progress_.total = static_cast<int>(todo_.size() + earlier.size());
-    progress_.done = static_cast<int>(earlier.size());
+    progress_.total = static_cast<int>(todo_.size() + work.earlier.size());
+    progress_.done = static_cast<int>(work.earlier.size());
     progress_.at_once = options.at_once;
-    for (const TrialOutcome& outcome : earlier) {
+    for (const TrialOutcome& outcome : work.earlier) {
       progress_.finished_seconds.push_back(static_cast<double>(outcome.real_ns) * 1e-9);
     }
     std::reverse(todo_.begin(), todo_.end());  // the next one is the last
   }
 
-  RunnerReport Run();
+  LauncherReport Run();
 
  private:
   struct Running {
@@ -80,7 +54,7 @@ class Runner {
     std::int64_t start_ns = 0;
   };
 
-  std::string FolderOf(const Trial& trial) const { return folder_ + "/" + trial.folder; }
+  std::string FolderOf(const Trial& trial) const { return work_.folder + "/" + trial.folder; }
   void StartMore();
   std::string Start(const Trial& trial, std::size_t place);
   void Finish(Running* running);
@@ -89,31 +63,23 @@ class Runner {
   void TakeSignal();
   const TrialsProgress& Look();
 
-  const TrialsPlan& plan_;
-  const std::string& folder_;
+  const TrialsWork& work_;
   std::vector<Trial> todo_;
-  const std::vector<std::int64_t>& duration_ns_;
-  const RunnerOptions& options_;
-  const RunnerEvents& events_;
+  const LocalOptions& options_;
+  const LauncherEvents& events_;
   const std::vector<CpuPlace> cpus_;
   std::vector<bool> places_;  // which are taken
   std::list<Running> running_;
   TrialsProgress progress_;
-  RunnerReport report_;
+  LauncherReport report_;
   const std::int64_t start_ns_ = HostClockNs(CLOCK_MONOTONIC);
-  UniqueFd signals_;
-  StopRequest stop_;
+  StopSignals stop_;
 };
 
-RunnerReport Runner::Run() {
-  sigset_t stops;
-  sigemptyset(&stops);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&stops, signal);
-  sigprocmask(SIG_BLOCK, &stops, nullptr);
-  signals_.Reset(signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK));
+LauncherReport Runner::Run() {
   for (;;) {
     if (!report_.interrupted) StartMore();
-    if (running_.empty() || stop_.insists()) break;
+    if (running_.empty() || stop_.request().insists()) break;
     if (events_.on_progress && !report_.interrupted) events_.on_progress(Look());
     Wait();
   }
@@ -132,9 +98,9 @@ void Runner::StartMore() {
 
 std::string Runner::Start(const Trial& trial, std::size_t place) {
   const std::string folder = FolderOf(trial);
-  if (std::string error = MakeAnew(folder); !error.empty()) return error;
+  if (std::string error = MakeTrialFolderAnew(folder); !error.empty()) return error;
   RunProcessRequest request;
-  request.arguments = RunArgumentsOf(plan_, trial);
+  request.arguments = RunArgumentsOf(work_.plan, trial);
   request.arguments.insert(request.arguments.end(), {"--out", folder});
   if (!options_.waits_for_cpu) request.arguments.emplace_back("--no-wait");
   request.log = folder + "/tcsim.log";
@@ -179,7 +145,7 @@ void Runner::End(TrialEnd end, double seconds) {
 }
 
 void Runner::Wait() {
-  std::vector<pollfd> fds{{signals_.get(), POLLIN, 0}};
+  std::vector<pollfd> fds{{stop_.fd(), POLLIN, 0}};
   for (const Running& running : running_) fds.push_back({running.process.pidfd(), POLLIN, 0});
   const int happened = poll(fds.data(), fds.size(), events_.on_progress ? kLookMs : -1);
   // First, since ^C at a terminal reaches the runs, too: their ends are no failures then.
@@ -197,23 +163,19 @@ void Runner::Wait() {
 }
 
 void Runner::TakeSignal() {
-  signalfd_siginfo info;
-  while (read(signals_.get(), &info, sizeof info) == sizeof info) {
-    const bool is_first = !stop_.asked();
-    stop_.Take(static_cast<int>(info.ssi_signo), HostClockNs(CLOCK_MONOTONIC));
-    report_.interrupted = true;
-    report_.stop_signal = stop_.signal();
-    if (!is_first) continue;
-    if (events_.on_stopping) events_.on_stopping();
-    for (const Running& running : running_) running.process.EndInOrder();
-  }
+  const bool is_first = stop_.Take();
+  report_.interrupted = stop_.request().asked();
+  report_.stop_signal = stop_.request().signal();
+  if (!is_first) return;
+  if (events_.on_stopping) events_.on_stopping();
+  for (const Running& running : running_) running.process.EndInOrder();
 }
 
 const TrialsProgress& Runner::Look() {
   progress_.elapsed_seconds = SecondsSince(start_ns_);
   progress_.running.clear();
   for (const Running& running : running_) {
-    const auto whole_ns = static_cast<double>(duration_ns_[running.trial.group]);
+    const auto whole_ns = static_cast<double>(work_.duration_ns[running.trial.group]);
     progress_.running.push_back({SecondsSince(running.start_ns),
                                  static_cast<double>(running.process.virtual_ns()) / whole_ns});
   }
@@ -222,11 +184,8 @@ const TrialsProgress& Runner::Look() {
 
 }  // namespace
 
-RunnerReport RunTrials(const TrialsPlan& plan, const std::string& folder,
-                       const std::vector<Trial>& todo, const std::vector<TrialOutcome>& earlier,
-                       const std::vector<std::int64_t>& duration_ns, const RunnerOptions& options,
-                       const RunnerEvents& events) {
-  return Runner(plan, folder, todo, earlier, duration_ns, options, events).Run();
+LauncherReport LocalLauncher::Run(const TrialsWork& work, const LauncherEvents& events) {
+  return Runner(work, options_, events).Run();
 }
 
 }  // namespace tcs

@@ -1,0 +1,24 @@
+// What the kernel of the host says of threads: beside what a coordinator knows of them, and in its
+// place where it does not answer. Reads /proc as an ordinary process; what the kernel does not tell
+// is left out.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace tcs {
+
+// {"name", "state" (as ps has it), "cpu" (it ran on last), "processor_ns", "in" (the function of
+// the kernel that it waits in), "call" (the number of the system call that it is in)}; null if
+// there is no such thread.
+[[nodiscard]] nlohmann::ordered_json KernelStateOf(pid_t pid, pid_t tid);
+
+// Adds that to each thread of a coordinator's answer, and the owners of the locks that threads wait
+// for, as far as the lock says it: a mutex of the C library does.
+void AddWhatTheKernelKnows(nlohmann::ordered_json* state);
+
+}  // namespace tcs

@@ -1,0 +1,30 @@
+// The meshes that robots are drawn with, small enough for a page.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace tcs::report {
+
+class Looks {
+ public:
+  // Of so many files at most, each of which may be used any number of times.
+  explicit Looks(std::size_t files);
+
+  // The number of the mesh in the file, scaled along its axes, in `meshes`, where it is put as
+  // page/replay_data.js reads it; none where it cannot be read, or there is no room for it.
+  std::optional<std::size_t> Take(const std::string& path, const std::array<double, 3>& scale,
+                                  nlohmann::ordered_json* meshes);
+
+ private:
+  std::size_t most_triangles_;  // of each
+  std::size_t files_left_;
+  std::map<std::pair<std::string, std::array<double, 3>>, std::optional<std::size_t>> taken_;
+};
+
+}  // namespace tcs::report

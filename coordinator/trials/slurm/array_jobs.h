@@ -1,0 +1,55 @@
+// Array jobs of Slurm: how they are asked for, and what the queue says of them. Pure.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tcs {
+
+// One job of an array.
+struct QueuedJob {
+  std::string id;            // "12_3"
+  std::string state;         // as Slurm names it: "RUNNING", "NODE_FAIL"
+  std::string node, reason;  // empty: none
+  int wait_status = 0;       // as of waitpid
+
+  bool IsPending() const;
+  // It has not ended yet.
+  bool IsAlive() const;
+};
+
+// What the jobs of a call exit with, besides 0.
+inline constexpr int kFolderNotShared = 66;  // it does not see the folder that it is to work in
+inline constexpr int kJobCannotRun = 67;     // it has left the reason in its work folder
+inline constexpr int kRunWasKilled = 68;     // a run was, as by the kernel when memory ran out
+
+struct SubmitRequest {
+  std::string name;    // of the jobs
+  std::string tcsim;   // the program's path
+  std::string folder;  // of the work
+  int jobs = 1;
+  bool whole_cores = false;
+  std::vector<std::string> excluded_nodes;
+  std::vector<std::string> options;  // of the user's, for sbatch
+};
+std::vector<std::string> SubmitWords(const SubmitRequest& request);
+
+// Why the user cannot give this option to sbatch; empty if they can.
+std::string WhyNotForSbatch(const std::string& option);
+
+// `user`: a number.
+std::vector<std::string> QueueWords(const std::string& name, unsigned user);
+std::vector<std::string> CancelWords(const std::string& name, unsigned user);
+
+// What the command of QueueWords has printed; by id.
+std::map<std::string, QueuedJob> ParseQueue(const std::string& text);
+
+// How large an array may be, from `scontrol show config`; Slurm's own default if that does not say.
+int LargestArray(const std::string& configuration);
+
+// Why a job has ended without a result, as "NODE_FAIL: the node failed". `job`: null if the queue
+// does not know it any more.
+std::string WhyGone(const QueuedJob* job);
+
+}  // namespace tcs

@@ -1,0 +1,23 @@
+// Slurm's commands, as a user types them: there is no other way in that all its releases share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tcs {
+
+struct CommandResult {
+  bool is_found = true;  // in PATH
+  bool succeeded = false;
+  std::string out, said;  // its stdout, and its stderr
+};
+
+// Runs it to its end, for a minute at most. It gets the signals of the terminal. The calling
+// process must be single-threaded.
+CommandResult RunSlurmCommand(const std::vector<std::string>& words);
+
+// The sentence out of what one of them says on stderr, as "Invalid partition name specified" out of
+// "sbatch: error: Batch job submission failed: Invalid partition name specified".
+std::string SlurmsReason(const std::string& said);
+
+}  // namespace tcs

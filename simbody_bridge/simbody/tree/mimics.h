@@ -1,0 +1,13 @@
+// Joints that mimic others, in steps that solve for the speeds.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "simbody_bridge/simbody/tree/tree.h"
+
+namespace tcs {
+
+// The speeds are `reduction` times those of joints that mimic no other.
+void Reduce(const SimbodyTree& tree, Eigen::MatrixXd* reduction);
+
+}  // namespace tcs

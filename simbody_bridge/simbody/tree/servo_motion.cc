@@ -1,0 +1,69 @@
+#include "simbody_bridge/simbody/tree/servo_motion.h"
+
+namespace tcs {
+namespace {
+
+using Eigen::VectorXd;
+
+// From the start's rate on, pushed by f1 and f2 on top of it.
+JointMotion Answer(const ServoStart& start, const LinearResponse& response, const VectorXd& f1,
+                   const VectorXd& f2) {
+  return {response.seconds * start.speed + response.Way(start.rate, f1, f2),
+          start.speed + response.Speed(start.rate, f1, f2)};
+}
+
+}  // namespace
+
+JointMotion MotionAfter(const ServoStart& start, const ServoPush& push, double after_s,
+                        ResponseFinder* finder) {
+  LinearResponse response;
+  finder->Find(start.stiffness, start.damping, after_s, &response, nullptr);
+  const double share = after_s / push.seconds;
+  return Answer(start, response, share * push.f1, share * share * push.f2);
+}
+
+// The springs push back as much as the joints go on as fast as they are; what they do on top of
+// that is in the response.
+const JointMotion& ServoMotion::Middle(double h) {
+  finder_.Find(start_.stiffness, start_.damping, h, &whole_, &half_);
+  drift_ = -h * (start_.stiffness * start_.speed);
+  none_.setZero(start_.speed.size());
+  at_middle_ = Answer(start_, half_, drift_ / 2, none_);
+  return at_middle_;
+}
+
+const JointMotion& ServoMotion::End(const VectorXd& middle_rate) {
+  middle_ = Remainder(middle_rate, at_middle_);
+  at_end_ = Answer(start_, whole_, drift_, none_);
+  at_end_.way += whole_.Way(2 * middle_, none_, none_);
+  at_end_.speed += whole_.Speed(2 * middle_, none_, none_);
+  return at_end_;
+}
+
+// What remains grows as the parabola through its three values, of which the first is 0.
+const JointMotion& ServoMotion::Arrive(const VectorXd& end_rate) {
+  end_ = Remainder(end_rate, at_end_);
+  const VectorXd f1 = 4 * middle_ - end_, f2 = 2 * end_ - 4 * middle_;
+  arrived_ = Answer(start_, whole_, drift_ + f1, f2);
+  error_.way = whole_.Way(-middle_, f1, f2);
+  error_.speed = whole_.Speed(-middle_, f1, f2);
+  return arrived_;
+}
+
+// The value in the middle is off by what the one at the end is, divided by four.
+ServoPush ServoMotion::PushUntil(const VectorXd& rate) const {
+  const VectorXd last = Remainder(rate, arrived_);
+  const VectorXd middle = middle_ + (end_ - last) / 4;
+  return {whole_.seconds, drift_ + 4 * middle - last, 2 * last - 4 * middle};
+}
+
+JointMotion ServoMotion::Along(const ServoPush& push) const {
+  return Answer(start_, whole_, push.f1, push.f2);
+}
+
+VectorXd ServoMotion::Remainder(const VectorXd& rate, const JointMotion& motion) const {
+  return rate - start_.rate + start_.stiffness * motion.way +
+         start_.damping * (motion.speed - start_.speed);
+}
+
+}  // namespace tcs

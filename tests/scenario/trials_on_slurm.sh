@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$(dirname -- "${BASH_SOURCE[0]}")/slurm_world.sh"
+source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
+# A sweep over a cluster of four nodes, one of which is killed in the middle of a trial: each trial has one result, the
+# lost one is named and run again, and all results are those of the same sweep on this machine, to the byte.
+# TCS_SLURM_TRIALS: how many trials.
+trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
+many=$((${TCS_SLURM_TRIALS:-24} / 2))
+trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=1s,1100ms)
+start_slurm 4
+timeout 400 "${trials[@]}" --out "$out/local" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+
+SECONDS=0
+timeout 400 "${trials[@]}" --out "$out/there" --launcher slurm --slurm-option=--partition=work >"$out/said" 2>&1 &
+call=$!
+results() { find "$out/there" -path "$out/there/slurm" -prune -o -name summary.json -print 2>/dev/null | wc -l; }
+# The index of the trial that a run on n2 has begun, and not ended.
+at_work() {
+  local run
+  for run in $(find "$out/there/slurm" -lname '*@n2' -printf '%h/../runs/%f.%l\n' 2>/dev/null); do
+    run=${run%@n2}
+    [[ ! -e $run/bodies.csv || -e $run/summary.json ]] || basename "${run%.*}"
+  done
+}
+for _ in $(seq 400); do (($(results) * 4 >= many)) && break; sleep 0.05; done
+# A job that is stopped cannot hand in what it has run.
+jobs="" lost=""
+for _ in $(seq 400); do
+  [[ -n $jobs ]] || jobs=$(jobs_of n2)
+  # shellcheck disable=SC2086
+  [[ -n $jobs ]] && kill -STOP $jobs 2>/dev/null && lost=$(at_work) && [[ -n $lost ]] && break
+  # shellcheck disable=SC2086
+  [[ -n $jobs ]] && { kill -CONT $jobs 2>/dev/null || jobs=""; }
+  sleep 0.02
+done
+[[ -n $lost ]] || fail "n2 runs nothing: $(cat "$out/said")"
+kill_node n2
+killed_at=$SECONDS
+status=0; wait "$call" || status=$?
+echo "$((2 * many)) trials in $SECONDS s; $((SECONDS - killed_at)) of them since the node was killed"
+((status == 0)) || fail "exit status $status: $(cat "$out/said")"
+
+# Trial I has the seed 1 + I / 2, and the first value or the second one in turn.
+value=(1s 1100ms)
+named="seed $((1 + lost / 2)) with duration=${value[lost % 2]}"
+grep -q "^tcsim: $named was lost on node n2 (.*); it is run again" "$out/said" || fail "$named: $(cat "$out/said")"
+# Where a busy machine makes another node seem dead, its trials are lost as well, and treated alike.
+grep 'was lost' "$out/said" | grep -Evq "^tcsim: seed [0-9]+ with duration=[0-9]+m?s was lost on node n[1-4] \(" &&
+  fail "$(cat "$out/said")"
+(($(results) == 2 * many)) || fail "$(results) results"
+[[ ! -e $out/there/slurm ]] || fail "the jobs' folder is still there: $(find "$out/there/slurm")"
+for duration in "${value[@]}"; do
+  grep -Eq "^duration=$duration +$many of $many" "$out/said" || fail "$(cat "$out/said")"
+  for seed in $(seq "$many"); do
+    (($(grep -c "^seed $seed with duration=$duration: done" "$out/said") == 1)) || fail "seed $seed: $(cat "$out/said")"
+    printf -v folder '%s/seed-%04d' "$duration" "$seed"
+    same "$out/there/$folder" "$out/local/$folder"
+    # As of a run in that folder: nothing tells of the one that it was written in.
+    grep -rIl "$out/there/slurm" "$out/there/$folder" && fail "a path that is no more"
+  done
+done
+nodes() { cat "$out"/there/*/*/job.json | grep -o '"node": "n[1-4]"'; }
+nodes | sort | uniq -c
+(($(nodes | sort -u | wc -l) >= 3)) || fail "not all nodes were used"
+printf -v folder '%s/seed-%04d' "${value[lost % 2]}" $((1 + lost / 2))
+grep -q '"node": "n2"' "$out/there/$folder/job.json" && fail "the dead node has handed in the trial that it lost"
+[[ -z $(squeue -h) ]] || fail "jobs are left: $(squeue)"

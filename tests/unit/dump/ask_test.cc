@@ -1,0 +1,166 @@
+// A process that has the coordinator's end of the state's memory, and this one, which asks it.
+#include "coordinator/dump/ask.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <x86gprintrin.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "coordinator/dump/find_run.h"
+#include "coordinator/dump/state_link.h"
+
+namespace tcs {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kSoonNs = 100'000'000, kInTimeNs = 20'000'000'000;
+
+// What a coordinator does: `answers` once it was asked, and nothing besides; `first` before.
+class Coordinator {
+ public:
+  using Answers = std::function<void(StateLink&)>;
+
+  explicit Coordinator(Answers answers, const std::string& folder = "") {
+    pid_ = fork();
+    if (pid_ == 0) Serve(answers, folder);
+  }
+  ~Coordinator() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  Coordinator(const Coordinator&) = delete;
+  Coordinator& operator=(const Coordinator&) = delete;
+
+  pid_t pid() const { return pid_; }
+  // Once it can be found.
+  FoundRun Run() const {
+    for (;;) {
+      for (FoundRun& run : FindRuns()) {
+        if (run.coordinator == pid_) return std::move(run);
+      }
+      usleep(1'000);
+    }
+  }
+
+ private:
+  [[noreturn]] static void Serve(const Answers& answers, const std::string& folder) {
+    alarm(100);
+    StateLink link;
+    link.Open(folder);
+    link.Dispatched(42, __rdtsc(), 1'500);
+    link.Does(Doing::kIntegrates, __rdtsc());
+    for (pollfd asked{link.wake_fd(), POLLIN, 0};;) {
+      if (poll(&asked, 1, -1) == 1) answers(link);
+    }
+  }
+
+  pid_t pid_ = -1;
+};
+
+void Greet(StateLink& link) {
+  static int times = 0;
+  if (link.TakeAsked()) link.Answer("hello " + std::to_string(++times));
+}
+
+TEST(AskForState, GetsTheAnswer) {
+  const Coordinator coordinator(Greet);
+  const FoundRun run = coordinator.Run();
+  for (const char* expected : {"hello 1", "hello 2"}) {
+    const StateAnswer answer = AskForState(run, kInTimeNs);
+    EXPECT_EQ(answer.error, "");
+    EXPECT_EQ(answer.text, expected);
+  }
+}
+
+TEST(AskForState, GivesEachOfManyItsOwnAnswer) {
+  const Coordinator coordinator(Greet);
+  std::vector<std::string> answers(8);
+  std::vector<std::thread> askers;
+  for (std::string& text : answers) {
+    askers.emplace_back(
+        [&] { text = AskForState(coordinator.Run(), kInTimeNs).text.value_or("none"); });
+  }
+  for (std::thread& asker : askers) asker.join();
+  std::sort(answers.begin(), answers.end());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    EXPECT_EQ(answers[i], "hello " + std::to_string(i + 1));
+  }
+}
+
+TEST(AskForState, SaysWhatTheCoordinatorDoesThatDoesNotAnswer) {
+  const Coordinator coordinator([](StateLink&) { pause(); });
+  const StateAnswer answer = AskForState(coordinator.Run(), kSoonNs);
+  EXPECT_EQ(answer.error, "");
+  EXPECT_EQ(answer.text, std::nullopt);
+  EXPECT_GE(answer.waited_ns, kSoonNs);
+  EXPECT_EQ(answer.coordinator.doing, Doing::kIntegrates);
+  EXPECT_EQ(answer.coordinator.dispatched_tid, 42);
+  EXPECT_EQ(answer.coordinator.virtual_ns, 1'500);
+  EXPECT_EQ(answer.coordinator.dispatches, 1u);
+}
+
+TEST(AskForState, TakesALateAnswerForNobodysNext) {
+  const Coordinator coordinator([](StateLink& link) {
+    if (!link.TakeAsked()) return;
+    usleep(300'000);
+    link.Answer("late");
+    usleep(300'000);
+  });
+  const FoundRun run = coordinator.Run();
+  EXPECT_EQ(AskForState(run, kSoonNs).text, std::nullopt);
+  EXPECT_EQ(AskForState(run, kInTimeNs).text, "late");
+  EXPECT_EQ(AskForState(run, kInTimeNs).text, "late");
+}
+
+TEST(AskForState, SaysThatTheRunHasEnded) {
+  FoundRun run;
+  {
+    const Coordinator coordinator(Greet);
+    run = coordinator.Run();
+  }
+  EXPECT_THAT(AskForState(run, kSoonNs).error, HasSubstr("has just ended"));
+}
+
+TEST(AskForState, SaysThatTheAnswerIsTooLong) {
+  const Coordinator coordinator([](StateLink& link) {
+    if (link.TakeAsked()) link.Answer(std::string(kMostStateText + 1, 'x'));
+  });
+  EXPECT_THAT(AskForState(coordinator.Run(), kInTimeNs).error, HasSubstr("too many threads"));
+}
+
+TEST(ChooseRun, GoesByFolderAndByProcess) {
+  const Coordinator one(Greet, "/usr"), other(Greet, "/etc");
+  one.Run();
+  other.Run();
+  const auto chosen = [](const std::string& named) {
+    auto run = ChooseRun(FindRuns(), named);
+    const auto* error = std::get_if<std::string>(&run);
+    return error != nullptr ? *error : std::to_string(std::get<FoundRun>(run).coordinator);
+  };
+  EXPECT_EQ(chosen("/usr/../usr/"), std::to_string(one.pid()));
+  EXPECT_EQ(chosen("/etc"), std::to_string(other.pid()));
+  EXPECT_EQ(chosen(std::to_string(other.pid())), std::to_string(other.pid()));
+  // This process has started both.
+  EXPECT_THAT(chosen(std::to_string(getpid())),
+              testing::MatchesRegex("2 runs go on: process [0-9]+ \\(/...\\), process [0-9]+ "
+                                    "\\(/...\\); name one, as in `tcsim dump [0-9]+`"));
+  EXPECT_EQ(chosen("/var"), "no run writes to the folder '/var' just now");
+  EXPECT_EQ(chosen("/no/such"), "there is no folder '/no/such'");
+  EXPECT_EQ(chosen("999999999"), "there is no process 999999999");
+}
+
+}  // namespace
+}  // namespace tcs
