@@ -106,8 +106,7 @@ void DatagramLog::WorldReceived(std::size_t channel, const CommandSent& sent) {
   if (sent.by.id == 0) return;
   const Task* task = run_.table.Living(static_cast<pid_t>(sent.by.id));
   if (task == nullptr) return;
-  Write({sent.at, task->process->name, run_.scenario.commands[channel].name}, sent.at,
-        "dynamics");
+  Write({sent.at, task->process->name, run_.scenario.commands[channel].name}, sent.at, "dynamics");
 }
 
 const char* DatagramLog::TakeNotes(const Task& task) {

@@ -107,8 +107,7 @@ class Look {
       on_the_way.push_back({{"sensor", run_.scenario.sensors[sensor].name}, {"readings", count}});
     }
     return {{"progress_ns", world.progress().ns()},
-            {"lead_ns",
-             least.IsNever() ? Json(nullptr) : Json((world.progress() - least).ns())},
+            {"lead_ns", least.IsNever() ? Json(nullptr) : Json((world.progress() - least).ns())},
             {"next_stop_ns", Ns(world.NextStop())},
             {"next_output_ns", Ns(world.NextOutput())},
             {"samples", world.samples()},
@@ -190,12 +189,12 @@ class Look {
     }
     Json unmanaged = Json::array();
     for (const auto& [pid, child] : from_.unknown_children.living()) unmanaged.push_back(pid);
-    return {{"futexes", std::move(futexes)},
-            {"kernel_objects", std::move(objects)},
-            {"dds", std::move(dds)},
-            {"network_next_ns",
-             from_.network.present() ? Ns(from_.network.NextDue()) : Json(nullptr)},
-            {"unknown_children", std::move(unmanaged)}};
+    return {
+        {"futexes", std::move(futexes)},
+        {"kernel_objects", std::move(objects)},
+        {"dds", std::move(dds)},
+        {"network_next_ns", from_.network.present() ? Ns(from_.network.NextDue()) : Json(nullptr)},
+        {"unknown_children", std::move(unmanaged)}};
   }
 
  private:
@@ -317,7 +316,8 @@ class Look {
       case TaskState::kStarting:
         return "is being started";
       case TaskState::kReady:
-        return task.debt > VirtualDuration() ? "is ready, once the time has passed that it owes" : "is ready";
+        return task.debt > VirtualDuration() ? "is ready, once the time has passed that it owes"
+                                             : "is ready";
       case TaskState::kHolding:
         return TextOfHold(task);
       case TaskState::kUnseen:

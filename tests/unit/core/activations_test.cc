@@ -89,7 +89,7 @@ TEST_F(ActivationsTest, WhoNeverRegisteredHasNone) {
 
 TEST_F(ActivationsTest, NoneIsChargedLessThanNothing) {
   WaitsFor<awaited::Descriptors>();
-  activations_.Released(task_, shm::WakeReason::kGo, At(0));
+  activations_.Released(task_, shm::WakeReason::kGo, VirtualTime());
   Runs({}, 1 * kMs, 5 * kMs);
   WaitsFor<awaited::Descriptors>();
   activations_.Released(task_, shm::WakeReason::kGo, At(2 * kMs));

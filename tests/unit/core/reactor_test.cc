@@ -165,7 +165,7 @@ TEST(Reactor, AHandlerMayLetItsDescriptorGo) {
   });
   reactor.Add(source.fd(), EPOLLIN, {Tag::kTrap});
   source.Fire();
-  reactor.Wait(-1);
+  reactor.Wait(HostNs(-1));
   reactor.Handle({});
   EXPECT_EQ(reactor.Wait(HostNs(0)), 0u);
   EXPECT_EQ(handled, 1);

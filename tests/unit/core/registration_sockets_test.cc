@@ -35,7 +35,7 @@ class RegistrationSocketsTest : public testing::Test {
     return fd;
   }
   void HandleAll() {
-    while (reactor_.Wait(0) > 0) reactor_.Handle({});
+    while (reactor_.Wait(HostNs(0)) > 0) reactor_.Handle({});
   }
   static void SayAnythingAt(const UniqueFd& fd) {
     EXPECT_EQ(send(fd.get(), "x", 1, MSG_NOSIGNAL), 1);

@@ -187,7 +187,8 @@ TEST_F(WakerTest, AWaitAndTheStateBelongTogether) {
 // The virtual CPU of the woken thread computes on for another one, and has come further.
 TEST_F(WakerTest, ForHowLongAnUrgentThreadHadNoCoreIsItsLateness) {
   Task& planner = AddThread(*task_->process->robot);
-  SchedulerOf(*task_).SetParameters(task_->order, {.policy = SCHED_FIFO, .priority = 50}, 0);
+  SchedulerOf(*task_).SetParameters(task_->order, {.policy = SCHED_FIFO, .priority = 50},
+                                    VirtualTime());
   SchedulerOf(*task_).FindEffectivePriority(task_->order);
   Read(*task_);
   ComeTo(planner, At(3 * kMs));
@@ -203,7 +204,8 @@ TEST_F(WakerTest, ForHowLongAnUrgentThreadHadNoCoreIsItsLateness) {
 
 TEST_F(WakerTest, WhoWaitsForItsTurnIsNotLate) {
   Task& urgent = AddThread(*task_->process->robot);
-  SchedulerOf(urgent).SetParameters(urgent.order, {.policy = SCHED_FIFO, .priority = 50}, 0);
+  SchedulerOf(urgent).SetParameters(urgent.order, {.policy = SCHED_FIFO, .priority = 50},
+                                    VirtualTime());
   SchedulerOf(urgent).FindEffectivePriority(urgent.order);
   Read(*task_);
   ComeTo(urgent, At(3 * kMs));
