@@ -60,7 +60,8 @@ TEST(PacerTest, ARunThatStartsStandingHasNotDoneEvenWhatHappensAtZero) {
   Pacer pacer(1, true);
   EXPECT_EQ(pacer.ToWait(RobotTime(0), kStart), Pacer::kForEver);
   EXPECT_TRUE(pacer.stands());
-  EXPECT_EQ(pacer.now(), RobotTime(0); pacer.GoOn(kStart + HostNs(700 * kMs)));
+  EXPECT_EQ(pacer.now(), RobotTime(0));
+  pacer.GoOn(kStart + HostNs(700 * kMs));
   EXPECT_EQ(pacer.ToWait(RobotTime(0), kStart + HostNs(700 * kMs)), HostDuration());
   EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(700 * kMs)), HostNs(10 * kMs));
   EXPECT_EQ(pacer.account().stood, HostNs(700 * kMs));
@@ -100,8 +101,8 @@ TEST(PacerTest, AStepHasThePaceOfTheRun) {
   pacer.StepBy(VirtualNs(10 * kMs), kStart + HostNs(3 * kMs));
   EXPECT_EQ(pacer.ToWait(RobotTime(0), kStart + HostNs(3 * kMs)), HostDuration());
   // Nothing is due before the step's end, which is waited for all the same.
-  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(3 * kMs)), HostNs(20 * kMs);
-            EXPECT_FALSE(pacer.stands()));
+  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(3 * kMs)), HostNs(20 * kMs));
+  EXPECT_FALSE(pacer.stands());
   EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(23 * kMs)), Pacer::kForEver);
   EXPECT_EQ(pacer.now(), RobotTime(10 * kMs));
 }
@@ -109,8 +110,8 @@ TEST(PacerTest, AStepHasThePaceOfTheRun) {
 TEST(PacerTest, ARunStandsWhereItHasCometo) {
   Pacer pacer(1, false);
   pacer.ToWait(RobotTime(0), kStart);
-  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(30 * kMs)), HostNs(20 * kMs);
-            pacer.Stand(kStart + HostNs(31 * kMs)));
+  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(30 * kMs)), HostNs(20 * kMs));
+  pacer.Stand(kStart + HostNs(31 * kMs));
   EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(31 * kMs)), Pacer::kForEver);
   EXPECT_EQ(pacer.now(), RobotTime(30 * kMs));
   // What still happens at that time does.

@@ -72,7 +72,7 @@ class Core {
   void Run(std::int64_t until_ns) {
     while (now_ns_ < until_ns) {
       Wake();
-      robot_.Assign({now_ns_});
+      robot_.Assign({RobotTime(now_ns_)});
       const int running = robot_.Next(0).thread;
       if (running == RunQueue::kNobody) {
         ++now_ns_;
@@ -93,7 +93,7 @@ class Core {
       if (robot_.IsReady(static_cast<int>(i)) || thread.due_ns > now_ns_) continue;
       thread.left_ns = thread.computes_ns;
       thread.turn_ns = 0;
-      robot_.Add({static_cast<int>(i), kPriority, now_ns_, RunQueue::kEveryCore,
+      robot_.Add({static_cast<int>(i), kPriority, RobotTime(now_ns_), RunQueue::kEveryCore,
                   thread.share.GoesFirst()});
     }
   }
