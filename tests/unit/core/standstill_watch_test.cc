@@ -81,7 +81,10 @@ TEST_F(StandstillWatchTest, WhatAClientHasLeftIsSaidOnlyOfProgramsThatRunForAsLo
   watch_.Look(At(kPatience), kOneSecond);
   watch_.Look(At(2 * kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].find("tool has ended; the run goes on for what it has left: "), 0u);
+  EXPECT_EQ(
+      told_[0].find("tool has ended; the run goes on for the background processes that it has "
+                    "left: "),
+      0u);
 }
 
 }  // namespace
