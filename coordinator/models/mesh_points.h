@@ -19,7 +19,8 @@ std::variant<std::vector<std::array<double, 3>>, std::string> MeshPoints(const s
                                                                          const std::string& path);
 
 // The same with its triangles; polygons are made of them.
-std::variant<Surface, std::string> MeshSurface(const std::string& text, const std::string& path);
+[[nodiscard]] std::variant<Surface, std::string> MeshSurface(const std::string& text,
+                                                             const std::string& path);
 
 // Whether that can be: by the end of the file's name.
 bool IsMeshName(const std::string& path);
