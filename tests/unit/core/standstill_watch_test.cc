@@ -77,7 +77,10 @@ TEST_F(StandstillWatchTest, WhatAClientHasLeftIsSaidOnlyOfProgramsThatRunForAsLo
   watch_.Look(kPatience, kSecond);
   watch_.Look(2 * kPatience, 2 * kSecond);
   ASSERT_EQ(told_.size(), 1u);
-  EXPECT_EQ(told_[0].find("tool has ended; the run goes on for what it has left: "), 0u);
+  EXPECT_EQ(
+      told_[0].find("tool has ended; the run goes on for the background processes that it has "
+                    "left: "),
+      0u);
 }
 
 }  // namespace
