@@ -180,8 +180,8 @@ TEST(HostileUrdf, TheLongestChainIsTakenSoon) {
 TEST(HostileUrdf, APipeIsNotWaitedFor) {
   const ModelFolder folder;
   ASSERT_EQ(mkfifo(folder.Path("robot.urdf").c_str(), 0600), 0);
-  EXPECT_THAT(LoadFile(folder.Path("robot.urdf")).mistake, HasSubstr("is no ordinary file"));
-  EXPECT_THAT(LoadFile("/dev/zero").mistake, HasSubstr("is no ordinary file"));
+  EXPECT_THAT(LoadFile(folder.Path("robot.urdf")).mistake, HasSubstr("is not a regular file"));
+  EXPECT_THAT(LoadFile("/dev/zero").mistake, HasSubstr("is not a regular file"));
 }
 
 std::string TextOfZoo(std::string_view name) {

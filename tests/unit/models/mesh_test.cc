@@ -85,7 +85,7 @@ TEST(MeshLibrary, SaysWhatCannotBeUsed) {
               testing::AnyOf(HasSubstr("not finite"), HasSubstr("cannot be used")));
   EXPECT_THAT(Complaint(folder.Write("f.dae", "<COLLADA")), HasSubstr("cannot be used"));
   std::filesystem::create_directory(folder.Path("g.stl"));
-  EXPECT_THAT(Complaint(folder.Path("g.stl")), HasSubstr("is no ordinary file"));
+  EXPECT_THAT(Complaint(folder.Path("g.stl")), HasSubstr("is not a regular file"));
 }
 
 TEST(MeshLibrary, TakesNothingThatIsTooLarge) {

@@ -307,7 +307,7 @@ TEST_F(ReplayTest, ContactsAreThoseOfItsMoments) {
         "0.040000000,cart/wheel,table,0.5,-1,0.5,0,0,1,-1,0,21\n");
   const Replay replay = Read();
   ASSERT_THAT(replay.contacts.points(), SizeIs(3));
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("contacts.csv has 1 line of no use")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("contacts.csv has 1 line that cannot be used")));
   const json encoded = json::parse(Encoded(replay))["contacts"];
   EXPECT_EQ(encoded["pairs"], json::parse(R"([["cart/base","cart/wheel",true],)"
                                           R"(["cart/wheel","table",false]])"));

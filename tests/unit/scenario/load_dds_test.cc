@@ -185,7 +185,7 @@ const Mistake kMistakes[] = {
      "dds: sockets}\n",
      10,
      {"robots.hunter.clients.controller.dds is sockets, as for all clients",
-      "nobody ever meets the scenario's topics in shared memory (/odom,", "udp_json"}},
+      "no client ever meets the scenario's topics in shared memory (/odom,", "udp_json"}},
     {"UnknownRelease",
      "name: pursuit\n",
      "ros: jazy\n",
