@@ -35,12 +35,12 @@ channels:
   motors: {type: udp_json, commands: {model: craft, rotors: [left], drive: normalised, listen: "\${loopback}:27431"}}
 YAML
 }
-again="had a command already"
+again="already had a command"
 client() { printf "{cpu: %s, clients: {c: {command: [python3, %s.py, '\${loopback}']}}}" "$1" "$2"; }
 
 scenario 1s "{one: $(client ideal once), other: $(client ideal once)}" >"$out/two.yaml"
 "$tcsim" run "$out/two.yaml" --accounting fixed --out "$out/two" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
-grep -q "rotor 'left' of craft was commanded once at an instant for which it $again, the first time at 0.5" "$out/said" ||
+grep -q "rotor 'left' of craft was commanded once at an instant for which it $again, first at 0.5" "$out/said" ||
   fail "two at one instant are not named: $(cat "$out/said")"
 
 scenario 100s "{one: $(client '{cores: 1}' on_and_on)}" >"$out/one.yaml"

@@ -149,7 +149,8 @@ TEST_F(ReadResultsTest, LinesOfNoUseAreLeftOutWithAWarning) {
   const Results results = Read({"one"});
   EXPECT_EQ(Distances(results.systems[0]).size(), 2u);
   ASSERT_EQ(results.warnings.size(), 1u);
-  EXPECT_NE(results.warnings[0].find("bodies.csv has 3 lines that cannot be used"), std::string::npos);
+  EXPECT_NE(results.warnings[0].find("bodies.csv has 3 lines that cannot be used"),
+            std::string::npos);
 }
 
 TEST_F(ReadResultsTest, ARunWithoutBodiesHasNoDistances) {

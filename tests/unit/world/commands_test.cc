@@ -205,7 +205,7 @@ TEST_F(ActuatorsTest, CommandsBetweenWhichTheirSenderHasComputedAreForDifferentI
   commands_.Take(1, {AtMs(20), {kOther, 5050}}, left);
   EXPECT_THAT(commands_.ComplaintsAboutActuators(),
               ElementsAre(HasSubstr("rotor 'left' of drone was commanded once at an instant for "
-                                    "which it had a command already, the first time at 0.022 s")));
+                                    "which it already had a command, first at 0.022 s")));
   commands_.Take(1, {AtMs(30), {kOther, 7000}}, left);
   commands_.Take(1, {AtMs(30), {kOther, 7000}}, left);
   EXPECT_THAT(commands_.ComplaintsAboutActuators(), ElementsAre(HasSubstr("twice at an instant")));
