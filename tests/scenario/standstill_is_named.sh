@@ -36,7 +36,7 @@ names "$out/stderr" "${stood}python3 waits for a lock or a condition that no thr
   "$tcsim" exec -- python3 -c 'import threading; l = threading.Lock(); l.acquire(); l.acquire()'
 names "$out/stderr" "${stood}sh waits for a signal, such as that of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
   "$tcsim" exec -- sh -c 'sleep 5 & kill -STOP $!; wait'
-names "$out/stderr" '^tcsim: sh has ended; the run goes on for what it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
+names "$out/stderr" '^tcsim: sh has ended; the run goes on for the background processes that it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
   "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
 
 names "$out/stderr" '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: python3[.0-9]* \(pid' \
