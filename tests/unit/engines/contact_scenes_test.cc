@@ -121,6 +121,16 @@ TEST_P(ContactScenes, ARoversWheelsRoll) {
   }
 }
 
+// As its knees' limits want it.
+RobotModel QuadrupedWithBentLegs() {
+  RobotModel quadruped = Zoo("quadruped.urdf");
+  for (Joint& joint : quadruped.joints) {
+    if (joint.name.ends_with("knee")) joint.initial_position = {-1.4};
+    if (joint.name.ends_with("hip_pitch")) joint.initial_position = {0.7};
+  }
+  return quadruped;
+}
+
 // It falls onto its feet, which servos hold, and stands.
 TEST_P(ContactScenes, AQuadrupedThatFallsOntoItsFeetStands) {
   RobotModel quadruped = Zoo("quadruped.urdf");
@@ -167,7 +177,7 @@ TEST_P(ContactScenes, AQuadrupedThatFallsOntoItsFeetStands) {
 }
 
 TEST_P(ContactScenes, AQuadrupedTouchesNothingBeforeItLands) {
-  RobotModel quadruped = Zoo("quadruped.urdf");
+  RobotModel quadruped = QuadrupedWithBentLegs();
   quadruped.at.position_m = {0, 0, 1};
   WorldSpec world = WorldOf({quadruped}, GetParam());
   world.fixtures = {Floor()};
@@ -181,11 +191,7 @@ TEST_P(ContactScenes, AQuadrupedTouchesNothingBeforeItLands) {
 
 // Limp, it lies on its belly.
 TEST_P(ContactScenes, AQuadrupedWithoutPowerLiesDown) {
-  RobotModel quadruped = Zoo("quadruped.urdf");
-  for (Joint& joint : quadruped.joints) {
-    if (joint.name.ends_with("knee")) joint.initial_position = {-1.4};
-    if (joint.name.ends_with("hip_pitch")) joint.initial_position = {0.7};
-  }
+  RobotModel quadruped = QuadrupedWithBentLegs();
   quadruped.at.position_m = {0, 0, 0.5};
   WorldSpec world = WorldOf({quadruped}, GetParam());
   world.fixtures = {Floor()};
