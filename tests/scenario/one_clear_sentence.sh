@@ -38,7 +38,7 @@ refused "no command 'rnu'; did you mean 'run'" "$tcsim" rnu "$out/scenario.yaml"
 refused "run has no option --durations; did you mean '--duration'" "$tcsim" run --durations=3s "$out/scenario.yaml"
 mkdir "$out/empty"
 refused 'scenario.yaml: cannot be read' env -C "$out/empty" "$tcsim" run
-refused "'a/b' is not a name" "$tcsim" new a/b
+refused "'a/b' cannot be used as a name" "$tcsim" new a/b
 refused "no client 'r/idel'; did you mean 'r/idle'" "$tcsim" run --gdb r/idel "$out/scenario.yaml"
 refused 'nowhere.yaml' "$tcsim" run "$out/nowhere.yaml"
 refused "no folder '$out/nowhere'" "$tcsim" topics "$out/nowhere"
