@@ -39,7 +39,7 @@ refused 'without --duration 1s.*--restart' --trials 4 --duration 1s
 refused 'write it like drift' --trials 4 --vary drift
 refused "csv_perriod.*did you mean 'csv_period'" --trials 4 --vary csv_perriod=1ms,2ms
 refused '--vary drift and --drift' --trials 4 --vary drift=1ms,2ms --drift 1ms
-refused 'no room for 2 seeds' --trials 2 --first-seed 18446744073709551615
+refused 'is too large for 2 seeds' --trials 2 --first-seed 18446744073709551615
 flock --no-fork "$out/t" sleep 60 &
 holder=$!
 for _ in $(seq 100); do flock -n "$out/t" true || break; sleep 0.05; done

@@ -113,6 +113,8 @@ begun killed
 # shellcheck disable=SC2046
 kill -KILL $(with_descendants "$call")
 wait "$call" 2>/dev/null || true
+# Its descendants are not this shell's to wait for, and the folder is theirs until the kernel is through with them.
+for _ in $(seq 200); do pgrep -f -- "--out $out/killed" >/dev/null || break; sleep 0.05; done
 [[ -n $(squeue -h) ]] || fail "the jobs are gone by themselves, so this shows nothing"
 trials --restart --trials 2 --out "$out/killed" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 no_jobs
