@@ -44,6 +44,8 @@ std::optional<pid_t> OwnerOfMutex(pid_t pid, std::uint64_t address,
 
 }  // namespace
 
+std::string KernelNameOf(pid_t pid) { return FirstLine(fmt::format("/proc/{}/comm", pid)); }
+
 Json KernelStateOf(pid_t pid, pid_t tid) {
   const std::string folder = fmt::format("/proc/{}/task/{}", pid, tid);
   const std::string stat = FirstLine(folder + "/stat");
@@ -74,7 +76,7 @@ void AddWhatTheKernelKnows(Json* state) {
   for (Json& robot : state->at("robots")) {
     for (Json& process : robot.at("processes")) {
       const pid_t pid = process.at("pid").get<pid_t>();
-      process["name"] = FirstLine(fmt::format("/proc/{}/comm", pid));
+      process["name"] = KernelNameOf(pid);
       std::set<pid_t> tids;
       for (const Json& thread : process.at("threads")) tids.insert(thread.at("tid").get<pid_t>());
       for (Json& thread : process.at("threads")) {

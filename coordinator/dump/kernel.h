@@ -12,6 +12,9 @@
 
 namespace tcs {
 
+// The name of a process as the kernel has it, at most 15 characters; empty if there is no such.
+[[nodiscard]] std::string KernelNameOf(pid_t pid);
+
 // {"name", "state" (as ps has it), "cpu" (it ran on last), "processor_ns", "in" (the function of
 // the kernel that it waits in), "call" (the number of the system call that it is in)}; null if
 // there is no such thread.

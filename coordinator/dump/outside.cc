@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
@@ -126,11 +125,10 @@ Json SeenFromOutside(const FoundRun& run) {
       has_slot |= slot != slots.end();
       threads.push_back(std::move(thread));
     }
-    std::ifstream file(fmt::format("/proc/{}/comm", pid));
-    std::string name;
-    std::getline(file, name);
-    processes.push_back(
-        {{"pid", pid}, {"name", name}, {"registered", has_slot}, {"threads", std::move(threads)}});
+    processes.push_back({{"pid", pid},
+                         {"name", KernelNameOf(pid)},
+                         {"registered", has_slot},
+                         {"threads", std::move(threads)}});
   }
   return {{"processes", std::move(processes)}};
 }

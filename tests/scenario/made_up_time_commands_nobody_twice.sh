@@ -5,10 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # programs that command a rotor at one instant are named.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-cat >"$out/craft.urdf" <<'XML'
-<robot name="craft"><link name="base"><inertial><mass value="2"/>
-  <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link></robot>
-XML
+cp "$(dirname -- "${BASH_SOURCE[0]}")/craft.urdf" "$out"
 cat >"$out/on_and_on.py" <<'PY'
 import os, socket, sys, time
 commands = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

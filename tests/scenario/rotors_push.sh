@@ -4,10 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # closed form has it, on each engine; what was commanded twice, beyond a limit or never is said at the end.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-cat >"$out/craft.urdf" <<'XML'
-<robot name="craft"><link name="base"><inertial><mass value="2"/>
-  <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link></robot>
-XML
+cp "$(dirname -- "${BASH_SOURCE[0]}")/craft.urdf" "$out"
 cat >"$out/client.py" <<'PY'
 import socket, time
 commands = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

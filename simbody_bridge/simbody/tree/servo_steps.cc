@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "simbody_bridge/simbody/tree/mimics.h"
-#include "simbody_bridge/simbody/tree/try_lengths.h"
 
 namespace tcs {
 namespace {
@@ -63,22 +62,8 @@ bool ServoSteps::AreFor(const SimbodyTree& tree, std::span<const Wrench> acting)
 
 void ServoSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
                                 double accuracy, double limit_s) {
-  Begin(tree, loads, step);
-  TryLengths(tree, accuracy, limit_s, &step, [&](double h) {
-    Try(tree, loads, step, h);
-    return ErrorOf(tree, step, h);
-  });
-  tree.Project(step.to);
-  step.to_rate.resize(step.to.size());
-  tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
+  ControlledSteps::TakeControlled(tree, loads, step, accuracy, limit_s);
   WriteCourse(tree, step);
-}
-
-void ServoSteps::TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
-  Begin(tree, loads, step);
-  step.length_s = step.limit.seconds();
-  Try(tree, loads, step, step.length_s);
-  tree.Project(step.to);
 }
 
 // The bodies of a model follow each other.

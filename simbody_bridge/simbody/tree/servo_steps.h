@@ -7,22 +7,19 @@
 #include <span>
 #include <vector>
 
-#include "simbody_bridge/island_engine.h"
-#include "simbody_bridge/model_loads.h"
+#include "simbody_bridge/simbody/tree/controlled_steps.h"
 #include "simbody_bridge/simbody/tree/servo_motion.h"
-#include "simbody_bridge/simbody/tree/tree.h"
 
 namespace tcs {
 
-class ServoSteps {
+class ServoSteps : public ControlledSteps<ServoSteps> {
  public:
   // Whether a servo acts, on an island of models that are not too large.
   static bool AreFor(const SimbodyTree& tree, std::span<const Wrench> acting);
 
-  // As of TreeSteps.
+  // Writes the step's course, too.
   void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
                       double limit_s);
-  void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step);
 
   // Whether it was TakeControlled that took the step.
   static bool Took(const IslandStep& step) { return !step.course.empty(); }
@@ -31,6 +28,8 @@ class ServoSteps {
               std::vector<double>* state);
 
  private:
+  friend class ControlledSteps<ServoSteps>;
+
   // A model: others do not push its joints, so that it has a mass matrix of its own.
   struct Part {
     std::vector<std::size_t> speeds;  // of all

@@ -1,7 +1,6 @@
 #include "simbody_bridge/simbody/tree/tree_steps.h"
 
 #include "simbody_bridge/simbody/kutta.h"
-#include "simbody_bridge/simbody/tree/try_lengths.h"
 
 namespace tcs {
 
@@ -28,25 +27,6 @@ double TreeSteps::ErrorOf(const SimbodyTree& tree, const IslandStep& step, doubl
   const auto slots = tree.slots();
   return KuttaError(step, middle_rate_, h, slots.size(),
                     [&](std::size_t joint) { return slots[joint]; });
-}
-
-void TreeSteps::TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
-                               double accuracy, double limit_s) {
-  Begin(tree, loads, step);
-  TryLengths(tree, accuracy, limit_s, &step, [&](double h) {
-    Try(tree, loads, step, h);
-    return ErrorOf(tree, step, h);
-  });
-  tree.Project(step.to);
-  step.to_rate.resize(step.to.size());
-  tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
-}
-
-void TreeSteps::TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
-  Begin(tree, loads, step);
-  step.length_s = step.limit.seconds();
-  Try(tree, loads, step, step.length_s);
-  tree.Project(step.to);
 }
 
 }  // namespace tcs

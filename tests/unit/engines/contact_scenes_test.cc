@@ -121,14 +121,17 @@ TEST_P(ContactScenes, ARoversWheelsRoll) {
   }
 }
 
-// As its knees' limits want it.
-RobotModel QuadrupedWithBentLegs() {
+// Nothing holds its joints; its knees are bent as their limits want it.
+WorldSpec LimpQuadruped(double height_m, const IntegratorSpec& integrator) {
   RobotModel quadruped = Zoo("quadruped.urdf");
   for (Joint& joint : quadruped.joints) {
     if (joint.name.ends_with("knee")) joint.initial_position = {-1.4};
     if (joint.name.ends_with("hip_pitch")) joint.initial_position = {0.7};
   }
-  return quadruped;
+  quadruped.at.position_m = {0, 0, height_m};
+  WorldSpec world = WorldOf({quadruped}, integrator);
+  world.fixtures = {Floor()};
+  return world;
 }
 
 // It falls onto its feet, which servos hold, and stands.
@@ -177,11 +180,7 @@ TEST_P(ContactScenes, AQuadrupedThatFallsOntoItsFeetStands) {
 }
 
 TEST_P(ContactScenes, AQuadrupedTouchesNothingBeforeItLands) {
-  RobotModel quadruped = QuadrupedWithBentLegs();
-  quadruped.at.position_m = {0, 0, 1};
-  WorldSpec world = WorldOf({quadruped}, GetParam());
-  world.fixtures = {Floor()};
-  auto dynamics = MakeDynamics(world);
+  auto dynamics = MakeDynamics(LimpQuadruped(1, GetParam()));
   std::vector<ContactForce> contacts;
   dynamics->ReadContacts(AtMs(200), &contacts);
   EXPECT_TRUE(contacts.empty());
@@ -191,11 +190,7 @@ TEST_P(ContactScenes, AQuadrupedTouchesNothingBeforeItLands) {
 
 // Limp, it lies on its belly.
 TEST_P(ContactScenes, AQuadrupedWithoutPowerLiesDown) {
-  RobotModel quadruped = QuadrupedWithBentLegs();
-  quadruped.at.position_m = {0, 0, 0.5};
-  WorldSpec world = WorldOf({quadruped}, GetParam());
-  world.fixtures = {Floor()};
-  auto dynamics = MakeDynamics(world);
+  auto dynamics = MakeDynamics(LimpQuadruped(0.5, GetParam()));
   const LinkState state = ReadLink(*dynamics, 0, AtMs(4000));
   EXPECT_LT(state.pose.position_m[2], 0.12);
   EXPECT_GT(state.pose.position_m[2], 0.05) << "its trunk is 0.11 m high";

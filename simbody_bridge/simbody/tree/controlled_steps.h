@@ -1,0 +1,64 @@
+// A step of an island of models, whatever the method: as long as error control lets it be, or
+// whole.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "simbody_bridge/island_engine.h"
+#include "simbody_bridge/model_loads.h"
+#include "simbody_bridge/simbody/kutta.h"
+#include "simbody_bridge/simbody/tree/tree.h"
+
+namespace tcs {
+
+// `Method` derives from it, and has
+//   Begin(tree, loads, step): what any length of the step needs
+//   Try(tree, loads, step, seconds): a step of that length
+//   ErrorOf(tree, step, seconds): how far that may be off (GreatestError)
+template <class Method>
+class ControlledSteps {
+ public:
+  // No longer than `limit_s`, which is within the step's. `accuracy` as of RungeKutta3, over a
+  // joint's coordinates or speeds. Throws std::runtime_error where no step is short enough for it.
+  void TakeControlled(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
+                      double limit_s) {
+    method().Begin(tree, loads, step);
+    StepLength length(step,
+                      std::min(limit_s, std::max(kShortestStepS, tree.LongestStepFrom(step.from))));
+    if (length.seconds() != step.limit.seconds()) length.Set(WholeNanoseconds(length.seconds()));
+    while (!IsGoodEnough(tree, loads, step, accuracy, &length)) {
+      length.Set(WholeNanoseconds(length.seconds()));
+    }
+    tree.Project(step.to);
+    step.to_rate.resize(step.to.size());
+    tree.EvaluateOrRecall(step.to, loads.At(step, step.length_s), step.to_rate.data());
+  }
+
+  // As long as its limit.
+  void TakeWhole(SimbodyTree& tree, ModelLoads& loads, IslandStep& step) {
+    method().Begin(tree, loads, step);
+    step.length_s = step.limit.seconds();
+    method().Try(tree, loads, step, step.length_s);
+    tree.Project(step.to);
+  }
+
+ private:
+  Method& method() { return static_cast<Method&>(*this); }
+
+  bool IsGoodEnough(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double accuracy,
+                    StepLength* length) {
+    const double seconds = length->seconds();
+    method().Try(tree, loads, step, seconds);
+    return length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step);
+  }
+
+  // In whole nanoseconds, as islands count: the next step then begins where this one ends, and its
+  // first derivatives are known.
+  static double WholeNanoseconds(double seconds) {
+    const auto ns = static_cast<std::int64_t>(seconds * 1e9);
+    return ns > 0 ? VirtualDuration::Nanoseconds(ns).seconds() : seconds;
+  }
+};
+
+}  // namespace tcs
