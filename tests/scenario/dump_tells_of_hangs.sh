@@ -154,5 +154,7 @@ for run in without with; do
 done
 ((asked > 3)) || fail "only $asked dumps"
 for file in bodies.csv commands.csv output.csv messages.csv trace.json activations.csv dispatches.csv; do
-  cmp "$out/without/$file" "$out/with/$file" || fail "$file differs after $asked dumps"
+  cmp "$out/without/$file" "$out/with/$file" ||
+    fail "$file differs after $asked dumps: $(diff "$out/without/$file" "$out/with/$file" | head -n 20;
+      cat "$out/without.said" "$out/with.said")"
 done
