@@ -1,5 +1,7 @@
 #include "coordinator/channel/json/json_channel.h"
 
+#include <string>
+
 #include "coordinator/channel/json/json_codec.h"
 
 namespace tcs {
@@ -18,9 +20,9 @@ bool JsonOutlet::HandOver(VirtualTime now) {
 }
 
 void JsonInlet::Receive(const CommandSent& now, CommandSink& sink) {
-  while (const auto datagram = receiver_->Receive()) {
+  for (const std::string& datagram : receiver_->ReceiveAll()) {
     if (watch_ != nullptr) watch_->WorldReceived(channel_, now);
-    TakeCommand("the command datagram", *datagram, channel_, now, sink);
+    TakeCommand("the command datagram", datagram, channel_, now, sink);
   }
 }
 

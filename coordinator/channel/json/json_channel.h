@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,8 +30,8 @@ class DatagramReceiver {
  public:
   virtual ~DatagramReceiver() = default;
   virtual int fd() const = 0;
-  // The next one, whole; none if nothing has come.
-  virtual std::optional<std::string> Receive() = 0;
+  // All that have come, whole, in order.
+  virtual std::vector<std::string> ReceiveAll() = 0;
   // "on 127.0.0.1:47011"
   virtual std::string Where() const = 0;
 };

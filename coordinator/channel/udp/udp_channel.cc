@@ -47,11 +47,14 @@ class UdpReceiver final : public DatagramReceiver {
       : socket_(std::move(socket)), from_(std::move(from)) {}
 
   int fd() const override { return socket_.fd(); }
-  std::optional<std::string> Receive() override {
-    auto received = socket_.Receive();
-    auto* datagram = std::get_if<std::optional<Datagram>>(&received);
-    if (datagram == nullptr || !datagram->has_value()) return std::nullopt;
-    return std::move((*datagram)->payload);
+  std::vector<std::string> ReceiveAll() override {
+    std::vector<std::string> all;
+    for (;;) {
+      auto received = socket_.Receive();
+      auto* datagram = std::get_if<std::optional<Datagram>>(&received);
+      if (datagram == nullptr || !datagram->has_value()) return all;
+      all.push_back(std::move((*datagram)->payload));
+    }
   }
   std::string Where() const override { return "on " + NameOf(from_); }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "coordinator/channel/json/json_channel.h"
 #include "coordinator/channel/unix/unix_socket.h"
@@ -39,7 +39,7 @@ class UnixReceiver final : public DatagramReceiver {
       : socket_(std::move(socket)), from_(std::move(from)) {}
 
   int fd() const override { return socket_.fd(); }
-  std::optional<std::string> Receive() override { return socket_.Receive(); }
+  std::vector<std::string> ReceiveAll() override { return socket_.ReceiveAll(); }
   std::string Where() const override { return "on the UNIX socket " + from_.Text(); }
 
  private:

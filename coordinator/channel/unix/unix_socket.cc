@@ -5,9 +5,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 
 #include "coordinator/os/guardian.h"
 
@@ -108,17 +110,27 @@ bool UnixSocket::SendTo(const UnixName& to, std::string_view payload) {
   return sent >= 0;
 }
 
-std::optional<std::string> UnixSocket::Receive() {
+// Mostly one has come, and one call takes it and finds that there is no second one.
+std::vector<std::string> UnixSocket::ReceiveAll() {
+  constexpr std::size_t kAtOnce = 2;
+  // The kernel touches of it what it fills.
+  thread_local const auto room = std::make_unique_for_overwrite<char[]>(kAtOnce * kLongest);
+  std::vector<std::string> all;
   for (;;) {
-    // How long it is the kernel says without handing it out; there is no upper bound to rely on.
-    const ssize_t size = recv(fd(), nullptr, 0, MSG_PEEK | MSG_TRUNC);
-    if (size < 0 && errno == EINTR) continue;
-    if (size < 0) return std::nullopt;
-    std::string datagram(static_cast<std::size_t>(size), '\0');
-    const ssize_t got = recv(fd(), datagram.data(), datagram.size(), 0);
-    if (got < 0) return std::nullopt;
-    datagram.resize(static_cast<std::size_t>(got));
-    return datagram;
+    std::array<iovec, kAtOnce> parts{};
+    std::array<mmsghdr, kAtOnce> messages{};
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
+      parts[i] = {room.get() + i * kLongest, kLongest};
+      messages[i].msg_hdr.msg_iov = &parts[i];
+      messages[i].msg_hdr.msg_iovlen = 1;
+    }
+    const int count = recvmmsg(fd(), messages.data(), kAtOnce, MSG_DONTWAIT, nullptr);
+    if (count < 0 && errno == EINTR) continue;
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      all.emplace_back(room.get() + at * kLongest, messages[at].msg_len);
+    }
+    if (count < static_cast<int>(kAtOnce)) return all;
   }
 }
 

@@ -5,11 +5,12 @@
 // that a user can mend come back as sentences.
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/scenario/scenario.h"
@@ -37,8 +38,10 @@ class UnixSocket {
   // errno says which.
   [[nodiscard]] bool SendTo(const UnixName& to, std::string_view payload);
 
-  // The next datagram, whole; none if nothing has come.
-  [[nodiscard]] std::optional<std::string> Receive();
+  // All datagrams that have come, in order. Whole up to kLongest bytes: more than a program may
+  // send at once, unless it has the right to larger buffers than the host allows.
+  static constexpr std::size_t kLongest = 1 << 20;
+  [[nodiscard]] std::vector<std::string> ReceiveAll();
 
  private:
   explicit UnixSocket(UniqueFd fd) : fd_(std::move(fd)) {}
