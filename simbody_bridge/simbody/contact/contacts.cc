@@ -99,6 +99,35 @@ bool Contacts::MayHaveTouched(const SimTK::State& state, double seconds) const {
   return false;
 }
 
+bool Contacts::MayComeDeeper(const SimTK::State& state, double seconds, double depth_m) const {
+  for (const Pair& pair : pairs_) {
+    const double way = SpeedBetween(state, pair) * seconds;
+    if (way <= depth_m) continue;
+    const PlacedSolid a{parts_[pair.first].solid, poses_[pair.first]};
+    const PlacedSolid b{parts_[pair.second].solid, poses_[pair.second]};
+    if (GapBetween(a, b) < way - depth_m) return true;
+  }
+  return false;
+}
+
+double Contacts::LatenessOfTouch(const SimTK::State& state, double late_m, double met_m) {
+  Find(state, &deep_);
+  double late_s = 0;
+  for (const Contact& contact : deep_) {
+    if (contact.touch.depth <= late_m) continue;
+    SimTK::Vec3 leaving(0);
+    for (const auto& [index, sign] : {std::pair{contact.first, 1.0}, {contact.second, -1.0}}) {
+      if (index == kWorldBody) continue;
+      const SimTK::MobilizedBody& body = bodies_[static_cast<std::size_t>(index)];
+      leaving += sign * body.findStationVelocityInGround(
+                            state, body.findStationAtGroundPoint(state, contact.touch.point));
+    }
+    const double coming = -SimTK::dot(leaving, contact.touch.normal);
+    if (coming > 0) late_s = std::max(late_s, (contact.touch.depth - met_m) / coming);
+  }
+  return late_s;
+}
+
 void Contacts::Find(const SimTK::State& state, std::vector<Contact>* contacts) {
   contacts->clear();
   Place(state);

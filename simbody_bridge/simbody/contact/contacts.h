@@ -33,6 +33,12 @@ class Contacts {
   // Whether that trust was misplaced: so fast at `state`, realized to Velocity, something may have
   // come through something else within `seconds` from the state that was asked about last.
   bool MayHaveTouched(const SimTK::State& state, double seconds) const;
+  // Whether within `seconds` from `state`, realized to Velocity, something may come so much deeper
+  // into something else. TimeToTouch was asked about `state` last.
+  bool MayComeDeeper(const SimTK::State& state, double seconds, double depth_m) const;
+  // How long before `state`, realized to Velocity, the first of what is deeper than `late_m` was as
+  // deep as `met_m`, if it has come uniformly; 0: nothing is deeper.
+  double LatenessOfTouch(const SimTK::State& state, double late_m, double met_m);
   // `state` is realized to Position.
   void Find(const SimTK::State& state, std::vector<Contact>* contacts);
 
@@ -57,6 +63,7 @@ class Contacts {
   std::vector<SimTK::Transform> poses_;  // of the parts, in the world: memory
   std::vector<double> gaps_;             // of the pairs, as TimeToTouch found them
   std::vector<Touch> touches_;
+  std::vector<Contact> deep_;
 };
 
 }  // namespace tcs

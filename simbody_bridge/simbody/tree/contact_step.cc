@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simbody_bridge/simbody/tree/mimics.h"
+#include "simbody_bridge/simbody/tree/whole_nanoseconds.h"
 #include "simbody_bridge/simbody/vectors.h"
 
 namespace tcs {
@@ -16,12 +17,19 @@ using Eigen::Vector3d;
 constexpr int kRounds = 6;
 // Slower than this a contact sticks: it creeps in proportion to what pushes it.
 constexpr double kStickMps = 1e-4;
+// No contact pushes two apart faster than this: what lands stays down.
+constexpr double kMostLeavingMps = 0.05;
+// What comes deeper than this within one step was met too late.
+constexpr double kLateM = 1e-3;
+// A step that is shortened for that ends so deep in the contact.
+constexpr double kMetM = 1e-4;
+constexpr double kBriefest = 1.0 / 16;  // of the step
 
 Vector3d ToEigen(const SimTK::Vec3& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
-void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact) {
+void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact, double h) {
   const SimTK::State& state = tree.evaluated();
   Eigen::Matrix<double, 3, Eigen::Dynamic> all =
       Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, state.getNU());
@@ -42,6 +50,9 @@ void ContactStep::AddRow(const SimbodyTree& tree, const Contact& contact) {
   const Vector3d normal = ToEigen(contact.touch.normal);
   row.sliding = row.before - normal * normal.dot(row.before);
   row.normal_n = contact.touch.weight * contact.stiffness_npm * contact.touch.depth;
+  // The deeper, the more damping: the spring then holds nothing at kMostLeavingMps.
+  const double deep = contact.touch.depth + h * std::max(0.0, -normal.dot(row.before));
+  row.contact.damping_nspm += contact.stiffness_npm * deep / kMostLeavingMps;
   rows_.push_back(std::move(row));
 }
 
@@ -130,6 +141,16 @@ void ContactStep::FindForces(std::vector<ShapeContact>* contacts) const {
   }
 }
 
+void ContactStep::TakeUpToTouch(SimbodyTree& tree, ModelLoads& loads, IslandStep& step,
+                                double length_s) {
+  const bool is_fast = tree.MayComeDeeper(step.from, length_s, kLateM);
+  Take(tree, loads, step, length_s);
+  if (!is_fast || !std::isfinite(step.to.back())) return;
+  const double late_s = tree.LatenessOfTouch(step.to, kLateM, kMetM);
+  if (late_s <= 0 || late_s >= length_s) return;
+  Take(tree, loads, step, WholeNanoseconds(std::max(length_s - late_s, kBriefest * length_s)));
+}
+
 void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double h) {
   const std::size_t size = step.from.size();
   step.from_rate.resize(size);
@@ -145,7 +166,7 @@ void ContactStep::Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, d
     Reduce(tree, &reduction_);
     Assemble(tree, h);
     tree.contacts().Find(state, &contacts_);
-    for (const Contact& contact : contacts_) AddRow(tree, contact);
+    for (const Contact& contact : contacts_) AddRow(tree, contact, h);
     for (int round = 0; round < kRounds; ++round) {
       Solve(h);
       if (!Update(h)) break;

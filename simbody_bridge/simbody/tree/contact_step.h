@@ -21,6 +21,9 @@ class ContactStep {
  public:
   // Takes a step as long as `length_s`, within step.limit.
   void Take(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
+  // The same, but shorter where something that comes fast would be deep in something else at its
+  // end: the step ends where they have just met.
+  void TakeUpToTouch(SimbodyTree& tree, ModelLoads& loads, IslandStep& step, double length_s);
   // What touched in the step that was taken last, with the forces that its speeds come from.
   void FindForces(std::vector<ShapeContact>* contacts) const;
 
@@ -39,7 +42,7 @@ class ContactStep {
     double along_n = 0;          // what the spring and the damper give; may be negative
   };
   void Assemble(SimbodyTree& tree, double h);
-  void AddRow(const SimbodyTree& tree, const Contact& contact);
+  void AddRow(const SimbodyTree& tree, const Contact& contact, double h);
   void Solve(double h);
   bool Update(double h);
 

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 
 #include "simbody_bridge/island_engine.h"
 #include "simbody_bridge/model_loads.h"
 #include "simbody_bridge/simbody/kutta.h"
 #include "simbody_bridge/simbody/tree/tree.h"
+#include "simbody_bridge/simbody/tree/whole_nanoseconds.h"
 
 namespace tcs {
 
@@ -51,13 +51,6 @@ class ControlledSteps {
     const double seconds = length->seconds();
     method().Try(tree, loads, step, seconds);
     return length->Judge(method().ErrorOf(tree, step, seconds), accuracy, &step);
-  }
-
-  // In whole nanoseconds, as islands count: the next step then begins where this one ends, and its
-  // first derivatives are known.
-  static double WholeNanoseconds(double seconds) {
-    const auto ns = static_cast<std::int64_t>(seconds * 1e9);
-    return ns > 0 ? VirtualDuration::Nanoseconds(ns).seconds() : seconds;
   }
 };
 

@@ -242,6 +242,19 @@ bool SimbodyTree::MayHaveTouched(std::span<const double> state, double seconds) 
   return contacts_->MayHaveTouched(state_, seconds);
 }
 
+bool SimbodyTree::MayComeDeeper(std::span<const double> state, double seconds, double depth_m) {
+  if (!contacts_->has_pairs()) return false;
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  return contacts_->MayComeDeeper(state_, seconds, depth_m);
+}
+
+double SimbodyTree::LatenessOfTouch(std::span<const double> state, double late_m, double met_m) {
+  Load(state);
+  system_.realize(state_, SimTK::Stage::Velocity);
+  return contacts_->LatenessOfTouch(state_, late_m, met_m);
+}
+
 void SimbodyTree::CopyBody(std::size_t body, std::span<const double> state, const SimbodyTree& to,
                            std::size_t to_body, std::span<double> into) const {
   const StateSlots &from = slots_[body], &at = to.slots_[to_body];

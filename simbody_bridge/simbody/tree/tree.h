@@ -51,6 +51,9 @@ class SimbodyTree {
   double TimeToTouch(std::span<const double> state);
   // Whether something may have touched all the same within `seconds` from there to `state`.
   bool MayHaveTouched(std::span<const double> state, double seconds);
+  // See Contacts; TimeToTouch was asked about `state` last.
+  bool MayComeDeeper(std::span<const double> state, double seconds, double depth_m);
+  double LatenessOfTouch(std::span<const double> state, double late_m, double met_m);
 
   // What was evaluated last, for who goes on from there: `state` as Simbody has it, realized to
   // Acceleration.

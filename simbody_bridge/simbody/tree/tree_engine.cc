@@ -59,7 +59,7 @@ class TreeEngine : public ForestEngine<SteppedTree> {
     ModelLoads& loads = LoadsOn(step.island);
     const double free_s = tree.TimeToTouch(step.from);
     if (const double contact_s = ContactStepOf(step).seconds(); free_s < contact_s) {
-      tree.contact_step.Take(tree, loads, step, contact_s);
+      TakeInContact(tree, loads, step, contact_s);
     } else if (has_set_steps_) {
       tree.TakeWhole(loads, step);
     } else {
@@ -93,13 +93,20 @@ class TreeEngine : public ForestEngine<SteppedTree> {
     if (has_set_steps_) again.limit = after;
     const double contact_s = ContactStepOf(again).seconds();
     if (tree.TimeToTouch(again.from) >= contact_s) return;
-    tree.contact_step.Take(tree, LoadsOn(step.island), again, contact_s);
+    TakeInContact(tree, LoadsOn(step.island), again, contact_s);
     std::vector<ShapeContact> found;
     tree.contact_step.FindForces(&found);
     AppendForces(ForestOf(step.island), found, contacts);
   }
 
  private:
+  void TakeInContact(SteppedTree& tree, ModelLoads& loads, IslandStep& step, double length_s) {
+    if (has_set_steps_) {
+      tree.contact_step.Take(tree, loads, step, length_s);
+    } else {
+      tree.contact_step.TakeUpToTouch(tree, loads, step, length_s);
+    }
+  }
   // How long a step is that is one of contact.
   VirtualDuration ContactStepOf(const IslandStep& step) const {
     return has_set_steps_ ? step.limit : std::min(kContactStep, step.limit);
