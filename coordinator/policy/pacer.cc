@@ -12,6 +12,7 @@ void Pacer::StartFrom(HostTime real) {
   origin_real_ = real;
   origin_ = now_;
   behind_ = {};
+  if (is_loading_) began_loading_ = real;
 }
 
 void Pacer::SetPace(double pace, HostTime real) {
@@ -54,14 +55,19 @@ HostDuration Pacer::ToWait(VirtualTime next, HostTime real) {
   // What would be due later than where it stands waits for the wall clock, too, before it stands.
   const VirtualTime until = std::min(next, std::max(limit_, VirtualTime()));
   const auto ahead_ns = static_cast<double>((until - origin_).ns());
-  const HostTime due =
+  HostTime due =
       pace_ > 0 ? origin_real_ + HostNs(static_cast<std::int64_t>(ahead_ns / pace_)) : real;
   if (real < due) {
+    is_loading_ = false;
     TakeAccount({}, real);
     stands_ = false;
     const double passed = static_cast<double>((real - origin_real_).ns()) * pace_;
     now_ = std::max(now_, std::min(until, origin_ + VirtualNs(static_cast<std::int64_t>(passed))));
     return due - real;
+  }
+  if (is_loading_ && real - began_loading_ <= kMostMadeUp) {
+    origin_real_ += real - due;
+    due = real;
   }
   now_ = std::max(now_, until);
   if (next > limit_) {

@@ -68,6 +68,11 @@ class Pacer {
   bool has_origin_ = false;
   HostTime origin_real_;
   VirtualTime origin_;
+  // Programs load at the run's start, which takes real time and next to no virtual one. What that
+  // costs is no lateness: the wall clock counts from when the run waits for it first, or has tried
+  // to for as long as it would make up for.
+  bool is_loading_ = true;
+  HostTime began_loading_;
   bool stands_ = false;
   HostDuration behind_;
   HostTime asked_real_;

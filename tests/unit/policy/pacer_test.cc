@@ -34,9 +34,41 @@ TEST(PacerTest, AtPaceTwoItWaitsHalfAsLongAndAtAQuarterFourTimes) {
   EXPECT_EQ(quarter.ToWait(RobotTime(10 * kMs), kStart), HostNs(40 * kMs));
 }
 
+TEST(PacerTest, TheWallClockCountsFromWhenProgramsHaveLoaded) {
+  Pacer pacer(1, false);
+  pacer.ToWait(RobotTime(0), kStart);
+  EXPECT_EQ(pacer.ToWait(RobotTime(0), kStart + HostNs(7 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(7 * kMs)), HostNs(10 * kMs));
+  EXPECT_EQ(pacer.account().most, HostDuration());
+  // Once it has waited it is late where it is late.
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(24 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.account().most, HostNs(7 * kMs));
+}
+
+TEST(PacerTest, ARunThatNeverWaitsIsBehindAllTheSame) {
+  Pacer pacer(1, false);
+  const HostDuration most = Pacer::kMostMadeUp;
+  pacer.ToWait(RobotTime(0), kStart);
+  EXPECT_EQ(pacer.ToWait(RobotTime(1 * kMs), kStart + most), HostDuration());
+  EXPECT_EQ(pacer.behind(), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(2 * kMs), kStart + most + HostNs(30 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.behind(), HostNs(29 * kMs));
+}
+
+TEST(PacerTest, ProgramsLoadOnceTheRunThatStartsStandingMayGoOn) {
+  Pacer pacer(1, true);
+  pacer.ToWait(RobotTime(0), kStart);
+  const HostTime goes_on = kStart + HostNs(700 * kMs);
+  pacer.GoOn(goes_on);
+  EXPECT_EQ(pacer.ToWait(RobotTime(0), goes_on + HostNs(7 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), goes_on + HostNs(7 * kMs)), HostNs(10 * kMs));
+  EXPECT_EQ(pacer.account().most, HostDuration());
+}
+
 TEST(PacerTest, WhatItIsBehindByItMakesUpFor) {
   Pacer pacer(1, false);
   pacer.ToWait(RobotTime(0), kStart);
+  pacer.ToWait(RobotTime(10 * kMs), kStart);  // which has loaded its programs
   EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(60 * kMs)), HostDuration());
   EXPECT_EQ(pacer.behind(), HostNs(50 * kMs));
   EXPECT_EQ(pacer.ToWait(RobotTime(62 * kMs), kStart + HostNs(65 * kMs)), HostDuration());
