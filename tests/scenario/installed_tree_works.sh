@@ -74,7 +74,12 @@ complete_of() {  # WORDS...: what bash completes behind them
 [[ $(complete_of tcsim ru) == run ]] || fail "bash completes 'tcsim ru' to: $(complete_of tcsim ru)"
 [[ $(complete_of tcsim run --acc) == --accounting ]] || fail "bash completes an option to: $(complete_of tcsim run --acc)"
 [[ $(complete_of tcsim run --accounting m) == measured ]] || fail "bash completes no values"
-! type zsh >/dev/null 2>&1 || zsh -n "$prefix/share/zsh/vendor-completions/_tcsim" || fail "zsh does not read its completion"
+[[ $(complete_of tcsim run --accounting = m) == measured ]] || fail "bash completes no values behind a sign"
+PATH=$prefix/bin:$PATH "$source_root/.ci/zsh_completes" --from "$prefix/share/zsh/vendor-completions" >zsh_said 'tcsim ru' \
+  'tcsim run --accounting m' 'tcsim run --accounting=m' 'tcsim exec -- basena' 'tcsim check marks.ya' ||
+  fail "zsh completes nothing: $(cat zsh_said)"
+printf '%s \n' 'tcsim run' 'tcsim run --accounting measured' 'tcsim run --accounting=measured' 'tcsim exec -- basename' \
+  'tcsim check marks.yaml' | diff - zsh_said || fail "zsh completes otherwise"
 
 # Help fits the terminal.
 for width in 60 100; do

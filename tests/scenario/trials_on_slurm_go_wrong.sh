@@ -6,7 +6,9 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # but not for ever; ^C ends the jobs and leaves what is done, and the next call goes on.
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 elsewhere=()
-trials() { timeout --foreground 80 "${elsewhere[@]}" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 400ms --launcher slurm "$@"; }
+# Longer than a run of somebody else's may hold the processor for which a trial waits.
+limit=200
+trials() { timeout --foreground "$limit" "${elsewhere[@]}" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 400ms --launcher slurm "$@"; }
 refused() {  # PATTERN OPTIONS...
   local pattern=$1 status=0
   shift
@@ -37,7 +39,7 @@ no_jobs
 mkdir "$out/hidden"
 if unshare --mount true 2>/dev/null; then
   status=0
-  timeout --foreground 80 unshare --mount bash -c 'mount -t tmpfs none "$0/hidden"; exec "$@"' "$out" "$tcsim" trials \
+  timeout --foreground "$limit" unshare --mount bash -c 'mount -t tmpfs none "$0/hidden"; exec "$@"' "$out" "$tcsim" trials \
     "$out/scenario.yaml" --accounting fixed --launcher slurm --trials 4 --out "$out/hidden/t" \
     >"$out/stdout" 2>"$out/stderr" || status=$?
   ((status == 2)) || fail "exit status $status: $(cat "$out/stdout" "$out/stderr")"
@@ -60,7 +62,7 @@ grep -q '2 of 3 trials are done already' "$out/said" || fail "$(cat "$out/said")
 no_jobs
 
 # The job of one trial is cancelled each time that it begins.
-long() { timeout --foreground 80 "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1h --launcher slurm "$@"; }
+long() { timeout --foreground "$limit" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1h --launcher slurm "$@"; }
 claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1 || true; }
 begun() {  # FOLDER [JOB]: waits for a trial that another job has begun; that is `job` then
   for _ in $(seq 300); do
@@ -101,7 +103,8 @@ no_jobs
 done_before=$(find "$out/resumed" -name summary.json | wc -l)
 ((done_before < 20)) || fail "nothing was interrupted"
 first=$(stat -c %Y.%i "$out/resumed/seed-0001/summary.json")
-trials --trials 20 --out "$out/resumed" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+trials --trials 20 --out "$out/resumed" >"$out/said" 2>&1 ||
+  fail "$(cat "$out/said") $(grep -h 'waiting for' "$out"/resumed/slurm/*/runs/*/tcsim.log 2>/dev/null || true)"
 grep -q "^$done_before of 20 trials are done already" "$out/said" || fail "$done_before: $(cat "$out/said")"
 [[ $(stat -c %Y.%i "$out/resumed/seed-0001/summary.json") == "$first" ]] || fail "what was done was run again"
 (($(find "$out/resumed" -name summary.json | wc -l) == 20)) || fail "$(cat "$out/said")"

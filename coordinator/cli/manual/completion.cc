@@ -66,7 +66,9 @@ std::string ZshSpecs(const DescribedCommand& command) {
   std::string specs;
   for (const DescribedOption& option : command.options) {
     for (const std::string& name : option.names) {
-      specs += fmt::format("        '*{}[{}]", name, Quoted(FullText(option)));
+      // With "=", zsh knows the value in the same word and in the next one.
+      const bool joined = !option.value.empty() && name.starts_with("--");
+      specs += fmt::format("        '*{}{}[{}]", name, joined ? "=" : "", Quoted(FullText(option)));
       if (!option.value.empty()) {
         specs += fmt::format(":{}:{}", Quoted(option.value), ZshAction(option));
       }
@@ -92,6 +94,12 @@ _tcsim_files() {{
 
 _tcsim() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} options=
+  # In --option=value, bash has the sign as a word of its own.
+  if [[ $word == = ]]; then
+    word=
+  elif [[ $before == = ]]; then
+    before=${{COMP_WORDS[COMP_CWORD - 2]}}
+  fi
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W '{1} {2}' -- "$word"))
@@ -155,8 +163,9 @@ std::string ZshCompletion(const DescribedCommand& program) {
       "    argument)\n"
       "      case $line[1] in\n";
   for (const DescribedCommand& sub : program.commands) {
-    text +=
-        fmt::format("        {})\n      _arguments \\\n{}          ;;\n", sub.name, ZshSpecs(sub));
+    // -S: what is behind "--" is no option, and "--" no program.
+    text += fmt::format("        {})\n      _arguments -S \\\n{}          ;;\n", sub.name,
+                        ZshSpecs(sub));
   }
   text +=
       "      esac\n"

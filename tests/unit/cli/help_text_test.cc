@@ -82,7 +82,7 @@ TEST(Completion, KnowsOptionsAndTheirValues) {
   EXPECT_THAT(bash, HasSubstr("--mode) COMPREPLY=($(compgen -W 'straight round' -- \"$word\"))"));
   EXPECT_THAT(bash, HasSubstr("--out) _tcsim_files -d"));
   EXPECT_THAT(ZshCompletion(fly.All()),
-              HasSubstr("'*--mode[how to go up]:straight|round:(straight round)'"));
+              HasSubstr("'*--mode=[how to go up]:straight|round:(straight round)'"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Models that come near each other, and part.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <random>
 

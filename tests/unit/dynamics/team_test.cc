@@ -4,6 +4,7 @@
 #include <sched.h>
 
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <numeric>
 #include <thread>

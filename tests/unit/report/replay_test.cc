@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "coordinator/report/replay_sections.h"
 #include "tests/unit/report/result_folder.h"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
