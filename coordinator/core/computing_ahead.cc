@@ -116,6 +116,10 @@ void ComputingAhead::StayHome(Process* process) {
   }
 }
 
+void ComputingAhead::MakeRoomForHelpers() {
+  for (FurtherCpu& cpu : cpus_) cpu.LetNobodyRest();
+}
+
 void ComputingAhead::Forget(const Task& task) {
   if (task.is_ahead) CpuOf(task).BringHome();
   std::erase(owing_, &task);
@@ -183,7 +187,8 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
     const Reactor::Found found = poll_({run.latest});
     if (found.stops_running || found.wakes_others || !task.is_ahead) break;
     ChargeAhead(task);
-    if (task.cpu->progress + task.debt >= horizon) break;
+    // One that rests goes on as soon as it has paid.
+    if (task.cpu->progress + task.debt >= horizon || cpu.Rests()) break;
     const std::uint64_t now_tsc = __rdtsc();
     const bool looks = now_tsc >= looks_tsc;
     if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);

@@ -56,6 +56,8 @@ class ComputingAhead {
   // The process's threads take turns only, from now on: what they share is changed here, too. Null:
   // so do all processes'.
   void StayHome(Process* process);
+  // Helpers of the physics need the further processors, too: nobody keeps them from there.
+  void MakeRoomForHelpers();
   // It has ended.
   void Forget(const Task& task);
   // The further processors, whoever is there.

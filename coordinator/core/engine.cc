@@ -203,6 +203,7 @@ bool Engine::StepWorld() {
   const std::uint64_t begun_tsc = __rdtsc();
   state_link_.Does(Doing::kIntegrates, begun_tsc);
   const bool sent = world_.Advance(limit);
+  if (world_.HasHadHelp()) ahead_.MakeRoomForHelpers();
   const std::uint64_t ended_tsc = __rdtsc();
   state_link_.Does(Doing::kSchedules, ended_tsc);
   records_.Integrated({now, world_.progress()}, {begun_tsc, ended_tsc});

@@ -57,6 +57,8 @@ class World {
 
   bool present() const { return dynamics_ != nullptr; }
   VirtualTime progress() const { return progress_; }
+  // Threads on further processors have integrated islands.
+  bool HasHadHelp() const { return present() && dynamics_->work().helped > 0; }
   // Nothing leaves the dynamics before this.
   VirtualTime NextOutput() const { return next_output_; }
   // When somebody looks at the state next: a sample, an output, a line of the CSV.

@@ -26,7 +26,11 @@ class AheadClock {
   static constexpr std::int64_t kLostNs = 20'000'000;
 
   // It has been sent just now. Nobody asks meanwhile.
-  void Start() { Know(0, 0); }
+  void Start() {
+    rested_ns_.store(0);
+    rests_.store(false);
+    Know(0, 0);
+  }
 
   // At `at_ns` it had computed `computed_ns`. Times are from when it was sent.
   void Know(std::int64_t at_ns, std::int64_t computed_ns) {
@@ -36,9 +40,22 @@ class AheadClock {
     ++version_;
   }
 
+  // From the last look on nobody lets it compute, until `at_ns`. Meanwhile the TSC does not carry
+  // on, and that time was not taken by others.
+  void Rest() { rests_.store(true); }
+  void GoOn(std::int64_t at_ns) {
+    rested_ns_.store(rested_ns_.load() + at_ns - at_ns_.load());
+    Know(at_ns, computed_ns_.load());
+    rests_.store(false);
+  }
+  bool rests() const { return rests_.load(); }
+
   // What it has computed by `now_ns`, as far as it can be told, but not more than `most_ns`.
   std::int64_t ComputedBy(std::int64_t now_ns, std::int64_t most_ns) const {
+    // In this order: what is known does not change while it rests, but before and after.
+    const bool rests = rests_.load();
     const auto [at_ns, computed_ns] = Last();
+    if (rests) return computed_ns;
     const std::int64_t since_ns =
         std::clamp<std::int64_t>(now_ns - std::max(at_ns, kWayNs), 0, kMostUnknownNs);
     return std::max(computed_ns, std::min(computed_ns + since_ns, most_ns));
@@ -47,7 +64,7 @@ class AheadClock {
   // Others had the processor for long, by then, or have it from whoever is to look.
   bool IsStarvedBy(std::int64_t now_ns) const {
     const auto [at_ns, computed_ns] = Last();
-    const std::int64_t taken_ns = at_ns - computed_ns - kWayNs;
+    const std::int64_t taken_ns = at_ns - rested_ns_.load() - computed_ns - kWayNs;
     return (taken_ns > kMostTakenNs && taken_ns > at_ns / kMostTakenOf) || now_ns - at_ns > kLostNs;
   }
 
@@ -65,7 +82,8 @@ class AheadClock {
   }
 
   std::atomic<std::uint32_t> version_{0};
-  std::atomic<std::int64_t> at_ns_{0}, computed_ns_{0};
+  std::atomic<std::int64_t> at_ns_{0}, computed_ns_{0}, rested_ns_{0};
+  std::atomic<bool> rests_{false};
 };
 
 }  // namespace tcs

@@ -18,6 +18,7 @@ namespace tcs {
 namespace {
 
 constexpr std::int64_t kShortestSleepNs = 20'000, kLongestSleepNs = 1'000'000;
+constexpr std::int64_t kLongestRestNs = 2'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
 constexpr std::int64_t kWayToSleepNs = 20'000, kMostWayHomeNs = 2'000'000;
@@ -93,10 +94,12 @@ void FurtherCpu::Leave() {
   place_.store(Place::kLeft);
 }
 
-// Sends the thread home that has come to its limit. How long nobody has to be looked after.
+// Sends the thread home that has come to its limit and is not allowed on soon. How long nobody has
+// to be looked after.
 std::int64_t FurtherCpu::NsToGuard() {
   looks_.store(true);
-  const std::int64_t left_ns = place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
+  std::int64_t left_ns = place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
+  if (left_ns <= 0 && may_rest_.load() && !is_claimed_.load()) left_ns = LeftAfterRest();
   looks_.store(false);
   if (left_ns == kForEverNs) return left_ns;
   if (left_ns > 0) return std::clamp(left_ns, kShortestSleepNs, kLongestSleepNs);
@@ -115,6 +118,21 @@ std::int64_t FurtherCpu::LeftAfterLook() {
   const std::int64_t computed_ns = std::max<std::int64_t>(0, Computed());
   ahead_.Know(PassedNs(tsc), computed_ns);
   return IsClaimedBy(tsc) ? 0 : allowed_ns_.load() - computed_ns;
+}
+
+// The thread does not compute while this one looks whether it may. Another limit ends that, and so
+// does the coordinator where it takes the thread home, for which it waits until nobody looks.
+std::int64_t FurtherCpu::LeftAfterRest() {
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kLongestRestNs);
+  const std::int64_t limit_ns = allowed_ns_.load();
+  if (limit_ns <= 0) return 0;  // it is wanted at home
+  ahead_.Rest();
+  while (allowed_ns_.load() == limit_ns && may_rest_.load() && !ends_.load() &&
+         place_.load() == Place::kHere && __rdtsc() < until_tsc) {
+    _mm_pause();
+  }
+  ahead_.GoOn(PassedNs(__rdtsc()));
+  return place_.load() == Place::kHere ? LeftAfterLook() : kForEverNs;
 }
 
 // Other runs come and go.

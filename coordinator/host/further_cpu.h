@@ -6,7 +6,9 @@
 //
 // It may compute as far as it is allowed to. A warden sees to that, a thread of this process on
 // that processor, before which it goes: it fetches the thread, looks what it has computed, sleeps
-// for as long as that one may go on, and sends it home when it has come to its limit. The kernel
+// for as long as that one may go on, and keeps it from computing when it has come to its limit: by
+// looking on itself, for as long as the limit may be raised at any moment, because to send a thread
+// home and fetch it again costs both processors more than that; then it sends it home. The kernel
 // may let the coordinator stand at any place, for 50 ms of each second (real-time throttling). So
 // the warden never waits for it, and whom the coordinator has asked it to fetch is either held at
 // home or guarded. The thread itself has ordinary priority here: it takes the processor from
@@ -49,10 +51,15 @@ class FurtherCpu {
   bool Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowed_ns);
   // In all, since it was sent.
   void Allow(std::int64_t allowed_ns) { allowed_ns_.store(allowed_ns); }
+  // Whoever comes to the limit goes home at once from now on: while one rests here nobody else gets
+  // the processor.
+  void LetNobodyRest() { may_rest_.store(false); }
   // What it has computed by then since it was sent (ahead_clock.h).
   std::int64_t ComputedBy(std::uint64_t tsc);
   // Others had the processor for long, by then, or have claimed it.
   bool IsStarvedBy(std::uint64_t tsc);
+  // It has come to its limit, and computes on here as soon as it is allowed to.
+  bool Rests() const { return ahead_.rests(); }
   // It has come to its limit, and is at home.
   bool HasLeft() const { return place_.load() == Place::kLeft; }
 
@@ -84,6 +91,7 @@ class FurtherCpu {
   void Leave();
   std::int64_t NsToGuard();
   std::int64_t LeftAfterLook();
+  std::int64_t LeftAfterRest();
   void Sleep(std::uint32_t wakes, std::int64_t ns);
   std::uint64_t TicksIn(std::int64_t ns) const;
   std::int64_t PassedNs(std::uint64_t tsc) const;
@@ -104,6 +112,7 @@ class FurtherCpu {
   std::atomic<std::uint32_t> wakes_{0};
   std::atomic<bool> ends_{false};
   std::atomic<std::int64_t> allowed_ns_{0};
+  std::atomic<bool> may_rest_{true};
   std::atomic<bool> is_claimed_{false};  // another run was found to take its turns here
   std::atomic<bool> is_refused_{false};  // by the kernel
 

@@ -50,6 +50,21 @@ TEST(AheadClock, WhoseProcessorOthersHaveForLongIsStarved) {
   EXPECT_TRUE(clock.IsStarvedBy(80 * kMs));
 }
 
+TEST(AheadClock, WhileItRestsNothingIsComputedNorTaken) {
+  AheadClock clock;
+  clock.Know(1 * kMs, 1 * kMs);
+  clock.Rest();
+  EXPECT_TRUE(clock.rests());
+  EXPECT_EQ(clock.ComputedBy(2 * kMs, kAll), 1 * kMs);
+  clock.GoOn(41 * kMs);
+  EXPECT_FALSE(clock.rests());
+  EXPECT_EQ(clock.ComputedBy(41 * kMs, kAll), 1 * kMs);
+  EXPECT_EQ(clock.ComputedBy(41 * kMs + 7 * kUs, kAll), 1 * kMs + 7 * kUs);
+  EXPECT_FALSE(clock.IsStarvedBy(41 * kMs));
+  clock.Know(81 * kMs, 20 * kMs);
+  EXPECT_TRUE(clock.IsStarvedBy(81 * kMs)) << "what was taken since counts";
+}
+
 TEST(AheadClock, SoIsOneThatNobodyLooksAt) {
   AheadClock clock;
   clock.Know(10 * kMs, 10 * kMs);

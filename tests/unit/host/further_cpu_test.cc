@@ -114,6 +114,47 @@ TEST_F(FurtherCpuTest, WhoIsAllowedMoreGoesOn) {
   EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
 }
 
+// To be fetched again would cost more than to wait for what is allowed next.
+TEST_F(FurtherCpuTest, WhoIsAllowedMoreWhileAtTheLimitGoesOnThere) {
+  // Not beside the warden, which looks on while the thread rests; and on a busy machine the rest
+  // may still be over before anybody sees it.
+  cpu_set_t before, home;
+  sched_getaffinity(0, sizeof before, &before);
+  CPU_ZERO(&home);
+  CPU_SET(home_, &home);
+  sched_setaffinity(0, sizeof home, &home);
+  bool goes_on = false;
+  for (int tries = 0; tries < 100 && !goes_on; ++tries) {
+    ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), kMs));
+    while (!cpu_->Rests() && !cpu_->HasLeft()) sched_yield();
+    const bool rests = cpu_->Rests();
+    cpu_->Allow(1'000 * kMs);
+    while (cpu_->ComputedBy(__rdtsc()) < 5 * kMs && !cpu_->HasLeft()) sched_yield();
+    goes_on = rests && !cpu_->HasLeft();
+    cpu_->BringHome();
+    AwaitAt(home_);
+  }
+  sched_setaffinity(0, sizeof before, &before);
+  EXPECT_TRUE(goes_on);
+}
+
+TEST_F(FurtherCpuTest, WhoIsWantedBackWhileAtTheLimitComesBack) {
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), kMs));
+    while (!cpu_->Rests() && !cpu_->HasLeft()) sched_yield();
+    cpu_->BringHome();
+    AwaitAt(home_);
+    ASSERT_TRUE(cpu_->IsFreeAt(__rdtsc()));
+  }
+}
+
+TEST_F(FurtherCpuTest, WhereOthersHelpNobodyRests) {
+  cpu_->LetNobodyRest();
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), kMs));
+  while (!cpu_->HasLeft()) ASSERT_FALSE(cpu_->Rests());
+  cpu_->BringHome();
+}
+
 TEST_F(FurtherCpuTest, OneThatHasEndedIsNoTrouble) {
   ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 1'000 * kMs));
   ends_ = true;
