@@ -165,21 +165,49 @@
     return path;
   }
 
-  const MOST_LINES = 14, PANEL = 92, ABOVE = 30;
+  const MOST_LINES = 14, PANEL = 92, ABOVE = 30, ROW = 16;
+  const pen = document.createElement('canvas').getContext('2d');
+  function widthOf(words, weight) {
+    pen.font = `${weight} 12px ${getComputedStyle(document.body).fontFamily}`;
+    return pen.measureText(words).width;
+  }
+  // The names of a panel's lines, in as many rows as they need. Each row is a list of [name, number of the line].
+  function rowsOf(names, room, withValues) {
+    const rows = [[]];
+    let used = 0;
+    names.forEach((name, i) => {
+      const needed = 9 + widthOf(name, 400) + (withValues ? 4 + widthOf('-0.00', 400) : 0);
+      if (used + needed > room && rows.at(-1).length) {
+        rows.push([]);
+        used = 0;
+      }
+      rows.at(-1).push([name, i]);
+      used += needed;
+    });
+    return rows;
+  }
   function drawMotion() {
     if (!motionLive) return;
     const {run} = tcs, width = Math.max(280, Math.floor(motionLive.clientWidth)), narrow = width < 560;
     const left = 48, columns = width - left - 12;
     plot = {x: left, width: columns, end: run.end};
     const scale = columns / run.end;
-    let y = 0, content = '';
+    let y = 0, content = '', top = ABOVE;
     // What is 0 all the time needs no picture.
     const isZero = panel => panel.lines.every(line => line.values.every(value => Math.abs(value) < 1e-6));
     const all = panelsOf(run, tcs.robot), zero = all.filter(isZero);
     panels = all.filter(panel => !isZero(panel));
     for (const panel of panels) {
       const shown = panel.lines.slice(0, MOST_LINES);
-      y += ABOVE;
+      const names = shown.map(line => line.name), withValues = !narrow && panel.lines.length <= 6;
+      if (panel.lines.length > MOST_LINES) names.push(`and ${panel.lines.length - MOST_LINES} more`);
+      // Beside the title, or below it where they would lie on it.
+      let rows = rowsOf(names, columns - widthOf(panel.title, 600) - 12, withValues);
+      const below = rows.length > 1;
+      if (below) rows = rowsOf(names, columns, withValues);
+      const titleAt = y + ABOVE - 8;
+      y += ABOVE + (below ? ROW * rows.length : 0);
+      if (panel === panels[0]) top = y;
       let least = Infinity, most = -Infinity;
       for (const line of shown) {
         for (const value of line.values) {
@@ -191,7 +219,7 @@
       const room = (most - least) * 0.06;
       [least, most] = [least - room, most + room];
       const at = (time, value) => [left + time * scale, y + PANEL * (1 - (value - least) / (most - least))];
-      content += text(left, y - 8, 'name', panel.title);
+      content += text(left, titleAt, 'name', panel.title);
       panel.readings = [];
       content += `<rect class="lane" x="${left}" y="${y}" width="${columns}" height="${PANEL}"/>`;
       for (const [value, label] of ticks(least, most, 4)) {
@@ -201,9 +229,11 @@
       shown.forEach((line, i) => {
         content += `<path class="line s${i % 7}" d="${pathOf(run, line, at, columns)}"/>`;
       });
-      content += `<text class="legend" x="${width - 12}" y="${y - 8}" text-anchor="end">` +
-          shown.map((line, i) => `<tspan class="t${i % 7}" dx="${i ? 9 : 0}">${escaped(line.name)}</tspan><tspan class="value" dx="4"></tspan>`).join('') +
-          (panel.lines.length > MOST_LINES ? `<tspan dx="9">and ${panel.lines.length - MOST_LINES} more</tspan>` : '') + '</text>';
+      const legend = rows.map((row, k) => `<text x="${width - 12}" y="${y - 8 - ROW * (rows.length - 1 - k)}" text-anchor="end">` +
+          row.map(([name, i], place) => i < shown.length ?
+              `<tspan class="t${i % 7}" dx="${place ? 9 : 0}">${escaped(name)}</tspan><tspan class="value" dx="4"></tspan>` :
+              `<tspan dx="${place ? 9 : 0}">${name}</tspan>`).join('') + '</text>');
+      content += `<g class="legend">${legend.join('')}</g>`;
       y += PANEL;
     }
     if (panels.length === 0) {
@@ -217,12 +247,12 @@
     }
     content += text(left + columns, y + 33, 'tick', 'virtual time [s]', 'end');
     for (const line of run.said) {
-      if (line.isMark) content += `<path class="mark" d="M${(left + line.time * scale).toFixed(1)} ${ABOVE}V${y}"><title>${escaped(line.text)}</title></path>`;
+      if (line.isMark) content += `<path class="mark" d="M${(left + line.time * scale).toFixed(1)} ${top}V${y}"><title>${escaped(line.text)}</title></path>`;
     }
     if (zero.length) {
       content += text(left, y + 46, 'tick', `Always 0: ${zero.map(panel => panel.title.replace(/ \[.*/, '')).join(', ')}.`);
     }
-    content += `<path class="cursor" d="M0 ${ABOVE - 4}V${y}"/>`;
+    content += `<path class="cursor" d="M0 ${top - 4}V${y}"/>`;
     const height = y + (zero.length ? 54 : 40);
     motionLive.innerHTML = `<svg viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img">` +
         `<title>What is known of ${escaped(run.robots[tcs.robot].name)} over time</title>${content}</svg>`;

@@ -49,11 +49,20 @@
     if (items[here]) items[here].item.classList.remove('is-now');
     here = last;
     if (!items[here]) return;
-    const {item} = items[here];
-    item.classList.add('is-now');
-    // Within the list alone: the page stays where it is.
-    list.scrollTop = item.offsetTop - list.offsetTop - list.clientHeight / 2 + item.clientHeight / 2;
+    items[here].item.classList.add('is-now');
+    centre(3);
   }
+  // Within the list alone: the page stays where it is. A line that has not been seen yet is as high as the style
+  // presumes, so the lines that come into view move this one: some pictures later it is looked for again.
+  function centre(turns) {
+    const line = items[here];
+    if (!line) return;
+    const away = line.item.offsetTop - list.offsetTop - list.clientHeight / 2 + line.item.clientHeight / 2 - list.scrollTop;
+    if (Math.abs(away) > 1) list.scrollTop += away;
+    if (turns > 0) requestAnimationFrame(() => { if (items[here] === line) centre(turns - 1); });
+  }
+  // Nothing of the list has its height before somebody sees it.
+  new IntersectionObserver(([seen]) => { if (seen.isIntersecting) centre(3); }).observe(list);
   filter.addEventListener('change', fill);
   tcs.on(what => {
     if (what === 'run') {
