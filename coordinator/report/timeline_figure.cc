@@ -11,7 +11,7 @@ namespace tcs::report {
 namespace {
 
 constexpr double kTop = 6, kTitle = 24, kRow = 18, kBetween = 6, kNameAbove = 15, kProgress = 56,
-                 kBottom = 40, kRight = 52;
+                 kBottom = 40, kRight = 60;
 // What ran and took none of this axis's time is seen all the same.
 constexpr double kLeastShare = 0.12;
 

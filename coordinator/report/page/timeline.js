@@ -43,7 +43,7 @@
 
   // --- Drawing -----------------------------------------------------------------------------------
 
-  const TITLE = 24, ROW = 18, BETWEEN = 6, NAME_ABOVE = 15, PROGRESS = 56, RIGHT = 52;
+  const TITLE = 24, ROW = 18, BETWEEN = 6, NAME_ABOVE = 15, PROGRESS = 56, RIGHT = 60;
   const LEAST_SHARE = 0.12;
   const escaped = text => text.replace(/[&<>"]/g, c => `&#${c.charCodeAt(0)};`);
   const text = (x, y, classes, content, anchor = 'start') =>
