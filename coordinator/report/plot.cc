@@ -6,7 +6,8 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kTickLength = 4, kTickText = 16, kTitleText = 33, kBetweenLabels = 8;
+constexpr double kTickLength = 4, kTickText = 16, kTitleText = 33, kBetweenLabels = 8,
+                 kLeastMargin = 10;
 
 }  // namespace
 
@@ -27,7 +28,9 @@ void DrawHorizontalAxis(Svg* svg, const Frame& frame, const Axis& axis, const st
     const std::string label = axis.Label(tick);
     const double half = WidthOf(label) / 2;
     if (x - half < free_from) continue;
-    svg->Text(x, frame.bottom + kTickText, Svg::Anchor::kMiddle, label, "tick");
+    // A label at the end of the axis stays in the picture, as far as the narrowest margin goes.
+    svg->Text(std::min(x, frame.right + kLeastMargin - half), frame.bottom + kTickText,
+              Svg::Anchor::kMiddle, label, "tick");
     free_from = x + half + kBetweenLabels;
   }
   svg->Text(frame.right, frame.bottom + kTitleText, Svg::Anchor::kEnd, title, "tick");
