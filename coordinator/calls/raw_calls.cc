@@ -3,6 +3,8 @@
 #include <errno.h>
 #include <sys/syscall.h>
 
+#include "coordinator/os/landlock.h"
+
 namespace tcs {
 
 namespace {
@@ -130,6 +132,13 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_ptrace:
     case SYS_process_madvise:
       task.trap_continues = true;  // unless it is about tcsim's own (guarded_calls.cc)
+      break;
+    case SYS_landlock_create_ruleset:
+      if (AsksForLandlockVersion(call.args)) {
+        task.trap_result = LandlockVersionForPrograms();
+      } else {
+        task.trap_continues = true;
+      }
       break;
     case SYS_futex_waitv:
       task.trap_result = parts_.words.WaitForAny(task, call);

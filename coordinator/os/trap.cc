@@ -46,6 +46,8 @@ constexpr std::uint32_t kTrapped[] = {
     SYS_exit,
     // Refused, so that programs take the calls that are known here.
     SYS_io_uring_setup,
+    // Sandboxes that would keep new threads from the coordinator (landlock.h).
+    SYS_landlock_create_ruleset,
     // Timers.
     SYS_timer_create, SYS_timer_settime, SYS_timer_gettime, SYS_timer_getoverrun, SYS_timer_delete,
     SYS_timerfd_create, SYS_timerfd_settime, SYS_timerfd_gettime, SYS_setitimer, SYS_getitimer,
