@@ -50,7 +50,8 @@ if command -v sqlite3 >/dev/null; then
     select sum(a) from t"'
 fi
 if command -v socat >/dev/null; then
-  like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat & sleep 0.5
+  # Some versions tell of the signal that ends them, with the date.
+  like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat 2>/dev/null & sleep 0.5
     echo hello | socat -t1 - TCP:127.0.0.1:5599; kill $!'
 fi
 # One that goes into the background by itself is waited for, and so is one on a terminal of its own.
