@@ -195,10 +195,7 @@ class Reader {
           "one for each",
           folder, run.scenario, first_folder_, results_.scenario);
     }
-    if (results_.bodies[0].empty() && run.bodies.size() >= 2) {
-      results_.bodies[0] = bodies_.empty() ? run.bodies[0] : bodies_[0];
-      results_.bodies[1] = bodies_.empty() ? run.bodies[1] : bodies_[1];
-    }
+    if (results_.bodies[0].empty()) std::copy_n(run.apart, 2, results_.bodies);
     system->runs.push_back(std::move(run));
     return {};
   }

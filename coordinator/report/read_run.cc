@@ -95,6 +95,9 @@ std::optional<Point> PointOf(const CsvFields& fields) {
   return Point{*x, *y, *z};
 }
 
+// The links of a model are called MODEL/LINK.
+std::string_view ModelOf(std::string_view body) { return body.substr(0, body.find('/')); }
+
 // Pairs the states of the two bodies that have the same time.
 class TrackBuilder {
  public:
@@ -113,6 +116,7 @@ class TrackBuilder {
     }
     if (times_[0] != times_[1] || times_[0] == last_) return true;
     last_ = times_[0];
+    std::copy_n(wanted_.begin(), 2, run_.apart);
     run_.track.time_s.push_back(last_);
     run_.track.distance_m.push_back(std::hypot(
         points_[0].x - points_[1].x, points_[0].y - points_[1].y, points_[0].z - points_[1].z));
@@ -124,7 +128,10 @@ class TrackBuilder {
     const bool known = std::find(run_.bodies.begin(), run_.bodies.end(), name) != run_.bodies.end();
     if (known) return;
     run_.bodies.emplace_back(name);
-    if (takes_first_ && wanted_.size() < 2) wanted_.emplace_back(name);
+    if (!takes_first_ || wanted_.size() == 2) return;
+    // How far the links of one model are apart tells nobody anything.
+    if (!wanted_.empty() && ModelOf(wanted_[0]) == ModelOf(name)) return;
+    wanted_.emplace_back(name);
   }
 
   Run& run_;

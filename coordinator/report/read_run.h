@@ -13,9 +13,9 @@ namespace tcs::report {
 // noted last is taken as its summary, and a warning says so.
 enum class Ends { kWhole, kAny };
 
-// The distance is that between `bodies`, or, if those are empty, between the first two that
-// bodies.csv names. Lines that are of no use are left out with a warning. The sentence of an error
-// names the folder.
+// The distance is that between `bodies`, or, if those are empty, between the first body that
+// bodies.csv names and the first one of another model. Lines that are of no use are left out with a
+// warning. The sentence of an error names the folder.
 [[nodiscard]] LoadResult<Run> ReadRun(const std::string& folder,
                                       const std::vector<std::string>& bodies, Ends ends,
                                       std::vector<std::string>* warnings);

@@ -39,6 +39,7 @@ struct Run {
   double overhead = 0;  // share of the real time
   std::map<std::string, Client> clients;
   Track track;
+  std::string apart[2];  // the bodies that the track is of; empty without
 };
 
 // One that did not, and why.

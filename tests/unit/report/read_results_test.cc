@@ -44,6 +44,22 @@ TEST_F(ReadResultsTest, OtherBodiesCanBeMeant) {
   EXPECT_NE(Refused({"one"}, {"a", "d"}).find("no body 'd'"), std::string::npos);
 }
 
+TEST_F(ReadResultsTest, LinksOfOneModelAreNotMeasuredAgainstEachOther) {
+  WriteRun("one");
+  const std::string links = "time_s,body,x_m,y_m,z_m\n0,rover/base,0,0,0\n0,rover/wheel,1,0,0\n";
+  Write("one/bodies.csv", links);
+  const Results alone = Read({"one"});
+  EXPECT_TRUE(Distances(alone.systems[0]).empty());
+  EXPECT_EQ(alone.bodies[0], "");
+  Write("one/bodies.csv", links + "0,cart/base,7,0,0\n0,cart/wheel,8,0,0\n");
+  const Results both = Read({"one"});
+  EXPECT_EQ(Distances(both.systems[0]), (std::vector<double>{7}));
+  EXPECT_EQ(both.bodies[0], "rover/base");
+  EXPECT_EQ(both.bodies[1], "cart/base");
+  EXPECT_EQ(Distances(Read({"one"}, {"rover/base", "rover/wheel"}).systems[0]),
+            (std::vector<double>{1}));
+}
+
 TEST_F(ReadResultsTest, APlannersActivationGoesOnWhileItWaitsForThreads) {
   WriteRun("one");
   const Results results = Read({"one"});
