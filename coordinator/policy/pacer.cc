@@ -55,19 +55,23 @@ HostDuration Pacer::ToWait(VirtualTime next, HostTime real) {
   // What would be due later than where it stands waits for the wall clock, too, before it stands.
   const VirtualTime until = std::min(next, std::max(limit_, VirtualTime()));
   const auto ahead_ns = static_cast<double>((until - origin_).ns());
-  HostTime due =
-      pace_ > 0 ? origin_real_ + HostNs(static_cast<std::int64_t>(ahead_ns / pace_)) : real;
-  if (real < due) {
+  HostTime due = real;
+  HostTime may_act = real;
+  if (pace_ > 0) {
+    due = origin_real_ + HostNs(static_cast<std::int64_t>(ahead_ns / pace_));
+    may_act = due - kHeadStart;
+  }
+  if (real < may_act) {
     is_loading_ = false;
     TakeAccount({}, real);
     stands_ = false;
     const double passed = static_cast<double>((real - origin_real_).ns()) * pace_;
     now_ = std::max(now_, std::min(until, origin_ + VirtualNs(static_cast<std::int64_t>(passed))));
-    return due - real;
+    return may_act - real;
   }
   if (is_loading_ && real - began_loading_ <= kMostMadeUp) {
-    origin_real_ += real - due;
-    due = real;
+    origin_real_ += real - may_act;
+    due += real - may_act;
   }
   now_ = std::max(now_, until);
   if (next > limit_) {
@@ -75,7 +79,7 @@ HostDuration Pacer::ToWait(VirtualTime next, HostTime real) {
     stands_ = true;
     return kForEver;
   }
-  TakeAccount(real - due, real);
+  TakeAccount(std::max(HostDuration(), real - due), real);
   stands_ = false;
   if (const HostDuration too_much = behind_ - kMostMadeUp; too_much > HostDuration()) {
     account_.given_up += too_much;

@@ -21,6 +21,9 @@ class Pacer {
   // to see time pass at its pace, not faster for long.
   static constexpr HostDuration kMostMadeUp = HostDuration::Milliseconds(100);
   static constexpr HostDuration kForEver = HostNs(INT64_MAX);
+  // A run at a pace acts before the wall clock by up to this, so that an act that takes a few
+  // milliseconds makes nothing late that follows it.
+  static constexpr HostDuration kHeadStart = HostDuration::Milliseconds(2);
 
   // How the run has kept to its pace.
   struct Account {
@@ -52,7 +55,7 @@ class Pacer {
   // It waits for somebody to let it go on: as of the last ToWait.
   bool stands() const { return stands_; }
   // By how much, of real time, it is behind its pace: as of the last ToWait. Without what it gave
-  // up.
+  // up; 0 while it is ahead.
   HostDuration behind() const { return behind_; }
   const Account& account() const { return account_; }
 

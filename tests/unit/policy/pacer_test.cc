@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr HostTime kStart = HostTime::FromNanoseconds(5'000'000'000);
+constexpr HostDuration kHeadStart = Pacer::kHeadStart;
 
 TEST(PacerTest, WithoutAPaceNobodyWaits) {
   Pacer pacer(0, false);
@@ -16,22 +17,51 @@ TEST(PacerTest, WithoutAPaceNobodyWaits) {
   EXPECT_EQ(pacer.behind(), HostDuration());
 }
 
+// A pacer whose run has acted at 0 at kStart, and waits since: it is at 0 when the wall clock is at
+// kStart + kHeadStart, its 0.
+Pacer Loaded(double pace) {
+  Pacer pacer(pace, false);
+  pacer.ToWait(RobotTime(0), kStart);
+  pacer.ToWait(RobotTime(1000 * kMs), kStart);
+  return pacer;
+}
+
+HostTime Wall(std::int64_t since_zero_ns) { return kStart + kHeadStart + HostNs(since_zero_ns); }
+
 TEST(PacerTest, AtPaceOneAnActWaitsForItsTimeOnTheWall) {
-  Pacer pacer(1, false);
-  EXPECT_EQ(pacer.ToWait(RobotTime(0), kStart), HostDuration());
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart), HostNs(10 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(4 * kMs)), HostNs(6 * kMs));
+  Pacer pacer = Loaded(1);
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(0)), HostNs(10 * kMs) - kHeadStart);
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(4 * kMs)), HostNs(6 * kMs) - kHeadStart);
   EXPECT_EQ(pacer.now(), RobotTime(4 * kMs));  // which passes while it waits
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(10 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(10 * kMs) - kHeadStart), HostDuration());
   EXPECT_EQ(pacer.now(), RobotTime(10 * kMs));
+  EXPECT_EQ(pacer.behind(), HostDuration());
+}
+
+TEST(PacerTest, ItActsBeforeTheWallClockByTheHeadStartAndNoMore) {
+  Pacer pacer = Loaded(1);
+  for (std::int64_t at = 1 * kMs; at <= 20 * kMs; at += 1 * kMs) {
+    EXPECT_EQ(pacer.ToWait(RobotTime(at), Wall(at) - kHeadStart - HostNs(1)), HostNs(1)) << at;
+    EXPECT_EQ(pacer.ToWait(RobotTime(at), Wall(at) - kHeadStart), HostDuration()) << at;
+  }
+  // Its time does not go back while the wall clock comes after it.
+  pacer.ToWait(RobotTime(40 * kMs), Wall(19 * kMs));
+  EXPECT_EQ(pacer.now(), RobotTime(20 * kMs));
+}
+
+TEST(PacerTest, AnActThatTakesNoLongerThanTheHeadStartMakesNothingLate) {
+  Pacer pacer = Loaded(1);
+  pacer.ToWait(RobotTime(10 * kMs), Wall(10 * kMs) - kHeadStart);  // takes the head start
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(10 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.account().most, HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(10 * kMs + 1)), HostDuration());
+  EXPECT_EQ(pacer.account().most, HostNs(1));
 }
 
 TEST(PacerTest, AtPaceTwoItWaitsHalfAsLongAndAtAQuarterFourTimes) {
-  Pacer twice(2, false), quarter(0.25, false);
-  twice.ToWait(RobotTime(0), kStart);
-  quarter.ToWait(RobotTime(0), kStart);
-  EXPECT_EQ(twice.ToWait(RobotTime(10 * kMs), kStart), HostNs(5 * kMs));
-  EXPECT_EQ(quarter.ToWait(RobotTime(10 * kMs), kStart), HostNs(40 * kMs));
+  Pacer twice = Loaded(2), quarter = Loaded(0.25);
+  EXPECT_EQ(twice.ToWait(RobotTime(10 * kMs), Wall(0)), HostNs(5 * kMs) - kHeadStart);
+  EXPECT_EQ(quarter.ToWait(RobotTime(10 * kMs), Wall(0)), HostNs(40 * kMs) - kHeadStart);
 }
 
 TEST(PacerTest, TheWallClockCountsFromWhenProgramsHaveLoaded) {
@@ -41,7 +71,7 @@ TEST(PacerTest, TheWallClockCountsFromWhenProgramsHaveLoaded) {
   EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(7 * kMs)), HostNs(10 * kMs));
   EXPECT_EQ(pacer.account().most, HostDuration());
   // Once it has waited it is late where it is late.
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(24 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(24 * kMs)), HostDuration());
   EXPECT_EQ(pacer.account().most, HostNs(7 * kMs));
 }
 
@@ -51,7 +81,7 @@ TEST(PacerTest, ARunThatNeverWaitsIsBehindAllTheSame) {
   pacer.ToWait(RobotTime(0), kStart);
   EXPECT_EQ(pacer.ToWait(RobotTime(1 * kMs), kStart + most), HostDuration());
   EXPECT_EQ(pacer.behind(), HostDuration());
-  EXPECT_EQ(pacer.ToWait(RobotTime(2 * kMs), kStart + most + HostNs(30 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(2 * kMs), Wall(30 * kMs) + most), HostDuration());
   EXPECT_EQ(pacer.behind(), HostNs(29 * kMs));
 }
 
@@ -66,26 +96,23 @@ TEST(PacerTest, ProgramsLoadOnceTheRunThatStartsStandingMayGoOn) {
 }
 
 TEST(PacerTest, WhatItIsBehindByItMakesUpFor) {
-  Pacer pacer(1, false);
-  pacer.ToWait(RobotTime(0), kStart);
-  pacer.ToWait(RobotTime(10 * kMs), kStart);  // which has loaded its programs
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(60 * kMs)), HostDuration());
+  Pacer pacer = Loaded(1);
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(60 * kMs)), HostDuration());
   EXPECT_EQ(pacer.behind(), HostNs(50 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(62 * kMs), kStart + HostNs(65 * kMs)), HostDuration());
+  EXPECT_EQ(pacer.ToWait(RobotTime(62 * kMs), Wall(65 * kMs)), HostDuration());
   EXPECT_EQ(pacer.behind(), HostNs(3 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(70 * kMs), kStart + HostNs(66 * kMs)), HostNs(4 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(70 * kMs), Wall(66 * kMs)), HostNs(4 * kMs) - kHeadStart);
   EXPECT_EQ(pacer.account().behind, HostNs(5 * kMs));  // between the two asks, and not after
   EXPECT_EQ(pacer.account().most, HostNs(50 * kMs));
   EXPECT_EQ(pacer.account().given_up, HostDuration());
 }
 
 TEST(PacerTest, WhatIsMoreThanItMakesUpForIsGivenUp) {
-  Pacer pacer(1, false);
-  pacer.ToWait(RobotTime(0), kStart);
-  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), kStart + HostNs(2010 * kMs)), HostDuration());
+  Pacer pacer = Loaded(1);
+  EXPECT_EQ(pacer.ToWait(RobotTime(10 * kMs), Wall(2010 * kMs)), HostDuration());
   EXPECT_EQ(pacer.behind(), Pacer::kMostMadeUp);
   EXPECT_EQ(pacer.account().given_up, HostNs(2000 * kMs) - Pacer::kMostMadeUp);
-  EXPECT_EQ(pacer.ToWait(RobotTime(210 * kMs), kStart + HostNs(2010 * kMs)), HostNs(100 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(210 * kMs), Wall(2010 * kMs)), HostNs(100 * kMs) - kHeadStart);
 }
 
 TEST(PacerTest, ARunThatStartsStandingHasNotDoneEvenWhatHappensAtZero) {
@@ -140,17 +167,16 @@ TEST(PacerTest, AStepHasThePaceOfTheRun) {
 }
 
 TEST(PacerTest, ARunStandsWhereItHasCometo) {
-  Pacer pacer(1, false);
-  pacer.ToWait(RobotTime(0), kStart);
-  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(30 * kMs)), HostNs(20 * kMs));
-  pacer.Stand(kStart + HostNs(31 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(31 * kMs)), Pacer::kForEver);
+  Pacer pacer = Loaded(1);
+  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), Wall(30 * kMs)), HostNs(20 * kMs) - kHeadStart);
+  pacer.Stand(Wall(31 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), Wall(31 * kMs)), Pacer::kForEver);
   EXPECT_EQ(pacer.now(), RobotTime(30 * kMs));
   // What still happens at that time does.
-  EXPECT_EQ(pacer.ToWait(RobotTime(30 * kMs), kStart + HostNs(40 * kMs)), HostDuration());
-  pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(41 * kMs));
-  pacer.GoOn(kStart + HostNs(1041 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), kStart + HostNs(1041 * kMs)), HostNs(20 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(30 * kMs), Wall(40 * kMs)), HostDuration());
+  pacer.ToWait(RobotTime(50 * kMs), Wall(41 * kMs));
+  pacer.GoOn(Wall(1041 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(50 * kMs), Wall(1041 * kMs)), HostNs(20 * kMs) - kHeadStart);
   EXPECT_EQ(pacer.account().given_up, HostDuration());
 }
 
@@ -159,7 +185,8 @@ TEST(PacerTest, AnotherPaceCountsFromNow) {
   pacer.ToWait(RobotTime(0), kStart);
   pacer.ToWait(RobotTime(100 * kMs), kStart + HostNs(100 * kMs));
   pacer.SetPace(0.1, kStart + HostNs(100 * kMs));
-  EXPECT_EQ(pacer.ToWait(RobotTime(110 * kMs), kStart + HostNs(100 * kMs)), HostNs(100 * kMs));
+  EXPECT_EQ(pacer.ToWait(RobotTime(110 * kMs), kStart + HostNs(100 * kMs)),
+            HostNs(100 * kMs) - kHeadStart);
   pacer.SetPace(0, kStart + HostNs(101 * kMs));
   EXPECT_EQ(pacer.ToWait(RobotTime(900 * kMs), kStart + HostNs(101 * kMs)), HostDuration());
 }
@@ -169,9 +196,9 @@ TEST(PacerTest, StandingDoesNotUndoWhatAStepHasLeft) {
   pacer.ToWait(RobotTime(0), kStart);
   pacer.StepBy(VirtualNs(100 * kMs), kStart);
   pacer.ToWait(RobotTime(0), kStart);
-  pacer.ToWait(RobotTime(90 * kMs), kStart + HostNs(40 * kMs));
-  pacer.Stand(kStart + HostNs(40 * kMs));  // in the middle of the step
-  EXPECT_EQ(pacer.ToWait(RobotTime(90 * kMs), kStart + HostNs(41 * kMs)), Pacer::kForEver);
+  pacer.ToWait(RobotTime(90 * kMs), Wall(40 * kMs));
+  pacer.Stand(Wall(40 * kMs));  // in the middle of the step
+  EXPECT_EQ(pacer.ToWait(RobotTime(90 * kMs), Wall(41 * kMs)), Pacer::kForEver);
   EXPECT_EQ(pacer.now(), RobotTime(40 * kMs));
 }
 
