@@ -33,6 +33,10 @@ struct GuestThread {
   bool in_call = false;
   std::uint64_t told_dispatch = ~std::uint64_t{0};  // that began in an unseen call, and said so
   bool passes_on = false;                           // others wait for what it leaves (fd_wait.h)
+  bool posts = false;                               // puts something into its postbox
+  // Sockets, by their cookies, from which it may post (posting.cc); the next goes to this place.
+  std::uint64_t posting_sockets[4] = {};
+  std::uint32_t posting_socket = 0;
   std::int64_t cpu_shown_ns = 0;  // its charged processor time as it was last shown
   // Locks taken in a row, since what allocation_cost.cc tells a row by was `locks_at`.
   int locks = 0;

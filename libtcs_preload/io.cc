@@ -201,14 +201,16 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   return ToErrno(result);
 }
 
-// What only the coordinator receives waits for nobody: it keeps it until its virtual time.
-void HoldToSend(GuestThread& t, int fd, const msghdr& message) {
+// What only the coordinator receives waits for nobody: it keeps it until its virtual time. Returns
+// where it receives that.
+int HoldToSend(GuestThread& t, int fd, const msghdr& message) {
   const bool may_go_on = BeginWrite(t);
-  if (ReachesSafely(t, message) || may_go_on ||
-      IsForCoordinator(fd, message.msg_name, message.msg_namelen)) {
-    return;
+  const bool reaches_safely = ReachesSafely(t, message);
+  const int receiver = ReceiverOf(fd, message.msg_name, message.msg_namelen);
+  if (!reaches_safely && !may_go_on && receiver == tcs::shm::kNoReceiver) {
+    Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
   }
-  Exchange(t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+  return receiver;
 }
 
 // Control data travels with the first part.
@@ -230,14 +232,26 @@ ssize_t SendInParts(GuestThread* t, int fd, msghdr message, int flags, Whole who
       whole));
 }
 
+// `may_post`: false once the kernel has carried a message of this call. It is read before any that
+// is posted later in the call only where the coordinator wakes at once, which gates alone do not
+// see to.
 template <class Whole>
-ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, Whole whole) {
+ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* may_post,
+                Whole whole) {
   if (t == nullptr) return ToErrno(whole());
-  HoldToSend(*t, fd, message);
-  if (!NotesDatagrams()) return SendInParts(t, fd, message, flags, whole);
-  NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
-  const ssize_t sent = SendInParts(t, fd, message, flags, whole);
-  if (sent < 0) {
+  const bool was_in_call = t->in_call;
+  const int receiver = HoldToSend(*t, fd, message);
+  if (NotesDatagrams()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
+  long posted = 0;
+  ssize_t sent;
+  if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
+    t->in_call = was_in_call;  // nobody has seen it yet
+    sent = ToErrno(posted);
+  } else {
+    *may_post = false;
+    sent = SendInParts(t, fd, message, flags, whole);
+  }
+  if (sent < 0 && NotesDatagrams()) {
     const int error = errno;
     TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
     errno = error;
@@ -433,7 +447,8 @@ TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flag
   message.msg_iovlen = 1;
   const Entered t;
   if (t != nullptr) flags = WithoutMore(fd, flags);
-  return SendAll(t, fd, message, flags, [&] {
+  bool may_post = true;
+  return SendAll(t, fd, message, flags, &may_post, [&] {
     return RawSocketCall(SYS_sendto, fd, Arg(buffer), size, flags, Arg(to), to_size);
   });
 }
@@ -446,7 +461,8 @@ TCS_EXPORT ssize_t sendmsg(int fd, const msghdr* message, int flags) {
   msghdr copy{};
   const Entered t(CopyIn(&copy, message));
   if (t != nullptr) flags = WithoutMore(fd, flags);
-  return SendAll(t, fd, copy, flags,
+  bool may_post = true;
+  return SendAll(t, fd, copy, flags, &may_post,
                  [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
 }
 
@@ -456,11 +472,13 @@ TCS_EXPORT int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   if (t != nullptr) flags = WithoutMore(fd, flags);
   if (count == 0) return static_cast<int>(ToErrno(RawSyscall(SYS_sendmmsg, fd, 0, 0, flags)));
   if (count > kMostBuffers) count = kMostBuffers;
+  bool may_post = true;
   for (unsigned sent = 0; sent < count; ++sent) {
     msghdr* message = &messages[sent].msg_hdr;
     msghdr copy{};
-    const ssize_t n = SendAll(CopyIn(&copy, message) ? t.thread() : nullptr, fd, copy, flags,
-                              [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
+    const ssize_t n =
+        SendAll(CopyIn(&copy, message) ? t.thread() : nullptr, fd, copy, flags, &may_post,
+                [&] { return RawSyscall(SYS_sendmsg, fd, Arg(message), flags); });
     const bool done = n >= 0 && CopyOut(&messages[sent].msg_len, static_cast<unsigned>(n));
     if (n >= 0 && !done) errno = EFAULT;
     if (!done) return sent > 0 ? static_cast<int>(sent) : -1;

@@ -28,13 +28,14 @@
 
 #include "shm/datagram_notes.h"
 #include "shm/ipc_times.h"
+#include "shm/postbox.h"
 #include "shm/receipts.h"
 #include "shm/work_counts.h"
 
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 18;
+inline constexpr std::uint32_t kVersion = 19;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -290,9 +291,11 @@ struct alignas(64) ThreadSlot {
   std::uint32_t robot;
   std::uint8_t reserved[16];
   DatagramNotes datagrams;
+  alignas(64) Postbox postbox;
 };
-static_assert(sizeof(ThreadSlot) == 3264);
+static_assert(sizeof(ThreadSlot) == 5312);
 static_assert(offsetof(ThreadSlot, datagrams) == 1152);
+static_assert(offsetof(ThreadSlot, postbox) == 3264);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);

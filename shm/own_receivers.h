@@ -33,9 +33,12 @@ struct OwnReceivers {
   static constexpr std::uint32_t kMost = 1024;  // of others writes are held
   std::uint32_t count;
   std::uint32_t reserved;
+  // The network namespace that all of them are in, as SO_NETNS_COOKIE has it. From sockets of this
+  // namespace they take datagrams in postboxes, too (postbox.h); 0: from none.
+  std::uint64_t network;
   ReceiverAddress addresses[kMost];  // in order
 };
-static_assert(sizeof(OwnReceivers) == 114696);
+static_assert(sizeof(OwnReceivers) == 114704);
 
 // `address` has as many bytes.
 inline ReceiverAddress AddressOf(const void* address, std::size_t size) {
@@ -64,10 +67,22 @@ inline bool IsBefore(const ReceiverAddress& a, const ReceiverAddress& b) {
   return memcmp(&a, &b, sizeof a) < 0;
 }
 
-inline bool IsAmong(const OwnReceivers& receivers, const ReceiverAddress& address) {
-  if (address.size == 0) return false;
+inline constexpr int kNoReceiver = -1;
+
+// The place of the one with the address, or kNoReceiver.
+inline int PlaceAmong(const OwnReceivers& receivers, const ReceiverAddress& address) {
+  if (address.size == 0) return kNoReceiver;
   const ReceiverAddress* end = receivers.addresses + std::min(receivers.count, OwnReceivers::kMost);
-  return std::binary_search(receivers.addresses, end, address, IsBefore);
+  const ReceiverAddress* found = std::lower_bound(receivers.addresses, end, address, IsBefore);
+  if (found == end || IsBefore(address, *found)) return kNoReceiver;
+  return static_cast<int>(found - receivers.addresses);
+}
+
+// A UNIX socket with a file for a name: only the kernel knows where a path leads.
+inline bool HasFile(const ReceiverAddress& address) {
+  sa_family_t family;
+  memcpy(&family, address.bytes, sizeof family);
+  return family == AF_UNIX && address.bytes[offsetof(sockaddr_un, sun_path)] != 0;
 }
 
 // All that is in the run's memory.
@@ -77,7 +92,7 @@ struct PublishedRun {
   LocalSockets local_sockets;
 };
 static_assert(offsetof(PublishedRun, own_receivers) == 131200);
-static_assert(offsetof(PublishedRun, local_sockets) == 245896);
+static_assert(offsetof(PublishedRun, local_sockets) == 245904);
 
 inline const LocalSockets& LocalSocketsOf(const RunMemory& run) {
   return reinterpret_cast<const PublishedRun&>(run).local_sockets;

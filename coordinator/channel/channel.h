@@ -141,6 +141,8 @@ class Inlet {
   // Gives away what has come in by now, in the order of sending. `now` says who has sent it, if
   // that is known.
   virtual void Receive(const CommandSent& now, CommandSink& sink) = 0;
+  // Gives away a datagram that did not come in at the descriptor, where that is a datagram socket.
+  virtual void Accept(std::string_view /*datagram*/, const CommandSent&, CommandSink&) {}
 
   // For a sentence about a channel of its: "nothing came in WHERE; let a client MEND".
   struct Place {

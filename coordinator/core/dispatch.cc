@@ -153,7 +153,9 @@ bool Engine::TakeNotesOf(Task& task) {
 
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
-  if (const char* what = slot_check_.WhatIsImpossible(task); what != nullptr) {
+  const char* what = slot_check_.WhatIsImpossible(task);
+  if (what == nullptr) what = posted_.Take(task);
+  if (what != nullptr) {
     task.ComeTo(task.cpu->progress);
     expulsion_.Expel(*task.process, what);
     return;

@@ -25,6 +25,7 @@
 #include "coordinator/calls/local_sockets.h"
 #include "coordinator/calls/lock_futexes.h"
 #include "coordinator/calls/notifications.h"
+#include "coordinator/calls/posted_datagrams.h"
 #include "coordinator/calls/priority_inheritance.h"
 #include "coordinator/calls/raw_calls.h"
 #include "coordinator/calls/raw_child_waits.h"
@@ -242,6 +243,7 @@ class Engine {
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
   DatagramLog datagrams_{run_};
+  PostedDatagrams posted_{run_, world_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
                              }};

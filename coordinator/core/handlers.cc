@@ -92,7 +92,12 @@ Reactor::Found Engine::OnTrap(Subject subject, std::uint32_t events, Moment mome
 Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) {
   CommandSender from;
   if (run_.turn.HasClock()) {
-    const Task& task = *run_.turn.task();
+    Task& task = *run_.turn.task();
+    // What it has posted it has sent before.
+    if (const char* what = posted_.Take(task); what != nullptr) {
+      expulsion_.Expel(*task.process, what);
+      return {.stops_running = true};
+    }
     from = {static_cast<std::uint64_t>(task.tid), host_cpu_.ClockOf(task).cpu_ns};
   }
   world_.ReceiveCommands(channel.index, moment.at, from);

@@ -42,6 +42,14 @@ class Spent {
   std::int64_t start_ns_;
 };
 
+// The network namespace of a socket, as SO_NETNS_COOKIE has it; 0 where the kernel does not tell
+// (before Linux 5.14).
+std::uint64_t NetworkOf(int fd) {
+  std::uint64_t cookie = 0;
+  socklen_t size = sizeof cookie;
+  return getsockopt(fd, SOL_SOCKET, SO_NETNS_COOKIE, &cookie, &size) == 0 ? cookie : 0;
+}
+
 }  // namespace
 
 World::World(std::function<void(const std::string&)> warn)
@@ -294,12 +302,30 @@ std::vector<int> World::command_fds() const {
 void World::ReceiveCommands(std::size_t index, VirtualTime now, const CommandSender& from) {
   const Spent spent(&host_ns_, CLOCK_MONOTONIC);
   channels_.inlets[index]->Receive({now, from}, queue_);
-  // Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
-  if (now < progress_) next_stop_ = std::min(next_stop_, now);
+  NoteSent(now);
 }
 
-void World::NameReceivers(shm::OwnReceivers& receivers) const {
-  for (const int fd : command_fds()) {
+void World::ReceivePosted(std::size_t receiver, std::string_view datagram,
+                          const CommandSent& sent) {
+  const Spent spent(&host_ns_, CLOCK_MONOTONIC);
+  channels_.inlets[inlet_of_receiver_[receiver]]->Accept(datagram, sent, queue_);
+  NoteSent(sent.at);
+}
+
+// Where the dynamics lead it is taken all the same once nobody can send for an earlier time.
+void World::NoteSent(VirtualTime at) {
+  if (at < progress_) next_stop_ = std::min(next_stop_, at);
+}
+
+void World::NameReceivers(shm::OwnReceivers& receivers) {
+  struct Receiver {
+    shm::ReceiverAddress address;
+    std::size_t inlet;
+  };
+  std::vector<Receiver> found;
+  const std::vector<int> fds = command_fds();
+  for (std::size_t inlet = 0; inlet < fds.size(); ++inlet) {
+    const int fd = fds[inlet];
     sockaddr_storage address;
     socklen_t size = sizeof address;
     int type = 0;
@@ -308,10 +334,16 @@ void World::NameReceivers(shm::OwnReceivers& receivers) const {
         type != SOCK_DGRAM || getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
       continue;
     }
-    if (receivers.count == shm::OwnReceivers::kMost) break;
-    receivers.addresses[receivers.count++] = shm::AddressOf(&address, size);
+    if (found.size() == shm::OwnReceivers::kMost) break;
+    found.push_back({shm::AddressOf(&address, size), inlet});
   }
-  std::sort(receivers.addresses, receivers.addresses + receivers.count, shm::IsBefore);
+  std::ranges::sort(found, shm::IsBefore, &Receiver::address);
+  for (const Receiver& receiver : found) {
+    receivers.addresses[receivers.count++] = receiver.address;
+    inlet_of_receiver_.push_back(receiver.inlet);
+  }
+  // Where robots have networks of their own what they send takes its way there.
+  if (!found.empty() && !scenario_.network) receivers.network = NetworkOf(fds[found[0].inlet]);
 }
 
 std::string World::WhomMoves(const CommandChannelSpec& spec) const {

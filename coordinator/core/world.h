@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -77,11 +78,15 @@ class World {
 
   // Where commands come in, by number: to be read from when they are readable.
   std::vector<int> command_fds() const;
-  // The addresses of those to which programs send datagrams.
-  void NameReceivers(shm::OwnReceivers& receivers) const;
+  // The addresses of those to which programs send datagrams, and how many there are.
+  void NameReceivers(shm::OwnReceivers& receivers);
+  std::size_t receivers() const { return inlet_of_receiver_.size(); }
   // Takes what has arrived there at `now`, from the thread that is known to have sent it; others
   // may still send for times before.
   void ReceiveCommands(std::size_t index, VirtualTime now, const CommandSender& from);
+  // Takes a datagram that was sent to that one of the receivers, as they were named, and did not
+  // come in there.
+  void ReceivePosted(std::size_t receiver, std::string_view datagram, const CommandSent& sent);
   // Applies what has been sent by `now` to where no descriptor tells of it.
   void ReceiveUntold(VirtualTime now);
   // Takes what has been written to terminals, at `now`.
@@ -106,6 +111,7 @@ class World {
   void FlushBodies();
   std::vector<std::string> OfSensors(const std::function<std::string(const Outlet&)>& what) const;
   void FindNextStop();
+  void NoteSent(VirtualTime at);
   bool PassOnSentUntil(VirtualTime time);
   // Commands for earlier times do not come any more.
   void Settle(VirtualTime time);
@@ -120,6 +126,7 @@ class World {
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
   MeasurementLog measurements_;                    // this, too
   Channels channels_;
+  std::vector<std::size_t> inlet_of_receiver_;
   std::vector<Inlet*> terminals_;
   Sensors sensors_;
   Commands commands_;

@@ -30,11 +30,15 @@ HostDuration RunState::ChargeAsDebt(Task& task, VirtualDuration computed) {
 
 VirtualTime RunState::WrittenAt() const {
   const Task& task = *turn.task();
-  const VirtualTime start = task.cpu->progress;
-  if (task.slot < 0 || IsCallback()) return start;
+  if (task.slot < 0) return task.cpu->progress;
+  return WrittenAt(OwnTime(SlotOf(task).clock.last_shown_ns.load()));
+}
+
+VirtualTime RunState::WrittenAt(ProgramTime shown) const {
+  const VirtualTime start = turn.task()->cpu->progress;
+  if (IsCallback()) return start;
   // Programs have no clocks of their own here.
-  const VirtualTime shown = RobotTime(SlotOf(task).clock.last_shown_ns.load());
-  return std::clamp(shown, start, std::max(start, turn.horizon()));
+  return std::clamp(RobotTime(shown.ns()), start, std::max(start, turn.horizon()));
 }
 
 }  // namespace tcs

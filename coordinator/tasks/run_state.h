@@ -67,6 +67,8 @@ struct RunState {
   // The virtual time of what the running thread has just done to others: the time that its clock
   // showed when it held for the write.
   VirtualTime WrittenAt() const;
+  // The same of what it did when its clock had shown that.
+  VirtualTime WrittenAt(ProgramTime shown) const;
 };
 
 inline shm::ThreadSlot& SlotOf(const Task& task) { return *task.slot_memory; }

@@ -91,9 +91,10 @@ struct Task : HostThread {
   shm::WorkCounts work{};       // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
-  Activation activation;    // this one, while it does not wait
-  bool is_further = false;  // not the first thread of a client
-  int row = 0;              // in the schedule trace and the log of dispatches
+  Activation activation;          // this one, while it does not wait
+  bool is_further = false;        // not the first thread of a client
+  std::uint64_t posts_taken = 0;  // of its postbox (shm/postbox.h): what comes next
+  int row = 0;                    // in the schedule trace and the log of dispatches
 
   void ComeTo(VirtualTime time) {
     TCS_CHECK(time >= reached);

@@ -3,12 +3,18 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Beside a program that does its worst an honest one prints to the byte what it prints alone, the run
 # ends in time, and nothing is left of it. TCS_HOSTILE_ROUNDS asks for more rounds than the kinds of
 # what it does, TCS_HOSTILE_FIRST for another one to begin with.
-rounds=${TCS_HOSTILE_ROUNDS:-31}
+rounds=${TCS_HOSTILE_ROUNDS:-32}
 first=${TCS_HOSTILE_FIRST:-0}
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 scenario() { # SEED of the hostile client, or nothing
-  printf 'duration: 100ms\nrobots:\n'
+  cat <<'YAML'
+duration: 100ms
+dynamics: {}
+bodies: {ship: {mass: 1, inertia: [0.1, 0.1, 0.1]}}
+channels: {hands: {type: unix_json, commands: {body: ship, listen: "@${run}/hands"}}}
+robots:
+YAML
   printf '  one:\n    clients: {honest: {command: ["%s"], class: periodic}}\n' "$build/bin/honest"
   (($# == 0)) && return
   printf '  other:\n    clients: {hostile: {command: ["%s", "%s"], class: best-effort}}\n' "$out/hostile" "$1"

@@ -20,10 +20,12 @@ bool JsonOutlet::HandOver(VirtualTime now) {
 }
 
 void JsonInlet::Receive(const CommandSent& now, CommandSink& sink) {
-  for (const std::string& datagram : receiver_->ReceiveAll()) {
-    if (watch_ != nullptr) watch_->WorldReceived(channel_, now);
-    TakeCommand("the command datagram", datagram, channel_, now, sink);
-  }
+  for (const std::string& datagram : receiver_->ReceiveAll()) Accept(datagram, now, sink);
+}
+
+void JsonInlet::Accept(std::string_view datagram, const CommandSent& sent, CommandSink& sink) {
+  if (watch_ != nullptr) watch_->WorldReceived(channel_, sent);
+  TakeCommand("the command datagram", datagram, channel_, sent, sink);
 }
 
 }  // namespace tcs

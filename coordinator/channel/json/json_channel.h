@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,7 @@ class JsonInlet final : public Inlet {
 
   int fd() const override { return receiver_->fd(); }
   void Receive(const CommandSent& now, CommandSink& sink) override;
+  void Accept(std::string_view datagram, const CommandSent& sent, CommandSink& sink) override;
   void TellOf(DatagramWatch& watch) override { watch_ = &watch; }
   Place PlaceOf(std::size_t) const override {
     return {receiver_->Where(), "send its commands there"};

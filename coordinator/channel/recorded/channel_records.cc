@@ -169,6 +169,10 @@ class ChannelRecords::WrappedInlet final : public Inlet {
     Listener listener(records_, topics_, sink);
     inlet_->Receive(now, listener);
   }
+  void Accept(std::string_view datagram, const CommandSent& sent, CommandSink& sink) override {
+    Listener listener(records_, topics_, sink);
+    inlet_->Accept(datagram, sent, listener);
+  }
   Place PlaceOf(std::size_t channel) const override { return inlet_->PlaceOf(channel); }
 
  private:

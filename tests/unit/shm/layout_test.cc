@@ -12,9 +12,9 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 18u);
+  EXPECT_EQ(kVersion, 19u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
-  EXPECT_EQ(sizeof(ThreadSlot), 3264u);
+  EXPECT_EQ(sizeof(ThreadSlot), 5312u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
@@ -37,16 +37,17 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
   EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1152u);
+  EXPECT_EQ(offsetof(ThreadSlot, postbox), 3264u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSockets) {
   EXPECT_EQ(offsetof(RunMemory, ipc_times), 128u);
   EXPECT_EQ(sizeof(RunMemory), 128u + 4096u * 32u);
   EXPECT_EQ(offsetof(PublishedRun, own_receivers), 128u + 4096u * 32u);
-  EXPECT_EQ(sizeof(OwnReceivers), 8u + 1024u * 112u);
-  EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245896u);
+  EXPECT_EQ(sizeof(OwnReceivers), 16u + 1024u * 112u);
+  EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245904u);
   EXPECT_EQ(sizeof(LocalSockets), 2u * 8192u * 16u);
-  EXPECT_EQ(kProcessMemorySize, 4096u * 3264u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 5312u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {

@@ -49,14 +49,26 @@ constexpr std::string_view kAbstract("\0drone/motors", 13), kLonger("\0drone/mot
 TEST(OwnReceivers, AreFoundByTheirAddresses) {
   const auto receivers =
       Receivers({Of(Unix(kAbstract)), Udp("127.0.0.1", 47011), Of(Unix("/tmp/motors"))});
-  EXPECT_TRUE(IsAmong(*receivers, Of(Unix(kAbstract))));
-  EXPECT_TRUE(IsAmong(*receivers, Udp("127.0.0.1", 47011)));
-  EXPECT_TRUE(IsAmong(*receivers, Of(Unix("/tmp/motors"))));
-  EXPECT_FALSE(IsAmong(*receivers, Of(Unix(kLonger))));
-  EXPECT_FALSE(IsAmong(*receivers, Of(Unix(kAbstract.substr(0, 12)))));
-  EXPECT_FALSE(IsAmong(*receivers, Udp("127.0.0.1", 47012)));
-  EXPECT_FALSE(IsAmong(*receivers, Udp("127.0.0.2", 47011)));
-  EXPECT_FALSE(IsAmong(*receivers, Of(Unix("/tmp/motor"))));
+  EXPECT_NE(PlaceAmong(*receivers, Of(Unix(kAbstract))), kNoReceiver);
+  EXPECT_NE(PlaceAmong(*receivers, Udp("127.0.0.1", 47011)), kNoReceiver);
+  EXPECT_NE(PlaceAmong(*receivers, Of(Unix("/tmp/motors"))), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Of(Unix(kLonger))), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Of(Unix(kAbstract.substr(0, 12)))), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Udp("127.0.0.1", 47012)), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Udp("127.0.0.2", 47011)), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Of(Unix("/tmp/motor"))), kNoReceiver);
+}
+
+TEST(OwnReceivers, HavePlacesInTheirOrder) {
+  const auto receivers =
+      Receivers({Of(Unix("/tmp/motors")), Of(Unix(kAbstract)), Udp("127.0.0.1", 47011)});
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(PlaceAmong(*receivers, receivers->addresses[i]), i);
+}
+
+TEST(OwnReceivers, AreKnownToHaveFiles) {
+  EXPECT_TRUE(HasFile(Of(Unix("/tmp/motors"))));
+  EXPECT_FALSE(HasFile(Of(Unix(kAbstract))));
+  EXPECT_FALSE(HasFile(Udp("127.0.0.1", 47011)));
 }
 
 // As the kernel has it: a path ends with its first zero, an abstract name is as long as it is said
@@ -64,21 +76,21 @@ TEST(OwnReceivers, AreFoundByTheirAddresses) {
 TEST(OwnReceivers, AreToldByWhatTheKernelTellsThemBy) {
   const auto receivers =
       Receivers({Of(Unix(kAbstract)), Udp("127.0.0.1", 47011), Of(Unix("/tmp/motors"))});
-  EXPECT_TRUE(IsAmong(*receivers, Of(Unix("/tmp/motors", 1))));
-  EXPECT_TRUE(IsAmong(*receivers, Of(Unix("/tmp/motors", 50))));
-  EXPECT_FALSE(IsAmong(*receivers, Of(Unix(kAbstract, 1))));
-  EXPECT_TRUE(IsAmong(*receivers, Udp("127.0.0.1", 47011, 'x')));
+  EXPECT_NE(PlaceAmong(*receivers, Of(Unix("/tmp/motors", 1))), kNoReceiver);
+  EXPECT_NE(PlaceAmong(*receivers, Of(Unix("/tmp/motors", 50))), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*receivers, Of(Unix(kAbstract, 1))), kNoReceiver);
+  EXPECT_NE(PlaceAmong(*receivers, Udp("127.0.0.1", 47011, 'x')), kNoReceiver);
 }
 
 TEST(OwnReceivers, DoNotIncludeWhatIsNoAddressOfTheirs) {
   const auto receivers = Receivers({Of(Unix(kAbstract))});
-  EXPECT_FALSE(IsAmong(*receivers, AddressOf(nullptr, 0)));
+  EXPECT_EQ(PlaceAmong(*receivers, AddressOf(nullptr, 0)), kNoReceiver);
   const sa_family_t alone = AF_UNIX;
-  EXPECT_FALSE(IsAmong(*receivers, AddressOf(&alone, sizeof alone)));
+  EXPECT_EQ(PlaceAmong(*receivers, AddressOf(&alone, sizeof alone)), kNoReceiver);
   sockaddr_storage other{};
   other.ss_family = AF_INET6;
-  EXPECT_FALSE(IsAmong(*receivers, AddressOf(&other, sizeof other)));
-  EXPECT_FALSE(IsAmong(*Receivers({}), Of(Unix(kAbstract))));
+  EXPECT_EQ(PlaceAmong(*receivers, AddressOf(&other, sizeof other)), kNoReceiver);
+  EXPECT_EQ(PlaceAmong(*Receivers({}), Of(Unix(kAbstract))), kNoReceiver);
 }
 
 }  // namespace

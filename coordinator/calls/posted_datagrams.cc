@@ -1,0 +1,40 @@
+#include "coordinator/calls/posted_datagrams.h"
+
+#include <cstdint>
+
+#include "shm/check.h"
+#include "shm/postbox.h"
+
+namespace tcs {
+
+namespace {
+
+constexpr const char* kWrong = "posted datagrams that cannot be";
+
+}  // namespace
+
+const char* PostedDatagrams::Take(Task& task) {
+  TCS_CHECK(run_.turn.IsOf(task));
+  shm::Postbox& box = SlotOf(task).postbox;
+  const std::uint64_t end = box.posted.load(std::memory_order_acquire);
+  if (end == task.posts_taken) return nullptr;
+  // Nothing moves any more.
+  const bool is_over = !world_.present() || run_.IsInGrace();
+  while (task.posts_taken != end) {
+    shm::Postbox::Head head;
+    if (!shm::ReadHead(box, task.posts_taken, end, &head) || head.receiver >= world_.receivers()) {
+      return kWrong;
+    }
+    datagram_.resize(head.size);
+    shm::CopyFromRing(box, task.posts_taken + sizeof head, datagram_.data(), head.size);
+    task.posts_taken += shm::RoomFor(head.size);
+    if (is_over) continue;
+    world_.ReceivePosted(head.receiver, datagram_,
+                         {run_.WrittenAt(OwnTime(head.time_ns)),
+                          {static_cast<std::uint64_t>(task.tid), head.cpu_ns}});
+  }
+  box.taken.store(end, std::memory_order_release);
+  return nullptr;
+}
+
+}  // namespace tcs

@@ -1,0 +1,93 @@
+#include "shm/postbox.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tcs::shm {
+namespace {
+
+class PostboxTest : public testing::Test {
+ protected:
+  // False: it is full.
+  bool Post(const std::string& text, std::int64_t time_ns = 0) {
+    if (!HasRoomFor(*box_, text.size())) return false;
+    PostInto(*box_, {time_ns, 0, 0, static_cast<std::uint32_t>(text.size())},
+             [&](std::uint64_t at) { CopyIntoRing(*box_, at, text.data(), text.size()); });
+    return true;
+  }
+  // The next one; none where what is there cannot be.
+  std::optional<std::string> Take() {
+    if (!ReadHead(*box_, position_, box_->posted, &head_)) return std::nullopt;
+    std::string text(head_.size, '\0');
+    CopyFromRing(*box_, position_ + sizeof head_, text.data(), text.size());
+    position_ += RoomFor(head_.size);
+    box_->taken = position_;
+    return text;
+  }
+
+  std::unique_ptr<Postbox> box_ = std::make_unique<Postbox>();
+  std::uint64_t position_ = 0;
+  Postbox::Head head_{};
+};
+
+TEST_F(PostboxTest, GivesWhatWasPostedInItsOrderWithItsTimes) {
+  EXPECT_TRUE(Post("one", 10));
+  EXPECT_TRUE(Post("another one", 20));
+  EXPECT_EQ(Take(), "one");
+  EXPECT_EQ(head_.time_ns, 10);
+  EXPECT_EQ(Take(), "another one");
+  EXPECT_EQ(head_.time_ns, 20);
+  EXPECT_EQ(position_, box_->posted.load());
+}
+
+TEST_F(PostboxTest, GoesOnAtItsBeginning) {
+  for (std::size_t i = 0; i < 5000; ++i) {
+    const std::string text(1 + i * 37 % Postbox::kMostSize, static_cast<char>('a' + i % 26));
+    ASSERT_TRUE(Post(text));
+    ASSERT_EQ(Take(), text);
+  }
+}
+
+TEST_F(PostboxTest, HasRoomAgainOnceSomethingIsTaken) {
+  const std::string text(100, 'x');
+  int posted = 0;
+  while (Post(text)) ++posted;
+  EXPECT_EQ(posted, Postbox::kBytes / RoomFor(100));
+  EXPECT_EQ(Take(), text);
+  EXPECT_TRUE(Post(text));
+  EXPECT_FALSE(Post(text));
+}
+
+TEST_F(PostboxTest, HasNoRoomForNothingNorForMoreThanItself) {
+  EXPECT_FALSE(HasRoomFor(*box_, 0));
+  EXPECT_TRUE(HasRoomFor(*box_, Postbox::kMostSize));
+  EXPECT_FALSE(HasRoomFor(*box_, Postbox::kMostSize + 1));
+  EXPECT_FALSE(HasRoomFor(*box_, ~std::uint64_t{0}));
+}
+
+// Somebody has written over where it is emptied.
+TEST_F(PostboxTest, HasNoRoomWhereItIsEmptiedBeyondItsEnd) {
+  box_->taken = 8;
+  EXPECT_FALSE(HasRoomFor(*box_, 1));
+}
+
+TEST_F(PostboxTest, FindsWhatCannotBe) {
+  EXPECT_TRUE(Post("text"));
+  const std::uint64_t end = box_->posted;
+  EXPECT_TRUE(ReadHead(*box_, 0, end, &head_));
+  EXPECT_FALSE(ReadHead(*box_, 0, end - 1, &head_));
+  EXPECT_FALSE(ReadHead(*box_, end, end, &head_));
+  EXPECT_FALSE(ReadHead(*box_, 8, 0, &head_));
+  EXPECT_FALSE(ReadHead(*box_, 0, Postbox::kBytes + 8, &head_));
+  for (const std::uint32_t size : {0u, 9u, 2009u, ~0u}) {
+    CopyIntoRing(*box_, offsetof(Postbox::Head, size), &size, sizeof size);
+    EXPECT_FALSE(ReadHead(*box_, 0, end, &head_)) << size;
+  }
+}
+
+}  // namespace
+}  // namespace tcs::shm
