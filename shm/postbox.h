@@ -3,8 +3,7 @@
 // coordinator takes them when the thread has stopped, and before it reads any of its own sockets.
 //
 //   +--------+-------+------+-----------+------+-----------+----
-//   | posted | taken | Head | bytes, 0s | Head | bytes, 0s | ...      the ring: goes on where it
-//   begins
+//   | posted | taken | Head | bytes, 0s | Head | bytes, 0s | ...   (the ring)
 //   +--------+-------+------+-----------+------+-----------+----
 //
 // The thread writes all but `taken`, and `posted` last. Both are positions: how many bytes of the
