@@ -23,7 +23,7 @@ class Pacer {
   static constexpr HostDuration kForEver = HostNs(INT64_MAX);
   // A run at a pace acts before the wall clock by up to this, so that an act that takes a few
   // milliseconds makes nothing late that follows it.
-  static constexpr HostDuration kHeadStart = HostDuration::Milliseconds(2);
+  static constexpr HostDuration kHeadStart = HostDuration::Milliseconds(4);
 
   // How the run has kept to its pace.
   struct Account {
