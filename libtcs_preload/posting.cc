@@ -108,9 +108,9 @@ long Try(int fd, const msghdr& message, std::size_t size, int flags) {
 
 void Put(GuestThread& thread, int receiver, const msghdr& message, std::size_t size) {
   const shm::ClockPage& page = thread.slot->clock;
-  const shm::Postbox::Head head{page.last_shown_ns.load(std::memory_order_relaxed),
-                                shm::ReadClock(page).cpu_ns, static_cast<std::uint32_t>(receiver),
-                                static_cast<std::uint32_t>(size)};
+  const shm::Postbox::Head head{
+      page.last_shown_ns.load(std::memory_order_relaxed), shm::RunTime(page, shm::ReadClock(page)),
+      static_cast<std::uint32_t>(receiver), static_cast<std::uint32_t>(size)};
   shm::Postbox& box = thread.slot->postbox;
   shm::PostInto(box, head, [&](std::uint64_t position) {
     for (std::size_t i = 0; i < message.msg_iovlen; ++i) {

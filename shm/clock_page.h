@@ -92,6 +92,12 @@ inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
   return shown < last ? last : shown;
 }
 
+// How long the thread has run, what was stolen meanwhile included. Taking that out of the clock
+// does not turn this back; so it tells apart moments at which the clock shows the same time.
+inline std::int64_t RunTime(const ClockPage& page, const ClockReading& r) {
+  return r.cpu_ns + page.stolen_ns.load(std::memory_order_relaxed);
+}
+
 // Charged processor time according to the thread's own CPU clock, which others' use of the
 // processor does not reach.
 inline std::int64_t CpuTimeFromHostClock(const ClockPage& page, std::int64_t host_cpu_ns) {

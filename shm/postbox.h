@@ -27,7 +27,7 @@ struct Postbox {
 
   struct Head {
     std::int64_t time_ns;    // what the thread's clock had shown
-    std::int64_t cpu_ns;     // what the thread had been charged
+    std::int64_t ran_ns;     // how long the thread had run (RunTime)
     std::uint32_t receiver;  // its place in OwnReceivers
     std::uint32_t size;      // of the datagram, which follows; never 0
   };

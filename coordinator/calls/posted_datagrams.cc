@@ -31,7 +31,7 @@ const char* PostedDatagrams::Take(Task& task) {
     if (is_over) continue;
     world_.ReceivePosted(head.receiver, datagram_,
                          {run_.WrittenAt(OwnTime(head.time_ns)),
-                          {static_cast<std::uint64_t>(task.tid), head.cpu_ns}});
+                          {static_cast<std::uint64_t>(task.tid), head.ran_ns}});
   }
   box.taken.store(end, std::memory_order_release);
   return nullptr;

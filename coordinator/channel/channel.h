@@ -88,10 +88,10 @@ struct GoalNames {
   bool follow_trajectories = false;                 // a command is one
 };
 
-// The thread that has sent a command, and how much it had been charged by then. The charge is
-// another number for each of its commands that its own computing separates, also while its clock
-// stands still (a clock that has shown stolen time waits until that much has been computed). `id`
-// 0: not known, firmware or a program outside the run.
+// The thread that has sent a command, and how long it had run by then, what was stolen from it
+// included (shm::RunTime). That is another number for each of its commands that its own computing
+// separates, also while its clock stands still (a clock that has shown stolen time waits until that
+// much has been computed). `id` 0: not known, firmware or a program outside the run.
 struct CommandSender {
   std::uint64_t id = 0;
   std::int64_t ran_ns = 0;

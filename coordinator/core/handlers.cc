@@ -10,6 +10,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "shm/clock_page.h"
 
 namespace tcs {
 
@@ -98,7 +99,8 @@ Reactor::Found Engine::OnCommand(Subject channel, std::uint32_t, Moment moment) 
       expulsion_.Expel(*task.process, what);
       return {.stops_running = true};
     }
-    from = {static_cast<std::uint64_t>(task.tid), host_cpu_.ClockOf(task).cpu_ns};
+    from = {static_cast<std::uint64_t>(task.tid),
+            shm::RunTime(SlotOf(task).clock, host_cpu_.ClockOf(task))};
   }
   world_.ReceiveCommands(channel.index, moment.at, from);
   return {};

@@ -64,6 +64,16 @@ TEST(ClockPage, StolenTimeIsTakenOutAndCounted) {
   EXPECT_FALSE(IsCheckDue(page, ReadClockAt(page, 1'000)));
 }
 
+TEST(ClockPage, TakingStolenTimeOutDoesNotTurnTheRunTimeBack) {
+  Page page(0);
+  const ClockReading before = ReadClockAt(page, 1'000);
+  ASSERT_EQ(RunTime(page, before), 1'000);
+  ASSERT_TRUE(RemoveStolen(page, before, 600));
+  const ClockReading after = ReadClockAt(page, 1'400);
+  EXPECT_EQ(after.cpu_ns, before.cpu_ns);  // the charge is the same a second time
+  EXPECT_EQ(RunTime(page, after), 1'400);
+}
+
 TEST(ClockPage, WhatNoClockTellsOfIsTakenOutOfBoth) {
   Page page(0);
   RemoveUntold(page, ReadClockAt(page, 1'000), 700);
