@@ -19,6 +19,7 @@ namespace tcs::preload {
 namespace {
 
 using shm::NotificationKind;
+using shm::Saying;
 using shm::WakeReason;
 
 // The gate is waited for in turns of this length, to notice a coordinator that was killed. With a
@@ -35,6 +36,12 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 // it has.
 bool OnlyCpuClockTells(const shm::ClockPage& page) {
   return g_header->gates_only != 0 && page.ns_per_tick_q32 != 0;
+}
+
+// Nothing stops the thread in the instant in which it notifies, and no coordinator sleeps until
+// then.
+bool RunsBeside(const shm::ThreadSlot& slot) {
+  return slot.saying.load(std::memory_order_acquire) == Saying::kRuns;
 }
 
 // What the thread's clock has counted since then.
@@ -108,11 +115,13 @@ void DieIfCoordinatorIsGone() {
   }
 }
 
-// What the thread has come to, before it does anything for the exchange itself.
-shm::ClockReading ReadForNote(shm::ClockPage& page) {
+// What the thread has come to, before it does anything for the exchange itself. Where it runs
+// beside the coordinator, that one could not read the thread's CPU clock at this instant.
+shm::ClockReading ReadForNote(const shm::ThreadSlot& slot, shm::ClockPage& page) {
   for (;;) {
     shm::ClockReading reading = shm::ReadClock(page);
-    if (!OnlyCpuClockTells(page)) return reading;
+    const bool checks = RunsBeside(slot) && shm::IsCheckDue(page, reading);
+    if (!checks && !OnlyCpuClockTells(page)) return reading;
     const OwnCpu own = ReadOwnCpu(page);
     const std::int64_t cpu_ns = own.ns - own.way_ns;
     const std::int64_t stolen_ns = reading.cpu_ns - shm::CpuTimeFromHostClock(page, cpu_ns);
@@ -135,7 +144,11 @@ Charged FillRecord(shm::ThreadSlot& slot, const Request& request,
   return {shm::DispatchNumber(reading.executed_word), reading.cpu_ns};
 }
 
-void Notify(const GuestThread& thread) {
+// Of a thread that has come to that reading.
+void Notify(const GuestThread& thread, const shm::ClockReading& reading) {
+  shm::ThreadSlot& slot = *thread.slot;
+  slot.stopped_tsc = reading.tsc;
+  if (Saying runs = Saying::kRuns; slot.saying.compare_exchange_strong(runs, Saying::kSaid)) return;
   const shm::PipeMessage message{thread.index};
   for (;;) {
     const long n = RawSyscall(SYS_write, g_notify_fd, Arg(&message), sizeof message);
@@ -164,7 +177,9 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charge
       if (slot.wake_reason.load(std::memory_order_relaxed) == WakeReason::kCutOff) {
         DieWithoutCoordinator("it has closed the connection to it");
       }
-      if (OnlyCpuClockTells(slot.clock)) TakeOutWait(slot.clock, charged, most_ns);
+      if (OnlyCpuClockTells(slot.clock) || RunsBeside(slot)) {
+        TakeOutWait(slot.clock, charged, most_ns);
+      }
       return true;
     }
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
@@ -172,7 +187,7 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charge
     }
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
-    if (result == 0 && !OnlyCpuClockTells(slot.clock)) {
+    if (result == 0 && !OnlyCpuClockTells(slot.clock) && !RunsBeside(slot)) {
       shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
     }
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
@@ -192,33 +207,51 @@ bool ShutGate(shm::ThreadSlot& slot) {
   return false;
 }
 
-// Tells the coordinator that a signal has ended the wait. True if there was a wait to end.
-bool EndWait(GuestThread& thread) {
-  shm::ThreadSlot& slot = *thread.slot;
-  const shm::ClockReading reading = ReadForNote(slot.clock);
-  NoHandlers none(slot, nullptr);
-  if (g_header->gates_only != 0) {
-    // The handler may have begun before the thread's turn; what ended the wait may be another
-    // thing.
-    if (!ShutGate(slot)) return false;
-  } else {
-    slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
+// Where the thread has said something, and the coordinator has yet to take it: until then the slot
+// may say nothing else.
+void AwaitTaken(shm::ThreadSlot& slot) {
+  for (;;) {
+    Saying saying = slot.saying.load(std::memory_order_acquire);
+    if (IsShutDown() || (saying != Saying::kSaid && saying != Saying::kSaidAndWaits)) return;
+    if (saying == Saying::kSaid &&
+        !slot.saying.compare_exchange_strong(saying, Saying::kSaidAndWaits)) {
+      continue;
+    }
+    const long result = RawSyscall(SYS_futex, Arg(&slot.saying), FUTEX_WAIT,
+                                   static_cast<long>(Saying::kSaidAndWaits), Arg(&kGateTurn));
+    if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
   }
+}
+
+enum class Ended {
+  kWait,     // which the coordinator has been told of
+  kNothing,  // the thread did not wait
+  kByOther,  // something else has ended the wait: the gate is open
+};
+
+// Tells the coordinator that a signal has ended the wait.
+Ended EndWait(GuestThread& thread) {
+  shm::ThreadSlot& slot = *thread.slot;
+  AwaitTaken(slot);
+  const shm::ClockReading reading = ReadForNote(slot, slot.clock);
+  NoHandlers none(slot, nullptr);
+  // The handler may have begun before the thread's turn.
+  if (!ShutGate(slot)) return Ended::kByOther;
   const Charged charged =
       FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
-  Notify(thread);
+  Notify(thread, reading);
   none.Allow(0);
   WaitAtGate(slot, false, charged);
-  return slot.reply[0] != 0;
+  return slot.reply[0] != 0 ? Ended::kWait : Ended::kNothing;
 }
 
 Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   shm::ThreadSlot& slot = *thread.slot;
-  const shm::ClockReading reading = ReadForNote(slot.clock);
+  const shm::ClockReading reading = ReadForNote(slot, slot.clock);
   NoHandlers none(slot, request.blocked);
   slot.gate.store(shm::kGateClosed, std::memory_order_relaxed);
   const Charged charged = FillRecord(slot, request, reading);
-  Notify(thread);
+  Notify(thread, reading);
   if (request.suspend_mask != nullptr) {
     const unsigned long mask = *request.suspend_mask | OwnSignals();
     RawSyscall(SYS_rt_sigsuspend, Arg(&mask), kSetSize);
@@ -230,8 +263,10 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   // The coordinator's own signal is no end of a wait.
   none.Allow(request.interruptible ? OwnSignals() : 0);
   if (!WaitAtGate(slot, request.interruptible, charged)) {
-    EndWait(thread);
-    if (g_header->gates_only == 0) return Reply{WakeReason::kSignal, {0, 0}};
+    const Ended ended = EndWait(thread);
+    if (g_header->gates_only == 0 && ended != Ended::kByOther) {
+      return Reply{WakeReason::kSignal, {0, 0}};
+    }
   }
   return Reply{slot.wake_reason.load(std::memory_order_relaxed), {slot.reply[0], slot.reply[1]}};
 }
@@ -245,12 +280,13 @@ struct Interrupted {
 
   explicit Interrupted(GuestThread& thread) {
     shm::ThreadSlot& slot = *thread.slot;
+    AwaitTaken(slot);
     note = slot.note;
     gate = slot.gate.load();
-    if (gate != shm::kGateOpen && g_header->gates_only != 0) {
-      EndWait(thread);
+    const Ended ended = gate == shm::kGateOpen ? Ended::kByOther : EndWait(thread);
+    if (ended == Ended::kByOther || g_header->gates_only != 0) {
       gate = shm::kGateOpen;
-    } else if (gate != shm::kGateOpen && EndWait(thread)) {
+    } else if (ended == Ended::kWait) {
       gate = shm::kGateOpen;
       reason = WakeReason::kSignal;
       reply[0] = reply[1] = 0;
@@ -293,6 +329,8 @@ Reply Exchange(GuestThread& thread, const Request& request) {
 void AwaitTurn(GuestThread& thread) {
   if (!IsShutDown()) Exchange(thread, Request{.kind = NotificationKind::kCall});
 }
+
+bool IsBeside(const GuestThread& thread) { return RunsBeside(*thread.slot); }
 
 bool IsAtGate(const GuestThread& thread) {
   return thread.depth > 0 && thread.slot->gate.load(std::memory_order_acquire) != shm::kGateOpen;

@@ -37,6 +37,10 @@ Reply Exchange(GuestThread& thread, const Request& request);
 // once the coordinator has seen what the thread's last call did to others, and has it dispatched.
 void AwaitTurn(GuestThread& thread);
 
+// True while the thread has a turn beside others, before its order: what it does to others at once
+// has to wait for that. Any exchange ends such a turn.
+bool IsBeside(const GuestThread& thread);
+
 // True in a handler that has interrupted an exchange of the thread's whose answer is not there yet.
 bool IsAtGate(const GuestThread& thread);
 

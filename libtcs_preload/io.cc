@@ -249,6 +249,10 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
     sent = ToErrno(posted);
   } else {
     *may_post = false;
+    // The coordinator would take it for something that happens when it finds it.
+    if (receiver != tcs::shm::kNoReceiver && IsBeside(*t)) {
+      Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kWrite});
+    }
     sent = SendInParts(t, fd, message, flags, whole);
   }
   if (sent < 0 && NotesDatagrams()) {

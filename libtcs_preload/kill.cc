@@ -25,6 +25,9 @@ auto SendSignal(pid_t receiver, int signal, Call call) {
   const Entered t;
   if (t == nullptr || signal == 0) return call();
   HoldForWrite(*t);
+  if (g_header->turns_beside != 0 && receiver != 0 && receiver != RawSyscall(SYS_getpid)) {
+    Exchange(*t, Request{.kind = tcs::shm::NotificationKind::kSignals, .args = {receiver}});
+  }
   std::atomic<std::uint32_t>& signals = t->slot->signals;
   signals.fetch_add(1, std::memory_order_relaxed);
   const auto result = call();

@@ -35,7 +35,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 19;
+inline constexpr std::uint32_t kVersion = 20;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -101,8 +101,10 @@ enum class NotificationKind : std::uint32_t {
   kCall = 33,        // a call begins: what the thread did before is done (RunHeader::gates_only)
   kPreempted = 34,   // the thread computes, and has got kPreemptionSignal
   // Of sockets that are known to be local to one robot (local_sockets.h).
-  kBinds = 35,    // the thread is about to bind a datagram socket to an abstract name; args[0]: the
-                  // socket's cookie, args[1]: the name's hash
+  kBinds = 35,  // the thread is about to bind a datagram socket to an abstract name; args[0]: the
+                // socket's cookie, args[1]: the name's hash
+  kSignals =
+      37,  // the thread is about to send a signal to process args[0], or a group: as kReaches
   kReaches = 36,  // the thread is about to reach a local socket of robot args[0], from another one
                   // or with a descriptor that leaves its own: go on as with kWrite, and once that
                   // robot has looked for the last time without waiting for others
@@ -259,6 +261,23 @@ inline constexpr std::uint32_t kGateOpen = 1;    // written by the coordinator: 
 inline constexpr std::uint32_t kGateWaiting =
     2;  // written by the thread: it is in futex(2), wake it
 
+// Whether a thread's dispatch is one whose end the coordinator looks for in the slot itself,
+// because the thread runs beside it, on another processor of the host. Such a dispatch begins when
+// the thread leaves its gate, and ends when it has said so here: `stopped_tsc` is when.
+//
+//            the coordinator                    the thread
+//   kByPipe ---------------> kRuns -----------------------------------> kSaid
+//      ^ ^                     | it is waited for no longer               |  | a handler waits
+//      until | +---------------------+                                          |  v the note is
+//      taken
+//      +------------------------------------------------------------------+- kSaidAndWaits
+enum class Saying : std::uint32_t {
+  kByPipe = 0,        // a notification is told by the pipe
+  kRuns = 1,          // by this word
+  kSaid = 2,          // it has been, and the coordinator has not taken it yet
+  kSaidAndWaits = 3,  // and is to wake the thread in futex(2) when it has
+};
+
 struct alignas(64) ThreadSlot {
   ClockPage clock;
   Notification note;
@@ -289,7 +308,9 @@ struct alignas(64) ThreadSlot {
   std::atomic<std::uint32_t> open_calls;
   // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
   std::uint32_t robot;
-  std::uint8_t reserved[16];
+  std::atomic<Saying> saying;
+  std::uint32_t reserved;
+  std::uint64_t stopped_tsc;
   DatagramNotes datagrams;
   alignas(64) Postbox postbox;
 };
@@ -304,6 +325,8 @@ static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
 static_assert(offsetof(ThreadSlot, receipts) == 760);
 static_assert(offsetof(ThreadSlot, work) == 1104);
 static_assert(offsetof(ThreadSlot, robot) == 1132);
+static_assert(offsetof(ThreadSlot, saying) == 1136);
+static_assert(offsetof(ThreadSlot, stopped_tsc) == 1144);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters and kernel_waiters.
@@ -331,7 +354,9 @@ struct alignas(64) RunHeader {
   // 1: each robot has abstract names of its own (a network namespace).
   std::uint32_t names_by_robot;
   std::uint32_t notes_datagrams;  // 1: threads note the datagrams that they send and receive
-  std::uint32_t reserved_too;
+  // 1: threads may have turns before their order; signals to other processes are told of
+  // (kSignals).
+  std::uint32_t turns_beside;
   std::uint64_t reserved[4];
 };
 static_assert(sizeof(RunHeader) == 128);

@@ -69,9 +69,7 @@ void LocalSockets::Reaches(Task& task, std::uint32_t number) {
   const Robot& robot = run_.robots[number - shm::kFirstRobot];
   if (robot.is_reached) return;
   TakeOut(number);
-  for (const VirtualCpu* cpu : robot.cpus) {
-    task.ComeTo(std::max(task.reached, cpu->progress));
-  }
+  task.ComeTo(std::max(task.reached, robot.Furthest()));
 }
 
 // Whose descriptor it takes is not looked at.

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/host.h"
 
 namespace tcs {
@@ -132,6 +133,11 @@ bool Notifications::Handle(Task& task, const shm::Notification& note) {
     case Kind::kReaches:
       parts_.local_sockets.Reaches(task, static_cast<std::uint32_t>(note.args[0]));
       waker_.Hold(task, Kind::kWrite);
+      break;
+    case Kind::kSignals:
+      if (ReachBySignal(run_, task, static_cast<pid_t>(note.args[0]))) {
+        waker_.Hold(task, Kind::kWrite);
+      }
       break;
     case Kind::kNone:
     case Kind::kHorizon:

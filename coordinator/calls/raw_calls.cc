@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sys/syscall.h>
 
+#include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/landlock.h"
 
 namespace tcs {
@@ -23,6 +24,7 @@ void RawCalls::Signal(Task& task) {
   task.trap_continues = true;
   if (SlotOf(task).signals.load() != 0) return;
   task.follow_up = FollowUp::kSignals;
+  ReachBySignal(run_, task, 0);
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
 }
 

@@ -35,9 +35,9 @@ class RawCalls {
   };
 
   // `yield` lets equals have their turn (true: as Handle); `exit` ends the thread.
-  RawCalls(Waker& waker, Parts parts, std::function<bool(Task&)> yield,
+  RawCalls(RunState& run, Waker& waker, Parts parts, std::function<bool(Task&)> yield,
            std::function<void(Task&, const TrappedCall&)> exit)
-      : waker_(waker), parts_(parts), yield_(std::move(yield)), exit_(std::move(exit)) {}
+      : run_(run), waker_(waker), parts_(parts), yield_(std::move(yield)), exit_(std::move(exit)) {}
 
   // task.trap_result is what the call returns, unless the thread waits or the kernel carries it
   // out (task.trap_continues). True: there may be more by now that belongs to this moment.
@@ -47,6 +47,7 @@ class RawCalls {
   void Signal(Task& task);
   void Lock(Task& task);
 
+  RunState& run_;
   Waker& waker_;
   Parts parts_;
   std::function<bool(Task&)> yield_;

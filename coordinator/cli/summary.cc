@@ -144,6 +144,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"clients_ns", r.client_ns},
             {"ahead_ns", r.ahead_ns},
             {"awaited_ns", r.awaited_ns},
+            {"turns_beside", r.turns_beside},
             {"dynamics_ns", r.dynamics_ns},
             {"coordinating_ns", r.coordinating_ns},
             {"overhead_percent", OverheadPercent(r)},

@@ -31,7 +31,8 @@ std::vector<int> ComputingAhead::CpusBeside(int home, const RunState& run) {
   return helps ? CpusBesideHome(home, run.options.host_cpus) : std::vector<int>{};
 }
 
-void ComputingAhead::Open(int home, const std::vector<int>& further) {
+void ComputingAhead::Open(int home, const std::vector<int>& further, const BesideCpu* beside) {
+  beside_ = beside;
   for (const int cpu : further) {
     cpus_.emplace_back(cpu, home, parts_.clock.rate().ticks_per_ns, parts_.executor, IsClaimed);
   }
@@ -56,8 +57,11 @@ bool ComputingAhead::MaySend(const Task& task) const {
 void ComputingAhead::SendIfItComputes(Task& task) {
   if (cpus_.empty() || !MaySend(task)) return;
   const std::uint64_t tsc = __rdtsc();
-  const auto cpu = std::find_if(cpus_.begin(), cpus_.end(),
-                                [tsc](const FurtherCpu& one) { return one.IsFreeAt(tsc); });
+  const auto cpu = std::find_if(cpus_.begin(), cpus_.end(), [&](const FurtherCpu& one) {
+    const bool is_busy =
+        beside_ != nullptr && beside_->cpu() == one.cpu() && beside_->IsBusyAt(tsc);
+    return !is_busy && one.IsFreeAt(tsc);
+  });
   if (cpu == cpus_.end() || ThreadState(task.tid) != 'R') return;
   const std::int64_t cpu_ns = HostClockOf(task);
   if (cpu_ns < 0) return;  // it is about to end
@@ -78,6 +82,12 @@ void ComputingAhead::SendIfItComputes(Task& task) {
 FurtherCpu& ComputingAhead::CpuOf(const Task& task) {
   return *std::find_if(cpus_.begin(), cpus_.end(),
                        [&](const FurtherCpu& cpu) { return cpu.thread() == &task; });
+}
+
+bool ComputingAhead::IsOn(int number) const {
+  return std::ranges::any_of(cpus_, [number](const FurtherCpu& cpu) {
+    return cpu.cpu() == number && cpu.thread() != nullptr;
+  });
 }
 
 VirtualDuration ComputingAhead::MostAhead() const {

@@ -17,6 +17,7 @@
 #include <functional>
 #include <vector>
 
+#include "coordinator/host/beside_cpu.h"
 #include "coordinator/host/executor.h"
 #include "coordinator/host/further_cpu.h"
 #include "coordinator/host/host_cpu.h"
@@ -45,7 +46,8 @@ class ComputingAhead {
   // The processors that a run with its turns on `home` may use besides. To be asked before this
   // process is bound to one.
   static std::vector<int> CpusBeside(int home, const RunState& run);
-  void Open(int home, const std::vector<int>& further);
+  // Where short turns keep the first of them busy, nobody is sent there.
+  void Open(int home, const std::vector<int>& further, const BesideCpu* beside);
 
   // The thread's turn has just ended. If it computes on, it may do so on another processor.
   void SendIfItComputes(Task& task);
@@ -60,6 +62,8 @@ class ComputingAhead {
   void MakeRoomForHelpers();
   // It has ended.
   void Forget(const Task& task);
+  // Whether a thread computes ahead on the processor of that number.
+  bool IsOn(int cpu) const;
   // The further processors, whoever is there.
   const std::deque<FurtherCpu>& cpus() const { return cpus_; }
 
@@ -85,6 +89,7 @@ class ComputingAhead {
   const Parts parts_;
   const std::function<Reactor::Found(Moment)> poll_;
   std::deque<FurtherCpu> cpus_;
+  const BesideCpu* beside_ = nullptr;
   bool stays_home_ = false;
   std::vector<Task*> owing_;  // those that have computed ahead and not paid yet
 };

@@ -197,6 +197,7 @@ void Engine::Settle(Task& task) {
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
   const HostDuration host = metered.OnHost(executed);
   run_.report.client_ns += host.ns();
+  task.ran = host;
   metered.longest_run = HostNs(PreemptionTimer::LongestOfLate(metered.longest_run.ns(), host.ns()));
   task.charged = charged;
   task.debt = debt;
@@ -361,6 +362,10 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   run_.turn.Begin(task, horizon);
   says_call_ = opens_gate_ = false;
   if (task.state == TaskState::kHolding) waker_.SetState(task, TaskState::kReady);
+  if (task.is_beside) {
+    if (task.parked) HostCpu::TakeOutWayToGate(task, task.charged, CpuClockOf(task));
+    beside_.BringHome(task);
+  }
   if (task.slot >= 0) {
     TimerSignals::SendTo(task);
     dds_.HandOver(task);
@@ -371,9 +376,12 @@ void Engine::BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   Resume(task);
   run_.turn.recorded_tsc = host_cpu_.stop_tsc();
   state_link_.Dispatched(task.tid, host_cpu_.stop_tsc(), task.cpu->progress.ns());
-  if (task.activation.start_ns < 0) {
-    task.activation.start_ns = task.process->clock.At(task.cpu->progress).ns();
-  }
+  NoteTurnBegins(task);
+}
+
+void Engine::NoteTurnBegins(Task& task) {
+  if (task.activation.start_ns >= 0) return;
+  task.activation.start_ns = task.process->clock.At(task.cpu->progress).ns();
 }
 
 void Engine::EndTurn(Task& task) {
@@ -432,6 +440,7 @@ void Engine::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
   }
   if (task.spins) StepAside(task);
   Answer(task);
+  beside_.NoteTurn(task, false);
 }
 
 }  // namespace tcs

@@ -155,23 +155,26 @@ void Engine::StepCpu(VirtualCpu& cpu) {
     LetWorldGoOnWithout(task);
     return;
   }
-  if (!task.parked && !task.owes_ahead) ChargeUndispatched(task);
+  if (!task.parked && !task.owes_ahead && !task.turns_beside) ChargeUndispatched(task);
   VirtualTime idle_until;
   const VirtualTime start = cpu.progress;
   const VirtualDuration lead = clock.lead();
-  VirtualTime horizon = HorizonFor(task, &idle_until);
-  if (GivesWay(start, horizon, run_.root.NextInput(cpu.leaf), run_.root.HasGivenWay(cpu.leaf))) {
+  VirtualTime horizon = task.turns_beside ? task.beside_horizon : HorizonFor(task, &idle_until);
+  if (!task.turns_beside &&
+      GivesWay(start, horizon, run_.root.NextInput(cpu.leaf), run_.root.HasGivenWay(cpu.leaf))) {
     run_.root.GiveWay(cpu.leaf);
     return;
   }
   task.ComeTo(cpu.progress);
   run_.root.FirstActs();
   robot.scheduler.Dispatch(cpu.core, task.order);
-  horizon = KeepWorldNear(task, horizon);
+  if (!task.turns_beside) horizon = KeepWorldNear(task, horizon);
   idle_until = std::min(idle_until, horizon);
   // Time that passes only in waiting needs none to be left.
   if (robot.is_ideal) horizon = std::max(horizon, start + VirtualNs(1));
-  if (ahead_.TakeTurn(task, horizon)) {
+  if (task.turns_beside) {
+    TakeTurnBeside(task);
+  } else if (ahead_.TakeTurn(task, horizon)) {
     // It has computed that already.
   } else if (OnlyPays(task.state, start, task.debt, horizon)) {
     PayDebt(task, horizon - start);
@@ -377,6 +380,7 @@ bool Engine::Step() {
     reached_end_ = true;
     return false;
   }
+  BeginTurnsBeside();
   VirtualCpu& cpu = run_.cpus[static_cast<std::size_t>(run_.root.First())];
   const bool idle = cpu.robot->scheduler.Next(cpu.core).thread == RobotScheduler::kNobody;
   if (idle && !HasJumpedOver()) return true;

@@ -1,5 +1,6 @@
 // The engine: its parts, how they are set up and told of each other (setup.cc), the loop and the
-// choice of who acts (engine.cc), the dispatch of a thread and its charge (dispatch.cc), what the
+// choice of who acts (engine.cc), the dispatch of a thread and its charge (dispatch.cc), on another
+// processor (beside.cc), what the
 // kernel says meanwhile (events.cc, handlers.cc), when it is held back (keep_pace.cc), what clients
 // say (notifications.cc), and the end (end.cc).
 #pragma once
@@ -49,6 +50,7 @@
 #include "coordinator/core/run_reporter.h"
 #include "coordinator/core/standstill_watch.h"
 #include "coordinator/core/state_dump.h"
+#include "coordinator/core/turns_beside.h"
 #include "coordinator/core/world.h"
 #include "coordinator/dump/state_link.h"
 #include "coordinator/host/executor.h"
@@ -129,10 +131,16 @@ class Engine {
   HostTime RunningTime() const;
   void FlushForWatchers();
 
+  // Turns on another processor (beside.cc).
+  void BeginTurnsBeside();
+  void BeginTurnBeside(VirtualCpu& cpu);
+  void TakeTurnBeside(Task& task);
+
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until);
   bool AnswerEarly(Task& task);
   void BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  static void NoteTurnBegins(Task& task);
   void EndTurn(Task& task);
   void TellOthersOf(Task& task, Moment call, bool looks_again);
   void Answer(Task& task);
@@ -221,6 +229,8 @@ class Engine {
   Pacing pacing_{run_.options, run_.end, run_.options.on_notice};
   ComputingAhead ahead_{{run_, waker_, host_cpu_, *executor_, clock_, records_},
                         [this](Moment moment) { return PollEvents(kNoWait, moment); }};
+  TurnsBeside beside_{{run_, *executor_, clock_, ahead_, records_},
+                      [this](Moment moment) { return PollEvents(kNoWait, moment); }};
   // What programs ask for, and what they wait for.
   PriorityInheritance inheritance_{run_, waker_};
   DdsGateway dds_{run_, waker_, world_, inheritance_};
@@ -273,7 +283,8 @@ class Engine {
   RawPolls raw_polls_{waker_, descriptors_};
   RawTransfers raw_transfers_{waker_, activations_, descriptors_, raw_timers_, local_sockets_};
   RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
-  RawCalls raw_calls_{waker_,
+  RawCalls raw_calls_{run_,
+                      waker_,
                       {raw_times_, raw_timers_, raw_polls_, raw_transfers_, raw_child_waits_,
                        raw_scheduling_, words_, local_sockets_},
                       [this](Task& task) { return notifications_.Yield(task); },

@@ -53,6 +53,10 @@ Reactor::Found Engine::OnConnection(Subject subject, std::uint32_t, Moment momen
 
 Reactor::Found Engine::OnProcessEnd(Subject process, std::uint32_t, Moment moment) {
   Process& ended = run_.table.ProcessAt(process.index);
+  if (TurnsBeside::NoteDeathIn(ended)) {
+    reactor_.Remove(ended.pidfd.get());
+    return {};
+  }
   const bool runs = run_.turn.IsIn(ended);
   moment.at = std::max(moment.at, ahead_.EndOfDebt(ended));
   const auto end = [this, process](Moment at) {

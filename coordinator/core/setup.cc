@@ -87,7 +87,6 @@ std::string Engine::Prepare() {
   if (!run_.options.output_directory.empty()) datagrams_.Open();
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
-  ahead_.Open(claim_.cpu, further);
   world_.UseProcessors(beside);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
@@ -95,6 +94,8 @@ std::string Engine::Prepare() {
     reactor_.Add(state_link_.wake_fd(), EPOLLIN, {Tag::kStateAsked});
   }
   if (std::string error = PrepareMemory(); !error.empty()) return error;
+  beside_.Open(claim_.cpu, further);
+  ahead_.Open(claim_.cpu, further, beside_.cpu());
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());
   if (world_.present()) run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
@@ -250,6 +251,7 @@ void Engine::TellOfEnds() {
       .thread_ends = [this](Task& task, Moment moment) { shared_events_.PassOn(task, moment); },
       .thread_has_ended =
           [this](Task& task) {
+            beside_.Forget(task);
             objects_.Forget(task);
             ahead_.Forget(task);
             registration_.Forget(task);

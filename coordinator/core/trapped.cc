@@ -12,6 +12,7 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   if (!call.has_value()) return {.stops_running = !run_.gates_only, .wakes_others = true};
   const auto take = [this, call](Moment at) { return TakeTrapped(*call, at); };
   Task* by = run_.table.Living(call->tid);
+  if (by != nullptr && by->turns_beside) return take(moment);
   if (IsExecution(*call) || IsEnd(*call)) {
     if (by != nullptr) by->executes = IsExecution(*call);
     // Nobody else may have the process's descriptors when they are closed.

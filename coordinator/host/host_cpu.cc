@@ -35,6 +35,12 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
       MeterOf(thread).Begin(thread.metered, stop_tsc_, from_gate_, is_silent);
 }
 
+void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
+  MeterOf(thread).Begin(thread.metered, tsc, true, false);
+  // What a switch takes there is not known, nor counted: the clock begins behind it.
+  thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = tsc;
+}
+
 void HostCpu::Woke() { stop_tsc_ = __rdtsc(); }
 
 // What the coordinator did meanwhile is not the thread's.
@@ -73,6 +79,13 @@ VirtualDuration HostCpu::Uncharged(const HostThread& thread, VirtualDuration cha
   const std::int64_t cpu_ns = metered.host_origin_ns < 0 ? -1 : clock();
   if (cpu_ns < 0) return {};
   return std::max(VirtualDuration(), metered.ChargeAt(cpu_ns) - charged);
+}
+
+void HostCpu::TakeOutWayToGate(HostThread& thread, VirtualDuration charged,
+                               const Meter::CpuClock& clock) {
+  constexpr HostDuration kMost = HostDuration::Microseconds(50);
+  const HostDuration way = thread.metered.OnHost(Uncharged(thread, charged, clock));
+  if (way <= kMost) thread.metered.host_origin_ns += way.ns();
 }
 
 shm::ClockReading HostCpu::ClockOf(const HostThread& thread) const {

@@ -60,6 +60,10 @@ class HostCpu {
   // `is_silent`: so it was found when it last ran (meter.h).
   void Start(HostThread& thread, bool is_silent);
   void Woke();
+  // The thread whose turn ends next stopped then, on another processor.
+  void WokeAt(std::uint64_t tsc) { stop_tsc_ = tsc; }
+  // Its clock begins at `tsc`, on another processor, or once it leaves its gate there.
+  void StartBeside(HostThread& thread, std::uint64_t tsc);
   void Continue(HostThread& thread);
   void End(HostThread& thread, const Meter::CpuClock& clock);
 
@@ -86,6 +90,10 @@ class HostCpu {
   // not dispatched.
   static VirtualDuration Uncharged(const HostThread& thread, VirtualDuration charged,
                                    const Meter::CpuClock& clock);
+  // A thread that was charged so much at its note, on another processor, has come to its gate there
+  // since: that way is ours, as the shim has it where the next turn is there, too (LeaveGate).
+  static void TakeOutWayToGate(HostThread& thread, VirtualDuration charged,
+                               const Meter::CpuClock& clock);
   // Of a thread that has stopped in a system call that its shim knows nothing of.
   void ChargeCall(HostThread& thread, VirtualDuration cost);
 

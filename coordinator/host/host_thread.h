@@ -21,6 +21,8 @@ struct HostThread {
   std::uint64_t dispatches = 0;
   MeteredThread metered;
   bool is_ahead = false;  // it computes ahead, on another processor (further_cpu.h)
+  // It lives on another processor, for turns beside the coordinator (beside_cpu.h), and has one.
+  bool is_beside = false, turns_beside = false;
 
   // The word for the clock page that an adjustment of nothing in its last dispatch has.
   std::uint64_t DispatchWord() const { return dispatches << shm::kAdjustBits; }

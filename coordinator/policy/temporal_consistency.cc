@@ -88,6 +88,15 @@ TemporalConsistency::Leaf TemporalConsistency::First() const {
   return Least() == VirtualTime::Never() ? -1 : std::get<Leaf>(*order_.begin());
 }
 
+std::size_t TemporalConsistency::Soonest(VirtualTime until, std::span<Leaf> leaves) const {
+  std::size_t count = 0;
+  for (const Rank& rank : order_) {
+    if (count == leaves.size() || std::get<VirtualTime>(rank) >= until) break;
+    leaves[count++] = std::get<Leaf>(rank);
+  }
+  return count;
+}
+
 VirtualTime TemporalConsistency::LeastOther(Leaf leaf) const {
   auto other = order_.begin();
   if (other != order_.end() && std::get<Leaf>(*other) == leaf) ++other;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -47,6 +48,9 @@ class TemporalConsistency {
   // and has most often released the lock that the woken one wants before that one asks for it.
   VirtualTime Least() const;
   Leaf First() const;
+  // The first of those that can act before `until`, in that order; at most as many as there is room
+  // for. Returns how many there are.
+  std::size_t Soonest(VirtualTime until, std::span<Leaf> leaves) const;
   // The first one is about to act.
   void FirstActs();
   // The leaf lets those act first that can act at the same time, until it can act at another one.

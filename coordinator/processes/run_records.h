@@ -45,6 +45,10 @@ class RunRecords {
   }
   // The running thread has stopped at `until_tsc`. It may be settled again in the same turn.
   void Ran(const Task& task, ShownSpan shown, WorldSpan world, std::uint64_t until_tsc);
+  // A thread has a turn beside others: what its client writes meanwhile is of that turn, which has
+  // not ended, until it does.
+  void BeganBeside(const Task& task) { output_.Hold(task.process->client->name); }
+  void EndsBeside(const Task& task) { output_.LetGo(task.process->client->name); }
   // The dynamics were integrated.
   void Integrated(WorldSpan span, TscSpan real) {
     const ScheduleRecords::Span both{span.start.ns(), span.end.ns()};

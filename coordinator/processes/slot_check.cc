@@ -53,7 +53,8 @@ const char* SlotCheck::WhatIsImpossible(const shm::Notification& note) {
                         kind <= static_cast<std::uint32_t>(Kind::kKernelWait) && kind != 16 &&
                         note.kind != Kind::kResumed;
   if (!is_known && note.kind != Kind::kPassOn && note.kind != Kind::kCall &&
-      note.kind != Kind::kPreempted && note.kind != Kind::kBinds && note.kind != Kind::kReaches)
+      note.kind != Kind::kPreempted && note.kind != Kind::kBinds && note.kind != Kind::kReaches &&
+      note.kind != Kind::kSignals)
     return "a notification of no kind";
   if (note.fd_count > shm::kMaxWaitFds) return "a wait for too many descriptors";
   if (note.kind != Kind::kTimerCreate) return nullptr;

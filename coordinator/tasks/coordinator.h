@@ -98,8 +98,9 @@ struct RunReport {
   std::int64_t lateness_ns = 0;
   std::int64_t real_ns = 0;
   std::int64_t client_ns = 0, dynamics_ns = 0, coordinating_ns = 0;  // real, of the CPU they share,
-  std::int64_t ahead_ns = 0;    // but for what clients have computed on further ones, ahead,
-  std::int64_t awaited_ns = 0;  // and for how long they were waited for
+  std::int64_t ahead_ns = 0;      // but for what clients have computed on further ones, ahead,
+  std::int64_t awaited_ns = 0;    // and for how long they were waited for
+  std::int64_t turns_beside = 0;  // of those that clients had there before their order
   std::int64_t untold = 0, untold_ns = 0;  // how often, and how much, was stolen and no clock told
   std::int64_t switches = 0, samples = 0, commands = 0;
   PaceReport pace;

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -83,7 +84,13 @@ struct Task : HostThread {
   static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on
   int ahead_after = kComputes;         // so it is sent to compute ahead once that is so much
   VirtualDuration ahead_from;          // from that charge on
-  bool spins = false;                  // computes without calls where computing takes no time
+  // How many of its turns in a row were short, and of how many it needs to have one beside the
+  // coordinator (beside_cpu.h); and how far that one goes.
+  int short_turns = 0, beside_after = 3;
+  VirtualTime beside_horizon;
+  bool died_beside = false;     // with its process, in the turn that it has there
+  HostDuration ran;             // in its last turn
+  bool spins = false;           // computes without calls where computing takes no time
   bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
   bool executes = false;        // another program, perhaps: it has no handlers there
   bool has_signal = false;      // ours, to go to its gate, unless it has handled it by now
@@ -178,19 +185,32 @@ struct Robot {
 
   std::string name;
   double speed;
-  std::uint32_t number = 0;  // in the scenario's order, from 1 on
-  bool is_ideal = false;     // its threads are charged nothing
-  bool is_reached = false;   // nothing is local to it any more (calls/local_sockets.h)
+  std::uint32_t number = 0;   // in the scenario's order, from 1 on
+  bool is_ideal = false;      // its threads are charged nothing
+  bool is_reached = false;    // nothing is local to it any more (calls/local_sockets.h)
+  bool is_disturbed = false;  // others than its own programs send it signals (core/turns_beside.h)
   RobotScheduler scheduler;
   VirtualTime next_launch = VirtualTime::Never();  // when the next client of its starts
   std::vector<VirtualCpu*> cpus;                   // by core
   std::vector<Task*> tasks;                        // the living
   bool keeps_timer_signals =
       false;  // some of its processes' timers' wait to be sent (TimerSignals)
+
+  // As far as it may have come: its cores, and turns that have begun before their order.
+  VirtualTime Furthest() const;
 };
 
 // What its process's clock shows where the thread is.
 inline ProgramTime OwnNow(const Task& task) { return task.process->clock.At(task.reached); }
+
+inline VirtualTime Robot::Furthest() const {
+  VirtualTime furthest;
+  for (const VirtualCpu* cpu : cpus) furthest = std::max(furthest, cpu->progress);
+  for (const Task* task : tasks) {
+    if (task->turns_beside) furthest = std::max(furthest, task->beside_horizon);
+  }
+  return furthest;
+}
 
 inline void VirtualCpu::ComeTo(VirtualTime time) {
   TCS_CHECK(time >= progress);

@@ -21,12 +21,32 @@ std::string OutputLog::Open(const std::string& folder) {
 }
 
 void OutputLog::Add(const std::string& client, const std::string& file) {
-  streams_[file + ".out.log"] = {client, "out"};
-  streams_[file + ".err.log"] = {client, "err"};
+  for (const char* name : {"out", "err"}) {
+    const auto [at, added] = streams_.insert({file + "." + name + ".log", {client, name}});
+    if (added) of_client_[client].push_back(&*at);
+  }
+}
+
+void OutputLog::Hold(const std::string& client) {
+  if (!watch_) return;
+  const auto found = of_client_.find(client);
+  if (found == of_client_.end()) return;
+  for (Streams::value_type* stream : found->second) stream->second.is_held = true;
+}
+
+void OutputLog::LetGo(const std::string& client) {
+  if (!watch_) return;
+  const auto found = of_client_.find(client);
+  if (found == of_client_.end()) return;
+  for (Streams::value_type* stream : found->second) {
+    stream->second.is_held = false;
+    if (std::exchange(stream->second.has_grown, false)) grown_.push_back(stream);
+  }
 }
 
 void OutputLog::LookAt(std::int64_t now_ns) {
   if (!watch_) return;
+  for (Streams::value_type* stream : std::exchange(grown_, {})) Grew(*stream, now_ns);
   alignas(inotify_event) char events[8192];
   for (;;) {
     const ssize_t size = read(watch_.get(), events, sizeof events);
@@ -36,16 +56,23 @@ void OutputLog::LookAt(std::int64_t now_ns) {
       at += sizeof event + event.len;
       if (event.len > 0) Grew(event.name, now_ns);
       if ((event.mask & IN_Q_OVERFLOW) == 0) continue;
-      for (const auto& [file, stream] : streams_) Grew(file, now_ns);
+      for (Streams::value_type& stream : streams_) Grew(stream, now_ns);
     }
   }
 }
 
 void OutputLog::Grew(const std::string& file, std::int64_t now_ns) {
-  const auto found = streams_.find(file);
+  if (const auto found = streams_.find(file); found != streams_.end()) Grew(*found, now_ns);
+}
+
+void OutputLog::Grew(Streams::value_type& grown, std::int64_t now_ns) {
+  auto& [file, stream] = grown;
+  if (stream.is_held) {
+    stream.has_grown = true;
+    return;
+  }
   struct stat is {};
-  if (found == streams_.end() || stat((folder_ + "/" + file).c_str(), &is) != 0) return;
-  Stream& stream = found->second;
+  if (stat((folder_ + "/" + file).c_str(), &is) != 0) return;
   const std::int64_t before = std::exchange(stream.bytes, is.st_size);
   if (stream.bytes > before) csv_.Line(now_ns, stream.client, stream.name, before, stream.bytes);
 }

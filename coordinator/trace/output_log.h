@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "coordinator/os/unique_fd.h"
 #include "coordinator/trace/csv_file.h"
@@ -26,6 +27,9 @@ class OutputLog {
   void Add(const std::string& client, const std::string& file);
   // Notes what has been written since the last time.
   void LookAt(std::int64_t now_ns);
+  // What the client writes from now on was written by the time of the next look after it is let go.
+  void Hold(const std::string& client);
+  void LetGo(const std::string& client);
   void Flush() { csv_.Flush(); }
   [[nodiscard]] std::string Close() { return csv_.Close(); }
 
@@ -34,12 +38,17 @@ class OutputLog {
     std::string client;
     const char* name;
     std::int64_t bytes = 0;  // that have been noted
+    bool is_held = false, has_grown = false;
   };
+  using Streams = std::map<std::string, Stream, std::less<>>;
   void Grew(const std::string& file, std::int64_t now_ns);
+  void Grew(Streams::value_type& grown, std::int64_t now_ns);
 
   std::string folder_;
   UniqueFd watch_;
-  std::map<std::string, Stream, std::less<>> streams_;  // by file
+  Streams streams_;                                                     // by file
+  std::map<std::string, std::vector<Streams::value_type*>> of_client_;  // its streams
+  std::vector<Streams::value_type*> grown_;                             // while they were held
   CsvFile csv_;
 };
 

@@ -1,6 +1,10 @@
 #include "coordinator/policy/temporal_consistency.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
+#include <span>
 
 namespace tcs {
 namespace {
@@ -19,6 +23,21 @@ TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
   root.Update(prey, 300_ns, 300_ns);
   EXPECT_EQ(root.First(), prey);
   EXPECT_EQ(root.Least(), 300_ns);
+}
+
+TEST(TemporalConsistency, TheSoonestAreToldInTheirOrder) {
+  TemporalConsistency root(kDrift, kEnd);
+  const auto a = root.AddLeaf(0), b = root.AddLeaf(1), c = root.AddLeaf(2), d = root.AddLeaf(3);
+  root.Update(a, 0_ns, 700_ns);
+  root.Update(b, 0_ns, 300_ns);
+  root.Update(c, 0_ns, kNever);
+  root.Update(d, 0_ns, 500_ns);
+  std::array<TemporalConsistency::Leaf, 4> leaves{};
+  EXPECT_EQ(root.Soonest(701_ns, leaves), 3u);
+  EXPECT_THAT(std::span(leaves).first(3), testing::ElementsAre(b, d, a));
+  EXPECT_EQ(root.Soonest(700_ns, leaves), 2u) << "those before that time";
+  EXPECT_EQ(root.Soonest(kNever, std::span(leaves).first(1)), 1u) << "as many as there is room for";
+  EXPECT_EQ(leaves[0], b);
 }
 
 TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {

@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 19u);
+  EXPECT_EQ(kVersion, 20u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5312u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -22,6 +22,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(RunHeader, has_porters), 76u);
   EXPECT_EQ(offsetof(RunHeader, names_by_robot), 80u);
   EXPECT_EQ(offsetof(RunHeader, notes_datagrams), 84u);
+  EXPECT_EQ(offsetof(RunHeader, turns_beside), 88u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
   EXPECT_EQ(offsetof(ClockPage, staleness_ns), 152u);
@@ -36,6 +37,8 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
   EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
+  EXPECT_EQ(offsetof(ThreadSlot, saying), 1136u);
+  EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1144u);
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1152u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3264u);
 }

@@ -136,6 +136,29 @@ TEST_F(OutputLogTest, HasALineForEachPieceThatAClientWrote) {
             "4,r/planner,err,0,2\n");
 }
 
+TEST_F(OutputLogTest, WhatIsWrittenInATurnBesideOthersIsOfTheTimeAtWhichThatEnds) {
+  OutputLog log;
+  ASSERT_EQ(log.Open(folder_), "");
+  log.Add("r/loop", "r-loop");
+  log.Add("r/planner", "r-planner");
+  log.Hold("r/loop");
+  log.Hold("r/nobody");
+  Append("r-loop.out.log", "tick\n");
+  Append("r-planner.out.log", "hello\n");
+  log.LookAt(2);
+  log.LetGo("r/loop");
+  log.LetGo("r/nobody");
+  log.LookAt(3);
+  Append("r-loop.out.log", "on\n");
+  log.LookAt(4);
+  ASSERT_EQ(log.Close(), "");
+  EXPECT_EQ(Written(),
+            "time_ns,client,stream,begin,end\n"
+            "2,r/planner,out,0,6\n"
+            "3,r/loop,out,0,5\n"
+            "4,r/loop,out,5,8\n");
+}
+
 TEST_F(OutputLogTest, WhatAnEarlierRunLeftIsNotIts) {
   Append("r-planner.out.log", "of an earlier run\n");
   OutputLog log;

@@ -1,0 +1,203 @@
+#include "coordinator/host/beside_cpu.h"
+
+#include <linux/futex.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#include <x86gprintrin.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/os/host.h"
+
+namespace tcs {
+
+namespace {
+
+using shm::Saying;
+
+constexpr std::int64_t kAwakeNs = 2'000'000;  // after a turn has begun
+constexpr std::int64_t kBusyNs = 3'000'000;
+constexpr std::int64_t kMostWayHomeNs = 2'000'000;
+constexpr std::int64_t kClaimsEveryNs = 100'000'000;
+constexpr std::int64_t kLeftToOthersNs = 2'000'000;
+constexpr int kMostDoublings = 8;
+
+}  // namespace
+
+BesideCpu::BesideCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+                     std::function<bool(int)> is_claimed)
+    : cpu_(cpu),
+      home_(home),
+      ticks_per_ns_(ticks_per_ns),
+      executor_(executor),
+      is_claimed_(std::move(is_claimed)) {}
+
+BesideCpu::~BesideCpu() {
+  ends_.store(true);
+  awake_until_tsc_.store(0);
+  Wake(sleeps_);
+  Wake(sends_);
+  if (awake_.joinable()) awake_.join();
+  if (warden_.joinable()) warden_.join();
+}
+
+std::uint64_t BesideCpu::TicksIn(std::int64_t ns) const {
+  return static_cast<std::uint64_t>(static_cast<double>(ns) * ticks_per_ns_);
+}
+
+void BesideCpu::Wake(std::atomic<std::uint32_t>& word) {
+  syscall(SYS_futex, &word, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+}
+
+// --- The two threads here
+// -------------------------------------------------------------------------
+
+// Signals of the run are for its own thread.
+void BesideCpu::Start() {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  awake_ = std::thread([this] { StayAwake(); });
+  warden_ = std::thread([this] { SendHomeWhenAsked(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void BesideCpu::StayAwake() {
+  LeaveRealTime(0);
+  RunOnlyWhenIdle();
+  BindTo(0, cpu_);
+  while (!ends_.load()) {
+    while (__rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) {
+      // The kernel may let this thread go on until its next tick all the same.
+      if (gives_way_.load() && gives_way_.exchange(false)) sched_yield();
+      _mm_pause();
+    }
+    sleeps_.store(1);
+    if (__rdtsc() < awake_until_tsc_.load()) continue;
+    if (!ends_.load()) syscall(SYS_futex, &sleeps_, FUTEX_WAIT_PRIVATE, 1, nullptr, nullptr, 0);
+  }
+}
+
+void BesideCpu::SendHomeWhenAsked() {
+  BindTo(0, cpu_);
+  while (!ends_.load()) {
+    if (const std::uint32_t tid = sends_.load(); tid != 0) {
+      // It does not run meanwhile.
+      executor_.Hold(static_cast<pid_t>(tid));
+      BindTo(static_cast<pid_t>(tid), home_);
+      sends_.store(0);
+    }
+    if (!ends_.load()) syscall(SYS_futex, &sends_, FUTEX_WAIT_PRIVATE, 0, nullptr, nullptr, 0);
+  }
+}
+
+// --- The coordinator
+// ------------------------------------------------------------------------------
+
+bool BesideCpu::IsFreeAt(std::uint64_t tsc) {
+  if (tsc < not_before_tsc_) return false;
+  if (tsc >= looks_for_claims_tsc_) {
+    looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
+    if (is_claimed_(cpu_)) LeaveToOthers(tsc);
+  }
+  return tsc >= not_before_tsc_;
+}
+
+bool BesideCpu::IsBusyAt(std::uint64_t tsc) const {
+  return begun_ > 0 || tsc < begun_tsc_[next_begun_] + TicksIn(kBusyNs);
+}
+
+void BesideCpu::NoteWanted(std::uint64_t tsc) {
+  begun_tsc_[next_begun_] = tsc;
+  next_begun_ = (next_begun_ + 1) % begun_tsc_.size();
+}
+
+bool BesideCpu::Begin(HostThread& thread) {
+  if (!warden_.joinable()) Start();
+  if (!thread.is_beside) {
+    // It sleeps at its gate, so that neither takes time.
+    if (!BindTo(thread.tid, cpu_)) {
+      not_before_tsc_ = UINT64_MAX;
+      return false;
+    }
+    executor_.LetGo(thread.tid);
+    thread.may_run = false;
+    thread.is_beside = true;
+  }
+  thread.turns_beside = true;
+  thread.parked = false;
+  ++begun_;
+  const std::uint64_t tsc = __rdtsc();
+  NoteWanted(tsc);
+  awake_until_tsc_.store(tsc + TicksIn(kAwakeNs));
+  if (sleeps_.exchange(0) != 0) Wake(sleeps_);
+  shm::ThreadSlot& slot = *thread.slot_memory;
+  slot.saying.store(Saying::kRuns);
+  HostCpu::OpenGate(slot);
+  gives_way_.store(true);
+  return true;
+}
+
+bool BesideCpu::HasSaid(const HostThread& thread) {
+  const Saying saying = thread.slot_memory->saying.load(std::memory_order_acquire);
+  return saying == Saying::kSaid || saying == Saying::kSaidAndWaits;
+}
+
+std::uint64_t BesideCpu::StoppedAt(const HostThread& thread) {
+  return std::clamp<std::uint64_t>(thread.slot_memory->stopped_tsc, thread.grant.base_tsc,
+                                   __rdtsc());
+}
+
+void BesideCpu::Take(HostThread& thread) {
+  thread.turns_beside = false;
+  --begun_;
+  std::atomic<Saying>& saying = thread.slot_memory->saying;
+  if (saying.exchange(Saying::kByPipe) == Saying::kSaidAndWaits) {
+    syscall(SYS_futex, &saying, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+  }
+}
+
+bool BesideCpu::GiveUp(HostThread& thread) {
+  if (thread.slot_memory != nullptr) {
+    Saying runs = Saying::kRuns;
+    if (!thread.slot_memory->saying.compare_exchange_strong(runs, Saying::kByPipe)) return false;
+  }
+  thread.turns_beside = false;
+  --begun_;
+  return true;
+}
+
+void BesideCpu::Forget(HostThread& thread) {
+  thread.turns_beside = false;
+  --begun_;
+}
+
+void BesideCpu::BringHome(HostThread& thread) {
+  if (!std::exchange(thread.is_beside, false)) return;
+  if (thread.parked || ThreadState(thread.tid) != 'R') {
+    BindTo(thread.tid, home_);
+    return;
+  }
+  sends_.store(static_cast<std::uint32_t>(thread.tid));
+  Wake(sends_);
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
+  while (sends_.load() != 0 && __rdtsc() < until_tsc) _mm_pause();
+  // The kernel may hold the one that was asked.
+  if (sends_.exchange(0) == 0) return;
+  executor_.Hold(thread.tid);
+  BindTo(thread.tid, home_);
+}
+
+void BesideCpu::LeaveToOthers(std::uint64_t tsc) {
+  // What was of use for longer than it had been left to others begins anew.
+  if (tsc > not_before_tsc_ + left_ticks_) left_to_others_ = 0;
+  left_ticks_ = TicksIn(kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings));
+  not_before_tsc_ = tsc + left_ticks_;
+}
+
+}  // namespace tcs

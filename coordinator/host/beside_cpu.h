@@ -1,0 +1,94 @@
+// A further processor of the host, on which threads have short turns while the coordinator does
+// something else: the coordinator begins such a turn, and looks later what it has come to. Neither
+// sleeps for the other. Several turns may have begun; the kernel has the threads run one after the
+// other.
+//
+//   Begin(thread)           its page is written: it leaves its gate, and its clock begins then
+//   HasSaid(thread)         it has stopped at its gate, and its note can be read
+//   Take(thread)            the note is read
+//   GiveUp(thread)          or it is not waited for any longer: what it says comes by the pipe
+//   BringHome(thread)       it runs on this processor no more
+//
+// A thread that has come here stays: it is held by its gate alone, at ordinary priority, so that it
+// takes the processor from nobody, and leaves no real-time thread when somebody dies. Two threads
+// of this process are here, too. One computes when nobody else does, for as long as turns follow
+// each other closely: a processor that sleeps takes the time of two turns to wake. The other one
+// goes before all, and sends home those that do not stop.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <thread>
+
+#include "coordinator/host/executor.h"
+#include "coordinator/host/host_thread.h"
+
+namespace tcs {
+
+class BesideCpu {
+ public:
+  // Threads come from and go back to the processor `home`. `is_claimed`: whether another run has
+  // claimed the processor of that number.
+  BesideCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
+            std::function<bool(int)> is_claimed);
+  ~BesideCpu();
+  BesideCpu(const BesideCpu&) = delete;
+  BesideCpu& operator=(const BesideCpu&) = delete;
+
+  int cpu() const { return cpu_; }
+  // Others need the processor: no turn is to begin here before `tsc`.
+  bool IsFreeAt(std::uint64_t tsc);
+  // Turns have begun here one after the other of late: it is of use.
+  bool IsBusyAt(std::uint64_t tsc) const;
+  // One would have begun, but for others that are here.
+  void NoteWanted(std::uint64_t tsc);
+  // Turns that have begun and were neither taken nor given up.
+  int begun() const { return begun_; }
+
+  // The thread is at its gate, and not dispatched. False if the kernel does not let it come here.
+  bool Begin(HostThread& thread);
+  static bool HasSaid(const HostThread& thread);
+  // When it stopped, by its own word: no earlier than its turn began, and no later than now.
+  static std::uint64_t StoppedAt(const HostThread& thread);
+  void Take(HostThread& thread);
+  // False if it has said something just now.
+  bool GiveUp(HostThread& thread);
+  // It has ended.
+  void Forget(HostThread& thread);
+  // Where it computes, this process looks on until it has stopped, and does not sleep.
+  void BringHome(HostThread& thread);
+  // Others had the processor: no turn begins here for some time, and for twice as
+  // long if they had it again within as long as it was left to them before.
+  void LeaveToOthers(std::uint64_t tsc);
+
+ private:
+  void Start();
+  void StayAwake();
+  void SendHomeWhenAsked();
+  void Wake(std::atomic<std::uint32_t>& word);
+  std::uint64_t TicksIn(std::int64_t ns) const;
+
+  const int cpu_, home_;
+  const double ticks_per_ns_;
+  Executor& executor_;
+  const std::function<bool(int)> is_claimed_;
+  int begun_ = 0;
+  std::array<std::uint64_t, 8> begun_tsc_{};  // the last turns
+  std::size_t next_begun_ = 0;
+  int left_to_others_ = 0;        // in a row
+  std::uint64_t left_ticks_ = 0;  // the last time
+  std::uint64_t not_before_tsc_ = 0, looks_for_claims_tsc_ = 0;
+
+  std::atomic<bool> ends_{false};
+  std::atomic<std::uint64_t> awake_until_tsc_{0};
+  std::atomic<bool> gives_way_{false};
+  std::atomic<std::uint32_t> sleeps_{0};  // 1: the one that keeps awake does, at this word
+  std::atomic<std::uint32_t> sends_{0};   // the thread that is to be sent home; 0: none
+  std::thread awake_, warden_;
+};
+
+}  // namespace tcs
