@@ -109,15 +109,13 @@ IslandStep* Island::NextStepTo(VirtualTime t, VirtualDuration most) {
   if (used_ == legs_.size()) legs_.emplace_back();
   StateAtFrontier();
   Leg& leg = legs_[used_];
-  leg.start = frontier_;
   leg.within_at = VirtualTime::Never();
-  Depart(&leg, most);
+  Depart(frontier_, most, &leg);
   return &leg.step;
 }
 
 // The commands for the very instant take effect.
-void Island::Depart(Leg* leg, VirtualDuration most) {
-  const Node& start = leg->start;
+void Island::Depart(const Node& start, VirtualDuration most, Leg* leg) {
   IslandStep& step = leg->step;
   step.island = index_;
   step.at = start.at;
@@ -174,6 +172,7 @@ void Island::LimitAfterChange(const Node& start, IslandStep* step) const {
 
 void Island::Took() {
   Leg& leg = legs_[used_];
+  std::swap(leg.start, frontier_);
   const VirtualDuration length = LengthOf(leg.step);
   Require(length > VirtualDuration{}, "a step leads on");
   leg.to = leg.start.at + length;
@@ -183,28 +182,36 @@ void Island::Took() {
 }
 
 // When something changes between a leg's start and the end of its step; Never() if nothing does.
-VirtualTime Island::ChangeWithin(const Leg& leg) {
+// Until then what is commanded is what the step has: so only the commands of an instant matter, of
+// which the last one to a place stays.
+VirtualTime Island::ChangeWithin(const Leg& leg) const {
   auto command = std::upper_bound(commands_.begin(), commands_.end(), leg.start.at, IsEarlier);
-  if (command == commands_.end() || command->at > leg.to) return VirtualTime::Never();
-  scratch_ = leg.step.wrenches;
   while (command != commands_.end() && command->at <= leg.to) {
-    const VirtualTime at = command->at;
-    for (; command != commands_.end() && command->at == at; ++command) {
-      scratch_[static_cast<std::size_t>(command->place)] = command->wrench;
+    const auto end = std::upper_bound(command, commands_.end(), command->at, IsEarlier);
+    for (; command != end; ++command) {
+      if (command->wrench == leg.step.wrenches[static_cast<std::size_t>(command->place)]) continue;
+      const auto is_same_place = [&](const Command& later) {
+        return later.place == command->place;
+      };
+      if (std::none_of(command + 1, end, is_same_place)) return command->at;
     }
-    if (!(scratch_ == leg.step.wrenches)) return at;
   }
   return VirtualTime::Never();
 }
 
+// When it is; how the island is then is found when somebody needs it.
 void Island::FindFrontier() {
   const Leg& leg = legs_[used_ - 1];
-  GoTo(leg, std::min(leg.to, ChangeWithin(leg)), &frontier_);
+  frontier_.at = std::min(leg.to, ChangeWithin(leg));
   knows_frontier_ = false;
 }
 
 const std::vector<double>& Island::StateAtFrontier() {
-  if (!knows_frontier_) frontier_.state = StateOf(legs_[used_ - 1], frontier_.at);
+  if (!knows_frontier_) {
+    Leg& leg = legs_[used_ - 1];
+    GoTo(leg, frontier_.at, &frontier_);
+    frontier_.state = StateOf(leg, frontier_.at);
+  }
   knows_frontier_ = true;
   return frontier_.state;
 }
@@ -262,7 +269,7 @@ void Island::StateAt(VirtualTime t, std::vector<double>* state) {
 }
 
 Acting Island::ActingUntil(VirtualTime t) const {
-  if (t >= frontier_.at) return {frontier_.wrenches, frontier_.remainders, t};
+  if (used_ == 0) return {frontier_.wrenches, frontier_.remainders, t};
   std::size_t leg = used_ - 1;
   while (leg > 0 && legs_[leg].start.at >= t) --leg;
   const Node& start = legs_[leg].start;

@@ -99,10 +99,10 @@ class Island {
   const Node& Origin() const { return used_ > 0 ? legs_.front().start : frontier_; }
   const Wrench& ActingAfter(VirtualTime t, int place) const;
   void TakeBackTo(VirtualTime t);
-  void Depart(Leg* leg, VirtualDuration most);
+  void Depart(const Node& start, VirtualDuration most, Leg* leg);
   void LetLag(const Node& start, IslandStep* step) const;
   void LimitAfterChange(const Node& start, IslandStep* step) const;
-  VirtualTime ChangeWithin(const Leg& leg);
+  VirtualTime ChangeWithin(const Leg& leg) const;
   void FindFrontier();
   void GoTo(const Leg& leg, VirtualTime t, Node* node) const;
   const std::vector<double>& StateOf(Leg& leg, VirtualTime t);
@@ -114,9 +114,8 @@ class Island {
   std::vector<Command> commands_;
   std::vector<Leg> legs_;  // those that count are the first `used_`; the others are memory to use
   std::size_t used_ = 0;
-  Node frontier_;                // where the next leg begins; Origin() where there is no leg
-  bool knows_frontier_ = true;   // its state, which is that of the last leg then
-  std::vector<Wrench> scratch_;  // of ChangeWithin
+  Node frontier_;               // where the next leg begins; Origin() where there is no leg
+  bool knows_frontier_ = true;  // all of it, which is where the last leg leads; else its time
 };
 
 }  // namespace tcs

@@ -24,6 +24,10 @@ Load LoadOfSquare(const Rotor& rotor) {
 
 Load NumbersOf(const Wrench& command, const Remainder& remainder, double share) {
   Load numbers;
+  if (share == 0) {
+    AddTo(&numbers, LoadOf(command), 1);
+    return numbers;
+  }
   AddTo(&numbers, LoadOf(command), 1 - share);
   AddTo(&numbers, remainder.in_world, share);
   return numbers;
@@ -78,14 +82,38 @@ std::span<const Wrench> ModelLoads::MeanOver(const IslandStep& step, double seco
              });
 }
 
+// What lags together is left to the same share: a robot's rotors have one time constant, and are
+// commanded at once.
+template <class LeftOf>
+class ModelLoads::Lefts {
+ public:
+  explicit Lefts(const LeftOf& left_of) : left_of_(left_of) {}
+
+  const Left& Of(const Wrench& command, const Remainder& remainder) {
+    if (remainder.since != since_ || command.lag != lag_) {
+      since_ = remainder.since;
+      lag_ = command.lag;
+      left_ = left_of_(command, remainder);
+    }
+    return left_;
+  }
+
+ private:
+  const LeftOf& left_of_;
+  VirtualTime since_ = VirtualTime::Never();
+  VirtualDuration lag_{};
+  Left left_{};  // nothing, of what never lagged
+};
+
 template <class LeftOf>
 std::span<const Wrench> ModelLoads::Sum(const std::vector<Wrench>& commanded,
                                         const std::vector<Remainder>& remainders,
                                         const LeftOf& left_of) {
   if (remainders.empty() && rotors_.empty()) return commanded;
   acting_ = commanded;
+  Lefts<LeftOf> lefts(left_of);
   for (std::size_t place = 0; place < remainders.size(); ++place) {
-    const Left left = left_of(commanded[place], remainders[place]);
+    const Left& left = lefts.Of(commanded[place], remainders[place]);
     const Load numbers = NumbersOf(commanded[place], remainders[place], left.share);
     acting_[place].force_n = numbers.force_n;
     acting_[place].torque_nm = numbers.torque_nm;
@@ -94,7 +122,7 @@ std::span<const Wrench> ModelLoads::Sum(const std::vector<Wrench>& commanded,
     const double aim = commanded[rotor.place].force_n[0];
     double square = aim * aim;
     if (!remainders.empty()) {
-      const Left left = left_of(commanded[rotor.place], remainders[rotor.place]);
+      const Left& left = lefts.Of(commanded[rotor.place], remainders[rotor.place]);
       const double missing = remainders[rotor.place].in_world.force_n[0] - aim;
       square += 2 * aim * missing * left.share + missing * missing * left.square_of_share;
     }

@@ -34,6 +34,8 @@ class ModelLoads {
     double share, square_of_share;
   };
   template <class LeftOf>
+  class Lefts;
+  template <class LeftOf>
   std::span<const Wrench> Sum(const std::vector<Wrench>& commanded,
                               const std::vector<Remainder>& remainders, const LeftOf& left_of);
 

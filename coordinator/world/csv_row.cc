@@ -1,9 +1,9 @@
 #include "coordinator/world/csv_row.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <iterator>
+#include <span>
 
 namespace tcs {
 
@@ -18,10 +18,21 @@ void AppendBodiesCsvRow(VirtualTime at, std::string_view name,
                         const std::array<double, 4>& orientation_xyzw,
                         const std::array<double, 3>& linear_velocity_mps,
                         const std::array<double, 3>& angular_velocity_radps, std::string* text) {
-  fmt::format_to(std::back_inserter(*text), "{:.9f},{},{},{},{},{}\n",
-                 static_cast<double>(at.ns()) * 1e-9, name, fmt::join(position_m, ","),
-                 fmt::join(orientation_xyzw, ","), fmt::join(linear_velocity_mps, ","),
-                 fmt::join(angular_velocity_radps, ","));
+  // Of 13 numbers, with what is before each.
+  std::array<char, 13 * 32> numbers;
+  char* end = numbers.data();
+  const auto add = [&end](std::span<const double> values) {
+    for (const double value : values) end = fmt::format_to(end, FMT_COMPILE(",{}"), value);
+  };
+  add(position_m);
+  add(orientation_xyzw);
+  add(linear_velocity_mps);
+  add(angular_velocity_radps);
+  *text += CsvTime(at).text();
+  *text += ',';
+  *text += name;
+  text->append(numbers.data(), end);
+  *text += '\n';
 }
 
 }  // namespace tcs

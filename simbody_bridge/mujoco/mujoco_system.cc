@@ -70,6 +70,7 @@ MujocoSystem::MujocoSystem(const Forest& forest, const std::array<double, 3>& gr
   if (data_ == nullptr)
     throw DynamicsError("MuJoCo cannot make its data; check whether memory is left");
   FindIds();
+  pairs_ = ShapePairs(forest, shapes_, *model_);
   SetStart();
 }
 
@@ -221,14 +222,49 @@ bool MujocoSystem::IsSmooth(std::span<const Wrench> acting, double seconds) cons
   return true;
 }
 
-// The rest of what mj_step does.
-void MujocoSystem::StepSmoothly() {
-  mj_fwdVelocity(model_.get(), data_.get());
+// As mj_fwdPosition, which puts quaternions in order. Where all was apart the last time, contacts
+// are only looked for if something is near this time.
+void MujocoSystem::FindPositions(const double* positions) {
+  const auto find = [&](bool looks) {
+    int& disabled = model_->opt.disableflags;
+    disabled = looks ? disabled & ~mjDSBL_CONTACT : disabled | mjDSBL_CONTACT;
+    std::copy_n(positions, model_->nq, data_->qpos);
+    mj_fwdPosition(model_.get(), data_.get());
+    return pairs_.AreApart(*model_, *data_);
+  };
+  const bool were_apart = std::exchange(are_apart_, find(!are_apart_));
+  if (were_apart && !are_apart_) find(true);
+}
+
+// Of positions that have been found.
+void MujocoSystem::FindAccelerations() {
   mj_fwdActuation(model_.get(), data_.get());
   mj_fwdAcceleration(model_.get(), data_.get());
   mj_fwdConstraint(model_.get(), data_.get());
+}
+
+// As mj_forward.
+void MujocoSystem::FindAll(const double* positions) {
+  FindPositions(positions);
+  mj_fwdVelocity(model_.get(), data_.get());
+  FindAccelerations();
+}
+
+// The rest of what mj_step does.
+void MujocoSystem::StepSmoothly() {
+  mj_fwdVelocity(model_.get(), data_.get());
+  FindAccelerations();
   mj_checkAcc(model_.get(), data_.get());
-  mj_RungeKutta(model_.get(), data_.get(), 4);
+  if (HasFailed()) return;
+  runge_kutta_.Step(*model_, data_.get(), [this](const double* positions) { FindAll(positions); });
+}
+
+// Whether MuJoCo would find the positions again where they are: it puts quaternions in order each
+// time, which turns a third of them by a rounding.
+bool MujocoSystem::AreInOrder() {
+  begin_.assign(data_->qpos, data_->qpos + model_->nq);
+  mj_normalizeQuat(model_.get(), begin_.data());
+  return std::equal(begin_.begin(), begin_.end(), data_->qpos);
 }
 
 // A servo with the stiffness k and the damping d gives what it gives at the end of the step, where
@@ -238,6 +274,7 @@ void MujocoSystem::StepSmoothly() {
 // limit, and all is solved again.
 void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds) {
   at_limit_.assign(joint_actuators_.size(), 0);
+  bool has_velocities = false;
   do {
     for (std::size_t i = 0; i < joint_actuators_.size(); ++i) {
       if (joint_actuators_[i] < 0) continue;
@@ -249,7 +286,16 @@ void MujocoSystem::StepImplicitly(std::span<const Wrench> acting, double seconds
       model_->actuator_forcelimited[joint_actuators_[i]] = 0;
       model_->dof_armature[speeds_[i]] = seconds * drive.damping;
     }
-    mj_forward(model_.get(), data_.get());
+    if (AreInOrder()) {
+      // Only inertia has changed.
+      mj_crb(model_.get(), data_.get());
+      mj_factorM(model_.get(), data_.get());
+      if (!std::exchange(has_velocities, true)) mj_fwdVelocity(model_.get(), data_.get());
+      FindAccelerations();
+    } else {
+      mj_forward(model_.get(), data_.get());
+      has_velocities = true;
+    }
   } while (ReachLimits(acting, seconds));
   mj_checkAcc(model_.get(), data_.get());
   mj_Euler(model_.get(), data_.get());
@@ -287,7 +333,8 @@ void MujocoSystem::Begin(std::span<const double> from, std::span<const Wrench> a
   model_->opt.timestep = seconds;
   mj_checkPos(model_.get(), data_.get());
   mj_checkVel(model_.get(), data_.get());
-  mj_fwdPosition(model_.get(), data_.get());
+  begin_.assign(data_->qpos, data_->qpos + model_->nq);
+  FindPositions(begin_.data());
 }
 
 void MujocoSystem::Step(std::span<const double> from, std::span<const Wrench> acting,
@@ -337,16 +384,16 @@ void MujocoSystem::AddForcesOfStages(double seconds, std::vector<ShapeContact>* 
   const auto speeds = static_cast<std::size_t>(model_->nv);
   const std::vector<double> q(data_->qpos, data_->qpos + positions);
   const std::vector<double> u(data_->qvel, data_->qvel + speeds);
-  mj_forward(model_.get(), data_.get());
+  FindAll(q.data());
   constexpr std::array<std::pair<double, double>, 3> kStages = {
       {{0.5, 1.0 / 3}, {0.5, 1.0 / 3}, {1, 1.0 / 6}}};  // how far on, and how much it counts
   for (const auto& [on, share] : kStages) {
     const std::vector<double> speed(data_->qvel, data_->qvel + speeds);
     const std::vector<double> rate(data_->qacc, data_->qacc + speeds);
-    std::copy(q.begin(), q.end(), data_->qpos);
-    mj_integratePos(model_.get(), data_->qpos, speed.data(), on * seconds);
+    std::vector<double> at = q;
+    mj_integratePos(model_.get(), at.data(), speed.data(), on * seconds);
     for (std::size_t i = 0; i < speeds; ++i) data_->qvel[i] = u[i] + on * seconds * rate[i];
-    mj_forward(model_.get(), data_.get());
+    FindAll(at.data());
     AddForces(share, contacts);
   }
 }

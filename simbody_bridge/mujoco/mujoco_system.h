@@ -18,6 +18,8 @@
 #include "simbody_bridge/load.h"
 #include "simbody_bridge/model/forest.h"
 #include "simbody_bridge/model_engine.h"
+#include "simbody_bridge/mujoco/runge_kutta4.h"
+#include "simbody_bridge/mujoco/shape_pairs.h"
 
 namespace tcs {
 
@@ -60,12 +62,16 @@ class MujocoSystem {
   void ActInWorld(const TreeLink& link, const Load& load);
   JointDrive DriveOf(std::span<const Wrench> acting, std::size_t joint) const;
   void SetDrive(std::size_t joint, const JointDrive& drive);
+  void FindPositions(const double* positions);
+  void FindAccelerations();
+  void FindAll(const double* positions);
   void Begin(std::span<const double> from, std::span<const Wrench> acting, double seconds);
   bool IsSmooth(std::span<const Wrench> acting, double seconds) const;
   void AddForces(double share, std::vector<ShapeContact>* contacts) const;
   void AddForcesOfStages(double seconds, std::vector<ShapeContact>* contacts);
   void StepSmoothly();
   void StepImplicitly(std::span<const Wrench> acting, double seconds);
+  bool AreInOrder();
   bool ReachLimits(std::span<const Wrench> acting, double seconds);
   bool HasFailed() const;
 
@@ -77,6 +83,10 @@ class MujocoSystem {
   std::vector<int> positions_, speeds_;       // where those of each joint are; -1: fixed
   std::vector<std::size_t> shapes_;           // of the forest, of each of MuJoCo's geoms
   std::vector<double> start_;
+  ShapePairs pairs_;
+  bool are_apart_ = false;  // where positions were found last
+  RungeKutta4 runge_kutta_;
+  std::vector<double> begin_;     // memory of Begin and AreInOrder: positions
   std::vector<double> at_limit_;  // memory: what each joint's effort is held to; 0: free
   std::vector<Load> along_body_;  // memory of ActOnLinks
 };

@@ -1,22 +1,36 @@
 #include "coordinator/channel/json/json_text.h"
 
-#include <fmt/format.h>
+#include <fmt/compile.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 namespace tcs {
+namespace {
+
+// Whether it stands for itself in a JSON string. Names of frames are made of such letters.
+bool IsPlain(char letter) {
+  return letter >= ' ' && letter <= '~' && letter != '"' && letter != '\\';
+}
+
+}  // namespace
 
 void AppendNumber(double value, std::string& text) {
   if (!std::isfinite(value)) {
     text += "null";
     return;
   }
-  const std::size_t begin = text.size();
-  fmt::format_to(std::back_inserter(text), "{}", value);
-  if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
+  std::array<char, 32> digits;  // a double has 24 at most
+  char* end = fmt::format_to(digits.data(), FMT_COMPILE("{}"), value);
+  const auto makes_it_real = [](char letter) { return letter == '.' || letter == 'e'; };
+  if (std::none_of(digits.data(), end, makes_it_real)) {
+    *end++ = '.';
+    *end++ = '0';
+  }
+  text.append(digits.data(), end);
 }
 
 void AppendList(std::span<const double> values, std::string& text) {
@@ -54,7 +68,13 @@ void JsonObject::Add(std::string_view key, std::span<const double> values) {
 
 void JsonObject::Add(std::string_view key, const std::string& value) {
   Begin(key);
-  text_ += nlohmann::json(value).dump();
+  if (std::ranges::all_of(value, IsPlain)) {
+    text_ += '"';
+    text_ += value;
+    text_ += '"';
+  } else {
+    text_ += nlohmann::json(value).dump();
+  }
 }
 
 void JsonObject::AddRaw(std::string_view key, std::string_view value) {

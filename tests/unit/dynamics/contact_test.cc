@@ -1,6 +1,7 @@
 // Models that touch the world and each other.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 
@@ -150,6 +151,31 @@ TEST_P(ModelsInContact, ARollingWheelComesAsFarAsItTurns) {
   EXPECT_NEAR(way, force / inertia * 4 / 2, 0.01);
   EXPECT_NEAR((ReadJoint(*dynamics, 0, AtMs(2200)).position - turned) * 0.1, way, 0.002 * way);
   EXPECT_NEAR(state.pose.position_m[1], 0, 1e-4);
+}
+
+// Whether shapes are near each other is looked at in another way where they are many.
+TEST_P(ModelsInContact, WhatIsFarAwayChangesNoBit) {
+  for (const Geometry& geometry : {Cube(0.2), Geometry{SphereShape{0.1}}}) {
+    RobotModel thrown = Loose("thrown", geometry, {{0, 0, 0.5}, FromRollPitchYaw(0.3, 0.2, 0.1)});
+    thrown.linear_velocity_mps = {1, 0, 0};
+    thrown.angular_velocity_radps = {3, 1, 2};
+    WorldSpec world = WorldOf({thrown}, GetParam());
+    const Geometry slab = BoxShape{{6, 6, 0.5}};
+    world.fixtures = {ShapeOf(slab, 0.8, {{0, 0, -0.25}, {0, 0, 0, 1}})};
+    auto alone = MakeDynamics(world);
+    for (int i = 0; i < 100; ++i) {
+      world.fixtures.push_back(ShapeOf(Cube(0.5), 0.8, {{i - 50.0, 30, 5}, {0, 0, 0, 1}}));
+    }
+    auto among_others = MakeDynamics(world);
+    double lowest_m = 1;
+    for (int ms = 0; ms <= 1500; ms += 7) {
+      const LinkState state = ReadLink(*alone, 0, AtMs(ms));
+      lowest_m = std::min(lowest_m, state.pose.position_m[2]);
+      const LinkState same = ReadLink(*among_others, 0, AtMs(ms));
+      ASSERT_EQ(std::memcmp(&state, &same, sizeof state), 0) << ms;
+    }
+    EXPECT_LT(lowest_m, 0.15);
+  }
 }
 
 TEST_P(ModelsInContact, ModelsThatCollideKeepTheirMomentum) {
