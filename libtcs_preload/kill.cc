@@ -39,11 +39,22 @@ auto SendSignal(pid_t receiver, int signal, Call call) {
   return result;
 }
 
+// Sends one as SendSignal's call. Where only gates keep threads apart it must come to no thread
+// that is about to make a call which the kernel hands over: once more it is the coordinator's turn,
+// who sees to that (gates_only.cc). The C library's calls are handed over themselves.
+template <class... Args>
+long SendRaw(long number, Args... args) {
+  const bool tells = g_header != nullptr && g_header->gates_only != 0 && t_thread.slot != nullptr &&
+                     t_thread.slot->signals.load() != 0;
+  if (tells) AwaitTurn(t_thread);
+  return RawSyscall(number, args...);
+}
+
 }  // namespace
 
 TCS_EXPORT int kill(pid_t pid, int signal) noexcept {
   return static_cast<int>(
-      ToErrno(SendSignal(pid, signal, [&] { return RawSyscall(SYS_kill, pid, signal); })));
+      ToErrno(SendSignal(pid, signal, [&] { return SendRaw(SYS_kill, pid, signal); })));
 }
 
 TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
@@ -53,7 +64,7 @@ TCS_EXPORT int killpg(pid_t group, int signal) noexcept {
 
 TCS_EXPORT int tgkill(pid_t pid, pid_t tid, int signal) {
   return static_cast<int>(
-      ToErrno(SendSignal(pid, signal, [&] { return RawSyscall(SYS_tgkill, pid, tid, signal); })));
+      ToErrno(SendSignal(pid, signal, [&] { return SendRaw(SYS_tgkill, pid, tid, signal); })));
 }
 
 TCS_EXPORT int sigqueue(pid_t pid, int signal, const sigval value) noexcept {
@@ -77,7 +88,7 @@ TCS_EXPORT int pthread_cancel(pthread_t thread) {
   return SendSignal(0, kCancelSignal, [&] {
     const int error = TCS_REAL(pthread_cancel)(thread);
     if (error == 0 && tid > 0) {
-      RawSyscall(SYS_tgkill, RawSyscall(SYS_getpid), tid, kCancelSignal);
+      SendRaw(SYS_tgkill, RawSyscall(SYS_getpid), tid, kCancelSignal);
     }
     return error;
   });

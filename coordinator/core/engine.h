@@ -202,6 +202,7 @@ class Engine {
   bool PutOff(const Task* by, Late late);
   bool MayGoOn(Task& task);
   void BringToGate(Task& task);
+  Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
   void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);

@@ -21,6 +21,27 @@ namespace {
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
 constexpr int kMostGateLooks = 400;
+constexpr int kMostAtOnce = 1000;  // events of one instant
+
+// The thread, which is about to go on, sends a signal at once: its shim says so, or the kernel
+// carries out the call.
+bool SendsSignal(const Task& task) {
+  if (task.slot < 0) return false;
+  if (task.trap_id == 0) {
+    const shm::ThreadSlot& slot = SlotOf(task);
+    return slot.signals.load() != 0 && slot.note.kind == shm::NotificationKind::kCall;
+  }
+  return task.trap_continues && task.trapped_call.id == task.trap_id &&
+         SendsSignal(task.trapped_call);
+}
+
+// It is not dispatched, and has stopped neither at its gate nor in a call that was received.
+bool MayCompute(const Task& task) {
+  const bool has_stopped = task.parked || task.trap_id != 0 || task.early_trap.has_value() ||
+                           task.notified_early || task.is_put_off || task.is_call_put_off;
+  return task.state != TaskState::kDead && task.slot >= 0 && !has_stopped && !task.executes &&
+         !task.process->expelled;
+}
 
 }  // namespace
 
@@ -59,6 +80,7 @@ Reactor::Found Engine::EndCall(Reactor::Found found) {
   const Moment moment{run_.WrittenAt()};
   found |= TakePutOff(moment);
   while (std::exchange(found.looks_again, false)) found |= TakeEvents(kNoWait, moment, true);
+  if (!found.stops_running) found |= BringOthersToGates(*run_.turn.task(), moment);
   says_call_ = false;
   if (found.stops_running) {
     Task& task = *run_.turn.task();
@@ -87,6 +109,37 @@ void Engine::BringToGate(Task& task) {
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
     if (HostNs(HostClockOf(task)) > sent + kMostWayToGate || ThreadState(task.tid) != 'R') return;
   }
+}
+
+// The kernel keeps a signal from a thread in a trapped call once that has been received. Before,
+// the signal would end the call with EINTR, if its handler does not have it restarted; and calls
+// that never end so (FUTEX_WAKE) would. So nobody may be about to make one when a thread goes on
+// that sends a signal: those that compute are told to go to their gates, which restarts what they
+// have just called, and are waited for as in BringToGate.
+Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
+  Reactor::Found found;
+  if (!SendsSignal(sender)) return found;
+  std::map<const Task*, HostDuration> sent;  // and when, by their CPU clocks
+  bool awaits = true;
+  for (int look = 0; awaits && look < kMostGateLooks; ++look) {
+    awaits = false;
+    for (Task& task : run_.table.tasks()) {
+      if (&task == &sender || !MayCompute(task) || ThreadState(task.tid) != 'R') continue;
+      const HostDuration now = HostNs(HostClockOf(task));
+      if (const auto [told, is_new] = sent.try_emplace(&task, now); is_new) {
+        task.has_signal = true;
+        host_cpu_.SendToGate(task.process->pid, task);
+        awaits = true;
+      } else {
+        awaits |= now <= told->second + kMostWayToGate;
+      }
+    }
+    if (awaits) found |= TakeEvents(kGateLook, moment, true);
+  }
+  for (int turn = 0; turn < kMostAtOnce && reactor_.HasMore(); ++turn) {
+    found |= TakeEvents(kNoWait, moment, true);
+  }
+  return found;
 }
 
 // What the thread has computed since its last turn ended, or while it was taken to be stopped, is a

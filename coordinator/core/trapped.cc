@@ -22,11 +22,14 @@ Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
     return {};
   }
   const bool waits = by != nullptr && (by->slot >= 0 || call->number == SYS_futex);
-  return waits && PutOff(by, take) ? Reactor::Found{} : take(moment);
+  if (!waits || !PutOff(by, take)) return take(moment);
+  by->is_call_put_off = true;
+  return {};
 }
 
 Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   Task* task = run_.table.Living(call.tid);
+  if (task != nullptr) task->is_call_put_off = false;
   // Before it registers a thread is known if it was announced, and others may wait with it for a
   // lock of the C library; what else it calls then is the loader's business.
   const bool ours = task != nullptr && (task->slot >= 0 || call.number == SYS_futex);
@@ -43,7 +46,8 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   // again, or it came back from a call that nobody saw.
   if (task->state == TaskState::kUnseen) waker_.Wake(*task, shm::WakeReason::kGo, moment);
   if (task->state == TaskState::kWaiting) waker_.Wake(*task, shm::WakeReason::kSignal, moment);
-  ChargeUndispatched(*task);
+  // What it has done in a turn beside others is charged when that has its order.
+  if (!task->turns_beside) ChargeUndispatched(*task);
   task->early_trap = call;
   task->trap_id = 0;
   return kConcernsAll;

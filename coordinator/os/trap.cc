@@ -57,6 +57,13 @@ constexpr std::uint32_t kTrapped[] = {
     // Several futexes at once.
     SYS_futex_waitv};
 
+constexpr std::uint32_t kSignals[] = {SYS_kill,
+                                      SYS_tkill,
+                                      SYS_tgkill,
+                                      SYS_rt_sigqueueinfo,
+                                      SYS_rt_tgsigqueueinfo,
+                                      SYS_pidfd_send_signal};
+
 // The shim's own, too.
 constexpr std::uint32_t kExecutions[] = {SYS_execve, SYS_execveat};
 constexpr std::uint32_t kEnd = SYS_exit_group;
@@ -204,6 +211,10 @@ int InstallTrap(const std::vector<pid_t>& guarded, bool traps_ends) {
 bool IsExecution(const TrappedCall& call) {
   return std::find(std::begin(kExecutions), std::end(kExecutions), call.number) !=
          std::end(kExecutions);
+}
+
+bool SendsSignal(const TrappedCall& call) {
+  return std::find(std::begin(kSignals), std::end(kSignals), call.number) != std::end(kSignals);
 }
 
 bool IsEnd(const TrappedCall& call) { return static_cast<std::uint32_t>(call.number) == kEnd; }

@@ -33,6 +33,9 @@ bool TrapsHoldSignals();
 // which the other program would have no handler for.
 bool IsExecution(const TrappedCall& call);
 
+// It sends a signal, to others or to itself.
+bool SendsSignal(const TrappedCall& call);
+
 // It ends its process.
 bool IsEnd(const TrappedCall& call);
 

@@ -88,14 +88,15 @@ struct Task : HostThread {
   // coordinator (beside_cpu.h); and how far that one goes.
   int short_turns = 0, beside_after = 3;
   VirtualTime beside_horizon;
-  bool died_beside = false;     // with its process, in the turn that it has there
-  HostDuration ran;             // in its last turn
-  bool spins = false;           // computes without calls where computing takes no time
-  bool notified_early = false;  // has notified without being dispatched: answered at its dispatch
-  bool executes = false;        // another program, perhaps: it has no handlers there
-  bool has_signal = false;      // ours, to go to its gate, unless it has handled it by now
-  bool is_put_off = false;      // has notified, and is heard later (gates_only.cc)
-  shm::WorkCounts work{};       // so far,
+  bool died_beside = false;      // with its process, in the turn that it has there
+  HostDuration ran;              // in its last turn
+  bool spins = false;            // computes without calls where computing takes no time
+  bool notified_early = false;   // has notified without being dispatched: answered at its dispatch
+  bool executes = false;         // another program, perhaps: it has no handlers there
+  bool has_signal = false;       // ours, to go to its gate, unless it has handled it by now
+  bool is_put_off = false;       // has notified, and is heard later (gates_only.cc),
+  bool is_call_put_off = false;  // or its trapped call has been received, and is taken later
+  shm::WorkCounts work{};        // so far,
   std::uint64_t trapped_calls = 0;  // with those of its calls that the shim has not seen
   std::int64_t activations = 0;
   Activation activation;          // this one, while it does not wait
