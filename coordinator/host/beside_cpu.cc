@@ -1,7 +1,6 @@
 #include "coordinator/host/beside_cpu.h"
 
 #include <linux/futex.h>
-#include <sched.h>
 #include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -42,7 +41,7 @@ BesideCpu::~BesideCpu() {
   awake_until_tsc_.store(0);
   Wake(sleeps_);
   Wake(sends_);
-  if (awake_.joinable()) awake_.join();
+  if (opener_.joinable()) opener_.join();
   if (warden_.joinable()) warden_.join();
 }
 
@@ -62,25 +61,31 @@ void BesideCpu::Start() {
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  awake_ = std::thread([this] { StayAwake(); });
+  opener_ = std::thread([this] { OpenGates(); });
   warden_ = std::thread([this] { SendHomeWhenAsked(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-void BesideCpu::StayAwake() {
+void BesideCpu::OpenGates() {
   LeaveRealTime(0);
   RunOnlyWhenIdle();
   BindTo(0, cpu_);
   while (!ends_.load()) {
-    while (__rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) {
-      // The kernel may let this thread go on until its next tick all the same.
-      if (gives_way_.load() && gives_way_.exchange(false)) sched_yield();
-      _mm_pause();
-    }
+    while (OpenNext() || __rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
     sleeps_.store(1);
-    if (__rdtsc() < awake_until_tsc_.load()) continue;
-    if (!ends_.load()) syscall(SYS_futex, &sleeps_, FUTEX_WAIT_PRIVATE, 1, nullptr, nullptr, 0);
+    if (asked_.load() != opened_ || ends_.load()) continue;
+    syscall(SYS_futex, &sleeps_, FUTEX_WAIT_PRIVATE, 1, nullptr, nullptr, 0);
   }
+}
+
+// The thread runs instead of this one, and this one again once the thread has stopped.
+bool BesideCpu::OpenNext() {
+  if (asked_.load(std::memory_order_acquire) == opened_) return false;
+  opens_.store(true);
+  shm::ThreadSlot* slot = gates_[opened_++ % kMostGates].exchange(nullptr);
+  if (slot != nullptr) HostCpu::OpenGate(*slot);
+  opens_.store(false);
+  return true;
 }
 
 void BesideCpu::SendHomeWhenAsked() {
@@ -135,12 +140,22 @@ bool BesideCpu::Begin(HostThread& thread) {
   const std::uint64_t tsc = __rdtsc();
   NoteWanted(tsc);
   awake_until_tsc_.store(tsc + TicksIn(kAwakeNs));
+  thread.slot_memory->saying.store(Saying::kRuns);
+  const std::uint64_t place = asked_.load();
+  gates_[place % kMostGates].store(thread.slot_memory);
+  asked_.store(place + 1);
   if (sleeps_.exchange(0) != 0) Wake(sleeps_);
-  shm::ThreadSlot& slot = *thread.slot_memory;
-  slot.saying.store(Saying::kRuns);
-  HostCpu::OpenGate(slot);
-  gives_way_.store(true);
   return true;
+}
+
+// False if its gate is open, or about to be.
+bool BesideCpu::TakeBack(const HostThread& thread) {
+  bool is_back = false;
+  for (std::atomic<shm::ThreadSlot*>& gate : gates_) {
+    shm::ThreadSlot* slot = thread.slot_memory;
+    is_back |= slot != nullptr && gate.compare_exchange_strong(slot, nullptr);
+  }
+  return is_back;
 }
 
 bool BesideCpu::HasSaid(const HostThread& thread) {
@@ -163,16 +178,18 @@ void BesideCpu::Take(HostThread& thread) {
 }
 
 bool BesideCpu::GiveUp(HostThread& thread) {
-  if (thread.slot_memory != nullptr) {
-    Saying runs = Saying::kRuns;
-    if (!thread.slot_memory->saying.compare_exchange_strong(runs, Saying::kByPipe)) return false;
-  }
+  if (TakeBack(thread)) thread.parked = true;
+  Saying runs = Saying::kRuns;
+  if (!thread.slot_memory->saying.compare_exchange_strong(runs, Saying::kByPipe)) return false;
   thread.turns_beside = false;
   --begun_;
   return true;
 }
 
 void BesideCpu::Forget(HostThread& thread) {
+  TakeBack(thread);
+  // Its slot goes with it.
+  while (opens_.load()) _mm_pause();
   thread.turns_beside = false;
   --begun_;
 }

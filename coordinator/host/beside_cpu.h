@@ -1,7 +1,6 @@
 // A further processor of the host, on which threads have short turns while the coordinator does
 // something else: the coordinator begins such a turn, and looks later what it has come to. Neither
-// sleeps for the other. Several turns may have begun; the kernel has the threads run one after the
-// other.
+// sleeps for the other. Several turns may have begun; they are had in that order, one by one.
 //
 //   Begin(thread)           its page is written: it leaves its gate, and its clock begins then
 //   HasSaid(thread)         it has stopped at its gate, and its note can be read
@@ -11,9 +10,11 @@
 //
 // A thread that has come here stays: it is held by its gate alone, at ordinary priority, so that it
 // takes the processor from nobody, and leaves no real-time thread when somebody dies. Two threads
-// of this process are here, too. One computes when nobody else does, for as long as turns follow
-// each other closely: a processor that sleeps takes the time of two turns to wake. The other one
-// goes before all, and sends home those that do not stop.
+// of this process are here, too. The opener opens the gates. It runs when nobody else does, so that
+// it opens the next one when the last turn is over, and no wake-up from another processor
+// interrupts a turn, which would be charged for that. It stays awake for as long as turns follow
+// each other closely: a processor that sleeps takes the time of two turns to wake. The warden goes
+// before all, and sends home those that do not stop.
 //
 // For the coordinator's thread only.
 #pragma once
@@ -67,7 +68,9 @@ class BesideCpu {
 
  private:
   void Start();
-  void StayAwake();
+  void OpenGates();
+  bool OpenNext();
+  bool TakeBack(const HostThread& thread);
   void SendHomeWhenAsked();
   void Wake(std::atomic<std::uint32_t>& word);
   std::uint64_t TicksIn(std::int64_t ns) const;
@@ -85,10 +88,16 @@ class BesideCpu {
 
   std::atomic<bool> ends_{false};
   std::atomic<std::uint64_t> awake_until_tsc_{0};
-  std::atomic<bool> gives_way_{false};
-  std::atomic<std::uint32_t> sleeps_{0};  // 1: the one that keeps awake does, at this word
+  // The gates that are to be opened, in a ring. What the opener takes, or the coordinator takes
+  // back, becomes null.
+  static constexpr std::size_t kMostGates = 16;
+  std::array<std::atomic<shm::ThreadSlot*>, kMostGates> gates_{};
+  std::atomic<std::uint64_t> asked_{0};
+  std::uint64_t opened_ = 0;              // the opener's
+  std::atomic<bool> opens_{false};        // it does, just now
+  std::atomic<std::uint32_t> sleeps_{0};  // 1: the opener does, at this word
   std::atomic<std::uint32_t> sends_{0};   // the thread that is to be sent home; 0: none
-  std::thread awake_, warden_;
+  std::thread opener_, warden_;
 };
 
 }  // namespace tcs
