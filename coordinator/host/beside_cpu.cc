@@ -67,9 +67,10 @@ void BesideCpu::Start() {
 }
 
 void BesideCpu::OpenGates() {
+  // In this order: at home, with any lower priority, it would wait for long to get there.
+  BindTo(0, cpu_);
   LeaveRealTime(0);
   RunOnlyWhenIdle();
-  BindTo(0, cpu_);
   while (!ends_.load()) {
     while (OpenNext() || __rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
     sleeps_.store(1);
