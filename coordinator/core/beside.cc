@@ -58,6 +58,7 @@ void Engine::BeginTurnBeside(VirtualCpu& cpu) {
   VirtualTime idle_until;
   const VirtualTime horizon = std::min(HorizonFor(task, &idle_until), run_.root.DynamicsHorizon());
   if (horizon < at + kLeastTurn || OnlyPays(task.state, at, task.debt, horizon)) return;
+  if (beside_.IsTaken()) return;
   task.ComeTo(at);
   WritePage(task, horizon, std::min(idle_until, horizon));
   // Whatever others may see or have done has its order.

@@ -69,11 +69,13 @@ bool TurnsBeside::MayBegin(const Task& task) {
   return task.state == TaskState::kReady && task.parked && task.short_turns >= task.beside_after;
 }
 
+bool TurnsBeside::IsTaken() {
+  if (!parts_.ahead.IsOn(cpu_->cpu())) return false;
+  cpu_->NoteWanted(__rdtsc());
+  return true;
+}
+
 bool TurnsBeside::Begin(Task& task, VirtualTime horizon) {
-  if (parts_.ahead.IsOn(cpu_->cpu())) {
-    cpu_->NoteWanted(__rdtsc());
-    return false;
-  }
   if (!cpu_->Begin(task)) return false;
   task.beside_horizon = horizon;
   parts_.records.BeganBeside(task);

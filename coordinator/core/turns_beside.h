@@ -58,7 +58,9 @@ class TurnsBeside {
   // Whether a turn on the robot may, and of that thread, which is the next one there.
   static bool MayBegin(const Robot& robot);
   static bool MayBegin(const Task& task);
-  // The thread's page is written. False if the processor is somebody else's at the moment.
+  // A turn would begin now. True if the processor is somebody else's at the moment.
+  bool IsTaken();
+  // The thread's page is written. False if the kernel does not let the thread go there.
   bool Begin(Task& task, VirtualTime horizon);
 
   // It is the turn's order. Until the thread has said something or has ended; false if it is not

@@ -37,7 +37,9 @@ void HostCpu::Start(HostThread& thread, bool is_silent) {
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {
   MeterOf(thread).Begin(thread.metered, tsc, true, false);
-  // What a switch takes there is not known, nor counted: the clock begins behind it.
+  // What a switch takes there is not known, nor counted: the clock begins behind it. Nor is
+  // anything to be learnt from it of switches here.
+  thread.metered.unchecked_runs = {};
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = tsc;
 }
 
