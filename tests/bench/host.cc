@@ -18,11 +18,24 @@ std::int64_t RawNowNs() {
   return now.tv_sec * 1'000'000'000 + now.tv_nsec;
 }
 
+cpu_set_t before_binding;
+bool is_bound = false;
+
 }  // namespace
+
+OnAllCpus::OnAllCpus() {
+  if (is_bound) sched_setaffinity(0, sizeof before_binding, &before_binding);
+}
+
+OnAllCpus::~OnAllCpus() {
+  if (is_bound) BindToLastCpu();
+}
 
 bool BindToLastCpu() {
   cpu_set_t allowed, one;
   if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return false;
+  before_binding = allowed;
+  is_bound = true;
   int last = 0;
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (CPU_ISSET(cpu, &allowed)) last = cpu;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/bench/child.h"
+#include "tests/bench/host.h"
 #include "tests/bench/model_work.h"
 #include "tests/bench/tcsim_run.h"
 
@@ -66,6 +67,7 @@ std::optional<std::string> ScenarioOf(const SwarmCase& swarm) {
 std::optional<RunCosts> RunOnce(const SwarmCase& swarm, double virtual_s) {
   const auto scenario = ScenarioOf(swarm);
   if (!scenario) return std::nullopt;
+  const OnAllCpus all;
   const auto run = TcsimRun::Of("robots", *scenario,
                                 {"--set", fmt::format("duration={}s", virtual_s), "--host-cpus",
                                  std::to_string(swarm.host_cpus)});
