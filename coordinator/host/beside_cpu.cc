@@ -25,6 +25,7 @@ constexpr std::int64_t kMostWayHomeNs = 2'000'000;
 constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 constexpr std::int64_t kLeftToOthersNs = 2'000'000;
 constexpr int kMostDoublings = 8;
+constexpr std::uint32_t kNobody = UINT32_MAX;  // to be sent home: the warden ends
 
 }  // namespace
 
@@ -39,6 +40,9 @@ BesideCpu::BesideCpu(int cpu, int home, double ticks_per_ns, Executor& executor,
 BesideCpu::~BesideCpu() {
   ends_.store(true);
   awake_until_tsc_.store(0);
+  // Other words than those at which the two are about to sleep, perhaps.
+  sleeps_.store(0);
+  sends_.store(kNobody);
   Wake(sleeps_);
   Wake(sends_);
   if (opener_.joinable()) opener_.join();
@@ -74,7 +78,8 @@ void BesideCpu::OpenGates() {
   while (!ends_.load()) {
     while (OpenNext() || __rdtsc() < awake_until_tsc_.load(std::memory_order_relaxed)) _mm_pause();
     sleeps_.store(1);
-    if (asked_.load() != opened_ || ends_.load()) continue;
+    if (asked_.load() != opened_) continue;
+    if (ends_.load()) return;
     syscall(SYS_futex, &sleeps_, FUTEX_WAIT_PRIVATE, 1, nullptr, nullptr, 0);
   }
 }
@@ -92,7 +97,7 @@ bool BesideCpu::OpenNext() {
 void BesideCpu::SendHomeWhenAsked() {
   BindTo(0, cpu_);
   while (!ends_.load()) {
-    if (const std::uint32_t tid = sends_.load(); tid != 0) {
+    if (const std::uint32_t tid = sends_.load(); tid != 0 && tid != kNobody) {
       // It does not run meanwhile.
       executor_.Hold(static_cast<pid_t>(tid));
       BindTo(static_cast<pid_t>(tid), home_);
