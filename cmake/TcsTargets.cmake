@@ -65,14 +65,15 @@ function(tcs_share_precompiled from)
   endif()
 endfunction()
 
-# What runs once, such as reading a command line by templates, is not worth the time of optimising it.
+# What runs once, such as reading a command line by templates, is not worth the time of optimising it. Not -O0: of an
+# inline function that is called in many sources the linker keeps the first copy, and would give it to the run's loop, too.
 function(tcs_compile_quickly)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -Og SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # The same of a whole library.
 function(tcs_target_compile_quickly target)
-  target_compile_options(${target} PRIVATE -O0)
+  target_compile_options(${target} PRIVATE -Og)
 endfunction()
 
 function(tcs_add_library target)
