@@ -34,6 +34,20 @@ namespace {
 
 constexpr std::size_t kMostBuffers = 1024;  // above it the kernel says EINVAL
 
+// The kernel moves no more than this in a call (MAX_RW_COUNT). Of a buffer by itself it takes no
+// notice of what is beyond, where in a list (sendmsg) it would say EINVAL.
+constexpr std::size_t kMostBytes = 0x7fff'f000;
+iovec PieceOf(const void* buffer, std::size_t size) {
+  return {const_cast<void*>(buffer), size < kMostBytes ? size : kMostBytes};
+}
+
+// But read and write fail at once where not all of the buffer could be the program's.
+bool IsBeyondMemory(const void* buffer, std::size_t size) {
+  constexpr std::uintptr_t kEnd = std::uintptr_t{1} << 47;
+  const auto begin = reinterpret_cast<std::uintptr_t>(buffer);
+  return begin > kEnd || size > kEnd - begin;
+}
+
 using tcs::shm::kNeverNs;
 
 // A UNIX stream connects once its listener has room. That cannot be polled; those who accept say
@@ -179,13 +193,14 @@ bool AreSound(const iovec* buffers, std::size_t count) {
   return true;
 }
 
+// `is_sound`: the kernel may have a part of it to move.
 template <class Whole>
-ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
+ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, bool is_sound, Whole whole) {
   const Entered t;
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
+  const bool at_once = !is_sound || !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
   if (NotesDatagrams()) NoteDatagram(*t, fd, nullptr, 0);
   const long result =
@@ -315,8 +330,9 @@ ssize_t ReceiveAll(int fd, msghdr* given, int flags, Whole whole) {
 TCS_EXPORT ssize_t read(int fd, void* buffer, std::size_t size) {
   auto whole = [&] { return RawSyscall(SYS_read, fd, Arg(buffer), size); };
   const iovec iov{buffer, size};
+  const bool at_once = size == 0 || IsBeyondMemory(buffer, size);
   return ReadLike(
-      fd, {}, [&] { return size == 0 ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
+      fd, {}, [&] { return at_once ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
 }
 
 TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_t room) {
@@ -337,7 +353,7 @@ TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, s
   };
   auto whole = [&] { return call(flags); };
   if (from == nullptr && WaitsForAll(fd, flags)) {
-    iovec iov{buffer, size};
+    iovec iov = PieceOf(buffer, size);
     msghdr message{};
     message.msg_iov = &iov;
     message.msg_iovlen = 1;
@@ -433,17 +449,18 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
   const iovec iov{const_cast<void*>(buffer), size};
-  return WriteAll(fd, &iov, 1, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
+  return WriteAll(fd, &iov, 1, !IsBeyondMemory(buffer, size),
+                  [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
 
 TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
-  return WriteAll(fd, iov, static_cast<std::size_t>(count),
+  return WriteAll(fd, iov, static_cast<std::size_t>(count), true,
                   [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
 }
 
 TCS_EXPORT ssize_t sendto(int fd, const void* buffer, std::size_t size, int flags,
                           const sockaddr* to, socklen_t to_size) {
-  iovec iov{const_cast<void*>(buffer), size};
+  iovec iov = PieceOf(buffer, size);
   msghdr message{};
   message.msg_name = const_cast<sockaddr*>(to);
   message.msg_namelen = to_size;
