@@ -193,14 +193,13 @@ bool AreSound(const iovec* buffers, std::size_t count) {
   return true;
 }
 
-// `is_sound`: the kernel may have a part of it to move.
 template <class Whole>
-ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, bool is_sound, Whole whole) {
+ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   const Entered t;
   pthread_testcancel();
   if (t == nullptr || !CanWait(fd)) return ToErrno(whole());
   HoldForWrite(*t);
-  const bool at_once = !is_sound || !AreSound(iov, count) || IsNonBlocking(fd);
+  const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
   if (NotesDatagrams()) NoteDatagram(*t, fd, nullptr, 0);
   const long result =
@@ -449,12 +448,12 @@ TCS_EXPORT int accept(int fd, sockaddr* address, socklen_t* size) {
 
 TCS_EXPORT ssize_t write(int fd, const void* buffer, std::size_t size) {
   const iovec iov{const_cast<void*>(buffer), size};
-  return WriteAll(fd, &iov, 1, !IsBeyondMemory(buffer, size),
-                  [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
+  const std::size_t pieces = IsBeyondMemory(buffer, size) ? 0 : 1;  // to be moved in parts
+  return WriteAll(fd, &iov, pieces, [&] { return RawSyscall(SYS_write, fd, Arg(buffer), size); });
 }
 
 TCS_EXPORT ssize_t writev(int fd, const iovec* iov, int count) {
-  return WriteAll(fd, iov, static_cast<std::size_t>(count), true,
+  return WriteAll(fd, iov, static_cast<std::size_t>(count),
                   [&] { return RawSyscall(SYS_writev, fd, Arg(iov), count); });
 }
 
