@@ -56,9 +56,28 @@ for rights in with without contained; do
   run $rights flight "$out/example/scenario.yaml" --duration 3s
 done
 run without deaf "$out/deaf.yaml"
-# In turns, so that other load meets both.
-for turn in 1 2 3; do
-  for rights in with without; do run $rights work$turn "$out/work.yaml"; done
+# Where something else has the core's other hardware thread, the same work takes up to twice the time: another virtual
+# machine for seconds, or, unseen from inside one, the run's own further processor. So they have one processor, what
+# counts is the turn whose median piece is the cheapest, and there are turns until both have met a quiet host.
+pieces_agree() { python3 - "$out" "$1" <<'PY'
+import sys
+folder, turns = sys.argv[1], int(sys.argv[2])
+def least(rights, log):
+    return min(float(open(f"{folder}/{rights}/work{turn}/{log}.out.log").read().split()[0])
+               for turn in range(1, turns + 1))
+agree = True
+for log in "alone-long", "shared-long", "shared-short":
+    a, b = least("with", log), least("without", log)
+    print("after", turns, "turns", log, "a piece costs", a, "us with rights and", b, "without:", b / a)
+    agree = agree and abs(b / a - 1) < (0.05 if log.endswith("long") else 0.1)
+sys.exit(not agree)
+PY
+}
+most=15
+for turn in $(seq $most); do
+  for rights in with without; do run $rights work$turn "$out/work.yaml" --host-cpus 1; done
+  pieces_agree "$turn" && break
+  ((turn < most)) || fail "pieces of work do not cost the same without rights"
 done
 ! grep -q 'SCHED_FIFO is not permitted here' "$out/with/flight.said" || exit 77
 for said in "$out"/{without,contained}/*.said; do
@@ -74,7 +93,7 @@ for file in bodies.csv dispatches.csv activations.csv trace.json; do
   done
 done
 python3 - "$out" <<'PY' || fail "$(cat "$out"/*/*.said)"
-import json, sys
+import glob, json, sys
 folder = sys.argv[1]
 def summary(rights, name): return json.load(open(f"{folder}/{rights}/{name}/summary.json"))
 def check(s):
@@ -103,13 +122,5 @@ for log, (charged, passed) in took.items():
 # One has its processor for itself; the other one waits for the urgent one, which takes about half of it.
 assert took["other-hears"][1] < 1.02 * took["other-hears"][0], took
 assert took["robot-deaf"][1] > 1.2 * took["robot-deaf"][0], took
-# The least of three: what caches and other load add differs from run to run.
-def piece(rights, log):
-    return min(float(open(f"{folder}/{rights}/work{turn}/{log}.out.log").read().split()[0]) for turn in (1, 2, 3))
-for rights in ("with", "without"):
-    for turn in (1, 2, 3): check(summary(rights, f"work{turn}"))
-for log in "alone-long", "shared-long", "shared-short":
-    a, b = piece("with", log), piece("without", log)
-    print(log, "a piece costs", a, "us with rights and", b, "without:", b / a)
-    assert abs(b / a - 1) < (0.05 if log.endswith("long") else 0.1), (log, a, b)
+for said in glob.glob(f"{folder}/with*/work*.said"): check(summary(*said.removesuffix(".said").split("/")[-2:]))
 PY
