@@ -10,12 +10,25 @@
 
 namespace tcs {
 
+namespace {
+
+// Longer than the coordinator takes from Dispatch() to Start(): 0.1 to 0.3 ms, whatever the TSC's
+// rate.
+constexpr std::uint64_t kLongTicks = 300'000;
+
+}  // namespace
+
 std::string HostCpu::Open(std::unique_ptr<Meter> meter) {
   meter_ = std::move(meter);
   return detector_.Start();
 }
 
 void HostCpu::Dispatch(HostThread& thread) {
+  // Where something stops the coordinator before Start() (a tracer, SIGSTOP), the thread runs
+  // meanwhile, by a clock that runs from here.
+  if (thread.slot_memory != nullptr) {
+    thread.slot_memory->clock.base_tsc = thread.grant.base_tsc = __rdtsc();
+  }
   active_.Dispatch(thread);
   from_gate_ = std::exchange(thread.parked, false);
   detector_.Arm();
@@ -31,8 +44,16 @@ void HostCpu::OpenGate(shm::ThreadSlot& slot) {
 void HostCpu::Start(HostThread& thread, bool is_silent) {
   Woke();
   if (thread.slot_memory == nullptr) return;
+  MeteredThread& metered = thread.metered;
+  if (stop_tsc_ - thread.grant.base_tsc > kLongTicks) {
+    // It may have run, and its clock is not to go back. Its CPU clock tells what it had; the run
+    // tells nothing of switches.
+    MeterOf(thread).Begin(metered, thread.grant.base_tsc, from_gate_, is_silent);
+    metered.unchecked_runs = {};
+    return;
+  }
   thread.slot_memory->clock.base_tsc = thread.grant.base_tsc =
-      MeterOf(thread).Begin(thread.metered, stop_tsc_, from_gate_, is_silent);
+      MeterOf(thread).Begin(metered, stop_tsc_, from_gate_, is_silent);
 }
 
 void HostCpu::StartBeside(HostThread& thread, std::uint64_t tsc) {

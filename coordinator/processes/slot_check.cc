@@ -17,10 +17,13 @@ constexpr std::int64_t kSlackNs = 10'000'000;
 // More than all ways out of gates in one dispatch take, and than the TSC can miss.
 constexpr std::int64_t kLargeSlackNs = 1'000'000'000;
 
-// Of a thread of that robot, in a run that has taken so long.
+// More cannot have passed on that robot, in a run that has taken so long.
+bool CanHavePassed(std::int64_t ns, std::int64_t run_ns, const Robot& robot) {
+  return static_cast<double>(ns) <= static_cast<double>(run_ns + kLargeSlackNs) / robot.speed;
+}
+
 bool CanBeStolen(std::int64_t stolen_ns, std::int64_t run_ns, const Robot& robot) {
-  const double most = static_cast<double>(run_ns + kLargeSlackNs) / robot.speed;
-  return stolen_ns >= 0 && static_cast<double>(stolen_ns) <= most;
+  return stolen_ns >= 0 && CanHavePassed(stolen_ns, run_ns, robot);
 }
 
 }  // namespace
@@ -34,7 +37,10 @@ const char* SlotCheck::WhatIsImpossible(const Task& task) const {
   const std::int64_t added = shm::AdjustValue(page.executed_adjust.load());
   const std::int64_t waited = shm::AdjustValue(page.waited_adjust.load());
   if (is_fixed_ && added < -kSlackNs) return "a clock that went back";
-  if (!is_fixed_ && added > kLargeSlackNs) return "a clock that went ahead";
+  // A thread that ran on while something stopped the coordinator (a tracer) has its CPU clock's
+  // time.
+  const bool went_ahead = !is_fixed_ && !CanHavePassed(added, run_ns_(), *task.process->robot);
+  if (went_ahead) return "a clock that went ahead";
   const std::int64_t idle = std::max<std::int64_t>(0, grant.most_idle_ns - grant.base_time_ns);
   if (waited < 0 || waited > idle + kSlackNs) return "a sleep beyond what it was allowed";
   if (page.last_shown_ns.load() > grant.most_shown_ns) return "a time beyond what it was given";

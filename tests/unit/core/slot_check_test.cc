@@ -90,6 +90,14 @@ TEST_F(SlotCheckTest, NoMoreIsStolenThanTimeHasPassed) {
   EXPECT_EQ(measured_.StolenOf(task_), 2 * kSecond);
 }
 
+TEST_F(SlotCheckTest, NoClockGoesAheadByMoreTimeThanHasPassed) {
+  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecond));
+  EXPECT_EQ(Measured(), "");
+  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecond + 1));
+  EXPECT_EQ(Measured(), "a clock that went ahead");
+  EXPECT_EQ(Fixed(), "");
+}
+
 TEST_F(SlotCheckTest, OnAFasterRobotTheSameIsMoreOfTheHostsTime) {
   robot_.speed = 2.0;
   EXPECT_EQ(Measured(), "more stolen than there was");

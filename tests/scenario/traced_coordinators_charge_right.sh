@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+# A tracer that stops the coordinator at each of its system calls lets programs run where they never would: between
+# their gate and the moment at which their clock is set. Nobody is expelled for that, and each program is charged what
+# its CPU clock has counted. Threads that are new then (a planner's clock thread, with each plan) are the hard ones.
+type strace >/dev/null 2>&1 || exit 77
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+for cpus in 1 auto; do
+  "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 3s --host-cpus "$cpus" --out "$out/run" \
+    >"$out/said" 2>&1 &
+  run=$!
+  for _ in $(seq 300); do
+    coordinator=$(coordinator_of $run 2>/dev/null) && [[ -e $out/run/predator-planner.out.log ]] && break
+    sleep 0.02
+  done
+  timeout 60 strace -o "$out/calls" -p "$coordinator" >"$out/strace" 2>&1 || true
+  wait $run || fail "with $cpus: $(cat "$out/said")"
+  (($(wc -l <"$out/calls") > 5000)) || fail "the coordinator was not traced: $(cat "$out/strace")"
+  python3 - "$out/run/summary.json" <<'PY' || fail "with $cpus: $(cat "$out/said")"
+import json, sys
+s = json.load(open(sys.argv[1]))
+assert not s["warnings"], s["warnings"]
+assert s["staleness_ns"] == 0 and s["drift_ns"] <= 1_000_000, s
+for name, c in s["clients"].items():
+    assert abs(c["charged_ns"] - c["host_cpu_ns"]) <= 0.02 * c["host_cpu_ns"] + 200_000, (name, c)
+assert s["clients"]["predator/planner"]["charged_ns"] > 2_000_000_000, s
+PY
+done
