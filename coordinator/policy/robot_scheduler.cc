@@ -200,7 +200,9 @@ void RobotScheduler::MarkStale(std::size_t place) {
 void RobotScheduler::Ask(std::size_t place) {
   Entity& entity = entities_[place];
   Glance& glance = glances_[place];
-  const Wait& wait = entity.wait = wait_of_(entity.thread);
+  Wait& wait = entity.wait = wait_of_(entity.thread);
+  // One for a time that has passed already ends as it begins, and not when another core gets there.
+  wait.until = std::max(wait.until, wait.from);
   const VirtualTime before = glance.due;
   glance.due = wait.waits ? std::min(wait.until, wait.next_expiry) : wait.next_expiry;
   if (wait.waits && wait.is_over) glance.due = RobotTime(INT64_MIN);

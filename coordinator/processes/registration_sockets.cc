@@ -18,7 +18,7 @@ namespace tcs {
 
 RegistrationSockets::RegistrationSockets(Reactor& reactor)
     : reactor_(reactor),
-      name_(fmt::format("tcs.{}.{:x}", getpid(), HostClockNs(CLOCK_MONOTONIC))) {}
+      name_(fmt::format("tcs.{:07}.{:016x}", getpid(), HostClockNs(CLOCK_MONOTONIC))) {}
 
 std::string RegistrationSockets::Open(const OwnComputer* computer) {
   const auto number = static_cast<std::uint32_t>(sockets_.size());

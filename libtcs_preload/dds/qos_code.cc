@@ -12,6 +12,8 @@ using shm::DdsBytes;
 using shm::DdsEndpoint;
 using shm::DdsQos;
 
+constexpr std::size_t kPropertiesRoom = 1024;
+
 // Lays texts behind the structure that a payload begins with.
 class Texts {
  public:
@@ -25,6 +27,8 @@ class Texts {
     return where;
   }
   DdsBytes Add(std::string_view text) { return Add(text.data(), text.size()); }
+  // So that the next text is at a multiple of `size`.
+  void FillTo(std::size_t size) { bytes_.resize((bytes_.size() + size - 1) / size * size); }
 
   template <class Structure>
   Payload Behind(const Structure& structure) const {
@@ -94,6 +98,9 @@ void EncodeProperties(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   if (!all.empty()) {
     to.present |= shm::kDdsProperties;
     to.properties = texts.Add(all);
+    // Cyclone's own tell of the process number and the host's name. How long those are is to change
+    // nothing of a run with set costs, in which programs wait for room in shared memory.
+    texts.FillTo(kPropertiesRoom);
   }
   all.clear();
   for (std::uint32_t i = 0; i < binary.n; ++i) {

@@ -266,6 +266,18 @@ TEST(RobotScheduler, TheLeastAdvancedIdleCoreActsWhenAWaitIsOver) {
   EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 700);
 }
 
+TEST(RobotScheduler, AWaitThatIsOverAsItBeginsEndsThenOnACoreThatIsBehindToo) {
+  SimulatedRobot robot(2);
+  robot.Add(kOne);
+  robot.ComeTo(0, 300);
+  robot.ComeTo(1, 2000);
+  robot.Sleep(kOne, {.until = RobotTime(500), .from = RobotTime(2000)});
+  EXPECT_EQ(robot.scheduler.NextActionOf(0).ns(), 2000);
+  EXPECT_EQ(robot.scheduler.NextActionOf(1).ns(), kNever);
+  EXPECT_FALSE(robot.scheduler.IsAnythingDue(RobotTime(1999)));
+  EXPECT_TRUE(robot.scheduler.IsAnythingDue(RobotTime(2000)));
+}
+
 TEST(RobotScheduler, ACoreThatActsNowNeedsNoOther) {
   SimulatedRobot robot;
   robot.AddReady(kOne);
