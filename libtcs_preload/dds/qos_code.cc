@@ -2,6 +2,7 @@
 
 #include <dds/ddsi/ddsi_xqos.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -12,6 +13,9 @@ using shm::DdsBytes;
 using shm::DdsEndpoint;
 using shm::DdsQos;
 
+// Cyclone's own properties tell of the process number and the host's name. How long those are
+// changes nothing of a run with set costs, in which allocations are charged and programs wait for
+// room in shared memory.
 constexpr std::size_t kPropertiesRoom = 1024;
 
 // Lays texts behind the structure that a payload begins with.
@@ -27,8 +31,14 @@ class Texts {
     return where;
   }
   DdsBytes Add(std::string_view text) { return Add(text.data(), text.size()); }
-  // So that the next text is at a multiple of `size`.
-  void FillTo(std::size_t size) { bytes_.resize((bytes_.size() + size - 1) / size * size); }
+  // As long whatever the text is, up to `room`; and so are the allocations.
+  DdsBytes AddWithRoom(std::string_view text, std::size_t room) {
+    const std::size_t end = bytes_.size() + std::max(text.size(), room);
+    bytes_.reserve(end);
+    const DdsBytes where = Add(text);
+    bytes_.resize(end);
+    return where;
+  }
 
   template <class Structure>
   Payload Behind(const Structure& structure) const {
@@ -90,6 +100,7 @@ void EncodeProperties(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   const auto& text = qos->property.value;
   const auto& binary = qos->property.binary_value;
   std::string all;
+  all.reserve(kPropertiesRoom);
   for (std::uint32_t i = 0; i < text.n; ++i) {
     if (text.props[i].propagate == 0) continue;
     all.append(text.props[i].name).push_back('\0');
@@ -97,10 +108,7 @@ void EncodeProperties(const dds_qos_t* qos, DdsQos& to, Texts& texts) {
   }
   if (!all.empty()) {
     to.present |= shm::kDdsProperties;
-    to.properties = texts.Add(all);
-    // Cyclone's own tell of the process number and the host's name. How long those are is to change
-    // nothing of a run with set costs, in which programs wait for room in shared memory.
-    texts.FillTo(kPropertiesRoom);
+    to.properties = texts.AddWithRoom(all, kPropertiesRoom);
   }
   all.clear();
   for (std::uint32_t i = 0; i < binary.n; ++i) {
