@@ -20,7 +20,8 @@ at_work() {
   local run
   for run in $(find "$out/there/slurm" -lname '*@n2' -printf '%h/../runs/%f.%l\n' 2>/dev/null); do
     run=${run%@n2}
-    [[ ! -e $run/bodies.csv || -e $run/summary.json ]] || basename "${run%.*}"
+    # The last look: results are fetched from there at any time.
+    if [[ -e $run/bodies.csv && ! -e $run/summary.json && -e $run/bodies.csv ]]; then basename "${run%.*}"; fi
   done
 }
 for _ in $(seq 400); do (($(results) * 4 >= many)) && break; sleep 0.05; done
