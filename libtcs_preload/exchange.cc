@@ -253,7 +253,7 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
   const Charged charged = FillRecord(slot, request, reading);
   Notify(thread, reading);
   if (request.suspend_mask != nullptr) {
-    const unsigned long mask = *request.suspend_mask | OwnSignals();
+    const unsigned long mask = *request.suspend_mask | OwnSignalsHeldInWaits();
     RawSyscall(SYS_rt_sigsuspend, Arg(&mask), kSetSize);
     none.Allow(0);
     // Dispatched before the signal was sent, unless it came from somebody else.
@@ -261,7 +261,7 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
     return Reply{WakeReason::kSignal, {0, 0}};
   }
   // The coordinator's own signal is no end of a wait.
-  none.Allow(request.interruptible ? OwnSignals() : 0);
+  none.Allow(request.interruptible ? OwnSignalsHeldInWaits() : 0);
   if (!WaitAtGate(slot, request.interruptible, charged)) {
     const Ended ended = EndWait(thread);
     if (g_header->gates_only == 0 && ended != Ended::kByOther) {
@@ -339,5 +339,7 @@ bool IsAtGate(const GuestThread& thread) {
 void AwaitFirstDispatch(GuestThread& thread) {
   WaitAtGate(*thread.slot, false, {}, g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
 }
+
+void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false, {}); }
 
 }  // namespace tcs::preload

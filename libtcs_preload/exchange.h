@@ -47,4 +47,7 @@ bool IsAtGate(const GuestThread& thread);
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 
+// The same in a handler that has interrupted an exchange: that has notified.
+void AwaitDispatch(GuestThread& thread);
+
 }  // namespace tcs::preload

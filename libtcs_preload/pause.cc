@@ -20,7 +20,7 @@ constexpr std::size_t kSetSize = 8;  // the kernel's sigset_t; the C library's b
 int SuspendWith(GuestThread& t, const unsigned long* mask) {
   unsigned long pending = 0;
   RawSyscall(SYS_rt_sigpending, Arg(&pending), kSetSize);
-  const unsigned long kept = *mask | OwnSignals();
+  const unsigned long kept = *mask | OwnSignalsHeldInWaits();
   if ((pending & ~kept) != 0 || IsShutDown()) {
     RawSyscall(SYS_rt_sigsuspend, Arg(&kept), kSetSize);  // handled at once
   } else {

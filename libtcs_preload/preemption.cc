@@ -49,8 +49,14 @@ void StopHere(int signal, siginfo_t* info, void* context) {
   // Of a child by fork its parent's thread still stands here.
   if (g_process->mode != ProcessState::kAttached || t_thread.attaching) return;
   GuestThread& thread = t_thread;
-  if (thread.slot == nullptr || IsShutDown() || IsAtGate(thread)) return;
+  if (thread.slot == nullptr || IsShutDown()) return;
   if (!IsForThisDispatch(*thread.slot, *info)) return;
+  if (IsAtGate(thread)) {
+    // With levels a signal of the program's has brought it here, whose handler is to run when the
+    // thread is dispatched. Without them the handler ends the wait.
+    if (g_header->gates_only == 0) AwaitDispatch(thread);
+    return;
+  }
   const auto& interrupted = *static_cast<const ucontext_t*>(context);
   const auto* blocked = reinterpret_cast<const unsigned long*>(&interrupted.uc_sigmask);
   Exchange(thread, Request{.kind = shm::NotificationKind::kPreempted, .blocked = blocked});

@@ -3,8 +3,12 @@
 // (it has blocked it by a raw call) computes on, with a clock that stands still, and owes what it
 // has computed: results are the same.
 //
-// The signal interrupts no wait of the program's: threads that wait are not sent it, and where one
-// has come to a wait meanwhile the signal is blocked until that is over.
+// There the signal interrupts no wait of the program's: threads that wait are not sent it, and
+// where one has come to a wait meanwhile the signal is blocked until that is over.
+//
+// Under set costs it goes to threads with levels, too, whose turn has ended anywhere but at their
+// gates, or to whom a signal has come there. Should the processor be free before their next turns,
+// they execute nothing of their programs': this signal's handler runs before all others.
 #pragma once
 
 #include "libtcs_preload/guest.h"
@@ -19,6 +23,12 @@ void AllowPreemption();
 inline unsigned long OwnSignals() {
   const bool has_one = g_header != nullptr && g_header->preempts != 0;
   return has_one ? 1ul << (shm::kPreemptionSignal - 1) : 0;
+}
+
+// Those of them that are blocked while a thread waits. With levels a thread that waits has to hear
+// of it: a signal that has ended its wait may have come, and have its handler run too early.
+inline unsigned long OwnSignalsHeldInWaits() {
+  return g_header != nullptr && g_header->gates_only != 0 ? OwnSignals() : 0;
 }
 
 }  // namespace tcs::preload

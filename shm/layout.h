@@ -111,10 +111,11 @@ enum class NotificationKind : std::uint32_t {
 };
 
 // The signal by which the coordinator stops a thread that computes, where only gates keep threads
-// apart (RunHeader::preempts). It is one of the two signals that the C library keeps for itself:
-// programs can neither catch nor block it, and it is in none of their sets. The library uses it for
-// set*id() in programs of several threads, and recognises its own signals by their sender. The
-// signal carries the number of the dispatch that is to end.
+// apart, and under set costs one that is not dispatched (RunHeader::preempts). It is one of the two
+// signals that the C library keeps for itself: programs can neither catch nor block it, and it is
+// in none of their sets. The library uses it for set*id() in programs of several threads, and
+// recognises its own signals by their sender. The signal carries the number of the dispatch that is
+// to end.
 inline constexpr int kPreemptionSignal = 33;
 
 // Of ClockPage::counts_work, where only gates keep threads apart: the dispatch begins in a call

@@ -128,21 +128,19 @@ std::optional<std::int64_t> GuardedCalls::InsteadOfKernel(const TrappedCall& cal
   }
 }
 
-void GuardedCalls::LetThrough(const TrappedCall& call) const {
+bool GuardedCalls::LetThrough(const TrappedCall& call) const {
   if (const auto result = InsteadOfKernel(call); result.has_value()) {
-    AnswerTrapped(call.listener, call.id, *result);
-  } else {
-    ContinueTrapped(call.listener, call.id);
+    return AnswerTrapped(call.listener, call.id, *result);
   }
+  return ContinueTrapped(call.listener, call.id);
 }
 
-void GuardedCalls::Continue(const Task& task) const {
+bool GuardedCalls::Continue(const Task& task) const {
   const TrappedCall& call = task.trapped_call;
   if (call.id == task.trap_id && call.listener == task.trap_listener) {
-    LetThrough(call);
-  } else {
-    ContinueTrapped(task.trap_listener, task.trap_id);  // one of futex
+    return LetThrough(call);
   }
+  return ContinueTrapped(task.trap_listener, task.trap_id);  // one of futex
 }
 
 }  // namespace tcs

@@ -38,6 +38,7 @@ void SignalWakes::WakeForSignals(Process& process, Moment moment) {
     if (mine == 0) continue;
     if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
     AnswerAhead(task);
+    undispatched_.SignalCame(task, sets);
   }
 }
 
@@ -51,7 +52,11 @@ void SignalWakes::AnswerAhead(Task& task) {
     return;
   }
   active_.Hold(task);
-  if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) task.handed_lock = 0;
+  if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
+    task.handed_lock = 0;
+  } else {
+    task.answer_lost = true;
+  }
   task.trap_id = 0;
   task.parked = false;
 }

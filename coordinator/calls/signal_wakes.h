@@ -7,6 +7,7 @@
 
 #include "coordinator/host/active_threads.h"
 #include "coordinator/os/host.h"
+#include "coordinator/processes/undispatched_threads.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
 
@@ -14,8 +15,8 @@ namespace tcs {
 
 class SignalWakes {
  public:
-  SignalWakes(RunState& run, Waker& waker, ActiveThreads& active)
-      : run_(run), waker_(waker), active_(active) {}
+  SignalWakes(RunState& run, Waker& waker, ActiveThreads& active, UndispatchedThreads& undispatched)
+      : run_(run), waker_(waker), active_(active), undispatched_(undispatched) {}
 
   // True if the thread waits for a signal that is pending: then it goes on.
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
@@ -32,6 +33,7 @@ class SignalWakes {
   RunState& run_;
   Waker& waker_;
   ActiveThreads& active_;
+  UndispatchedThreads& undispatched_;
 };
 
 }  // namespace tcs

@@ -8,6 +8,8 @@ namespace tcs {
 
 bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
   task.trap_id = call.id;
+  task.unanswered_call = call;
+  task.answer_lost = false;
   task.trap_listener = call.listener;
   task.trap_result = 0;
   task.trap_continues = false;

@@ -81,6 +81,17 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   page.waited_adjust.store(task.DispatchWord());
 }
 
+// If something has ended the call meanwhile, the thread is on its way, and needs no answer unless
+// the kernel makes the call again.
+void Engine::AnswerCall(Task& task) {
+  const bool is_there = task.trap_continues
+                            ? guard_.Continue(task)
+                            : AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
+  if (is_there && !task.trap_continues) task.handed_lock = 0;
+  task.answer_lost = !is_there;
+  task.trap_id = 0;
+}
+
 // Who may run is changed and a gate opened: with the coordinator blocking next, which is when the
 // thread starts, this is the context switch.
 void Engine::Resume(Task& task) {
@@ -94,16 +105,12 @@ void Engine::Resume(Task& task) {
   }
   if (task.slot < 0) registration_.LetRegister(task);
   if (task.trap_id != 0) {
-    // If a signal has ended the call meanwhile, the thread is on its way and needs no answer.
-    if (task.trap_continues) {
-      guard_.Continue(task);
-    } else if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
-      task.handed_lock = 0;
-    }
-    task.trap_id = 0;
+    AnswerCall(task);
   } else if (task.slot >= 0 && is_at_gate) {
     HostCpu::OpenGate(SlotOf(task));
   }
+  // What it was sent before, it handles first of all.
+  if (!run_.gates_only) task.has_signal = false;
   ++run_.report.switches;
   if (!starts_at_once) host_cpu_.Start(task, task.spins);
 }
@@ -387,6 +394,7 @@ void Engine::NoteTurnBegins(Task& task) {
 void Engine::EndTurn(Task& task) {
   host_cpu_.active().TakeBack();
   if (task.state != TaskState::kDead) Settle(task);
+  undispatched_.TurnEnds(task);
   run_.turn.End();
   run_.latest = task.cpu->progress;
   task.used_up = UsedUpAfter(task.used_up, run_.latest, run_.turn.horizon(), run_.turn.HasSpoken());

@@ -71,6 +71,7 @@
 #include "coordinator/processes/run_records.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/processes/trap_listeners.h"
+#include "coordinator/processes/undispatched_threads.h"
 #include "coordinator/processes/unknown_children.h"
 #include "coordinator/processes/unmanaged_threads.h"
 #include "coordinator/processes/usage_book.h"
@@ -146,6 +147,7 @@ class Engine {
   void Answer(Task& task);
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
   void WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  void AnswerCall(Task& task);
   void Resume(Task& task);
   void GoOnBesideWoken();
   bool HasMadeCall(Task& task, int* turns);
@@ -226,6 +228,7 @@ class Engine {
   std::unique_ptr<Executor> executor_;
   HostCpu host_cpu_;
   HeldThreads held_{run_, host_cpu_};
+  UndispatchedThreads undispatched_{run_};
   RunClock clock_;
   Pacing pacing_{run_.options, run_.end, run_.options.on_notice};
   ComputingAhead ahead_{{run_, waker_, host_cpu_, *executor_, clock_, records_},
@@ -241,7 +244,7 @@ class Engine {
   LockFutexes locks_{run_, waker_, words_, inheritance_};
   FutexCalls futexes_{run_, waker_, words_, locks_,
                       [this](Process* process) { ahead_.StayHome(process); }};
-  SignalWakes signal_wakes_{run_, waker_, host_cpu_.active()};
+  SignalWakes signal_wakes_{run_, waker_, host_cpu_.active(), undispatched_};
   ChildStops stops_{run_, waker_, signal_wakes_, host_cpu_.active()};
   SignalCalls signals_{
       run_, waker_, signal_wakes_, stops_, clock_, [this](const Process& process, VirtualTime at) {

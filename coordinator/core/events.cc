@@ -40,6 +40,7 @@ constexpr int kExitTurns = 20;
 Reactor::Found Engine::NotificationArrived(Task& task, Moment moment) {
   task.executes = false;
   if (SlotOf(task).note.kind == shm::NotificationKind::kPreempted) task.has_signal = false;
+  if (undispatched_.WentToGate(task)) return {};
   ahead_.HasSpoken(task);
   if (run_.turn.IsOf(task)) {
     if (run_.gates_only && MayGoOn(task)) return {.looks_again = true};

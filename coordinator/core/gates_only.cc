@@ -103,7 +103,7 @@ void Engine::BringToGate(Task& task) {
   if (!computes || !task.HasOwnClock() || ThreadState(task.tid) != 'R') return;
   const HostDuration sent = HostNs(HostClockOf(task));
   run_.turn.is_sent_to_gate = task.has_signal = true;
-  host_cpu_.SendToGate(task.process->pid, task);
+  HostCpu::SendToGate(task.process->pid, task);
   for (int look = 0; look < kMostGateLooks; ++look) {
     PollEvents(kGateLook, {});
     if (run_.turn.HasSpoken() || !Waker::IsRunnable(task) || task.process->dead) return;
@@ -128,7 +128,7 @@ Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
       const HostDuration now = HostNs(HostClockOf(task));
       if (const auto [told, is_new] = sent.try_emplace(&task, now); is_new) {
         task.has_signal = true;
-        host_cpu_.SendToGate(task.process->pid, task);
+        HostCpu::SendToGate(task.process->pid, task);
         awaits = true;
       } else {
         awaits |= now <= told->second + kMostWayToGate;

@@ -154,7 +154,7 @@ std::string Engine::PrepareMemory() {
       run_.options.date_ns.value_or(run_.IsFixed() ? kFixedDateNs : HostClockNs(CLOCK_REALTIME));
   run_.header->coordinator_pid = getpid();
   run_.header->gates_only = run_.gates_only ? 1 : 0;
-  run_.header->preempts = run_.gates_only ? 1 : 0;
+  run_.header->preempts = run_.SendsToGates() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
   run_.header->notes_datagrams = run_.options.record == RecordingKind::kNone ? 0 : 1;
   run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;

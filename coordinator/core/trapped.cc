@@ -6,6 +6,25 @@
 
 namespace tcs {
 
+namespace {
+
+// The kernel has the thread make the call again in which it waits for its answer, as it is: the
+// thread was frozen meanwhile with its container or the machine, say, or a tracer has looked at it.
+bool MakesCallAgain(Task& task, const TrappedCall& call) {
+  const bool waits = task.trap_id != 0 || task.answer_lost;
+  if (!waits || task.state == TaskState::kUnseen || !call.IsAgain(task.unanswered_call)) {
+    return false;
+  }
+  const std::uint64_t before = task.unanswered_call.id;
+  if (task.trapped_call.id == before) task.trapped_call.id = call.id;
+  if (task.brief_id == before) task.brief_id = call.id;
+  task.trap_id = task.unanswered_call.id = call.id;
+  task.answer_lost = false;
+  return true;
+}
+
+}  // namespace
+
 // A trapped call has arrived. That of the running thread stops it like a notification.
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {
   const auto call = ReceiveTrapped(listener);
@@ -36,6 +55,10 @@ Reactor::Found Engine::TakeTrapped(const TrappedCall& call, Moment moment) {
   if (!ours) {
     trapped_.HandleUnmanaged(call, moment);
     return {.stops_running = !run_.gates_only, .wakes_others = true};
+  }
+  if (MakesCallAgain(*task, call)) {
+    if (run_.turn.IsOf(*task)) AnswerCall(*task);
+    return {};
   }
   ahead_.HasSpoken(*task);
   if (run_.turn.IsOf(*task)) {

@@ -7,8 +7,6 @@
 
 #include <sys/types.h>
 
-#include <cstdint>
-
 namespace tcs {
 
 class Executor {
@@ -28,9 +26,6 @@ class Executor {
   // True if whoever may run stands still while the coordinator runs. Otherwise it shares the
   // processor with the coordinator and with those that are held, and has to be told to stop.
   virtual bool StandsStill() const { return true; }
-  // Tells a thread that computes, in that dispatch of its, to go to its gate. It is there once it
-  // has notified, and may never be.
-  virtual void SendToGate(pid_t, pid_t, std::uint64_t) {}
 };
 
 }  // namespace tcs

@@ -1,19 +1,13 @@
 // By the threads' own gates, for users who may not have real-time priorities. A thread that waits
 // at its gate runs when that is opened. One that was stopped elsewhere runs on until its next call,
 // which begins at its gate (RunHeader::gates_only); its clock stands still meanwhile. One that
-// computes is sent there by a signal (shm::kPreemptionSignal).
+// computes is sent there by a signal (SendToGate of os/host.h).
 #pragma once
 
-#include <signal.h>
-#include <sys/syscall.h>
 #include <time.h>
-#include <unistd.h>
-
-#include <cstdint>
 
 #include "coordinator/host/executor.h"
 #include "coordinator/os/host.h"
-#include "shm/layout.h"
 
 namespace tcs {
 
@@ -31,14 +25,6 @@ class GateExecutor final : public Executor {
   }
 
   bool StandsStill() const override { return false; }
-  void SendToGate(pid_t pid, pid_t tid, std::uint64_t dispatch) override {
-    siginfo_t info{};
-    info.si_signo = shm::kPreemptionSignal;
-    info.si_code = SI_QUEUE;
-    info.si_pid = getpid();
-    info.si_value.sival_ptr = reinterpret_cast<void*>(dispatch);
-    syscall(SYS_rt_tgsigqueueinfo, pid, tid, shm::kPreemptionSignal, &info);
-  }
 
  private:
   static constexpr long kTurnNs = 100'000;

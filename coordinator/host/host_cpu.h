@@ -26,6 +26,7 @@
 #include "coordinator/host/host_thread.h"
 #include "coordinator/host/ideal_meter.h"
 #include "coordinator/host/meter.h"
+#include "coordinator/os/host.h"
 #include "shm/clock_page.h"
 #include "shm/layout.h"
 
@@ -43,8 +44,8 @@ class HostCpu {
   // says so. Where Woke() is said to be its stop, it may run on.
   bool stands_still() const { return executor_.StandsStill(); }
   // Of a process, and in its last dispatch.
-  void SendToGate(pid_t pid, const HostThread& thread) {
-    executor_.SendToGate(pid, thread.tid, shm::DispatchNumber(thread.DispatchWord()));
+  static void SendToGate(pid_t pid, const HostThread& thread) {
+    tcs::SendToGate(pid, thread.tid, shm::DispatchNumber(thread.DispatchWord()));
   }
 
   // Who else may run, and who has ended.

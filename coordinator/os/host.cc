@@ -25,7 +25,6 @@
 
 #include "coordinator/os/passed_fd.h"
 #include "coordinator/os/say.h"
-#include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
 #include "shm/clock_ids.h"
 #include "shm/layout.h"
@@ -317,12 +316,21 @@ std::vector<pid_t> ChildrenOf(pid_t pid) {
   return children;
 }
 
+void SendToGate(pid_t pid, pid_t tid, std::uint64_t dispatch) {
+  siginfo_t info{};
+  info.si_signo = shm::kPreemptionSignal;
+  info.si_code = SI_QUEUE;
+  info.si_pid = getpid();
+  info.si_value.sival_ptr = reinterpret_cast<void*>(dispatch);
+  syscall(SYS_rt_tgsigqueueinfo, pid, tid, shm::kPreemptionSignal, &info);
+}
+
 namespace {
 
 // The child's half of the hand-over of its trap: sends the descriptor, or why there is none, and
 // waits until the parent has closed its end.
 void HandOverTrap(int to_parent, const SpawnRequest& request) {
-  const UniqueFd listener(InstallTrap(request.guarded, request.traps_ends));
+  const UniqueFd listener(InstallTrap(request.guarded, request.trapped_too));
   // From here on calls are trapped, and nobody takes them yet.
   const long own = shm::kOwnCallMark;
   int error = listener ? 0 : errno;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "coordinator/os/own_computer.h"
+#include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
 
 namespace tcs {
@@ -135,6 +136,11 @@ std::vector<pid_t> ChildrenOf(pid_t pid);
 // processes the same layout.
 int WhyNoFixedLayout();
 
+// Tells a thread by a signal, which its shim has a handler for, to go to its gate. `dispatch` is
+// its last one: in another one the signal says nothing. It is there once it has notified, and may
+// never be.
+void SendToGate(pid_t pid, pid_t tid, std::uint64_t dispatch);
+
 struct SpawnRequest {
   std::vector<std::string> command;
   std::string working_directory;  // empty: unchanged
@@ -142,7 +148,7 @@ struct SpawnRequest {
   std::string log_stdout, log_stderr;     // empty: inherited
   bool fixed_layout = false;              // no address-space randomisation
   std::vector<pid_t> guarded;             // processes that it is not to touch
-  bool traps_ends = false;                // that it ends is trapped, too (trap.h)
+  TrappedToo trapped_too;                 // (trap.h)
   const OwnComputer* computer = nullptr;  // null: the host
 };
 

@@ -186,13 +186,15 @@ bool TrapsHoldSignals() {
          errno == EFAULT;
 }
 
-int InstallTrap(const std::vector<pid_t>& guarded, bool traps_ends) {
+int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
   // it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
   std::vector<std::uint32_t> unmarked;
-  if (!has_level) unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
-  if (traps_ends) unmarked.push_back(kEnd);
+  if (!has_level || too.executions) {
+    unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
+  }
+  if (too.ends) unmarked.push_back(kEnd);
   std::vector<sock_filter> program = Program(guarded, unmarked);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {

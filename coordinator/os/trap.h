@@ -5,7 +5,9 @@
 
 #include <sys/types.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -17,14 +19,26 @@ struct TrappedCall {
   pid_t tid = 0;
   int number = 0;
   std::uint64_t args[6] = {};
+
+  // True of a call that the kernel makes again as it was: something has ended the wait for its
+  // answer, and no handler has run that would have had it fail.
+  bool IsAgain(const TrappedCall& before) const {
+    return listener == before.listener && tid == before.tid && number == before.number &&
+           std::equal(std::begin(args), std::end(args), std::begin(before.args));
+  }
+};
+
+// What is trapped in some runs only, whoever calls it.
+struct TrappedToo {
+  bool executions = false;  // of other programs; always where there are no levels
+  bool ends = false;        // of processes
 };
 
 // Installs the filter in the calling process, which must be about to exec. It traps all futex
 // calls, and what else reads time, sleeps, waits or speaks of the scheduler (trap.cc has the list),
 // unless the shim made the call (shm::kOwnCallMark); and it keeps the program from the `guarded`
-// processes (protection.h). `traps_ends`: also exit_group, whoever calls it. The descriptor at
-// which the calls arrive; -1: errno is set.
-int InstallTrap(const std::vector<pid_t>& guarded, bool traps_ends = false);
+// processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
+int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too = {});
 
 // A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
 bool TrapsHoldSignals();

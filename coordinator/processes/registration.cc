@@ -184,6 +184,7 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at) {
   parts_.waker.Leave(task);
   task.early_trap.reset();
   task.trap_id = 0;
+  task.answer_lost = false;
   task.notified_early = false;
   task.ComeTo(std::max({task.reached, at, parts_.waker.EarliestWake()}));
   parts_.waker.SetState(task, TaskState::kReady);

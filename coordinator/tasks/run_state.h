@@ -52,6 +52,8 @@ struct RunState {
   bool IsCallback() const { return options.sync == shm::Sync::kCallback; }
   // Without levels a thread that computes is told by a signal to stop.
   bool Preempts() const { return gates_only && !IsFixed(); }
+  // Threads are told by a signal to go to their gates; with levels, those that are not dispatched.
+  bool SendsToGates() const { return gates_only || IsFixed(); }
   bool IsInGrace() const { return !grace_began.IsNever(); }
 
   // What the thread has computed outside of a turn it is charged at once, and passes in its turns.

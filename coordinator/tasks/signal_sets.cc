@@ -25,7 +25,7 @@ SignalSets SignalsOf(const RunState& run, Task& task) {
     sets.own_pending &= ~lost;
     sets.shared_pending &= ~lost;
   }
-  if (!run.gates_only) return sets;
+  if (!run.SendsToGates()) return sets;
   if ((sets.own_pending & kOurs) == 0) {
     task.has_signal = false;
   } else if (task.has_signal) {

@@ -61,6 +61,7 @@ struct Task : HostThread {
   int trap_listener = -1;
   std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
   std::int64_t trap_result = 0;           // what that call is to return
+  bool answer_lost = false;               // it had left the call, and may make it again
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
   bool trap_continues = false;            // or the kernel carries it out
   FollowUp follow_up = FollowUp::kNone;   // of the call that the kernel carries out
@@ -69,7 +70,8 @@ struct Task : HostThread {
   std::uint64_t brief_id = 0;             // by which it was trapped; 0: it is making it,
   HostDuration brief_until;               // until its CPU clock shows that
   bool expects_kernel = false;            // in its next call the kernel may hold it
-  TrappedCall trapped_call;               // the last but futex calls
+  TrappedCall unanswered_call;            // the last that it stopped in,
+  TrappedCall trapped_call;               // and the last but futex calls
   // The priority-inheriting lock that has been handed to it, and it does not know yet; 0: none.
   std::uint64_t handed_lock = 0;
   shm::WakeReason reason = shm::WakeReason::kGo;

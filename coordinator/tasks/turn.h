@@ -43,6 +43,7 @@ class Turn {
   bool HasSpoken() const { return notified || trapped.has_value(); }
 
   bool is_sent_to_gate = false;    // whatever the thread says next is its stop
+  bool goes_on_from_gate = false;  // where it had been told to go before
   int false_alarms = 0;            // of the detector, which shares the processor with the thread
   int held_looks = 0;              // since the thread was found blocked in the kernel
   std::uint64_t recorded_tsc = 0;  // up to here its slices have been recorded

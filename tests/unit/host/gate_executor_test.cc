@@ -5,6 +5,9 @@
 
 #include <cstdint>
 
+#include "coordinator/os/host.h"
+#include "shm/layout.h"
+
 namespace tcs {
 namespace {
 
@@ -46,7 +49,7 @@ TEST(GateExecutor, SendsAThreadThatComputesToItsGateByASignalWithTheNumberOfItsD
   GateExecutor executor;
   EXPECT_FALSE(executor.StandsStill());
   executor.Hold(child);  // which does nothing
-  executor.SendToGate(child, child, kDispatch);
+  SendToGate(child, child, kDispatch);
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;

@@ -1,0 +1,61 @@
+#include "coordinator/processes/undispatched_threads.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/host/host_cpu.h"
+#include "coordinator/os/signal_bits.h"
+#include "coordinator/tasks/waker.h"
+
+namespace tcs {
+
+namespace {
+
+void Tell(Task& task) {
+  if (!std::exchange(task.has_signal, true)) HostCpu::SendToGate(task.process->pid, task);
+}
+
+}  // namespace
+
+// Another program has no handler for the signal, and would die of it. Whichever thread executes
+// that becomes its process's first one.
+bool UndispatchedThreads::MayBeTold(const Task& task) const {
+  if (run_.gates_only || !run_.SendsToGates()) return false;
+  const Process& process = *task.process;
+  const bool may_run = task.slot >= 0 && !task.is_ahead && !task.turns_beside &&
+                       Waker::IsRunnable(task) && !process.expelled && !process.dead;
+  return may_run && std::none_of(process.robot->tasks.begin(), process.robot->tasks.end(),
+                                 [&process](const Task* other) {
+                                   return other->process == &process && other->executes;
+                                 });
+}
+
+// One that the kernel holds stays in its call: the signal would end it.
+void UndispatchedThreads::TurnEnds(Task& task) {
+  if (run_.turn.HasSpoken() || task.parked || !MayBeTold(task)) return;
+  if (ThreadState(task.tid) == 'R') Tell(task);
+}
+
+// The kernel has the first signal that it delivers decide whether the interrupted call is made
+// again. That must be the program's: it delivers those for the thread before those for the process,
+// and of these the lowest first.
+void UndispatchedThreads::SignalCame(Task& task, const SignalSets& sets) {
+  constexpr std::uint64_t kOurs = SignalBit(shm::kPreemptionSignal), kBefore = kOurs - 1;
+  const std::uint64_t first = sets.own_pending & sets.caught & ~BlockedOf(task, sets) & kBefore;
+  const bool is_second = first != 0 && (sets.caught & kOurs) != 0;
+  if (is_second && !run_.turn.IsOf(task) && MayBeTold(task)) Tell(task);
+}
+
+bool UndispatchedThreads::WentToGate(Task& task) {
+  if (run_.gates_only || SlotOf(task).note.kind != shm::NotificationKind::kPreempted) return false;
+  if (run_.turn.IsOf(task)) {
+    // It was on its way there when it was dispatched.
+    if (std::exchange(run_.turn.goes_on_from_gate, true)) return false;
+    HostCpu::OpenGate(SlotOf(task));
+    return true;
+  }
+  if (task.parked || task.trap_id != 0 || task.state == TaskState::kUnseen) return false;
+  return task.parked = true;
+}
+
+}  // namespace tcs
