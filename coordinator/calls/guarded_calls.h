@@ -28,8 +28,8 @@ class GuardedCalls {
   }
   const std::vector<pid_t>& guarded() const { return guarded_; }
 
-  // The kernel carries the call out, unless it is about one of them. False if the thread has left the
-  // call.
+  // The kernel carries the call out, unless it is about one of them. False if the thread has left
+  // the call.
   bool LetThrough(const TrappedCall& call) const;
   // The same for the call in which the task has stopped.
   bool Continue(const Task& task) const;
