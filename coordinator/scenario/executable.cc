@@ -162,7 +162,9 @@ LoadResult<std::string> FindExecutable(const std::string& name, const std::strin
     const std::string path = Absolute(name, Absolute(std::string(rest.substr(0, colon)), cwd));
     const int error = WhyNotExecutable(path);
     if (error == 0) return path;
-    if (!found_but && error == EACCES) found_but = NotExecutable(path, error);
+    // In a folder that may not be searched there is nothing to be seen.
+    const bool is_there = access(path.c_str(), F_OK) == 0;
+    if (!found_but && error == EACCES && is_there) found_but = NotExecutable(path, error);
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }

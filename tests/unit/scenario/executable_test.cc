@@ -119,6 +119,17 @@ TEST_F(ExecutableTest, UnreadableProgramsAreRefused) {
   EXPECT_THAT(WhyNot(program), HasSubstr("chmod +r"));
 }
 
+TEST_F(ExecutableTest, AFolderInPathThatMayNotBeSearchedHasNoPrograms) {
+  if (geteuid() == 0) GTEST_SKIP() << "root searches everything";
+  const ScenarioFolder shut;
+  ASSERT_EQ(chmod(shut.path().c_str(), 0), 0);
+  {
+    const PathVariable path(shut.path());
+    EXPECT_THAT(Found(FindExecutable("tcs_no_such_tool", "/")), HasSubstr("was not found in PATH"));
+  }
+  ASSERT_EQ(chmod(shut.path().c_str(), 0700), 0);
+}
+
 TEST_F(ExecutableTest, NamesWithASlashAreRelativeToTheFolder) {
   EXPECT_EQ(Found(FindExecutable("./controller", folder_.path())), folder_.Path("controller"));
   EXPECT_EQ(Found(FindExecutable("sub/../controller", folder_.path())), folder_.Path("controller"));
