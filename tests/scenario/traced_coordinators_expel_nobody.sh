@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A tracer that stops the coordinator at each of its system calls lets programs run where they never would: between
-# their gate and the moment at which their clock is set. Nobody is expelled for that, and each program is charged what
-# its CPU clock has counted. Threads that are new then (a planner's clock thread, with each plan) are the hard ones.
+# their gate and the moment at which their clock is set. Nobody is expelled for that, nor charged more than its CPU clock
+# has counted; less, where a busy host lets the tracer wait, and the program compute meanwhile, out of turn. Threads that
+# are new then (a planner's clock thread, with each plan) are the hard ones.
 type strace >/dev/null 2>&1 || exit 77
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
@@ -26,7 +27,7 @@ s = json.load(open(sys.argv[1]))
 assert not s["warnings"], s["warnings"]
 assert s["staleness_ns"] == 0 and s["drift_ns"] <= 1_000_000, s
 for name, c in s["clients"].items():
-    assert abs(c["charged_ns"] - c["host_cpu_ns"]) <= 0.02 * c["host_cpu_ns"] + 200_000, (name, c)
+    assert 0.5 * c["host_cpu_ns"] < c["charged_ns"] <= 1.02 * c["host_cpu_ns"] + 200_000, (name, c)
 assert s["clients"]["predator/planner"]["charged_ns"] > 2_000_000_000, s
 PY
 done
