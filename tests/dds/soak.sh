@@ -3,18 +3,12 @@
 # samples. Measured, each finds what it was promised; under fixed accounting two runs agree to the
 # byte, in what the programs have seen and when, and in who ran when.
 set -euo pipefail
+source "$(dirname -- "${BASH_SOURCE[0]}")/soak/scenario.sh"
 build=$(realpath -- "$1") samples=$2
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-program() { echo "{command: [\"$build/bin/dds_soak\", \"$1\", \"$samples\"]}"; }
-cat >"$work/scenario.yaml" <<END
-duration: 1h
-robots:
-  left: {cpu: {cores: 2}, clients: {zero: $(program 0), one: $(program 1)}}
-  middle: {clients: {two: $(program 2)}}
-  right: {clients: {three: $(program 3)}}
-END
+soak_scenario "$build" "$samples" >"$work/scenario.yaml"
 
 # soaks NAME ACCOUNTING: into $work/NAME.
 soaks() {

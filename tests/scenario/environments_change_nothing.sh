@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
+source "$source_root/tests/dds/soak/scenario.sh"
 # Under fixed accounting it changes nothing how long the environment is (the home directory, PATH, the folder that tcs is in), nor
 # how many digits process numbers have: main's stack is at the same address, and DDS programs, which order things by their
 # addresses, do the same at the same times.
@@ -11,14 +12,7 @@ where() { for length in $lengths; do MORE=$(long "$length") "$tcsim" exec --acco
 [[ $(where fixed | wc -l) == 1 ]] || fail "the stack is at $(where fixed)"
 (($(where measured | wc -l) > 1)) || fail "where nothing has to repeat, the stack is where the kernel puts it"
 
-program() { echo "{command: [\"$build/bin/dds_soak\", \"$1\", \"10000\"]}"; }
-cat >"$out/scenario.yaml" <<END
-duration: 1h
-robots:
-  left: {cpu: {cores: 2}, clients: {zero: $(program 0), one: $(program 1)}}
-  middle: {clients: {two: $(program 2)}}
-  right: {clients: {three: $(program 3)}}
-END
+soak_scenario "$build" 10000 >"$out/scenario.yaml"
 fly() { # NAME LENGTH LAST_PID
   # Only root may say which number comes next.
   echo "$3" 2>/dev/null >/proc/sys/kernel/ns_last_pid || true
