@@ -52,12 +52,7 @@ void SignalWakes::AnswerAhead(Task& task) {
     return;
   }
   active_.Hold(task);
-  if (AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result)) {
-    task.handed_lock = 0;
-  } else {
-    task.answer_lost = true;
-  }
-  task.trap_id = 0;
+  task.WasAnswered(AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result));
   task.parked = false;
 }
 

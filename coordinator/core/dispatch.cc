@@ -84,12 +84,9 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
 // If something has ended the call meanwhile, the thread is on its way, and needs no answer unless
 // the kernel makes the call again.
 void Engine::AnswerCall(Task& task) {
-  const bool is_there = task.trap_continues
-                            ? guard_.Continue(task)
-                            : AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result);
-  if (is_there && !task.trap_continues) task.handed_lock = 0;
-  task.answer_lost = !is_there;
-  task.trap_id = 0;
+  task.WasAnswered(task.trap_continues
+                       ? guard_.Continue(task)
+                       : AnswerTrapped(task.trap_listener, task.trap_id, task.trap_result));
 }
 
 // Who may run is changed and a gate opened: with the coordinator blocking next, which is when the

@@ -20,7 +20,7 @@ void Tell(Task& task) {
 // Another program has no handler for the signal, and would die of it. Whichever thread executes
 // that becomes its process's first one.
 bool UndispatchedThreads::MayBeTold(const Task& task) const {
-  if (run_.gates_only || !run_.SendsToGates()) return false;
+  if (run_.gates_only || !run_.IsFixed()) return false;
   const Process& process = *task.process;
   const bool may_run = task.slot >= 0 && !task.is_ahead && !task.turns_beside &&
                        Waker::IsRunnable(task) && !process.expelled && !process.dead;

@@ -163,8 +163,9 @@ LoadResult<std::string> FindExecutable(const std::string& name, const std::strin
     const int error = WhyNotExecutable(path);
     if (error == 0) return path;
     // In a folder that may not be searched there is nothing to be seen.
-    const bool is_there = access(path.c_str(), F_OK) == 0;
-    if (!found_but && error == EACCES && is_there) found_but = NotExecutable(path, error);
+    if (!found_but && error == EACCES && access(path.c_str(), F_OK) == 0) {
+      found_but = NotExecutable(path, error);
+    }
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }

@@ -111,6 +111,13 @@ struct Task : HostThread {
     reached = time;
   }
 
+  // Its trapped call has been answered, or was left to the kernel; or it had left the call.
+  void WasAnswered(bool was_there) {
+    if (was_there && !trap_continues) handed_lock = 0;
+    answer_lost = !was_there;
+    trap_id = 0;
+  }
+
   // What it waits for, if that is of this kind.
   template <class Kind>
   const Kind* Awaits() const {
