@@ -3,7 +3,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -83,17 +82,6 @@ std::size_t ColumnsOfStdout() {
 }
 
 }  // namespace
-
-const CLI::App* AddDump(CLI::App* app, DumpArguments* arguments) {
-  CLI::App* dump = app->add_subcommand(
-      "dump", "what each part of a run that goes on does or waits for, as of a run that hangs");
-  dump->add_option(
-      "run", arguments->run,
-      "FOLDER: that the run writes to, or the number of one of its processes; the only "
-      "run unless told");
-  dump->add_flag("--json", arguments->as_json, "for programs (docs/DEBUGGING.md)");
-  return dump;
-}
 
 int DumpCommand(const DumpArguments& arguments) {
   if (std::getenv("TCS_SOCKET") != nullptr) {

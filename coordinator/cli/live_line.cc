@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "coordinator/trials/progress.h"
+#include "coordinator/text/as_time.h"
 
 namespace tcs {
 

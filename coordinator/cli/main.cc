@@ -12,30 +12,23 @@
 #include <vector>
 
 #include "coordinator/cli/check_command.h"
-#include "coordinator/cli/dump_command.h"
 #include "coordinator/cli/examples_text.h"
 #include "coordinator/cli/exec_command.h"
 #include "coordinator/cli/exit_status.h"
-#include "coordinator/cli/fit_command.h"
-#include "coordinator/cli/manual/generate.h"
 #include "coordinator/cli/manual/help_text.h"
 #include "coordinator/cli/new_command.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/cli/report_command.h"
 #include "coordinator/cli/run_command.h"
-#include "coordinator/cli/snapshot_command.h"
-#include "coordinator/cli/topics_command.h"
-#include "coordinator/cli/trace_command.h"
+#include "coordinator/cli/stop_at.h"
+#include "coordinator/cli/tools.h"
 #include "coordinator/cli/trials_options.h"
 #include "coordinator/cli/user_preload.h"
 #include "coordinator/cli/version.h"
 #include "coordinator/cli/view_command.h"
-#include "coordinator/doctor/doctor.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/scenario/nearest.h"
-#include "coordinator/trials/slurm/slurm_job.h"
 #include "coordinator/view/launch.h"
 
 namespace {
@@ -198,12 +191,12 @@ int main(int argc, char** argv) {
   const CLI::App* make_new = tcs::AddNew(&app, &new_arguments);
   tcs::CheckArguments check_arguments;
   const CLI::App* check = tcs::AddCheck(&app, &check_arguments);
-  std::string generated;
+  tcs::GenerateArguments generate_arguments{&app, {}};
   CLI::App* generate = app.add_subcommand("generate")->group("");  // for the build
-  generate->add_option("folder", generated)->required();
-  std::string slurm_work;
+  generate->add_option("folder", generate_arguments.folder)->required();
+  tcs::SlurmJobArguments slurm_arguments;
   CLI::App* slurm_job = app.add_subcommand("slurm-job")->group("");  // for trials on a cluster
-  slurm_job->add_option("folder", slurm_work)->required();
+  slurm_job->add_option("folder", slurm_arguments.folder)->required();
 
   double speed = 1.0;
   int cores = 1;
@@ -310,10 +303,10 @@ int main(int argc, char** argv) {
   tcs::DumpArguments dump_arguments;
   const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
 
-  bool as_json = false;
+  tcs::DoctorArguments doctor_arguments;
   CLI::App* doctor = app.add_subcommand(
       "doctor", "check what this machine allows, and say how to mend what it does not");
-  doctor->add_flag("--json", as_json, "for programs");
+  doctor->add_flag("--json", doctor_arguments.as_json, "for programs");
 
   std::string accounting = "measured";
   bool no_wait = false;
@@ -333,28 +326,22 @@ int main(int argc, char** argv) {
   }
   tcs::AddExamples(&app);
   if (const int status = Parse(app, argc, argv); status >= 0) return status;
-  if (generate->parsed()) return tcs::Generate(tcs::Describe(app), generated);
   if (make_new->parsed()) return tcs::FlushStdout(tcs::NewCommand(new_arguments));
   if (check->parsed()) return tcs::FlushStdout(tcs::CheckCommand(check_arguments));
-
-  if (dump->parsed()) return tcs::FlushStdout(tcs::DumpCommand(dump_arguments));
+  if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
+  if (generate->parsed()) return tcs::DoWithTools(generate_arguments, argv);
+  if (dump->parsed()) return tcs::DoWithTools(dump_arguments, argv);
+  if (doctor->parsed()) return tcs::DoWithTools(doctor_arguments, argv);
+  if (report->parsed()) return tcs::DoWithTools(report_arguments, argv);
+  if (topics->parsed()) return tcs::DoWithTools(topics_arguments, argv);
+  if (trace->parsed()) return tcs::DoWithTools(trace_arguments, argv);
+  if (snapshot->parsed()) return tcs::DoWithTools(snapshot_arguments, argv);
+  if (fit->parsed()) return tcs::DoWithTools(fit_arguments, argv);
 
   if (accounting == "fixed") options.accounting = tcs::shm::Accounting::kFixed;
   if (sync == "callback") options.sync = tcs::shm::Sync::kCallback;
   options.preload_library = tcs::PreloadLibrary();
   options.allocation_library = tcs::AllocationLibrary();
-  if (doctor->parsed()) {
-    const auto findings = tcs::Examine(options.preload_library);
-    const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
-    tcs::Print("{}", as_json ? tcs::ToJson(findings) : tcs::ToText(findings, colour));
-    return tcs::FlushStdout(tcs::CanRun(findings) ? 0 : 1);
-  }
-  if (report->parsed()) return tcs::FlushStdout(tcs::ReportCommand(report_arguments));
-  if (topics->parsed()) return tcs::FlushStdout(tcs::TopicsCommand(topics_arguments));
-  if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
-  if (trace->parsed()) return tcs::FlushStdout(tcs::TraceCommand(trace_arguments));
-  if (snapshot->parsed()) return tcs::FlushStdout(tcs::SnapshotCommand(snapshot_arguments));
-  if (fit->parsed()) return tcs::FlushStdout(tcs::FitCommand(fit_arguments));
   if (getenv("TCS_SOCKET") != nullptr) {
     return tcs::Fail(
         "this tcsim was started inside a run of another tcsim; start it outside of that run");
@@ -389,8 +376,8 @@ int main(int argc, char** argv) {
     options.view = link.get();
   }
   if (arguments.progress_fd >= 0) prctl(PR_SET_NAME, "tcsim");
-  if (trials->parsed()) return tcs::TrialsCommand(trials_arguments);
-  if (slurm_job->parsed()) return tcs::RunSlurmJob(slurm_work, tcs::kVersion);
+  if (trials->parsed()) return tcs::DoWithTools(trials_arguments, argv);
+  if (slurm_job->parsed()) return tcs::DoWithTools(slurm_arguments, argv);
   if (!arguments.debugged.empty()) {
     return tcs::RunWithGdb([&](const tcs::GdbSession& gdb) {
       return tcs::RunGuarded(

@@ -9,9 +9,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char *kProgram = "tcsim", *kTools = "tcsim-tools";
+
+// tcsim's. In an installed tree tcsim-tools is not beside it.
 fs::path ProgramFolder() {
   std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path own = fs::read_symlink("/proc/self/exe", error);
+  const fs::path folder = own.parent_path();
+  if (own.filename() != kTools || fs::exists(folder / kProgram, error)) return folder;
+  return (folder / TCS_PROGRAM_FROM_LIBRARIES).lexically_normal();
 }
 
 // The places in an installed tree are CMake's, seen from the program's folder.
@@ -31,6 +37,10 @@ std::string PreloadLibrary() { return Library("libtcs_preload.so"); }
 std::string DdsLibrary() { return Library("libtcs_dds.so"); }
 
 std::string AllocationLibrary() { return Library("libtcs_allocations.so"); }
+
+std::string OwnProgram() { return ProgramFolder() / kProgram; }
+
+std::string ToolsProgram() { return Part(kTools, ProgramFolder()); }
 
 std::string ViewServer() { return Part("tcsim-view", ProgramFolder()); }
 

@@ -16,6 +16,10 @@ std::string DdsLibrary();
 // The library that charges allocations under fixed accounting, beside the shim.
 std::string AllocationLibrary();
 
+// tcsim itself, also where tcsim-tools asks (cli/tools.h), and that.
+std::string OwnProgram();
+std::string ToolsProgram();
+
 // The server of a live page; in a build tree beside the program.
 std::string ViewServer();
 

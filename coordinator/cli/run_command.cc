@@ -15,8 +15,9 @@
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/cli/snapshot_command.h"
+#include "coordinator/cli/stop_at.h"
 #include "coordinator/cli/summary.h"
+#include "coordinator/cli/tools.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
@@ -173,8 +174,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   TakeNoteBack();
   if (options.view != nullptr) options.view->Conclude(report.virtual_ns);
   if (stop_at && !report.interrupted) {
-    if (const std::string error = WriteSnapshot(overrides.result_directory); !error.empty()) {
-      return Fail(error);
+    if (const int status = WriteSnapshot(overrides.result_directory); status != kSucceeded) {
+      return status;
     }
     Print("the world as it stopped: {}/snapshot.yaml\n", Visible(arguments.out));
   }

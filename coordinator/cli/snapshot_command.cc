@@ -8,6 +8,7 @@
 
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/cli/stop_at.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/visible.h"
 #include "coordinator/scenario/duration.h"
@@ -15,19 +16,6 @@
 #include "coordinator/snapshot/world_snapshot.h"
 
 namespace tcs {
-namespace {
-
-std::string Seconds(VirtualDuration time) { return snapshot::SecondsText(time.ns()); }
-
-// "DIR@12.5s"; the folder may have an @, too.
-std::pair<std::string, std::string> FolderAndTime(const std::string& from) {
-  const std::size_t at = from.rfind('@');
-  if (at == std::string::npos) return {from, ""};
-  return {from.substr(0, at), from.substr(at + 1)};
-}
-
-}  // namespace
-
 int SnapshotCommand(const SnapshotArguments& arguments) {
   const auto [folder, time] = FolderAndTime(arguments.from);
   std::optional<std::int64_t> at_ns;
@@ -49,39 +37,6 @@ int SnapshotCommand(const SnapshotArguments& arguments) {
   Print("written: {}; `tcsim run SCENARIO --overlay` it begins from there\n",
         Visible(arguments.out));
   return kSucceeded;
-}
-
-std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
-                        VirtualDuration stop_at) {
-  if (!scenario.world) {
-    return "--stop-at: the scenario has no world to write a snapshot of; use --duration";
-  }
-  if (stop_at > duration) {
-    return fmt::format("--stop-at: {} is after the end, {}; --duration sets a later one",
-                       Seconds(stop_at), Seconds(duration));
-  }
-  const std::int64_t period_ns = scenario.csv_period.ns(), rest_ns = stop_at.ns() % period_ns;
-  if (rest_ns == 0) return {};
-  return fmt::format(
-      "--stop-at: the world is written every {} (csv_period), at {} and at {}, but not at {}; take "
-      "one of these, or another period",
-      Seconds(scenario.csv_period), Seconds(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns)),
-      Seconds(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns + period_ns)), Seconds(stop_at));
-}
-
-std::string WriteSnapshot(const std::string& folder) {
-  const auto world = snapshot::WorldAt(folder, std::nullopt);
-  if (const auto* error = std::get_if<LoadError>(&world)) return error->message;
-  return WriteWhole(folder + "/snapshot.yaml", std::get<std::string>(world));
-}
-
-std::string NoWayBack(const std::string& from) {
-  const auto [folder, time] = FolderAndTime(from);
-  return fmt::format(
-      "--from {}: programs cannot go back to a moment, because their memory is not recorded; "
-      "`tcsim snapshot {} --out world.yaml` writes the world of that moment, from which `tcsim run "
-      "SCENARIO --overlay world.yaml` begins with programs that start anew",
-      from, from);
 }
 
 }  // namespace tcs

@@ -14,6 +14,7 @@
 
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
 #include "coordinator/cli/version.h"
@@ -159,12 +160,6 @@ LocalOptions ShareMachine(const TrialsArguments& arguments, const Scenario& scen
   return options;
 }
 
-// This program's own file: jobs start it on their nodes.
-std::string OwnPath() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error);
-}
-
 std::unique_ptr<Launcher> MakeLauncher(const TrialsArguments& arguments, const Scenario& scenario) {
   if (arguments.launcher == "slurm") {
     SlurmOptions options;
@@ -172,7 +167,7 @@ std::unique_ptr<Launcher> MakeLauncher(const TrialsArguments& arguments, const S
     options.whole_cores = arguments.options.accounting == "measured";
     options.in_host_network = arguments.host_network || NeedsHostNetwork(scenario);
     options.options = arguments.slurm_options;
-    options.tcsim = OwnPath();
+    options.tcsim = OwnProgram();  // jobs start it on their nodes
     options.version = kVersion;
     return std::make_unique<SlurmLauncher>(std::move(options));
   }

@@ -1,5 +1,7 @@
 #include "coordinator/scenario/duration.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <optional>
@@ -122,6 +124,14 @@ LoadResult<VirtualDuration> ParseDuration(std::string_view text) {
   for (; exponent > 0; --exponent) ns *= 10;
   if (ns > kLongestDuration.ns()) return too_long;
   return VirtualDuration::Nanoseconds(static_cast<std::int64_t>(ns));
+}
+
+std::string SecondsText(std::int64_t ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  std::string text = fmt::format("{}.{:09}", ns / kSecond_ns, ns % kSecond_ns);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text + "s";
 }
 
 }  // namespace tcs

@@ -1,6 +1,8 @@
 // Durations as people write them, in scenarios and on the command line.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "coordinator/scenario/load_error.h"
@@ -14,6 +16,9 @@ namespace tcs {
 [[nodiscard]] LoadResult<VirtualDuration> ParseDuration(std::string_view text);
 
 // Leaves room to add two of them: 146 years.
+// In seconds, as ParseDuration reads it: "12.5s".
+[[nodiscard]] std::string SecondsText(std::int64_t ns);
+
 inline constexpr VirtualDuration kLongestDuration =
     VirtualDuration::Nanoseconds(std::int64_t{1} << 62);
 

@@ -63,14 +63,6 @@ std::string NextTo(const Moment& moment) {
 
 }  // namespace
 
-std::string SecondsText(std::int64_t ns) {
-  constexpr std::int64_t kSecond_ns = 1'000'000'000;
-  std::string text = fmt::format("{}.{:09}", ns / kSecond_ns, ns % kSecond_ns);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text + "s";
-}
-
 LoadResult<RecordedState> ReadState(const std::string& folder, std::optional<std::int64_t> at_ns) {
   const std::string bodies_csv = folder + "/bodies.csv", joints_csv = folder + "/joints.csv";
   if (!report::IsFile(bodies_csv)) {

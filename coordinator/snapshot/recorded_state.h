@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/scenario/duration.h"
 #include "coordinator/scenario/load_error.h"
 
 namespace tcs::snapshot {
@@ -19,9 +20,6 @@ struct RecordedState {
   // Position and velocity, of joints with one coordinate: MODEL/JOINT.
   std::map<std::string, std::vector<std::string>> joints;
 };
-
-// "12.5s", exactly.
-[[nodiscard]] std::string SecondsText(std::int64_t ns);
 
 // Of the run in `folder` at `at_ns`; none: the last that was written whole. What is wrong is one
 // sentence; so is a time that the tables do not have, with those next to it.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "coordinator/text/as_time.h"
+
 namespace tcs {
 
 namespace {
@@ -38,13 +40,6 @@ std::optional<double> RemainingSeconds(const TrialsProgress& progress) {
     longest = std::max(longest, left);
   }
   return std::max(longest, work / progress.at_once);
-}
-
-std::string AsTime(double seconds) {
-  const auto whole = static_cast<long>(std::lround(seconds));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
 std::string AsSpan(std::int64_t ns) {

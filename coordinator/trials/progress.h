@@ -39,8 +39,6 @@ struct TrialsGroup {
 // One row for each group, with a head.
 std::string TrialsTable(const std::vector<TrialsGroup>& groups);
 
-// "1:02:03", "12:34", "5 s"
-std::string AsTime(double seconds);
 // "0 ns", "1.000 ms", "168.000 s"
 std::string AsSpan(std::int64_t ns);
 

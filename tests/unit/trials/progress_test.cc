@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coordinator/text/as_time.h"
+
 namespace tcs {
 namespace {
 

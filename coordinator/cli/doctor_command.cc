@@ -1,0 +1,20 @@
+#include "coordinator/cli/doctor_command.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "coordinator/cli/preload_library.h"
+#include "coordinator/cli/print.h"
+#include "coordinator/doctor/doctor.h"
+
+namespace tcs {
+
+int DoctorCommand(const DoctorArguments& arguments) {
+  const auto findings = Examine(PreloadLibrary());
+  const bool colour = isatty(STDOUT_FILENO) == 1 && getenv("NO_COLOR") == nullptr;
+  Print("{}", arguments.as_json ? ToJson(findings) : ToText(findings, colour));
+  return CanRun(findings) ? 0 : 1;
+}
+
+}  // namespace tcs

@@ -1,0 +1,22 @@
+// What `tcsim run` has to say of --stop-at and --from.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "coordinator/scenario/scenario.h"
+#include "shm/virtual_time.h"
+
+namespace tcs {
+
+// "DIR@12.5s"; the folder may have an @, too.
+std::pair<std::string, std::string> FolderAndTime(const std::string& from);
+
+// Why a run of the scenario cannot stop there with a snapshot: one sentence. Empty: it can.
+std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
+                        VirtualDuration stop_at);
+
+// What there is to say to who asks for a run from within another one.
+std::string NoWayBack(const std::string& from);
+
+}  // namespace tcs

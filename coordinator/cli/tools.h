@@ -1,0 +1,49 @@
+// The commands that look at what runs have written, or start runs of their own: none of them flies.
+// They are most of what there is to compile, so they are a program of their own, tcsim-tools, with
+// the same main: a first flight does not wait for them. It is another program for who builds only;
+// users call tcsim.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "coordinator/cli/doctor_command.h"
+#include "coordinator/cli/dump_command.h"
+#include "coordinator/cli/fit_command.h"
+#include "coordinator/cli/report_command.h"
+#include "coordinator/cli/snapshot_command.h"
+#include "coordinator/cli/topics_command.h"
+#include "coordinator/cli/trace_command.h"
+#include "coordinator/cli/trials_command.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tcs {
+
+// For the build: manual pages and completions of all commands, into that folder.
+struct GenerateArguments {
+  const CLI::App* app = nullptr;
+  std::string folder;
+};
+
+// On a cluster's node: the work of trials in that folder.
+struct SlurmJobArguments {
+  std::string folder;
+};
+
+using ToolArguments = std::variant<DoctorArguments, DumpArguments, FitArguments, GenerateArguments,
+                                   ReportArguments, SlurmJobArguments, SnapshotArguments,
+                                   TopicsArguments, TraceArguments, TrialsArguments>;
+
+// Does the command, whose words are `argv`, and returns the exit status. In tcsim it becomes
+// tcsim-tools, and returns only if that cannot be started (tools_elsewhere.cc); there it is done
+// (tools_here.cc).
+int DoWithTools(const ToolArguments& arguments, char** argv);
+
+// Writes snapshot.yaml into the folder of a run that has stopped. The exit status; what failed has
+// been said.
+int WriteSnapshot(const std::string& folder);
+
+}  // namespace tcs
