@@ -11,6 +11,7 @@
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
+#include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/signal_fds.h"
 #include "libtcs_preload/timer_fds.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -177,22 +178,6 @@ std::int64_t SocketDeadline(GuestThread& thread, int fd, int option) {
     return shm::kNeverNs;
   }
   return AddSaturated(NowNs(thread), ToNs(timeout));
-}
-
-bool RestartsAfterSignal() {
-  struct KernelSigaction {
-    void (*handler)(int);
-    unsigned long flags;
-    void (*restorer)();
-    unsigned long mask;
-  };
-  for (int signal = 1; signal < 65; ++signal) {
-    KernelSigaction action{};
-    if (RawSyscall(SYS_rt_sigaction, signal, 0, Arg(&action), sizeof action.mask) != 0) continue;
-    if (action.handler == SIG_DFL || action.handler == SIG_IGN) continue;
-    if ((action.flags & SA_RESTART) == 0) return false;
-  }
-  return true;
 }
 
 }  // namespace tcs::preload

@@ -56,8 +56,4 @@ bool CanWait(int fd, bool* is_socket = nullptr);
 // The descriptor's SO_RCVTIMEO or SO_SNDTIMEO as a deadline from now.
 std::int64_t SocketDeadline(GuestThread& thread, int fd, int option);
 
-// True if a call that a handler interrupted is to be made again: every handler was installed with
-// SA_RESTART.
-bool RestartsAfterSignal();
-
 }  // namespace tcs::preload

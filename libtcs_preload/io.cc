@@ -21,6 +21,7 @@
 #include "libtcs_preload/own_receivers.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
+#include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/stamps.h"
 #include "libtcs_preload/tcp.h"
 #include "libtcs_preload/terminals.h"

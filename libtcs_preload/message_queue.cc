@@ -11,6 +11,7 @@
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/receipts.h"
+#include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"
 

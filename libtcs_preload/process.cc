@@ -17,6 +17,7 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
+#include "libtcs_preload/signal_actions.h"
 #include "libtcs_preload/spawn.h"
 #include "libtcs_preload/user_memory.h"
 #include "libtcs_preload/virtual_clock.h"

@@ -35,7 +35,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 20;
+inline constexpr std::uint32_t kVersion = 21;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -310,7 +310,9 @@ struct alignas(64) ThreadSlot {
   // Written by the coordinator at the attach: the robot's number, as in local_sockets.h.
   std::uint32_t robot;
   std::atomic<Saying> saying;
-  std::uint32_t reserved;
+  // Written by the coordinator: not 0 while the thread waits in a call that the kernel has handed
+  // over, and once a signal has ended that wait. The thread sets it to 0 when it has a handler run.
+  std::atomic<std::uint32_t> waits_in_call;
   std::uint64_t stopped_tsc;
   DatagramNotes datagrams;
   alignas(64) Postbox postbox;
@@ -327,6 +329,7 @@ static_assert(offsetof(ThreadSlot, receipts) == 760);
 static_assert(offsetof(ThreadSlot, work) == 1104);
 static_assert(offsetof(ThreadSlot, robot) == 1132);
 static_assert(offsetof(ThreadSlot, saying) == 1136);
+static_assert(offsetof(ThreadSlot, waits_in_call) == 1140);
 static_assert(offsetof(ThreadSlot, stopped_tsc) == 1144);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,

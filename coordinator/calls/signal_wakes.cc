@@ -25,17 +25,19 @@ bool SignalWakes::EndAwait(Task& task, const SignalSets& sets, Moment moment) {
 
 void SignalWakes::WakeForSignals(Process& process, Moment moment) {
   std::uint64_t taken = 0;
-  for (Task& task : run_.table.tasks()) {
-    if (task.process != &process || task.state == TaskState::kDead) continue;
+  for (Task* thread : run_.table.ThreadsOf(process)) {
+    Task& task = *thread;
     // A thread that waits may have kept the level of its last dispatch. With a signal it would run
     // before its next one, and lose what its call is to return.
     if (!active_.IsLast(task)) active_.Hold(task);
     const SignalSets sets = SignalsOf(run_, task);
     if (EndAwait(task, sets, moment)) continue;
-    const std::uint64_t mine =
-        Deliverable(sets.own_pending | (sets.shared_pending & ~taken), sets, BlockedOf(task, sets));
-    taken |= mine;
-    if (mine == 0) continue;
+    const std::uint64_t blocked = BlockedOf(task, sets);
+    const std::uint64_t own = Deliverable(sets.own_pending, sets, blocked);
+    std::uint64_t shared = Deliverable(sets.shared_pending & ~taken, sets, blocked);
+    if (shared != 0 && !IsMarkedForSignal(task.tid)) shared = 0;
+    taken |= shared;
+    if ((own | shared) == 0) continue;
     if (task.state == TaskState::kWaiting) waker_.Wake(task, shm::WakeReason::kSignal, moment);
     AnswerAhead(task);
     undispatched_.SignalCame(task, sets);
@@ -44,11 +46,12 @@ void SignalWakes::WakeForSignals(Process& process, Moment moment) {
 
 // A thread that runs a handler at its next dispatch gets the result of its trapped call now: should
 // it run before (while the running thread waits for the disk), the kernel would end the call with
-// an error of its own, and the result would be lost.
+// an error of its own, and the result would be lost. Where a signal ends the call, that error is
+// the result.
 void SignalWakes::AnswerAhead(Task& task) {
   // Without levels the kernel keeps the signal until the call is answered (os/trap.cc).
   if (run_.gates_only || run_.turn.IsOf(task) || task.trap_id == 0 || task.trap_continues ||
-      task.state != TaskState::kReady) {
+      task.state != TaskState::kReady || EndsBySignal(task.trap_result)) {
     return;
   }
   active_.Hold(task);
@@ -59,7 +62,8 @@ void SignalWakes::AnswerAhead(Task& task) {
 bool SignalWakes::HasSignalForTrapped(Task& task) const {
   if (!run_.gates_only || run_.turn.lasts() || !task.wait->is_in_trapped_call) return false;
   const SignalSets sets = SignalsOf(run_, task);
-  return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0;
+  return Deliverable(sets.own_pending | sets.shared_pending, sets, BlockedOf(task, sets)) != 0 &&
+         IsMarkedForSignal(task.tid);
 }
 
 }  // namespace tcs

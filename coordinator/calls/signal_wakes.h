@@ -20,8 +20,8 @@ class SignalWakes {
 
   // True if the thread waits for a signal that is pending: then it goes on.
   bool EndAwait(Task& task, const SignalSets& sets, Moment moment);
-  // A signal for the whole process goes to the first of its threads that does not block it, as in
-  // the kernel.
+  // The kernel has chosen the thread that handles a signal for the whole process, and has woken it.
+  // A thread that sleeps on goes on waiting, whatever is pending.
   void WakeForSignals(Process& process, Moment moment);
   // Without levels the kernel keeps a signal from a thread whose call is trapped (os/trap.cc), so
   // only a look finds one that came from outside. One from inside is told by its sender.

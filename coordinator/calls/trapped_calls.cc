@@ -22,6 +22,9 @@ bool TrappedCalls::Handle(Task& task, const TrappedCall& call) {
   } else {
     looks_again = raw_.Handle(task, call);
   }
+  if (task.slot >= 0) {
+    SlotOf(task).waits_in_call.store(task.state == TaskState::kWaiting ? 1 : 0);
+  }
   waker_.Refresh(*task.process->robot);
   return looks_again;
 }

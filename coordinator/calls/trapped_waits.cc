@@ -10,20 +10,20 @@
 
 namespace tcs {
 
-// A signal's handler ends a trapped call that waits; the result may be the kernel's ERESTARTSYS or
-// ERESTARTNOINTR, which it never shows to programs: then it makes the call again.
+// A signal is to end a trapped call that waits: the kernel does, as it ends its own. What it finds
+// in the thread decides, the handler's flags or that no handler runs, and not what is known here.
 void TrappedWaits::Interrupt(Task& task) {
-  constexpr int kRestart = 512, kRestartAlways = 513;
   const Wait& wait = *task.wait;
   task.trap_continues = false;
-  task.trap_result = wait.deadline.IsNever() ? -kRestart : -EINTR;
+  task.trap_result =
+      wait.deadline.IsNever() ? -by_signal::kAsFlagsSay : -by_signal::kAgainUnlessRun;
   if (const auto* futex = wait.As<awaited::Futex>(); futex != nullptr) {
     // A lock is never given up for a signal: the C library would take it for acquired.
     if (futex->owner != awaited::kNobody || words_.table().ExpectedLock(task.order).has_value()) {
-      task.trap_result = -kRestartAlways;
+      task.trap_result = -by_signal::kAgain;
     }
     if (futex->was_requeued) task.trap_result = -EAGAIN;
-    if (words_.table().WaitsForAny(task.order)) task.trap_result = -kRestart;
+    if (words_.table().WaitsForAny(task.order)) task.trap_result = -by_signal::kAsFlagsSay;
   }
   const auto* sleep = wait.As<awaited::Time>();
   if (sleep != nullptr && sleep->remaining_address != 0) {
@@ -34,6 +34,7 @@ void TrappedWaits::Interrupt(Task& task) {
 
 void TrappedWaits::Finish(Task& task, shm::WakeReason reason) {
   if (reason == shm::WakeReason::kSignal) return Interrupt(task);
+  if (task.slot >= 0) SlotOf(task).waits_in_call.store(0);
   const bool timed_out = reason == shm::WakeReason::kDeadline;
   task.trap_result = 0;
   if (const auto* futex = task.Awaits<awaited::Futex>(); futex != nullptr) {

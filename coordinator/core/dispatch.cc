@@ -431,6 +431,7 @@ void Engine::Answer(Task& task) {
 }
 
 void Engine::Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until) {
+  TakeAgainIfUnmarked(task);
   if (AnswerEarly(task)) return;
   if (run_.gates_only && BringOthersToGates(task, {task.reached}).stops_running) return;
   const bool looks_again = task.brief_done;

@@ -139,6 +139,7 @@ class Engine {
 
   // The dispatch (dispatch.cc).
   void Dispatch(Task& task, VirtualTime horizon, VirtualTime idle_until);
+  void TakeAgainIfUnmarked(Task& task);
   bool AnswerEarly(Task& task);
   void BeginTurn(Task& task, VirtualTime horizon, VirtualTime idle_until);
   static void NoteTurnBegins(Task& task);

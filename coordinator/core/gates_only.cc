@@ -112,10 +112,10 @@ void Engine::BringToGate(Task& task) {
 }
 
 // The kernel keeps a signal from a thread in a trapped call once that has been received. Before,
-// the signal would end the call with EINTR, if its handler does not have it restarted; and calls
-// that never end so (FUTEX_WAKE) would. So nobody may be about to make one when a thread goes on
-// that sends a signal: those that compute are told to go to their gates, which restarts what they
-// have just called, and are waited for as in BringToGate.
+// the signal's handler would run at once, in the middle of another thread's turn, and the call be
+// made again. So nobody may be about to make one when a thread goes on that sends a signal: those
+// that compute are told to go to their gates, which restarts what they have just called, and are
+// waited for as in BringToGate.
 Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
   Reactor::Found found;
   if (!SendsSignal(sender)) return found;

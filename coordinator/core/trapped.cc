@@ -3,6 +3,7 @@
 
 #include "coordinator/core/engine.h"
 #include "coordinator/os/host.h"
+#include "shm/check.h"
 
 namespace tcs {
 
@@ -10,8 +11,11 @@ namespace {
 
 // The kernel has the thread make the call again in which it waits for its answer, as it is: the
 // thread was frozen meanwhile with its container or the machine, say, or a tracer has looked at it.
+// Not so a call that a signal was to end: that has ended, and this is the next one.
 bool MakesCallAgain(Task& task, const TrappedCall& call) {
-  const bool waits = task.trap_id != 0 || task.answer_lost;
+  const bool is_over =
+      task.trap_id != 0 && !task.wait.has_value() && EndsBySignal(task.trap_result);
+  const bool waits = (task.trap_id != 0 || task.answer_lost) && !is_over;
   if (!waits || task.state == TaskState::kUnseen || !call.IsAgain(task.unanswered_call)) {
     return false;
   }
@@ -24,6 +28,19 @@ bool MakesCallAgain(Task& task, const TrappedCall& call) {
 }
 
 }  // namespace
+
+// A signal was to end the thread's wait, but the kernel has none for the thread: another thread of
+// its process handles it. The thread's call is taken as one that it makes again, as the kernel
+// would have it. So no thread but one that is marked for a signal is answered that a signal has
+// ended its call, and the kernel shows no program that number.
+void Engine::TakeAgainIfUnmarked(Task& task) {
+  if (task.trap_id == 0 || task.trap_continues || !EndsBySignal(task.trap_result)) return;
+  if (task.slot >= 0) TimerSignals::SendTo(task);  // it may be one of these
+  if (IsMarkedForSignal(task.tid) || !HasAnswerToTake(task.trap_listener, task.trap_id)) return;
+  TCS_CHECK(task.unanswered_call.id == task.trap_id);
+  task.early_trap = task.unanswered_call;
+  task.trap_id = 0;
+}
 
 // A trapped call has arrived. That of the running thread stops it like a notification.
 Reactor::Found Engine::TrapArrived(int listener, Moment moment) {

@@ -149,6 +149,11 @@ ThreadStat ReadThreadStat(pid_t tid) {
 
 char ThreadState(pid_t tid) { return ReadThreadStat(tid).state; }
 
+bool IsMarkedForSignal(pid_t tid) {
+  const char state = ThreadState(tid);
+  return state == 'R' || state == 'D';
+}
+
 bool IsInUserMode(pid_t tid) {
   std::ifstream stack("/proc/" + std::to_string(tid) + "/stack");
   std::string innermost;

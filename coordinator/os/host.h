@@ -69,6 +69,12 @@ std::int64_t ReadThreadCpuClock(int fd);
 // The kernel's state letter of a thread (R, S, D, T, Z), or 'X' if it has ended.
 char ThreadState(pid_t tid);
 
+// The kernel has chosen the thread for a signal, which it handles when it runs next. Of a thread
+// that waits at its gate or for the answer to a trapped call: it does not sleep any more, or no
+// longer so that a signal wakes it (os/trap.h). Nothing else tells who gets a signal that is for
+// the whole process. False also of a thread that is stopped or has ended.
+bool IsMarkedForSignal(pid_t tid);
+
 // True if the thread, which does not run, was preempted in its program and not in the kernel. False
 // also where the kernel does not tell.
 bool IsInUserMode(pid_t tid);

@@ -62,6 +62,19 @@ bool AnswerTrapped(int listener, std::uint64_t id, std::int64_t result);
 // Lets the kernel carry it out.
 bool ContinueTrapped(int listener, std::uint64_t id);
 
+// Results by which the kernel ends a call as it ends one of its own that a signal interrupts. It
+// knows them only in a thread that it has marked for a signal (IsMarkedForSignal, host.h); in any
+// other they would reach the program.
+namespace by_signal {
+inline constexpr int kAsFlagsSay = 512;      // with EINTR, or again if SA_RESTART (ERESTARTSYS)
+inline constexpr int kAgain = 513;           // it makes the call again (ERESTARTNOINTR)
+inline constexpr int kAgainUnlessRun = 514;  // with EINTR once a handler has run (ERESTARTNOHAND)
+}  // namespace by_signal
+
+constexpr bool EndsBySignal(std::int64_t result) {
+  return result <= -by_signal::kAsFlagsSay && result >= -by_signal::kAgainUnlessRun;
+}
+
 // True if its thread has not taken the answer yet, because it has not run since.
 bool HasAnswerToTake(int listener, std::uint64_t id);
 

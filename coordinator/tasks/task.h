@@ -59,9 +59,10 @@ struct Task : HostThread {
   bool is_deliverer = false;         // of DDS messages, to its process
   std::optional<VirtualTime> messages_until;  // those due by then are for its next dispatch
   int trap_listener = -1;
-  std::uint64_t trap_id = 0;              // it stopped in a trapped call instead of at its gate
-  std::int64_t trap_result = 0;           // what that call is to return
-  bool answer_lost = false;               // it had left the call, and may make it again
+  std::uint64_t trap_id = 0;     // it stopped in a trapped call instead of at its gate
+  std::int64_t trap_result = 0;  // what that call is to return
+  // It had left the call, and may make it again: for the result that it has missed.
+  bool answer_lost = false;
   std::optional<TrappedCall> early_trap;  // made without being dispatched: for its next dispatch
   bool trap_continues = false;            // or the kernel carries it out
   FollowUp follow_up = FollowUp::kNone;   // of the call that the kernel carries out
@@ -114,7 +115,7 @@ struct Task : HostThread {
   // Its trapped call has been answered, or was left to the kernel; or it had left the call.
   void WasAnswered(bool was_there) {
     if (was_there && !trap_continues) handed_lock = 0;
-    answer_lost = !was_there;
+    answer_lost = !was_there && !EndsBySignal(trap_result);
     trap_id = 0;
   }
 

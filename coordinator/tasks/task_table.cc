@@ -66,6 +66,15 @@ Process* TaskTable::LivingProcess(pid_t pid) const {
   return found == by_pid_.end() ? nullptr : found->second;
 }
 
+std::vector<Task*> TaskTable::ThreadsOf(const Process& process) {
+  std::vector<Task*> threads;
+  for (Task& task : tasks_) {
+    if (task.process != &process || task.state == TaskState::kDead) continue;
+    threads.insert(task.tid == process.pid ? threads.begin() : threads.end(), &task);
+  }
+  return threads;
+}
+
 bool TaskTable::HasChild(const Process& parent) const {
   return std::any_of(processes_.begin(), processes_.end(), [&parent](const Process& process) {
     return !process.dead && process.parent == parent.pid;

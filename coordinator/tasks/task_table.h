@@ -15,6 +15,7 @@
 #include <functional>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "coordinator/tasks/task.h"
 
@@ -43,6 +44,9 @@ class TaskTable {
   // Null if none that lives has that number.
   Task* Living(pid_t tid) const;
   Process* LivingProcess(pid_t pid) const;
+  // A process's threads that live, in the order in which the kernel considers them for a signal:
+  // the main thread first, wherever its place is.
+  std::vector<Task*> ThreadsOf(const Process& process);
   // It is the porter of one (os/porter.h).
   bool IsPorter(pid_t pid) const;
   // One of its children lives.

@@ -229,6 +229,17 @@ void Clocks() {
   }
 }
 
+void Signals() {
+  struct sigaction now {};
+  for (const char* name : {"bsd_signal", "ssignal"}) {
+    EXPECT(Named<decltype(signal)>(name)(SIGUSR2, [](int) {}) != SIG_ERR, "%s", name);
+    EXPECT(Named<decltype(sigaction)>("__sigaction")(SIGUSR2, nullptr, &now) == 0, "__sigaction");
+    EXPECT((now.sa_flags & (SA_RESTART | SA_SIGINFO)) == SA_RESTART, "%s: %x", name, now.sa_flags);
+  }
+  EXPECT(Named<decltype(sysv_signal)>("__sysv_signal")(SIGUSR2, SIG_DFL) == now.sa_handler,
+         "__sysv_signal");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -240,5 +251,6 @@ int main(int argc, char** argv) {
   Processes();
   Scheduling();
   Threads();
+  Signals();
   Alarms();
 }

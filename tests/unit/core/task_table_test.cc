@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
 namespace tcs {
 namespace {
@@ -54,6 +55,26 @@ TEST_F(TaskTableTest, ANumberThatIsAnothersAlreadyStaysTheOthers) {
   table_.TaskEnded(first);
   EXPECT_EQ(table_.Living(10), &second);
   EXPECT_EQ(table_.living(), 1);
+}
+
+TEST_F(TaskTableTest, AProcesssMainThreadComesFirstWhereverItsPlaceIs) {
+  Process& process = table_.AddProcess(10);
+  Process& other = table_.AddProcess(20);
+  table_.TaskEnded(table_.AddTask(1));
+  for (const pid_t tid : {11, 20, 12, 13}) {
+    table_.AddTask(tid).process = tid == 20 ? &other : &process;
+  }
+  table_.Living(13)->state = TaskState::kDead;
+  // So many have ended that the first place is had again.
+  PassThreads(static_cast<int>(TaskTable::kKeptAfterEnd));
+  table_.AddTask(14).process = &process;
+  Task& main = table_.AddTask(10);
+  main.process = &process;
+  ASSERT_LT(table_.Living(14)->order, table_.Living(11)->order);
+  ASSERT_GT(main.order, table_.Living(14)->order);
+  std::vector<pid_t> tids;
+  for (const Task* task : table_.ThreadsOf(process)) tids.push_back(task->tid);
+  EXPECT_EQ(tids, (std::vector<pid_t>{10, 14, 11, 12}));
 }
 
 TEST_F(TaskTableTest, WhoHasJustEndedKeepsItsPlace) {

@@ -12,6 +12,7 @@
 #include <functional>
 #include <thread>
 
+#include "coordinator/os/host.h"
 #include "coordinator/os/unique_fd.h"
 #include "shm/layout.h"
 
@@ -60,11 +61,17 @@ class TrappedThread {
   std::thread thread_;
 };
 
-TEST(Trap, WithoutARealTimePriorityASignalWaitsUntilTheCallIsAnswered) {
-  if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
+void HandleWith(int flags) {
   struct sigaction action {};
   action.sa_handler = [](int) { ++g_handled; };
+  action.sa_flags = flags;
   sigaction(SIGUSR1, &action, nullptr);
+}
+
+TEST(Trap, WithoutARealTimePriorityASignalWaitsUntilTheCallIsAnswered) {
+  if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
+  HandleWith(0);
+  g_handled = 0;
   std::atomic<long> result{-1};
   {
     TrappedThread thread([&result] { result = syscall(SYS_sched_yield); });
@@ -77,6 +84,73 @@ TEST(Trap, WithoutARealTimePriorityASignalWaitsUntilTheCallIsAnswered) {
   }
   EXPECT_EQ(result, 7);
   EXPECT_EQ(g_handled, 1);
+}
+
+void AwaitMark(pid_t tid) {
+  for (int look = 0; look < 5000 && !IsMarkedForSignal(tid); ++look) usleep(1000);
+}
+
+TEST(Trap, OnlyTheThreadThatTheKernelHasChosenForASignalIsMarked) {
+  if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
+  HandleWith(0);
+  g_handled = 0;
+  TrappedThread thread([] { syscall(SYS_sched_yield); });
+  if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
+  const TrappedCall call = thread.Await(SYS_sched_yield);
+  EXPECT_FALSE(IsMarkedForSignal(call.tid));
+  kill(getpid(), SIGUSR1);  // this thread handles it
+  EXPECT_EQ(g_handled, 1);
+  EXPECT_FALSE(IsMarkedForSignal(call.tid));
+  pthread_kill(thread.id(), SIGUSR1);
+  EXPECT_TRUE(IsMarkedForSignal(call.tid));
+  usleep(20'000);
+  EXPECT_TRUE(IsMarkedForSignal(call.tid));
+  EXPECT_TRUE(AnswerTrapped(call.listener, call.id, 0));
+}
+
+TEST(Trap, TheKernelEndsTheCallOfAMarkedThreadAsItsHandlerHasIt) {
+  if (!TrapsHoldSignals()) GTEST_SKIP() << "takes Linux 5.19";
+  constexpr int kResult = 7;
+  struct {
+    int flags, answer;
+    bool again;
+  } const cases[] = {{0, by_signal::kAsFlagsSay, false},
+                     {SA_RESTART, by_signal::kAsFlagsSay, true},
+                     {0, by_signal::kAgain, true},
+                     {SA_RESTART, by_signal::kAgainUnlessRun, false}};
+  for (const auto& now : cases) {
+    HandleWith(now.flags);
+    std::atomic<long> result{0};
+    std::atomic<int> error{0};
+    {
+      TrappedThread thread([&] {
+        errno = 0;
+        result = syscall(SYS_sched_yield);
+        error = errno;
+      });
+      if (!thread.is_trapped()) GTEST_SKIP() << "no trap here";
+      const TrappedCall call = thread.Await(SYS_sched_yield);
+      pthread_kill(thread.id(), SIGUSR1);
+      AwaitMark(call.tid);
+      EXPECT_TRUE(EndsBySignal(-now.answer));
+      EXPECT_TRUE(AnswerTrapped(call.listener, call.id, -now.answer));
+      if (now.again) {
+        const TrappedCall again = thread.Await(SYS_sched_yield);
+        EXPECT_TRUE(again.IsAgain(call));
+        EXPECT_TRUE(AnswerTrapped(again.listener, again.id, kResult));
+      }
+    }
+    EXPECT_EQ(result, now.again ? kResult : -1) << now.flags << ", " << now.answer;
+    EXPECT_EQ(error, now.again ? 0 : EINTR) << now.flags << ", " << now.answer;
+  }
+}
+
+TEST(Trap, OtherErrorsAreNoEndsBySignals) {
+  EXPECT_FALSE(EndsBySignal(0));
+  EXPECT_FALSE(EndsBySignal(7));
+  EXPECT_FALSE(EndsBySignal(-EINTR));
+  EXPECT_FALSE(EndsBySignal(-EAGAIN));
+  EXPECT_FALSE(EndsBySignal(INT64_MIN));
 }
 
 TEST(Trap, WithoutARealTimePriorityExecutionsAreHandedOverEvenTheShims) {

@@ -12,7 +12,7 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 20u);
+  EXPECT_EQ(kVersion, 21u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
   EXPECT_EQ(sizeof(ThreadSlot), 5312u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
@@ -38,6 +38,7 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
   EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
   EXPECT_EQ(offsetof(ThreadSlot, saying), 1136u);
+  EXPECT_EQ(offsetof(ThreadSlot, waits_in_call), 1140u);
   EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1144u);
   EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1152u);
   EXPECT_EQ(offsetof(ThreadSlot, postbox), 3264u);
