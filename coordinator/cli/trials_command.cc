@@ -192,8 +192,10 @@ std::string CheckLauncher(const TrialsArguments& arguments) {
   return WhyNoSlurm();
 }
 
-// For trials that are not to wait: who has the processors; empty if one is free.
+// For trials that are not to wait: who has the processors; empty if one is free, or none is needed
+// for a run alone.
 std::string WhoHasProcessors() {
+  if (!WhyNoRealTime().empty() || WhyNoDuplicates() != 0) return {};
   const auto claim = ClaimCpu(false);  // and given back at once
   const auto* taken = std::get_if<std::string>(&claim);
   return taken == nullptr ? std::string() : *taken;

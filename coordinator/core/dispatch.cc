@@ -283,7 +283,8 @@ void Engine::AwaitStop(Task& task) {
       continue;
     }
     const std::uint64_t now_tsc = host_cpu_.stop_tsc();
-    if (starvation.IsDue(now_tsc) && starvation.Starves(now_tsc, HostClockOf(task))) {
+    if (!run_.gates_only && starvation.IsDue(now_tsc) &&
+        starvation.Starves(now_tsc, HostClockOf(task))) {
       unmanaged_.LowerThoseThatCompute(claim_.cpu, host_cpu_.detector().pid());
     }
     if (task.is_brief) {

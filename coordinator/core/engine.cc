@@ -311,6 +311,7 @@ void Engine::LookAround() {
   if (run_.IsInGrace() || begun_tsc < next_look_tsc_) return;
   state_link_.Does(Doing::kWrites, begun_tsc);
   LookAtDetector();
+  LeaveCpuIfClaimed();
   if (run_.options.on_progress) {
     if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) {
       records_.Flush();

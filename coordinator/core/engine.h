@@ -58,6 +58,7 @@
 #include "coordinator/host/meter.h"
 #include "coordinator/network/robot_network.h"
 #include "coordinator/os/cpu_claim.h"
+#include "coordinator/os/cpu_share.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/processes/births.h"
@@ -95,6 +96,8 @@ class Engine {
  private:
   // Set-up (setup.cc). Empty on success, else one sentence.
   [[nodiscard]] std::string Prepare();
+  [[nodiscard]] std::string TakeCpu();
+  int HomeCpu() const;
   void TellOfMissingRights(bool may_have_levels) const;
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
@@ -209,6 +212,7 @@ class Engine {
   void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);
+  void LeaveCpuIfClaimed();
 
   // The end (end.cc).
   void EndClients();
@@ -315,7 +319,10 @@ class Engine {
                          words_.table(), objects_.queues(), dds_.hub(), unknown_children_, pacing_,
                          state_link_}};
 
+  // The host's CPU on which all of the run takes turns: one of the two.
   CpuClaim claim_;
+  std::optional<CpuShare> share_;
+  std::vector<int> helpers_cpus_;      // others, for the world
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now
   shm::RunMemory* memory_ = nullptr;
   UniqueFd memfd_, signal_fd_;

@@ -151,4 +151,12 @@ void Engine::ChargeUndispatched(Task& task) {
   run_.ChargeAsDebt(task, HostCpu::Uncharged(task, task.charged, CpuClockOf(task)));
 }
 
+// A run with real-time priorities has come there, before which nobody of this one runs. Between two
+// steps, so that nothing depends on where threads are.
+void Engine::LeaveCpuIfClaimed() {
+  if (!share_.has_value() || !share_->LeaveIfClaimed()) return;
+  state_link_.RunsOn(share_->cpu());
+  if (std::erase(helpers_cpus_, share_->cpu()) > 0) world_.UseProcessors(helpers_cpus_);
+}
+
 }  // namespace tcs

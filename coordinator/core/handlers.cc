@@ -148,7 +148,7 @@ Reactor::Found Engine::OnDetectorEnd(Subject, std::uint32_t, Moment) {
 
 // Nothing comes of it for the run.
 Reactor::Found Engine::OnStateAsked(Subject, std::uint32_t, Moment) {
-  if (state_link_.TakeAsked()) state_link_.Answer(state_dump_.Text(claim_.cpu, __rdtsc()));
+  if (state_link_.TakeAsked()) state_link_.Answer(state_dump_.Text(HomeCpu(), __rdtsc()));
   return {};
 }
 

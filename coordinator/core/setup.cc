@@ -67,14 +67,12 @@ std::string Engine::Prepare() {
       !error.empty()) {
     return error;
   }
-  auto claim = ClaimCpu(run_.options.waits_for_cpu);
-  if (const auto* taken = std::get_if<std::string>(&claim)) return *taken;
-  claim_ = std::move(std::get<CpuClaim>(claim));
-  state_link_.RunsOn(claim_.cpu);
-  ClientsRunOn(claim_.cpu);
-  const std::vector<int> further = ComputingAhead::CpusBeside(claim_.cpu, run_);
-  const std::vector<int> beside = World::ProcessorsBeside(claim_.cpu, run_.options.host_cpus);
-  if (!BindTo(0, claim_.cpu)) return "cannot bind to CPU " + std::to_string(claim_.cpu);
+  if (std::string taken = TakeCpu(); !taken.empty()) return taken;
+  const int home = HomeCpu();
+  state_link_.RunsOn(home);
+  const std::vector<int> further = ComputingAhead::CpusBeside(home, run_);
+  helpers_cpus_ = World::ProcessorsBeside(home, run_.options.host_cpus);
+  if (!BindTo(0, home)) return "cannot bind to CPU " + std::to_string(home);
   if (run_.gates_only) {
     IgnoreRealTimeLimits();
     BeWokenInTime();
@@ -87,15 +85,15 @@ std::string Engine::Prepare() {
   if (!run_.options.output_directory.empty()) datagrams_.Open();
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
-  world_.UseProcessors(beside);
+  world_.UseProcessors(helpers_cpus_);
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   RegisterHandlers();
   if (state_link_.wake_fd() >= 0) {
     reactor_.Add(state_link_.wake_fd(), EPOLLIN, {Tag::kStateAsked});
   }
   if (std::string error = PrepareMemory(); !error.empty()) return error;
-  beside_.Open(claim_.cpu, further);
-  ahead_.Open(claim_.cpu, further, beside_.cpu());
+  beside_.Open(home, further);
+  ahead_.Open(home, further, beside_.cpu());
   if (std::string error = dds_.Open(); !error.empty()) return error;
   if (network_.present()) dds_.UseNetwork(*network_.wire());
   if (world_.present()) run_.root.UpdateDynamics(world_.progress(), world_.NextOutput());
@@ -110,6 +108,21 @@ std::string Engine::Prepare() {
   for (const int fd : network_.fds()) reactor_.Add(fd, EPOLLIN, {Tag::kNetwork, robot++});
   return PrepareHostCpu();
 }
+
+// Why there is none; empty if there is one.
+std::string Engine::TakeCpu() {
+  if (run_.gates_only) {
+    share_.emplace();
+    return {};
+  }
+  auto claim = ClaimCpu(run_.options.waits_for_cpu);
+  if (const auto* taken = std::get_if<std::string>(&claim)) return *taken;
+  claim_ = std::move(std::get<CpuClaim>(claim));
+  ClientsRunOn(claim_.cpu);
+  return {};
+}
+
+int Engine::HomeCpu() const { return share_.has_value() ? share_->cpu() : claim_.cpu; }
 
 void Engine::TellOfMissingRights(bool may_have_levels) const {
   if (!run_.options.on_notice) return;

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <sched.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -17,28 +16,23 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/os/claim_order.h"
+#include "coordinator/os/cpu_places.h"
+#include "coordinator/os/cpu_register.h"
+#include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
 
 namespace tcs {
 
 namespace {
 
-constexpr useconds_t kRetryUs = 20'000;
+// Between two looks of the run that is the next one; others look so much less often.
+constexpr useconds_t kRetryUs = 20'000, kMostRetryUs = 200'000;
+// Of so many looks, one is at whether those ahead are stopped.
+constexpr int kLooksPerStopLook = 10;
 // Somebody who only looks (IsClaimed) has it for an instant.
 constexpr int kLookers = 3;
 constexpr useconds_t kLookUs = 200;
-
-// Highest first.
-std::vector<int> AllowedCpus() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  sched_getaffinity(0, sizeof allowed, &allowed);
-  std::vector<int> cpus;
-  for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
-    if (CPU_ISSET(cpu, &allowed)) cpus.push_back(cpu);
-  }
-  return cpus;
-}
 
 std::string FolderOf(int cpu) { return "/sys/devices/system/cpu/cpu" + std::to_string(cpu); }
 
@@ -113,7 +107,9 @@ std::int64_t AgeOf(pid_t pid) {
   return std::max<std::int64_t>(0, now.tv_sec - started / sysconf(_SC_CLK_TCK));
 }
 
-// " (CPU 1: pid 1234, for 12 s: tcsim run flight.yaml)"; empty if nothing is known.
+constexpr char kOthersHaveThem[] = "other runs of tcsim have the processors";
+
+// "… (CPU 1: pid 1234, for 12 s: tcsim run flight.yaml)", as far as that is known.
 std::string WhoHas(const std::vector<int>& cpus) {
   std::string who;
   for (const int cpu : cpus) {
@@ -124,7 +120,37 @@ std::string WhoHas(const std::vector<int>& cpus) {
     if (const std::int64_t age = AgeOf(pid); age >= 0) who += ", for " + std::to_string(age) + " s";
     if (const std::string command = CommandOf(pid); !command.empty()) who += ": " + command;
   }
-  return who.empty() ? who : who + ")";
+  return kOthersHaveThem + (who.empty() ? who : who + ")");
+}
+
+// By ^Z, for one. Whom this process cannot see is not.
+bool IsStopped(const WaitingRun& run) {
+  const char state = run.pid == 0 ? 'R' : ThreadState(run.pid);
+  return state == 'T' || state == 't';
+}
+
+// Whether a CPU that real-time threads keep busy has some time for others: by real-time throttling,
+// or since Linux 6.12 by a fair server, which root can turn off, and only root can look at.
+bool LeavesOthersSome(int cpu) {
+  std::int64_t runtime = -1, period = 0, server = 1;
+  std::ifstream("/proc/sys/kernel/sched_rt_runtime_us") >> runtime;
+  std::ifstream("/proc/sys/kernel/sched_rt_period_us") >> period;
+  std::ifstream file("/sys/kernel/debug/sched/fair_server/cpu" + std::to_string(cpu) + "/runtime");
+  if (file.is_open()) file >> server;
+  return runtime >= 0 && runtime < period && server > 0;
+}
+
+// Of those that nobody ahead waits for. None: others have them all.
+std::optional<CpuClaim> TryToClaimOneOf(const std::vector<int>& cpus,
+                                        const std::vector<WaitingRun>& ahead) {
+  for (const int cpu : cpus) {
+    if (IsAwaited(cpu, ahead)) continue;
+    std::optional<UniqueFd> fd = TryToClaim(cpu);
+    if (!fd) continue;
+    g_shared_folders.clear();
+    return CpuClaim{cpu, std::move(*fd)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -151,21 +177,27 @@ int LastAllowedCpu() {
 }
 
 std::variant<CpuClaim, std::string> ClaimCpu(bool waits) {
-  std::vector<int> cpus = AllowedCpus();
-  if (cpus.size() > 1) cpus.pop_back();
-  for (bool said = false;; usleep(kRetryUs)) {
-    for (const int cpu : cpus) {
-      std::optional<UniqueFd> fd = TryToClaim(cpu);
-      if (!fd) continue;
-      g_shared_folders.clear();
-      return CpuClaim{cpu, std::move(*fd)};
+  CpuRegister others;
+  const std::vector<int> allowed = AllowedCpus();
+  const std::vector<int> cpus = CpusToClaim(
+      allowed, [&](int cpu) { return others.SharersOf(cpu) > 0; },
+      !allowed.empty() && LeavesOthersSome(allowed.back()));
+  if (waits) others.Queue(cpus);
+  std::optional<std::size_t> place;  // that this run has said
+  for (int look = 1;; ++look) {
+    std::vector<WaitingRun> ahead = RivalsOf(cpus, others.Ahead());
+    const std::size_t runs_ahead = ahead.size();
+    if (look % kLooksPerStopLook == 0) std::erase_if(ahead, IsStopped);
+    if (std::optional<CpuClaim> claim = TryToClaimOneOf(cpus, ahead)) return std::move(*claim);
+    if (!waits) return WhoHas(cpus) + "; wait for one of them, or run without --no-wait";
+    if (!place.has_value()) {
+      Say(WhoHas(cpus) + "; waiting for one of them, " + PlaceInWords(runs_ahead));
+    } else if (*place != runs_ahead) {
+      Say(std::string(kOthersHaveThem) + "; " + PlaceInWords(runs_ahead));
     }
-    if (!said) {
-      const std::string who = "other runs of tcsim have the processors" + WhoHas(cpus);
-      if (!waits) return who + "; wait for one of them, or run without --no-wait";
-      Say(who + "; waiting for one of them");
-    }
-    said = true;
+    place = runs_ahead;
+    usleep(
+        static_cast<useconds_t>(std::min<std::size_t>(kRetryUs * (runs_ahead + 1), kMostRetryUs)));
   }
 }
 

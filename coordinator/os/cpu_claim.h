@@ -1,5 +1,6 @@
-// Which host CPU a run takes. Two coordinators on one CPU would stop each other's threads, so each
-// claims its CPU for as long as it lives.
+// Which host CPU a run with real-time priorities takes. Two such coordinators on one CPU would stop
+// each other's threads, so each claims its CPU for as long as it lives. A run without them claims
+// none (cpu_share.h).
 #pragma once
 
 #include <string>
@@ -27,18 +28,20 @@ struct CpuClaim {
 // child be killed, nobody else comes to the CPU before this process has cleared it and ends.
 void ShareClaimsOfChildren();
 
-// The last CPU that the calling process may use and no other tcsim has claimed; the first one only
-// if there is no other, so that the rest of the machine keeps a CPU. Where all are claimed, waits
-// for one, and says on stderr who has them; or, if it is not to wait, returns that sentence
-// instead. Claims are locks on the CPU's folder in /sys: nothing is left behind. Where that cannot
-// be opened, the CPU is taken unclaimed.
+// A CPU that no other tcsim has claimed (claim_order.h says which). Where others have all that this
+// process may claim, waits for one, and says on stderr who has them, how many runs are ahead, and
+// whenever fewer are; or, if it is not to wait, returns the first of these sentences instead. Runs
+// that wait get the CPUs in the order in which they came, but a run that is stopped meanwhile holds
+// up nobody. Claims are locks on the CPU's folder in /sys, the queue is locks on the folder above
+// (cpu_register.h): nothing is left behind. Where these cannot be opened, the CPU is taken
+// unclaimed.
 [[nodiscard]] std::variant<CpuClaim, std::string> ClaimCpu(bool waits);
 
 // Whether a tcsim has claimed it, also this one. False where that cannot be seen. Cheap, and does
 // not sleep: /proc/locks, which says more, is read by stopping everybody's locks.
 bool IsClaimed(int cpu);
 
-// The CPU that ClaimCpu tries first.
+// The CPU that ClaimCpu tries first, if nobody shares it.
 int LastAllowedCpu();
 
 }  // namespace tcs

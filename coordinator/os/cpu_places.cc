@@ -7,9 +7,7 @@ namespace tcs {
 
 namespace {
 
-// One of each core, but not of the first one's; all but the first, if there is no other core. What
-// is left is for runs; without the first, a claim would leave out another one (cpu_claim.h), so it
-// comes along.
+// One of each core, but not of the first one's; the last one, if there is no other core.
 std::vector<int> OneOfEachCore(const std::vector<CpuPlace>& cpus) {
   std::vector<int> chosen;
   std::vector<std::string> taken{cpus.front().core};
@@ -24,13 +22,22 @@ std::vector<int> OneOfEachCore(const std::vector<CpuPlace>& cpus) {
 
 }  // namespace
 
-std::vector<CpuPlace> CpuPlaces() {
+std::vector<int> AllowedCpus() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   sched_getaffinity(0, sizeof allowed, &allowed);
+  std::vector<int> cpus;
+  for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
+    if (CPU_ISSET(cpu, &allowed)) cpus.push_back(cpu);
+  }
+  return cpus;
+}
+
+std::vector<CpuPlace> CpuPlaces() {
+  std::vector<int> allowed = AllowedCpus();
+  std::reverse(allowed.begin(), allowed.end());
   std::vector<CpuPlace> cpus;
-  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
-    if (!CPU_ISSET(cpu, &allowed)) continue;
+  for (const int cpu : allowed) {
     const std::string number = std::to_string(cpu);
     std::ifstream file("/sys/devices/system/cpu/cpu" + number + "/topology/thread_siblings_list");
     std::string siblings;
@@ -50,11 +57,14 @@ cpu_set_t PlaceOfRun(const std::vector<CpuPlace>& cpus, bool whole_cores, int ru
   CPU_ZERO(&place);
   const auto allow = [&place](int cpu) { CPU_SET(static_cast<std::size_t>(cpu), &place); };
   const int first = cpus.front().number;
-  allow(first);
   // The one run too many has the first CPU to itself.
-  if (index + 1 >= static_cast<int>(cpus.size())) return place;
-  if (whole_cores && runs <= RunsAtOnce(cpus, true)) {
-    for (const int cpu : OneOfEachCore(cpus)) allow(cpu);
+  if (index + 1 >= static_cast<int>(cpus.size())) {
+    allow(first);
+  } else if (whole_cores && runs <= RunsAtOnce(cpus, true)) {
+    const std::vector<int> chosen = OneOfEachCore(cpus);
+    for (const int cpu : chosen) allow(cpu);
+    // A claim leaves out the first of several, but for two (claim_order.h).
+    if (chosen.size() > 1 || cpus.size() == 2) allow(first);
   } else {
     for (const CpuPlace& cpu : cpus) allow(cpu.number);
   }

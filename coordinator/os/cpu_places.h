@@ -15,6 +15,9 @@ struct CpuPlace {
   std::string core;
 };
 
+// Those that the calling thread may use, highest first.
+std::vector<int> AllowedCpus();
+
 // Lowest first.
 std::vector<CpuPlace> CpuPlaces();
 

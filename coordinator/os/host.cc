@@ -75,6 +75,12 @@ bool BindTo(pid_t tid, int cpu) {
   return sched_setaffinity(tid, sizeof one, &one) == 0;
 }
 
+bool IsBoundTo(pid_t tid, int cpu) {
+  cpu_set_t cpus;
+  return sched_getaffinity(tid, sizeof cpus, &cpus) == 0 && CPU_COUNT(&cpus) == 1 &&
+         CPU_ISSET(static_cast<std::size_t>(cpu), &cpus);
+}
+
 std::string WhyNoRealTime() {
   std::string why = TakeCoordinatorLevel();
   if (why.empty()) LeaveRealTime(0);

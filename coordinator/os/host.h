@@ -35,6 +35,8 @@ std::uint64_t CalibrateTsc();
 // The thread, 0 for the calling one, runs on that CPU only. While it runs on another one the caller
 // sleeps until it has stopped. False if the kernel does not let it.
 bool BindTo(pid_t tid, int cpu);
+// To that CPU alone.
+bool IsBoundTo(pid_t tid, int cpu);
 
 // Why this process cannot have the coordinator's level; empty if it can. It has it in between.
 std::string WhyNoRealTime();

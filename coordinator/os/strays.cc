@@ -14,12 +14,6 @@ namespace {
 constexpr int kMostPasses = 8;
 constexpr int kPidMaxByDefault = 32'768;
 
-bool IsBoundTo(int tid, int cpu) {
-  cpu_set_t cpus;
-  return sched_getaffinity(tid, sizeof cpus, &cpus) == 0 && CPU_COUNT(&cpus) == 1 &&
-         CPU_ISSET(static_cast<std::size_t>(cpu), &cpus);
-}
-
 bool HasLevelOfARun(int tid) {
   if ((sched_getscheduler(tid) & ~SCHED_RESET_ON_FORK) != SCHED_FIFO) return false;
   sched_param param{};

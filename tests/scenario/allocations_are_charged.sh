@@ -23,7 +23,7 @@ for options in "--accounting fixed --allocation-cost 0" "--accounting measured";
   "$tcsim" exec $options -- cat /proc/self/maps | grep libtcs_allocations &&
     fail "$options preloads the allocation library"
 done
-"$tcsim" exec --accounting fixed -- sh -c 'env -i cat /proc/self/maps' | grep -q libtcs_allocations ||
+"$tcsim" exec --accounting fixed -- sh -c 'env -i cat /proc/self/maps' | grep libtcs_allocations >/dev/null ||
   fail "a child with an environment of its own allocates for nothing"
 said=$("$tcsim" exec --allocation-cost -1us -- true 2>&1) && fail "a negative cost is taken"
 [[ $(wc -l <<<"$said") == 1 ]] || fail "more than one sentence: $said"

@@ -13,6 +13,9 @@ fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 # What is in /dev/shm by now and was not when the test began: other runs' files come and go.
 shared_at_start=$(ls /dev/shm)
 new_in_shm() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort); }
+# The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
+# stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
+library() { ldconfig -p | awk -v pattern="$1" '$0 ~ pattern && !found { found = 1; print $NF }'; }
 # Runs a scenario on one processor of the host, and again on two, where threads compute ahead: into the folders 1 and
 # 2 of the one that is given.
 run_on_one_and_two() {  # SCENARIO FOLDER

@@ -6,7 +6,7 @@ export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # The version stands in the name of the file, behind the link.
-debians=$(realpath "$(ldconfig -p | awk '/libddsc.so.0debian/ {print $NF; exit}')")
+debians=$(realpath "$(library libddsc.so.0debian)")
 cp "$debians" "$work/libddsc.so.9.9.9"
 ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
 said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \

@@ -77,7 +77,7 @@ done
 # By any of its processes, and only by whom it belongs to.
 coordinator=$(coordinator_of "$run" | head -n 1)
 client=$(pgrep -x waiting_threads -P "$coordinator")
-"$tcsim" dump "$client" | grep -q "^run of process $coordinator" || fail "not by the client's number"
+"$tcsim" dump "$client" | grep "^run of process $coordinator" >/dev/null || fail "not by the client's number"
 if ((EUID == 0)); then
   install_for_everybody "$build" "$out" waiting_threads
   says "process $run is root's: only root may ask for the state of its run" "${nobody[@]}" "$out/bin/tcsim" dump "$run"

@@ -6,11 +6,13 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$out"' EXIT
 
-# Computes for ever, and for SECONDS when it is told to end.
+# Computes for ever, and when it is told to end for SECONDS of its own time. READY says that it runs, READY.told that it
+# was told.
 cat >"$out/keeper.py" <<'PY'
 import os, signal, sys, time
 takes = float(sys.argv[1])
 def end(number, frame):
+    open(sys.argv[2] + ".told", "w").close()
     until = time.process_time() + takes
     while time.process_time() < until: os.getppid()
     print("ended by", number)
@@ -22,15 +24,19 @@ PY
 cat >"$out/s.yaml" <<YAML
 duration: 1h
 robots:
-  r: {clients: {keeper: {command: [python3, keeper.py, "0.3", "${out}/ready"], stop_grace: 10s}}}
+  r: {clients: {keeper: {command: [python3, keeper.py, "0.05", "${out}/ready"], stop_grace: 10s}}}
 YAML
 
 begun() {  # COMMAND...: in the background as $tcsim_pid, until its program runs
-  rm -f "$out/ready"
+  rm -f "$out/ready" "$out/ready.told"
   "$@" >"$out/said" 2>&1 &
   tcsim_pid=$!
-  for _ in $(seq 200); do [[ -e $out/ready ]] && return; sleep 0.1; done
-  fail "it did not begin: $(cat "$out/said")"
+  await "$out/ready" "it did not begin"
+}
+await() {  # FILE WHAT: it may have to wait for a processor first
+  local _
+  for _ in $(seq 1000); do [[ -e $1 ]] && return; sleep 0.1; done
+  fail "$2: $(cat "$out/said")"
 }
 ended() {  # STATUS WHAT
   local status=0
@@ -38,7 +44,7 @@ ended() {  # STATUS WHAT
   ((status == $1)) || fail "$2: status $status instead of $1: $(cat "$out/said")"
 }
 run=("$tcsim" run "$out/s.yaml" --out "$out/run")
-program=("$tcsim" exec -- python3 "$out/keeper.py" 0.3 "$out/ready")
+program=("$tcsim" exec -- python3 "$out/keeper.py" 0.05 "$out/ready")
 
 for ends in TERM:143:15 INT:130:15 HUP:129:15; do
   IFS=: read -r signal status number <<<"$ends"
@@ -66,37 +72,53 @@ for ends in TERM:143:15 INT:130:2 HUP:129:1; do
   [[ $(tail -n 1 "$out/said") == "ended by $number" ]] || fail "SIG$signal to a program: $(cat "$out/said")"
 done
 
-# Several at the same moment are one: to tcsim, to its group, and while it cannot look.
-for times in 1 2 3; do
-  begun "${run[@]}"
+# Several at the same moment are one: to tcsim, to its group, and while it cannot look. The same moment is a second of
+# real time, and a busy host may take longer to pass them on: so one of several tries is enough.
+send_several() {  # HOW, to tcsim's process
+  local coordinator
   coordinator=$(coordinator_of "$tcsim_pid")
-  case $times in
-    1) kill -TERM "$tcsim_pid" && kill -TERM "$tcsim_pid" && kill -INT "$tcsim_pid" "$coordinator" ;;
-    2) kill -INT "$tcsim_pid" "$coordinator" && kill -TERM "$coordinator" "$tcsim_pid" ;;
+  case $1 in
+    1) kill -TERM "$tcsim_pid"; kill -TERM "$tcsim_pid"; kill -INT "$tcsim_pid" "$coordinator" ;;
+    2) kill -INT "$tcsim_pid" "$coordinator"; kill -TERM "$coordinator" "$tcsim_pid" ;;
     3)
       kill -STOP "$coordinator"
-      kill -TERM "$coordinator" && kill -INT "$coordinator" && kill -HUP "$coordinator"
+      kill -TERM "$coordinator"; kill -INT "$coordinator"; kill -HUP "$coordinator"
       # Its keeper makes it go on.
       ;;
-  esac
-  status=0
-  wait "$tcsim_pid" || status=$?
-  ((status == 143 || status == 130 || status == 129)) || fail "several, $times: status $status"
-  [[ $(cat "$out/run/r-keeper.out.log") == "ended by 15" ]] || fail "several, $times: no grace"
+  esac 2>/dev/null || true
+}
+for times in 1 2 3; do
+  had_grace=
+  for _ in $(seq 5); do
+    begun "${run[@]}"
+    send_several $times
+    status=0
+    wait "$tcsim_pid" || status=$?
+    ((status == 143 || status == 130 || status == 129)) || fail "several, $times: status $status"
+    [[ $(cat "$out/run/r-keeper.out.log") == "ended by 15" ]] && had_grace=yes && break
+  done
+  [[ $had_grace == yes ]] || fail "several, $times: no grace"
 done
 
 # Who does not end has its grace, unless somebody insists. Time stands still in a world that waits
 # for who computes (--sync callback), but not for its grace.
-sed 's/"0.3"/"1000"/; s/10s/1h/' "$out/s.yaml" >"$out/long.yaml"
-begun "$tcsim" run "$out/long.yaml" --out "$out/run"
-kill -TERM "$tcsim_pid"
-sleep 2
-kill -0 "$tcsim_pid" || fail "it did not wait for the grace"
-kill -TERM "$tcsim_pid"
-before=$SECONDS
-ended 143 "a second SIGTERM"
-((SECONDS - before < 4)) || fail "a second SIGTERM took $((SECONDS - before)) s"
-sed 's/"0.3"/"1000"/; s/10s/0.2s/' "$out/s.yaml" >"$out/short.yaml"
+# No grace takes more than six seconds of real time; the end by that has a sentence of its own, and where the host was
+# slow enough to come to it, the second signal was too late.
+sed 's/"0.05"/"1000"/; s/10s/1h/' "$out/s.yaml" >"$out/long.yaml"
+insisted=
+for _ in $(seq 5); do
+  begun "$tcsim" run "$out/long.yaml" --out "$out/run"
+  kill -TERM "$tcsim_pid"
+  await "$out/ready.told" "it was not told"
+  sleep 1.2  # what comes within a second is of the same wish
+  kill -TERM "$tcsim_pid" 2>/dev/null || true
+  ended 143 "a second SIGTERM"
+  grep -q 'the limit of real time' "$out/said" && continue
+  insisted=yes
+  break
+done
+[[ $insisted == yes ]] || fail "a second SIGTERM waits for the grace: $(cat "$out/said")"
+sed 's/"0.05"/"1000"/; s/10s/0.2s/' "$out/s.yaml" >"$out/short.yaml"
 for sync in consistent callback; do
   begun "$tcsim" run "$out/short.yaml" --sync "$sync" --out "$out/run"
   kill -TERM "$tcsim_pid"

@@ -18,5 +18,5 @@ refers=$(nm -D --undefined-only "$build/lib/libtcs_preload.so" | grep -E ' (dds|
 [[ -z $refers ]] || fail "the shim refers to symbols of libddsc: $refers"
 # What the shim stands before must be there in Debian's libddsc.
 missing=$(comm -23 <(sed -n 's/^ *X(\([a-z0-9_]*\)).*/\1/p' "$source_root/libtcs_preload/dds/calls.h" | LC_ALL=C sort) \
-  <(nm -D --defined-only "$(ldconfig -p | awk '/libddsc.so.0debian/ {print $NF; exit}')" | awk '{print $3}' | LC_ALL=C sort))
+  <(nm -D --defined-only "$(library libddsc.so.0debian)" | awk '{print $3}' | LC_ALL=C sort))
 [[ -z $missing ]] || fail "libddsc does not have: $missing"

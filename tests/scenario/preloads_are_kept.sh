@@ -68,7 +68,7 @@ YAML
 "$tcsim" run scenario.yaml --out out >/dev/null 2>stderr || fail "$(cat stderr)"
 [[ $(cat out/r-c.out.log) =~ ^1000\ $buf:$shim$ ]] || fail "environment: $(cat out/r-c.out.log)"
 
-jemalloc=$(ldconfig -p | awk '/libjemalloc.so.2 .*x86-64/ {print $NF; exit}')
+jemalloc=$(library 'libjemalloc.so.2 .*x86-64')
 if [[ -n $jemalloc ]]; then
   maps='import time; time.sleep(1000); print("jemalloc" in open("/proc/self/maps").read())'
   for mode in "${modes[@]}"; do

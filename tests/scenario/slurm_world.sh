@@ -85,7 +85,7 @@ with_descendants() {  # PROCESS...
 steps_of() {  # [NODE]
   local step
   for step in $(pgrep -x slurmstepd); do
-    find "/proc/$step/fd" -lname "$slurm/log/${1:-n*}" 2>/dev/null | grep -q . && echo "$step"
+    find "/proc/$step/fd" -lname "$slurm/log/${1:-n*}" 2>/dev/null | grep . >/dev/null && echo "$step"
   done
   true
 }

@@ -46,6 +46,13 @@ TEST(CpuPlaces, TwoThreadsOfTheOnlyCoreAreBetterThanNone) {
   EXPECT_THAT(Numbers(PlaceOfRun(two, true, 1, 0)), ElementsAre(0, 1));
 }
 
+// A claim may take the first of two (claim_order.h).
+TEST(CpuPlaces, ACoreOfItsOwnIsAllThatTheOnlyRunMayUse) {
+  const std::vector<CpuPlace> four{{0, "0-1"}, {1, "0-1"}, {2, "2-3"}, {3, "2-3"}};
+  EXPECT_EQ(RunsAtOnce(four, true), 1);
+  EXPECT_THAT(Numbers(PlaceOfRun(four, true, 1, 0)), ElementsAre(2));
+}
+
 TEST(CpuPlaces, MoreRunsShareCores) {
   EXPECT_EQ(Numbers(PlaceOfRun(kEight, true, 4, 0)).size(), 8u);
 }
