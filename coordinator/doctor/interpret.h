@@ -6,12 +6,13 @@
 
 #include "coordinator/doctor/finding.h"
 #include "coordinator/os/own_computer.h"
+#include "coordinator/os/real_time_right.h"
 
 namespace tcs {
 
-// `error`: the errno of asking for the coordinator's real-time priority; 0 if it was granted.
-// `has_gates`: the kernel has what a run needs that goes without (TrapsHoldSignals).
-Finding JudgeRealTime(int error, bool has_gates);
+// `facts`: what the kernel said when it was asked (AskForRealTime). `has_gates`: the kernel has
+// what a run needs that goes without (TrapsHoldSignals).
+Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates);
 // Texts: /proc/sys/kernel/sched_rt_runtime_us, .../sched_rt_period_us and .../osrelease. From
 // Linux 6.12 on the scheduler's fair server does what throttling did, and does not heed its
 // setting.

@@ -11,20 +11,21 @@ namespace tcs {
 namespace {
 
 TEST(Doctor, WithoutRealTimePriorityGatesKeepThreadsApart) {
-  const Finding permitted = JudgeRealTime(0, true);
+  const Finding permitted = JudgeRealTime({}, true);
   EXPECT_EQ(permitted.verdict, Verdict::kOk);
   EXPECT_NE(permitted.found.find("gates would"), std::string::npos);
-  const Finding refused = JudgeRealTime(EPERM, true);
+  const Finding refused = JudgeRealTime({.error = EPERM, .may_get_capability = true}, true);
   EXPECT_EQ(refused.verdict, Verdict::kWarning);
   EXPECT_NE(refused.found.find("gates and a signal keep"), std::string::npos);
   EXPECT_NE(refused.mend.find("less time"), std::string::npos);
+  EXPECT_NE(refused.found.find("CAP_SYS_NICE is missing"), std::string::npos);
   EXPECT_NE(refused.mend.find("limits.conf"), std::string::npos);
   EXPECT_TRUE(CanRun({permitted, refused}));
 }
 
 TEST(Doctor, WithoutEitherNothingRuns) {
-  EXPECT_EQ(JudgeRealTime(0, false).verdict, Verdict::kOk);
-  const Finding neither = JudgeRealTime(EPERM, false);
+  EXPECT_EQ(JudgeRealTime({}, false).verdict, Verdict::kOk);
+  const Finding neither = JudgeRealTime({.error = EPERM}, false);
   EXPECT_EQ(neither.verdict, Verdict::kMissing);
   EXPECT_NE(neither.found.find("5.19"), std::string::npos);
   EXPECT_FALSE(CanRun({neither}));
