@@ -124,7 +124,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       LookAtCpu(),
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
-      JudgeNetworks(WhyNoComputer(), geteuid() == 0),
+      JudgeNetworks(WhyNoComputer(), !MayMakeNamespaces()),
       JudgeLibc(gnu_get_libc_version()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),

@@ -164,12 +164,12 @@ Finding JudgeLayout(int error) {
           "docker's --security-opt seccomp=FILE can"};
 }
 
-Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root) {
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_namespace) {
   constexpr char kName[] = "networks of robots";
   if (!why_not) {
     return {kName, Verdict::kOk,
             fmt::format("`network` in a scenario works: {} and /dev/net/tun are permitted",
-                        is_root ? "namespaces" : "user namespaces"),
+                        in_user_namespace ? "user namespaces" : "namespaces"),
             ""};
   }
   return {kName, Verdict::kWarning,

@@ -29,9 +29,9 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated);
 Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates);
 // `error`: the errno of asking for a process without address-space randomisation; 0 if it worked.
 Finding JudgeLayout(int error);
-// `why_not`: of making a robot a computer of its own (WhyNoComputer); `is_root`: it takes no user
-// namespace.
-Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root);
+// `why_not`: of making a robot a computer of its own (WhyNoComputer); `in_user_namespace`: it takes
+// one (MayMakeNamespaces).
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_namespace);
 // `version`: of the C library, such as "2.36".
 Finding JudgeLibc(const std::string& version);
 // `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.
