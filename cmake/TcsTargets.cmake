@@ -8,10 +8,10 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 
-option(TCS_WERROR "Treat warnings as errors" ON)
-# Three quarters of compiling go into headers. It is for who builds once: missing includes do not show, and GCC forgets
-# what is not to be warned of in the C++ library, so that there are no warnings at all.
-option(TCS_PRECOMPILE "Precompile what most files of a library include; no warnings" OFF)
+option(TCS_WERROR "Treat warnings as errors, as developers and CI do; compilers that come later warn of more" OFF)
+# Three quarters of compiling go into headers, which are read once for all sources that are compiled as one. Missing
+# includes do not show then: `./dev build dev` compiles each source by itself.
+option(TCS_UNITY "Compile the sources of a library twelve at a time" OFF)
 
 include(TcsSanitizers)
 
@@ -19,11 +19,6 @@ include(TcsSanitizers)
 function(tcs_target_defaults target)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "NO_SANITIZE" "" "")
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
-  if(TCS_PRECOMPILE)
-    # The second is for ccache. What is precompiled with fmt's macros is for those that have them.
-    target_compile_options(${target} PRIVATE -w -fpch-preprocess)
-    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
-  endif()
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Wno-missing-field-initializers)
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
@@ -40,35 +35,15 @@ function(tcs_target_defaults target)
   if(NOT ARG_NO_SANITIZE)
     tcs_target_sanitize(${target})
   endif()
-endfunction()
-
-# What most files include. Headers of ours that have many inline functions cost more than they save: GCC
-# instantiates the templates that they need anew at the end of each file.
-set(TCS_STANDARD_HEADERS <algorithm> <deque> <functional> <map> <memory> <optional> <set> <string> <unordered_map>
-                         <variant> <vector> <fmt/format.h>)
-
-# tcs_precompile(target HEADERS...). Our own headers are named as in #include <…>: with a path, ccache would find
-# nothing of what it knows from another folder that the tree was in.
-function(tcs_precompile target)
-  if(TCS_PRECOMPILE)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-  endif()
-endfunction()
-
-# tcs_share_precompiled(target TARGETS...): what the first has precompiled serves the others, which are compiled with
-# the same flags; it has no macros that they have not.
-function(tcs_share_precompiled from)
-  if(TCS_PRECOMPILE)
-    foreach(target ${ARGN})
-      target_precompile_headers(${target} REUSE_FROM ${from})
-    endforeach()
+  if(TCS_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
   endif()
 endfunction()
 
 # What runs once, such as reading a command line by templates, is not worth the time of optimising it. Not -O0: of an
 # inline function that is called in many sources the linker keeps the first copy, and would give it to the run's loop, too.
 function(tcs_compile_quickly)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -Og SKIP_PRECOMPILE_HEADERS ON)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -Og SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # The same of a whole library.
@@ -93,9 +68,9 @@ function(tcs_add_gtest target)
   cmake_parse_arguments(ARG "OPTIMISED" "LABEL" "SOURCES;LIBS" ${ARGN})
   tcs_add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main GTest::gmock)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   if(NOT ARG_OPTIMISED)
     tcs_target_compile_quickly(${target})
-    tcs_share_precompiled(tcs_gtest_headers ${target})
   endif()
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)

@@ -20,8 +20,6 @@ function(tcs_add_library target)
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/..")
 endfunction()
 # How quickly they compile is of no matter here.
-function(tcs_precompile)
-endfunction()
 function(tcs_compile_quickly)
 endfunction()
 

@@ -11,8 +11,6 @@ namespace tcs {
 
 namespace {
 
-constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
-
 // The kernel looks at how many it was to wake only when it has woken one.
 int AtLeastOne(std::uint64_t count) { return std::max(1, static_cast<int>(count)); }
 
@@ -33,7 +31,8 @@ std::int64_t FutexCalls::Requeue(const Task& task, const TrappedCall& call, int 
   }
   const FutexKey from = FutexWords::KeyFor(task, call, call.args[0]),
                  to = FutexWords::KeyFor(task, call, call.args[4]);
-  std::int64_t moved = words_.Wake(from, static_cast<int>(call.args[2]), kAnyBit, {task.reached});
+  std::int64_t moved =
+      words_.Wake(from, static_cast<int>(call.args[2]), FutexWords::kAnyBit, {task.reached});
   auto most = static_cast<int>(call.args[3]);
   for (const FutexTable::Thread waiter : words_.table().WaitersAt(from)) {
     if (most-- <= 0) break;
@@ -58,12 +57,12 @@ std::int64_t FutexCalls::WakeOp(const Task& task, const TrappedCall& call) {
   const std::int32_t results[] = {operand, sum, old | operand, old & ~operand, old ^ operand};
   if (!WriteMemory(pid, call.args[4], &results[kind], sizeof old)) return -EFAULT;
   std::int64_t woken = words_.Wake(words_.WokenKeyFor(*task.process, call, call.args[0]),
-                                   AtLeastOne(call.args[2]), kAnyBit, {task.reached});
+                                   AtLeastOne(call.args[2]), FutexWords::kAnyBit, {task.reached});
   const bool holds[] = {old == against, old != against, old<against, old <= against, old> against,
                         old >= against};
   if (holds[compare]) {
     woken += words_.Wake(words_.WokenKeyFor(*task.process, call, call.args[4]),
-                         AtLeastOne(call.args[3]), kAnyBit, {task.reached});
+                         AtLeastOne(call.args[3]), FutexWords::kAnyBit, {task.reached});
   }
   return woken;
 }
@@ -72,9 +71,10 @@ std::int64_t FutexCalls::CarryOutWake(const Process& process, const TrappedCall&
                                       Moment moment) {
   const int command = static_cast<int>(call.args[1]) & FUTEX_CMD_MASK;
   if (command != FUTEX_WAKE && command != FUTEX_WAKE_BITSET) return 0;
-  return words_.Wake(words_.WokenKeyFor(process, call, call.args[0]), AtLeastOne(call.args[2]),
-                     command == FUTEX_WAKE ? kAnyBit : static_cast<std::uint32_t>(call.args[5]),
-                     moment);
+  return words_.Wake(
+      words_.WokenKeyFor(process, call, call.args[0]), AtLeastOne(call.args[2]),
+      command == FUTEX_WAKE ? FutexWords::kAnyBit : static_cast<std::uint32_t>(call.args[5]),
+      moment);
 }
 
 // A core that is ahead must not wake whom another one may wake, or a deadline end, before. The call
@@ -88,8 +88,8 @@ bool FutexCalls::HoldsToWake(Task& task, const TrappedCall& call, int command) {
     return false;
   // Nobody waits: then nobody can be woken too early.
   if (command != FUTEX_WAKE_OP &&
-      words_.MostUrgent(words_.WokenKeyFor(*task.process, call, call.args[0]), kAnyBit) ==
-          nullptr) {
+      words_.MostUrgent(words_.WokenKeyFor(*task.process, call, call.args[0]),
+                        FutexWords::kAnyBit) == nullptr) {
     return false;
   }
   task.early_trap = call;

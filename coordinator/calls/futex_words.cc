@@ -15,7 +15,6 @@ namespace tcs {
 
 namespace {
 
-constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
 // How long a joiner gives the kernel to be through with a thread that has ended.
 constexpr int kEndTurns = 200;
 constexpr useconds_t kEndTurnUs = 50;

@@ -5,6 +5,7 @@
 // Results are the kernel's: negative for an errno. For the coordinator's thread only.
 #pragma once
 
+#include <linux/futex.h>
 #include <time.h>
 
 #include <cstdint>
@@ -18,6 +19,9 @@ namespace tcs {
 
 class FutexWords {
  public:
+  // A wake without a set of bits wakes whoever waits.
+  static constexpr std::uint32_t kAnyBit = FUTEX_BITSET_MATCH_ANY;
+
   FutexWords(RunState& run, Waker& waker) : run_(run), waker_(waker) {}
 
   // FUTEX_WAIT and FUTEX_WAIT_BITSET; futex_waitv.

@@ -12,7 +12,7 @@ namespace {
 
 using shm::IpcEvent;
 
-constexpr const char* kWrong = "times of System V objects";
+constexpr const char* kWrongTimes = "times of System V objects";
 
 bool IsObject(std::uint64_t object) {
   const auto kind = static_cast<shm::IpcKind>(object >> 32);
@@ -27,7 +27,7 @@ const char* TakeIpcNotes(Task& task, shm::RunMemory& memory) {
   const std::uint32_t count = slot.ipc_count.load();
   if (count == 0) return nullptr;
   slot.ipc_count.store(0);
-  if (count > shm::kMostIpcNotes) return kWrong;
+  if (count > shm::kMostIpcNotes) return kWrongTimes;
   const std::int64_t origin_ns = memory.header.realtime_offset_ns;
   const std::int64_t now_ns = origin_ns + OwnNow(task).ns();
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ const char* TakeIpcNotes(Task& task, shm::RunMemory& memory) {
     std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
     if (!IsObject(note.object) || note.event > IpcEvent::kRemoved || note.at_ns < origin_ns ||
         note.at_ns - origin_ns > task.grant.most_shown_ns) {
-      return kWrong;
+      return kWrongTimes;
     }
     shm::IpcPlace* place = shm::TakeIpcPlace(memory.ipc_times, note.object);
     if (place == nullptr) continue;

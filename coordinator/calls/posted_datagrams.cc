@@ -9,7 +9,7 @@ namespace tcs {
 
 namespace {
 
-constexpr const char* kWrong = "posted datagrams that cannot be";
+constexpr const char* kWrongDatagrams = "posted datagrams that cannot be";
 
 }  // namespace
 
@@ -23,7 +23,7 @@ const char* PostedDatagrams::Take(Task& task) {
   while (task.posts_taken != end) {
     shm::Postbox::Head head;
     if (!shm::ReadHead(box, task.posts_taken, end, &head) || head.receiver >= world_.receivers()) {
-      return kWrong;
+      return kWrongDatagrams;
     }
     datagram_.resize(head.size);
     shm::CopyFromRing(box, task.posts_taken + sizeof head, datagram_.data(), head.size);

@@ -103,11 +103,12 @@ void Engine::TakeTurnBeside(Task& task) {
     if (task.state != TaskState::kDead) expulsion_.AwaitDeath(task);
     return;
   }
-  if (const auto& call = run_.turn.trapped; call && (IsExecution(*call) || IsEnd(*call))) {
+  if (const auto& trapped = run_.turn.trapped;
+      trapped && (IsExecution(*trapped) || IsEnd(*trapped))) {
     // The kernel carries that out in the next turn.
-    task.executes = IsExecution(*call);
-    task.trap_listener = call->listener;
-    task.trap_id = call->id;
+    task.executes = IsExecution(*trapped);
+    task.trap_listener = trapped->listener;
+    task.trap_id = trapped->id;
     task.trap_continues = task.parked = true;
   } else {
     Answer(task);

@@ -24,12 +24,6 @@ std::string NameOf(const Process& process) {
   return process.is_client ? process.name : NameOf(process.pid);
 }
 
-bool HasChild(const TaskTable& table, const Process& parent) {
-  return std::any_of(
-      table.processes().begin(), table.processes().end(),
-      [&parent](const Process& process) { return !process.dead && process.parent == parent.pid; });
-}
-
 // The first few of them, and how many more there are.
 std::string Joined(const std::vector<std::string>& all) {
   std::string text;
@@ -47,7 +41,7 @@ std::vector<std::string> StandstillWatch::WhatIsAwaited() const {
   std::vector<std::string> awaited;
   for (const Process& process : run_.table.processes()) {
     if (process.dead) continue;
-    const bool has_child = HasChild(run_.table, process);
+    const bool has_child = run_.table.HasChild(process);
     WaitText first{10, {}};
     for (const Task* task : process.robot->tasks) {
       if (task->process == &process) first = std::min(first, TextOfWait(*task, has_child));

@@ -49,12 +49,6 @@ const char* NameOfGate(std::uint32_t gate) {
   }
 }
 
-bool HasChild(const TaskTable& table, const Process& parent) {
-  return std::any_of(
-      table.processes().begin(), table.processes().end(),
-      [&parent](const Process& process) { return !process.dead && process.parent == parent.pid; });
-}
-
 // One look at the run.
 class Look {
  public:
@@ -341,7 +335,7 @@ class Look {
     if (const auto* futex = task.Awaits<awaited::Futex>(); futex != nullptr) {
       return TextOfFutex(task, *futex);
     }
-    return TextOfAwaited(task, HasChild(run_.table, *task.process)).text;
+    return TextOfAwaited(task, run_.table.HasChild(*task.process)).text;
   }
 
   // Reads and writes wait until no other leaf can act at an earlier time.

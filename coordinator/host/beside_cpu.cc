@@ -21,10 +21,10 @@ using shm::Saying;
 
 constexpr std::int64_t kAwakeNs = 2'000'000;  // after a turn has begun
 constexpr std::int64_t kBusyNs = 3'000'000;
-constexpr std::int64_t kMostWayHomeNs = 2'000'000;
-constexpr std::int64_t kClaimsEveryNs = 100'000'000;
-constexpr std::int64_t kLeftToOthersNs = 2'000'000;
-constexpr int kMostDoublings = 8;
+constexpr std::int64_t kMostWayBackNs = 2'000'000;
+constexpr std::int64_t kClaimsBesideEveryNs = 100'000'000;
+constexpr std::int64_t kLeftBesideNs = 2'000'000;
+constexpr int kMostDoublingsBeside = 8;
 constexpr std::uint32_t kNobody = UINT32_MAX;  // to be sent home: the warden ends
 
 }  // namespace
@@ -113,7 +113,7 @@ void BesideCpu::SendHomeWhenAsked() {
 bool BesideCpu::IsFreeAt(std::uint64_t tsc) {
   if (tsc < not_before_tsc_) return false;
   if (tsc >= looks_for_claims_tsc_) {
-    looks_for_claims_tsc_ = tsc + TicksIn(kClaimsEveryNs);
+    looks_for_claims_tsc_ = tsc + TicksIn(kClaimsBesideEveryNs);
     if (is_claimed_(cpu_)) LeaveToOthers(tsc);
   }
   return tsc >= not_before_tsc_;
@@ -208,7 +208,7 @@ void BesideCpu::BringHome(HostThread& thread) {
   }
   sends_.store(static_cast<std::uint32_t>(thread.tid));
   Wake(sends_);
-  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayHomeNs);
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostWayBackNs);
   while (sends_.load() != 0 && __rdtsc() < until_tsc) _mm_pause();
   // The kernel may hold the one that was asked.
   if (sends_.exchange(0) == 0) return;
@@ -219,7 +219,7 @@ void BesideCpu::BringHome(HostThread& thread) {
 void BesideCpu::LeaveToOthers(std::uint64_t tsc) {
   // What was of use for longer than it had been left to others begins anew.
   if (tsc > not_before_tsc_ + left_ticks_) left_to_others_ = 0;
-  left_ticks_ = TicksIn(kLeftToOthersNs << std::min(left_to_others_++, kMostDoublings));
+  left_ticks_ = TicksIn(kLeftBesideNs << std::min(left_to_others_++, kMostDoublingsBeside));
   not_before_tsc_ = tsc + left_ticks_;
 }
 

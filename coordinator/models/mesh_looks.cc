@@ -13,8 +13,8 @@
 namespace tcs {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-constexpr unsigned kMostSeconds = 10;
+constexpr std::size_t kMostLooksBytes = std::size_t{64} << 20;
+constexpr unsigned kMostLooksSeconds = 10;
 
 bool IsFinite(const Surface& surface) {
   return std::ranges::all_of(surface.vertices, [](const auto& vertex) {
@@ -27,20 +27,20 @@ bool IsFinite(const Surface& surface) {
 std::optional<Surface> ReadLooks(const std::string& path, std::size_t most_triangles) {
   if (!IsMeshName(path) || most_triangles == 0) return {};
   try {
-    CheckFile(path, kMostBytes, "a mesh");
+    CheckFile(path, kMostLooksBytes, "a mesh");
   } catch (const ModelMistake&) {
     return {};
   }
   const std::size_t most_vertices = 3 * most_triangles;
   const auto work = [&]() -> std::string {
-    const auto read = MeshSurface(TextOf(path, kMostBytes, "a mesh"), path);
+    const auto read = MeshSurface(TextOf(path, kMostLooksBytes, "a mesh"), path);
     const auto* surface = std::get_if<Surface>(&read);
     if (surface == nullptr || !IsFinite(*surface) || surface->triangles.empty()) return {};
     return Packed(Decimated(*surface, most_triangles));
   };
   // Of each vertex three numbers, of each triangle three indices.
   const std::size_t most_packed = 64 + most_vertices * 24 + most_triangles * 12;
-  const ChildWork done = DoInChild(work, kMostSeconds, most_packed);
+  const ChildWork done = DoInChild(work, kMostLooksSeconds, most_packed);
   Surface surface;
   if (!done.failure.empty() || !Unpack(done.result, most_vertices, most_triangles, &surface) ||
       !IsFinite(surface) || surface.triangles.empty()) {

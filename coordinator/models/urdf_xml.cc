@@ -17,7 +17,7 @@ namespace {
 using tinyxml2::XMLElement;
 using tinyxml2::XMLNode;
 
-constexpr std::size_t kMostBytes = 4 << 20;
+constexpr std::size_t kMostUrdfBytes = 4 << 20;
 
 const char* WhatIsWrong(tinyxml2::XMLError error) {
   switch (error) {
@@ -99,7 +99,7 @@ void CheckRoot(const std::string& path, const XMLElement* root) {
 }  // namespace
 
 std::unique_ptr<tinyxml2::XMLDocument> ReadUrdfXml(const std::string& path) {
-  const std::string text = TextOf(path, kMostBytes, "a URDF file");
+  const std::string text = TextOf(path, kMostUrdfBytes, "a URDF file");
   if (text.find('\0') != std::string::npos) {
     throw ModelMistake{path + ": holds NUL bytes, so it is no text in UTF-8; save it as that"};
   }

@@ -12,9 +12,14 @@
 
 #include <cstdint>
 
+#include "coordinator/os/filter_code.h"
+
 namespace tcs {
 
 namespace {
+
+using filter::LoadArgument;
+using filter::Return;
 
 // A call that names a process in an argument. Where it sends a signal, also where that is: the
 // signal 0 is none.
@@ -69,13 +74,7 @@ const Numbers& NumbersOf(CallTable table) {
 }
 
 sock_filter Statement(std::uint16_t code, std::uint32_t k) { return {code, 0, 0, k}; }
-sock_filter Return(std::uint32_t action) { return Statement(BPF_RET | BPF_K, action); }
-sock_filter LoadNumber() { return Statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)); }
-sock_filter LoadArgument(std::size_t argument) {
-  return Statement(
-      BPF_LD | BPF_W | BPF_ABS,
-      static_cast<std::uint32_t>(offsetof(seccomp_data, args) + argument * sizeof(std::uint64_t)));
-}
+sock_filter LoadNumber() { return filter::Load(offsetof(seccomp_data, nr)); }
 sock_filter Jump(std::uint16_t test, std::uint32_t k, std::size_t yes, std::size_t no) {
   return {static_cast<std::uint16_t>(BPF_JMP | test | BPF_K), static_cast<std::uint8_t>(yes),
           static_cast<std::uint8_t>(no), k};

@@ -19,12 +19,17 @@
 #include <iterator>
 #include <vector>
 
+#include "coordinator/os/filter_code.h"
 #include "coordinator/os/protection.h"
 #include "shm/layout.h"
 
 namespace tcs {
 
 namespace {
+
+using filter::Load;
+using filter::LoadArgument;
+using filter::Return;
 
 // Besides futex and clock_gettime, which depend on their arguments, and those whose mark is
 // elsewhere.
@@ -74,25 +79,14 @@ sock_filter JumpIfEqual(std::uint32_t k, std::size_t yes, std::size_t no) {
           k};
 }
 
-sock_filter Load(std::size_t offset) {
-  return {BPF_LD | BPF_W | BPF_ABS, 0, 0, static_cast<std::uint32_t>(offset)};
-}
-
 // libnuma compares the processors that it is told of, which are the robot's, with the nodes of the
 // host's memory in /sys, which it looks at only if the kernel knows this call.
 constexpr std::uint32_t kNuma = SYS_get_mempolicy;
-
-sock_filter Return(std::uint32_t action) { return {BPF_RET | BPF_K, 0, 0, action}; }
 
 // The upper half of an argument.
 sock_filter LoadUpper(std::size_t argument) {
   return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument +
               sizeof(std::uint32_t));
-}
-
-// The lower half of an argument.
-sock_filter LoadArgument(std::size_t argument) {
-  return Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t) * argument);
 }
 
 // What programs of this architecture call, after the number was loaded. The calls in `unmarked` are

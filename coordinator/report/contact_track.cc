@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 using Point = ContactTrack::Point;
 
 // As of tracks: 16 bits over what a number ranges over, but no finer than anybody sees.
-constexpr double kSteps = 65'535, kLeastStepM = 1e-4, kLeastStepN = 1e-3;
+constexpr double kStepsOfTrack = 65'535, kLeastStepM = 1e-4, kLeastStepN = 1e-3;
 constexpr std::size_t kNumbers = 6;
 constexpr std::size_t kMostStride = 1 << 16;
 
@@ -112,7 +112,8 @@ Json ToJson(const ContactTrack& contacts, std::size_t moments) {
     const auto number = [i](const Point& point) { return NumberOf(point, i); };
     const auto [low, high] = std::ranges::minmax_element(points, {}, number);
     least[i] = number(*low);
-    step[i] = std::max(i < 3 ? kLeastStepM : kLeastStepN, (number(*high) - least[i]) / kSteps);
+    step[i] =
+        std::max(i < 3 ? kLeastStepM : kLeastStepN, (number(*high) - least[i]) / kStepsOfTrack);
   }
   // Of each pair the first contact of a moment is told by how it differs from the pair's first one
   // before, the second one from the second one, and so on.

@@ -13,13 +13,13 @@ namespace tcs::report {
 
 namespace {
 
-std::string Section(std::string_view id, std::string_view heading, std::string_view sentence,
-                    const std::string& html) {
+std::string LiveSection(std::string_view id, std::string_view heading, std::string_view sentence,
+                        const std::string& html) {
   return fmt::format("<section{}>\n<h2>{}</h2>\n<p class=\"says\">{}</p>\n{}</section>\n",
                      id.empty() ? "" : fmt::format(" id=\"{}\"", id), heading, sentence, html);
 }
 
-std::string Figure(std::string_view id, std::string_view content) {
+std::string LiveFigure(std::string_view id, std::string_view content) {
   return fmt::format("<figure id=\"{}\">\n{}</figure>\n", id, content);
 }
 
@@ -30,23 +30,25 @@ std::string Data(std::string_view kind, const nlohmann::ordered_json& json) {
 
 std::string Sections(const nlohmann::ordered_json& news) {
   if (!news.contains("replay") || news["to"]["moments"] == 0) return {};
-  return Section("world", "The world", "As far as the run has come.",
-                 std::string(kReplayHtml) + Data("replay", news["replay"])) +
-         Section("", "Where the robots went",
-                 "From above and from the side; the dot is where each is.",
-                 Figure("paths", kPathsLive)) +
-         Section("", "What a robot did over time",
-                 "Its position, orientation and velocity, its joints, and what was commanded: a "
-                 "command holds until "
-                 "the next one. A click or a drag moves the world to that time.",
-                 Figure("motion", kMotionControls)) +
-         Section("said", "What programs said", "Each line from when it was in the program's log.",
-                 "<div class=\"controls\" hidden><label>of <select></select></label></div>\n"
-                 "<ol id=\"said-lines\" tabindex=\"0\" aria-label=\"What programs said\"></ol>\n") +
-         Section("", "Who ran when",
-                 "The more of a column is filled, the more of that time the program ran.",
-                 Figure("timeline",
-                        std::string(kTimelineControls) + Data("timeline", news["timeline"])));
+  return LiveSection("world", "The world", "As far as the run has come.",
+                     std::string(kReplayHtml) + Data("replay", news["replay"])) +
+         LiveSection("", "Where the robots went",
+                     "From above and from the side; the dot is where each is.",
+                     LiveFigure("paths", kPathsLive)) +
+         LiveSection(
+             "", "What a robot did over time",
+             "Its position, orientation and velocity, its joints, and what was commanded: a "
+             "command holds until "
+             "the next one. A click or a drag moves the world to that time.",
+             LiveFigure("motion", kMotionControls)) +
+         LiveSection(
+             "said", "What programs said", "Each line from when it was in the program's log.",
+             "<div class=\"controls\" hidden><label>of <select></select></label></div>\n"
+             "<ol id=\"said-lines\" tabindex=\"0\" aria-label=\"What programs said\"></ol>\n") +
+         LiveSection("", "Who ran when",
+                     "The more of a column is filled, the more of that time the program ran.",
+                     LiveFigure("timeline", std::string(kTimelineControls) +
+                                                Data("timeline", news["timeline"])));
 }
 
 }  // namespace

@@ -21,12 +21,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // What a page is given at once is no more than this.
-constexpr std::size_t kMostReplayBytes = 4'000'000, kMostSlices = 80'000, kLeastMoments = 500,
+constexpr std::size_t kMostLiveBytes = 4'000'000, kMostLiveSlices = 80'000, kLeastMoments = 500,
                       kMostMoments = 100'000;
 
 // Of so many bytes each.
 std::size_t MostMoments(const ReplayScene& scene) {
-  const double interval_s = IntervalOf(scene, 1e9, kMostReplayBytes);
+  const double interval_s = IntervalOf(scene, 1e9, kMostLiveBytes);
   return std::clamp(static_cast<std::size_t>(1e9 / interval_s), kLeastMoments, kMostMoments);
 }
 
@@ -47,7 +47,7 @@ struct LiveRun::Reading {
         said(folder) {
     replay.name = timeline.name = NameOf(folder);
     replay.scene = scene.json;
-    const double interval_s = IntervalOf(scene, 0, kMostReplayBytes);
+    const double interval_s = IntervalOf(scene, 0, kMostLiveBytes);
     reader = std::make_unique<ReplayReader>(std::move(scene), &replay, interval_s);
   }
 
@@ -107,10 +107,10 @@ struct LiveRun::Reading {
       released = (released + 1) / 2;
       is_coarser = true;
     }
-    if (timeline.slices.size() > kMostSlices) {
+    if (timeline.slices.size() > kMostLiveSlices) {
       std::vector<Timeline> one;
       one.push_back(std::move(timeline));
-      Shorten(&one, kMostSlices / 2);
+      Shorten(&one, kMostLiveSlices / 2);
       timeline = std::move(one[0]);
       is_coarser = true;
     }

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostTriangles = 60'000, kMostOfOne = 6'000, kMostFiles = 60;
 
 // 16 bits over what it spans, a micrometre at the least.
-constexpr double kSteps = 65'535, kLeastStepM = 1e-6;
+constexpr double kStepsOfLooks = 65'535, kLeastLookM = 1e-6;
 
 Json MeshJson(const Surface& surface) {
   std::array<double, 3> least{}, step{};
@@ -24,7 +24,7 @@ Json MeshJson(const Surface& surface) {
     const auto along = [axis](const std::array<double, 3>& vertex) { return vertex[axis]; };
     const auto [low, high] = std::ranges::minmax_element(surface.vertices, {}, along);
     least[axis] = along(*low);
-    step[axis] = std::max(kLeastStepM, (along(*high) - along(*low)) / kSteps);
+    step[axis] = std::max(kLeastLookM, (along(*high) - along(*low)) / kStepsOfLooks);
   }
   std::string vertices, triangles;
   std::array<std::int64_t, 3> before{};

@@ -13,9 +13,10 @@
 namespace tcs::report {
 namespace {
 
-constexpr double kLeft = 44, kRight = 12, kTop = 26, kBottom = 24, kBetween = 60;
+constexpr double kPathsLeft = 44, kPathsRight = 12, kPathsTop = 26, kPathsBottom = 24,
+                 kPathsBetween = 60;
 constexpr double kMostHeight = 380, kLeastHeight = 70;
-constexpr double kPanel = 92, kAbove = 30, kBelow = 40;
+constexpr double kPathsPanel = 92, kAbove = 30, kBelow = 40;
 constexpr std::size_t kMostPoints = 500, kMostRobots = 4;
 
 struct Span {
@@ -107,27 +108,28 @@ Drawing DrawPaths(const Replay& replay, int width) {
                                     SpanOf(replay, 2).size()};
   const double most = std::max(1e-3, *std::max_element(sizes.begin(), sizes.end()));
   const auto room = [&](std::size_t axis) { return std::max(sizes[axis], most * 0.3) * 1.12; };
-  const double plot = narrow ? width - kLeft - kRight : (width - kLeft - kRight - kBetween) / 2;
+  const double plot = narrow ? width - kPathsLeft - kPathsRight
+                             : (width - kPathsLeft - kPathsRight - kPathsBetween) / 2;
   const double scale =
       std::min(plot / room(0), (narrow ? 320 : kMostHeight) / std::max(room(1), room(2)));
   const double above = std::max(kLeastHeight, room(1) * scale);
   const double aside = std::max(kLeastHeight, room(2) * scale);
-  const double second_left = narrow ? kLeft : kLeft + plot + kBetween;
-  const double second_top = narrow ? kTop + above + kBottom + 34 : kTop;
+  const double second_left = narrow ? kPathsLeft : kPathsLeft + plot + kPathsBetween;
+  const double second_top = narrow ? kPathsTop + above + kPathsBottom + 34 : kPathsTop;
   Svg svg;
-  View(replay, 0, 1, scale, {kLeft, kTop, kLeft + plot, kTop + above})
+  View(replay, 0, 1, scale, {kPathsLeft, kPathsTop, kPathsLeft + plot, kPathsTop + above})
       .Draw("from above: y [m] over x [m]", &svg);
   View(replay, 0, 2, scale, {second_left, second_top, second_left + plot, second_top + aside})
       .Draw("from the side: z [m] over x [m]", &svg);
-  const double height = narrow ? second_top + aside : kTop + std::max(above, aside);
-  return {width, static_cast<int>(height + kBottom), svg.Take()};
+  const double height = narrow ? second_top + aside : kPathsTop + std::max(above, aside);
+  return {width, static_cast<int>(height + kPathsBottom), svg.Take()};
 }
 
 Drawing DrawMotion(const Replay& replay, int width) {
   Svg svg;
-  const double right = width - kRight;
+  const double right = width - kPathsRight;
   Axis x = Axis::Exact(0, replay.end_s, width < kWideWidth ? 4 : 9);
-  x.Place(kLeft, right);
+  x.Place(kPathsLeft, right);
   double y = 0;
   for (const std::size_t robot : Moving(replay)) {
     const auto& poses = replay.tracks[replay.robots[robot].paths.front()].poses;
@@ -137,12 +139,12 @@ Drawing DrawMotion(const Replay& replay, int width) {
     }
     const double room = std::max(0.01, span.size() * 0.06);
     y += kAbove;
-    const Frame frame{kLeft, y, right, y + kPanel};
-    svg.Rect(kLeft, y, right - kLeft, kPanel, "lane");
+    const Frame frame{kPathsLeft, y, right, y + kPathsPanel};
+    svg.Rect(kPathsLeft, y, right - kPathsLeft, kPathsPanel, "lane");
     Axis up = Axis::Exact(span.least - room, span.most + room, 4);
     up.Place(frame.bottom, frame.top);
     DrawVerticalAxis(&svg, frame, up);
-    svg.Text(kLeft, y - 8, Svg::Anchor::kStart, replay.robots[robot].name + ": position [m]",
+    svg.Text(kPathsLeft, y - 8, Svg::Anchor::kStart, replay.robots[robot].name + ": position [m]",
              "name");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Svg::Points points;
@@ -153,9 +155,9 @@ Drawing DrawMotion(const Replay& replay, int width) {
       svg.Text(right - 36 + 14 * static_cast<double>(axis), y - 8, Svg::Anchor::kStart,
                std::string(1, "xyz"[axis]), SeriesClass('t', static_cast<int>(axis)));
     }
-    y += kPanel;
+    y += kPathsPanel;
   }
-  DrawHorizontalAxis(&svg, {kLeft, 0, right, y}, x, "virtual time [s]");
+  DrawHorizontalAxis(&svg, {kPathsLeft, 0, right, y}, x, "virtual time [s]");
   return {width, static_cast<int>(y + kBelow), svg.Take()};
 }
 

@@ -15,7 +15,7 @@ namespace tcs::report {
 
 namespace {
 
-using Json = nlohmann::json;
+using UnorderedJson = nlohmann::json;
 namespace fs = std::filesystem;
 
 // What trials.json says.
@@ -32,7 +32,7 @@ bool IsThere(const std::string& path) {
   return fs::exists(path, error);
 }
 
-std::string TextOf(const Json& value) {
+std::string TextOf(const UnorderedJson& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -41,17 +41,18 @@ LoadResult<Plan> ReadPlan(const std::string& folder) {
   const std::optional<std::string> text = ReadFile(path);
   if (!text) return LoadError{path + " cannot be read"};
   try {
-    const Json json = Json::parse(*text);
+    const UnorderedJson json = UnorderedJson::parse(*text);
     Plan plan;
     plan.name = json.value("name", "");
     json.at("first_seed").get_to(plan.first_seed);
     json.at("trials").get_to(plan.trials);
     if (json.contains("vary") && json.at("vary").is_object()) {
       json.at("vary").at("key").get_to(plan.key);
-      for (const Json& value : json.at("vary").at("values")) plan.values.push_back(TextOf(value));
+      for (const UnorderedJson& value : json.at("vary").at("values"))
+        plan.values.push_back(TextOf(value));
     }
     return plan;
-  } catch (const Json::exception&) {
+  } catch (const UnorderedJson::exception&) {
     return LoadError{path + " is damaged; make the trials again"};
   }
 }
@@ -93,9 +94,9 @@ std::optional<double> NumberOf(const std::string& value) {
   return {};
 }
 
-class Reader {
+class ResultsReader {
  public:
-  explicit Reader(const std::vector<std::string>& bodies) : bodies_(bodies) {}
+  explicit ResultsReader(const std::vector<std::string>& bodies) : bodies_(bodies) {}
 
   // One sentence, or empty.
   std::string Add(const std::string& folder) {
@@ -268,7 +269,7 @@ std::vector<std::string> Failures(const System& system) {
 
 LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
                                 const std::vector<std::string>& bodies) {
-  Reader reader(bodies);
+  ResultsReader reader(bodies);
   for (const std::string& folder : folders) {
     if (std::string error = reader.Add(folder); !error.empty()) return LoadError{error};
   }

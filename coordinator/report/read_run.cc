@@ -14,10 +14,10 @@ namespace tcs::report {
 
 namespace {
 
-using Json = nlohmann::json;
+using UnorderedJson = nlohmann::json;
 
 // None, or why the run is no good: a client of it failed.
-std::optional<std::string> FailureOf(const Json& clients) {
+std::optional<std::string> FailureOf(const UnorderedJson& clients) {
   for (const auto& [name, client] : clients.items()) {
     const auto status = client.at("wait_status").get<int>();
     const auto ended_ns = client.at("ended_at_ns").get<std::int64_t>();
@@ -43,7 +43,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
   Run run;
   run.folder = folder;
   try {
-    const Json json = Json::parse(*text);
+    const UnorderedJson json = UnorderedJson::parse(*text);
     if (json.at("interrupted").get<bool>()) return LoadError{folder + " was interrupted"};
     run.scenario = json.at("scenario").get<std::string>();
     // Runs of earlier versions did not say.
@@ -58,7 +58,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
     json.at("clients_ns").get_to(run.clients_ns);
     json.at("dynamics_ns").get_to(run.dynamics_ns);
     run.overhead = json.at("overhead_percent").get<double>() / 100.0;
-    const Json& clients = json.at("clients");
+    const UnorderedJson& clients = json.at("clients");
     if (const auto failure = was_cut ? std::nullopt : FailureOf(clients)) {
       return LoadError{folder + ": " + *failure};
     }
@@ -79,7 +79,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
       entry.at("activations").get_to(client.activations);
       entry.at("overruns").get_to(client.overruns);
     }
-  } catch (const Json::exception&) {
+  } catch (const UnorderedJson::exception&) {
     return LoadError{path + " is damaged; make the run again"};
   }
   return run;

@@ -40,9 +40,9 @@ std::string SaidFile(const std::string& folder, std::string client, const std::s
 
 namespace {
 
-class Reader {
+class SaidReader {
  public:
-  Reader(const std::string& folder, Replay* replay) : folder_(folder), replay_(*replay) {}
+  SaidReader(const std::string& folder, Replay* replay) : folder_(folder), replay_(*replay) {}
 
   bool Take(const CsvFields& fields) {
     const auto time = ToInteger(fields[0]);
@@ -118,7 +118,7 @@ class Reader {
 void ReadSaid(const std::string& folder, Replay* replay) {
   const std::string path = folder + "/output.csv";
   if (!IsFile(path)) return;
-  Reader reader(folder, replay);
+  SaidReader reader(folder, replay);
   // Lines that are of no use tell of text that is not there.
   static_cast<void>(ReadCsv(path, {"time_ns", "client", "stream", "begin", "end"},
                             [&](const CsvFields& fields) { return reader.Take(fields); }));

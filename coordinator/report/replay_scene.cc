@@ -37,9 +37,9 @@ Json BoxLike(const Json& body) {
   return {{"kind", "body"}, {"size", size}, {"pose", JsonOf({})}};
 }
 
-class Reader {
+class SceneReader {
  public:
-  Reader(Json scene, MeshLooks looks) : scene_(std::move(scene)) {
+  SceneReader(Json scene, MeshLooks looks) : scene_(std::move(scene)) {
     if (looks == MeshLooks::kRead) looks_.emplace(CountMeshFiles());
   }
 
@@ -185,7 +185,7 @@ LoadResult<ReplayScene> ReadReplayScene(const std::string& folder, MeshLooks loo
   const auto text = ReadFile(path);
   if (!text) return ReplayScene{};
   try {
-    return Reader(Json::parse(*text), looks).Read();
+    return SceneReader(Json::parse(*text), looks).Read();
   } catch (const std::exception&) {
     return LoadError{path + " is damaged; make the run again"};
   }

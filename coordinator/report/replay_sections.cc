@@ -56,8 +56,8 @@ std::string WaysIn(const Replay& replay) {
   return Listed(ways);
 }
 
-std::string Section(std::string_view id, std::string_view heading, const std::string& sentence,
-                    const std::string& html) {
+std::string SectionHtml(std::string_view id, std::string_view heading, const std::string& sentence,
+                        const std::string& html) {
   return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p class=\"says\">{}</p>\n{}</section>\n",
                      id, heading, Escaped(sentence), html);
 }
@@ -74,10 +74,11 @@ std::string WorldSection(const std::vector<Replay>& replays) {
   }
   const Replay* shown = FirstWithMoments(replays);
   if (shown == nullptr) {
-    return Section("world", "The world",
-                   "There is none to show: the scenario has no bodies and no models, or the run "
-                   "did not write where they were (bodies.csv).",
-                   data);
+    return SectionHtml(
+        "world", "The world",
+        "There is none to show: the scenario has no bodies and no models, or the run "
+        "did not write where they were (bodies.csv).",
+        data);
   }
   std::string of;
   if (shown->trials > 1) of = fmt::format("The first of {} trials: ", shown->trials);
@@ -85,7 +86,7 @@ std::string WorldSection(const std::vector<Replay>& replays) {
     of = Quoted(shown->name) +
          (shown->trials > 1 ? fmt::format(", the first of {} trials: ", shown->trials) : ": ");
   }
-  return Section(
+  return SectionHtml(
       "world", "The world",
       fmt::format("{}{} of virtual time, in which {}.", of, Seconds(shown->end_s), WaysIn(*shown)),
       std::string(kReplayHtml) + data);
@@ -118,10 +119,11 @@ std::string SaidSection(const std::vector<Replay>& replays) {
   const auto talkative = std::find_if(replays.begin(), replays.end(),
                                       [](const Replay& replay) { return !replay.said.empty(); });
   if (talkative == replays.end()) {
-    return Section("said", "What programs said",
-                   "Nothing: no program wrote to its standard output or error, or the run did not "
-                   "note when (output.csv).",
-                   "");
+    return SectionHtml(
+        "said", "What programs said",
+        "Nothing: no program wrote to its standard output or error, or the run did not "
+        "note when (output.csv).",
+        "");
   }
   const std::vector<Said>& said = talkative->said;
   std::string items;
@@ -142,10 +144,10 @@ std::string SaidSection(const std::vector<Replay>& replays) {
   if (talkative->said_more > 0) {
     sentence += fmt::format("; {} more are in the logs alone", Grouped(talkative->said_more));
   }
-  return Section("said", "What programs said", sentence + ".",
-                 "<div class=\"controls\" hidden><label>of <select></select></label></div>\n"
-                 "<ol id=\"said-lines\" tabindex=\"0\" aria-label=\"What programs said\">\n" +
-                     items + "</ol>\n");
+  return SectionHtml("said", "What programs said", sentence + ".",
+                     "<div class=\"controls\" hidden><label>of <select></select></label></div>\n"
+                     "<ol id=\"said-lines\" tabindex=\"0\" aria-label=\"What programs said\">\n" +
+                         items + "</ol>\n");
 }
 
 }  // namespace tcs::report

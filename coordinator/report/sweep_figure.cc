@@ -14,7 +14,8 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 32, kTop = 26, kHeight = 280, kBottom = 44, kLegend = 18;
+constexpr double kSweepLeft = 44, kSweepRight = 32, kSweepTop = 26, kSweepHeight = 280,
+                 kSweepBottom = 44, kSweepLegend = 18;
 // Dots of one value lie beside each other.
 constexpr double kBetweenDots = 2.5;
 
@@ -93,8 +94,9 @@ Drawing DrawSweep(const SweepPlot& plot, int width) {
     }
   }
   const double legend =
-      plot.series.size() > 1 ? kLegend * static_cast<double>(plot.series.size()) : 0;
-  const Frame frame{kLeft, kTop + legend, width - kRight, kTop + legend + kHeight};
+      plot.series.size() > 1 ? kSweepLegend * static_cast<double>(plot.series.size()) : 0;
+  const Frame frame{kSweepLeft, kSweepTop + legend, width - kSweepRight,
+                    kSweepTop + legend + kSweepHeight};
   const bool logarithmic = plot.is_numeric && IsGeometric(values);
   Axis x = logarithmic ? Axis::Logarithmic(across.low, across.high)
                        : Axis::Exact(across.low, across.high, 5);
@@ -122,14 +124,14 @@ Drawing DrawSweep(const SweepPlot& plot, int width) {
     const SweepSeries& series = plot.series[i];
     DrawSeries(&svg, x, y, series);
     if (legend == 0) continue;
-    const double line = kTop + kLegend * (static_cast<double>(i) + 0.5);
+    const double line = kSweepTop + kSweepLegend * (static_cast<double>(i) + 0.5);
     svg.Line(frame.left, line - 4, frame.left + 18, line - 4,
              "bold " + SeriesClass('s', series.colour));
     svg.Text(frame.left + 24, line, Svg::Anchor::kStart, series.name,
              "name " + SeriesClass('t', series.colour));
   }
   DrawValues(&svg, frame, x, plot);
-  return {width, static_cast<int>(frame.bottom + kBottom), svg.Take()};
+  return {width, static_cast<int>(frame.bottom + kSweepBottom), svg.Take()};
 }
 
 }  // namespace tcs::report

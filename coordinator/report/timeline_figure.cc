@@ -10,8 +10,8 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kTop = 6, kTitle = 24, kRow = 18, kBetween = 6, kNameAbove = 15, kProgress = 56,
-                 kBottom = 40, kRight = 60;
+constexpr double kTimelineTop = 6, kTimelineTitle = 24, kTimelineRow = 18, kTimelineBetween = 6,
+                 kNameAbove = 15, kProgress = 56, kTimelineBottom = 40, kTimelineRight = 60;
 // What ran and took none of this axis's time is seen all the same.
 constexpr double kLeastShare = 0.12;
 
@@ -49,16 +49,16 @@ class Picture {
       for (const std::string& row : timeline.rows) names = std::max(names, WidthOf(row));
     }
     left_ = narrow_ ? 8 : std::min(names, 200.0) + 14;
-    right_ = width - kRight;
+    right_ = width - kTimelineRight;
     x_ = Axis::Exact(0, end_us_ * 1e-6, narrow_ ? 4 : 8);
     x_.Place(left_, right_);
   }
 
   Drawing Draw() {
     for (const Timeline& timeline : timelines_) DrawOne(timeline);
-    DrawHorizontalAxis(&svg_, {left_, kTop, right_, y_}, x_,
+    DrawHorizontalAxis(&svg_, {left_, kTimelineTop, right_, y_}, x_,
                        real_ ? "real time [s]" : "virtual time [s]");
-    return {width_, static_cast<int>(y_ + kBottom), svg_.Take()};
+    return {width_, static_cast<int>(y_ + kTimelineBottom), svg_.Take()};
   }
 
  private:
@@ -67,17 +67,17 @@ class Picture {
   }
 
   void DrawOne(const Timeline& timeline) {
-    y_ += kTitle;
+    y_ += kTimelineTitle;
     svg_.Text(8, y_ - 8, Svg::Anchor::kStart, timeline.name, "name");
     for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
       Label(timeline.rows[row]);
       DrawRow(timeline, static_cast<int>(row));
-      y_ += kRow + kBetween;
+      y_ += kTimelineRow + kTimelineBetween;
     }
     if (!timeline.has_real_times) return;
     Label(real_ ? "virtual time [s]" : "real time [s]");
     DrawProgress(timeline);
-    y_ += kProgress + kBetween;
+    y_ += kProgress + kTimelineBetween;
   }
 
   void Label(const std::string& name) {
@@ -90,16 +90,16 @@ class Picture {
   }
 
   void DrawRow(const Timeline& timeline, int row) {
-    svg_.Rect(left_, y_, right_ - left_, kRow, "lane");
+    svg_.Rect(left_, y_, right_ - left_, kTimelineRow, "lane");
     const auto columns = static_cast<std::size_t>(right_ - left_);
     const std::vector<double> busy = Busy(timeline, row, real_, end_us_, columns);
     Svg::Points outline;
     for (std::size_t i = 0; i < columns; ++i) {
-      const double height = y_ + kRow * (1 - busy[i]);
+      const double height = y_ + kTimelineRow * (1 - busy[i]);
       outline.emplace_back(left_ + static_cast<double>(i), height);
       outline.emplace_back(left_ + static_cast<double>(i + 1), height);
     }
-    svg_.Area(outline, y_ + kRow, "busy");
+    svg_.Area(outline, y_ + kTimelineRow, "busy");
     double ran = 0;
     for (const Slice& slice : timeline.slices) {
       if (slice.row != row) continue;
@@ -142,7 +142,7 @@ class Picture {
   const int width_;
   const bool narrow_;
   bool real_ = true;
-  double end_us_ = 1, left_ = 0, right_ = 0, y_ = kTop;
+  double end_us_ = 1, left_ = 0, right_ = 0, y_ = kTimelineTop;
   Axis x_;
   Svg svg_;
 };

@@ -13,7 +13,8 @@ namespace tcs::report {
 
 namespace {
 
-constexpr double kLeft = 44, kRight = 32, kTop = 20, kPanel = 120, kName = 34, kBottom = 40;
+constexpr double kTracksLeft = 44, kTracksRight = 32, kTracksTop = 20, kTracksPanel = 120,
+                 kTracksName = 34, kTracksBottom = 40;
 
 // As many of the samples as one can see, the last one included.
 Svg::Points Thinned(const Track& track, const Axis& x, const Axis& y, double pixels) {
@@ -59,18 +60,18 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
                       *std::max_element(run.track.distance_m.begin(), run.track.distance_m.end()));
     }
   }
-  const double right = width - kRight;
+  const double right = width - kTracksRight;
   Axis x = Axis::Exact(0, last, width < kWideWidth ? 5 : 10);
-  x.Place(kLeft, right);
+  x.Place(kTracksLeft, right);
   Svg svg;
-  const double pitch = kName + kPanel;
-  const double bottom = kTop + pitch * static_cast<double>(panels.size());
-  const double points = (right - kLeft) * 0.6;
+  const double pitch = kTracksName + kTracksPanel;
+  const double bottom = kTracksTop + pitch * static_cast<double>(panels.size());
+  const double points = (right - kTracksLeft) * 0.6;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const System& system = *panels[i].system;
     const int colour = panels[i].colour;
-    const double top = kTop + pitch * static_cast<double>(i) + kName;
-    const Frame frame{kLeft, top, right, top + kPanel};
+    const double top = kTracksTop + pitch * static_cast<double>(i) + kTracksName;
+    const Frame frame{kTracksLeft, top, right, top + kTracksPanel};
     Axis y = Axis::Linear(0, most, 4);
     y.Place(frame.bottom, frame.top);
     DrawVerticalAxis(&svg, frame, y);
@@ -93,9 +94,9 @@ Drawing DrawTracks(const std::vector<TracksPanel>& panels, const std::vector<dou
     }
     svg.Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
   }
-  DrawHorizontalAxis(&svg, {kLeft, kTop, right, bottom}, x, "virtual time [s]");
-  svg.Text(6, kTop - 5, Svg::Anchor::kStart, "distance [m]", "tick");
-  return {width, static_cast<int>(bottom + kBottom), svg.Take()};
+  DrawHorizontalAxis(&svg, {kTracksLeft, kTracksTop, right, bottom}, x, "virtual time [s]");
+  svg.Text(6, kTracksTop - 5, Svg::Anchor::kStart, "distance [m]", "tick");
+  return {width, static_cast<int>(bottom + kTracksBottom), svg.Take()};
 }
 
 }  // namespace tcs::report

@@ -19,22 +19,24 @@ constexpr std::size_t kMostRobots = 250;  // 10.42.0.1 and on
 constexpr double kSlowestBps = 1e3, kFastestBps = 1e12;
 constexpr std::int64_t kLeastQueue = 1500, kMostQueue = std::int64_t{1} << 30;  // bytes
 
-struct Unit {
+struct FactorUnit {
   std::string_view name;
   double factor;
 };
-constexpr Unit kBandwidths[] = {{"bit/s", 1}, {"kbit/s", 1e3}, {"Mbit/s", 1e6}, {"Gbit/s", 1e9}};
-constexpr Unit kSizes[] = {{"", 1}, {"B", 1}, {"kB", 1e3}, {"MB", 1e6}};
+constexpr FactorUnit kBandwidths[] = {
+    {"bit/s", 1}, {"kbit/s", 1e3}, {"Mbit/s", 1e6}, {"Gbit/s", 1e9}};
+constexpr FactorUnit kSizes[] = {{"", 1}, {"B", 1}, {"kB", 1e3}, {"MB", 1e6}};
 
 // A number and one of the units, with or without a space between.
-double LoadQuantity(const YamlValue& value, std::span<const Unit> units, const char* example) {
+double LoadQuantity(const YamlValue& value, std::span<const FactorUnit> units,
+                    const char* example) {
   const std::string text = value.AsText();
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   std::string_view name(end, static_cast<std::size_t>(text.data() + text.size() - end));
   while (name.starts_with(' ')) name.remove_prefix(1);
-  const auto unit =
-      std::find_if(units.begin(), units.end(), [&](const Unit& one) { return one.name == name; });
+  const auto unit = std::find_if(units.begin(), units.end(),
+                                 [&](const FactorUnit& one) { return one.name == name; });
   if (error != std::errc() || unit == units.end() || !std::isfinite(number)) {
     value.Fail("is '" + text + "'; write it like " + example);
   }

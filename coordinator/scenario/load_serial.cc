@@ -7,7 +7,7 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kSlowest = 50, kFastest = 100'000'000;  // baud
+constexpr std::int64_t kSlowestBaud = 50, kFastestBaud = 100'000'000;  // baud
 constexpr std::int64_t kLargestFifo = 4096;
 constexpr std::size_t kLongestPath = 255;
 
@@ -75,7 +75,7 @@ SerialPort SerialPorts::Load(const YamlMap& map, bool for_commands, const Scenar
     *of = written;
   };
   take("baud", &port.baud, [](const YamlValue& value) {
-    return static_cast<int>(value.AsInteger(kSlowest, kFastest));
+    return static_cast<int>(value.AsInteger(kSlowestBaud, kFastestBaud));
   });
   take("frame", &port.frame_bits, LoadFrame);
   take("fifo", &port.fifo,

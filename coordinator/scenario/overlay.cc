@@ -12,7 +12,7 @@ namespace {
 
 // Nobody writes them deeper; who does would have them end with the stack.
 constexpr int kDeepest = 32;
-constexpr std::size_t kMost = 10'000;  // aliases of aliases would be billions
+constexpr std::size_t kMostSettings = 10'000;  // aliases of aliases would be billions
 
 // On one line, as --set takes it.
 std::string InOneLine(const YAML::Node& value) {
@@ -35,7 +35,7 @@ class Overlay {
       if (!pair.first.IsScalar() || pair.first.Scalar().empty()) {
         throw ScenarioMistake{place + "this key is not a text; write a text"};
       }
-      if (depth == kDeepest || settings_.size() == kMost) {
+      if (depth == kDeepest || settings_.size() == kMostSettings) {
         throw ScenarioMistake{place +
                               "this is deeper or larger than any scenario; look for YAML aliases "
                               "that repeat themselves"};

@@ -66,6 +66,12 @@ Process* TaskTable::LivingProcess(pid_t pid) const {
   return found == by_pid_.end() ? nullptr : found->second;
 }
 
+bool TaskTable::HasChild(const Process& parent) const {
+  return std::any_of(processes_.begin(), processes_.end(), [&parent](const Process& process) {
+    return !process.dead && process.parent == parent.pid;
+  });
+}
+
 bool TaskTable::IsPorter(pid_t pid) const {
   return std::any_of(processes_.begin(), processes_.end(), [pid](const Process& process) {
     return process.porter != nullptr && process.porter->Is(pid);

@@ -45,6 +45,8 @@ class TaskTable {
   Process* LivingProcess(pid_t pid) const;
   // It is the porter of one (os/porter.h).
   bool IsPorter(pid_t pid) const;
+  // One of its children lives.
+  bool HasChild(const Process& parent) const;
 
   Task& At(int order) { return tasks_[static_cast<std::size_t>(order)]; }
   Process& ProcessAt(std::uint32_t index) { return processes_[index]; }

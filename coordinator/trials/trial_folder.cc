@@ -11,7 +11,7 @@ namespace tcs {
 
 namespace {
 
-constexpr int kLookMs = 200;
+constexpr int kFolderLookMs = 200;
 // A run that somebody killed ends within ten seconds (os/guardian.h).
 constexpr int kDyingRunLooks = 75;
 
@@ -22,7 +22,7 @@ std::string RemoveTrialFolder(const std::string& folder) {
     if (look == kDyingRunLooks) {
       return "an earlier run still writes to " + folder + "; end it";
     }
-    poll(nullptr, 0, kLookMs);
+    poll(nullptr, 0, kFolderLookMs);
   }
   std::error_code error;
   std::filesystem::remove_all(folder, error);

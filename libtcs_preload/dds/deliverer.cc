@@ -19,7 +19,7 @@ namespace {
 
 thread_local bool t_is_deliverer;
 
-struct State {
+struct Deliveries {
   std::mutex mutex;
   std::condition_variable done;
   std::vector<std::uint32_t> closing;
@@ -27,8 +27,8 @@ struct State {
   Mirrors mirrors;     // the deliverer's, and after its end whoever has the mutex
 };
 
-State& Get() {
-  static auto* state = new State;
+Deliveries& TheDeliveries() {
+  static auto* state = new Deliveries;
   return *state;
 }
 
@@ -36,7 +36,7 @@ bool IsNudge(const shm::DdsMessage& message) {
   return message.kind == shm::DdsKind::kHistoryEnd && GuidAt(message.subject) == Guid{};
 }
 
-void CloseDomains(State& state) {
+void CloseDomains(Deliveries& state) {
   std::vector<std::uint32_t> closing;
   {
     const std::lock_guard lock(state.mutex);
@@ -49,7 +49,7 @@ void CloseDomains(State& state) {
   state.done.notify_all();
 }
 
-void HandleAll(State& state, const std::byte* messages, std::size_t size) {
+void HandleAll(Deliveries& state, const std::byte* messages, std::size_t size) {
   for (std::size_t at = 0; at + sizeof(shm::DdsMessage) <= size;) {
     shm::DdsMessage message;
     std::memcpy(&message, messages + at, sizeof(message));
@@ -66,7 +66,7 @@ void HandleAll(State& state, const std::byte* messages, std::size_t size) {
 
 void* Run(void*) {
   t_is_deliverer = true;
-  State& state = Get();
+  Deliveries& state = TheDeliveries();
   const std::byte* messages = nullptr;
   while (const std::size_t size = TheLink().wait(&messages)) HandleAll(state, messages, size);
   const std::lock_guard lock(state.mutex);
@@ -85,7 +85,7 @@ void StartDeliverer() {
   pthread_t thread;
   if (const int error = pthread_create(&thread, nullptr, Run, nullptr); error != 0) {
     Say("cannot start the thread that takes in DDS samples: %s", strerror(error));
-    State& state = Get();
+    Deliveries& state = TheDeliveries();
     state.ended = true;
   } else {
     pthread_setname_np(thread, "tcs-dds");
@@ -102,7 +102,7 @@ void LookAgain() {
 }
 
 void CloseDomain(std::uint32_t domain) {
-  State& state = Get();
+  Deliveries& state = TheDeliveries();
   std::unique_lock lock(state.mutex);
   if (!state.ended) {
     state.closing.push_back(domain);

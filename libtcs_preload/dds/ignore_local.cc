@@ -9,14 +9,14 @@ namespace {
 // Listeners run while it is held, which may wait for a thread that wants it: not for ever.
 constexpr std::chrono::milliseconds kLongestTurn{100};
 
-struct State {
+struct Ignored {
   std::recursive_timed_mutex turn;
   std::mutex mutex;
   std::vector<std::pair<ddsi_domaingv*, Guid>> ignoring;  // the program's, with that policy
 };
 
-State& Get() {
-  static auto* state = new State;
+Ignored& TheIgnored() {
+  static auto* state = new Ignored;
   return *state;
 }
 
@@ -29,7 +29,7 @@ dds_ignorelocal_kind_t Policy(const dds_qos_t* qos) {
 // Of making an endpoint. Two that are made at a time may find each other twice: Cyclone then counts
 // two that do not suit it where there is one.
 std::unique_lock<std::recursive_timed_mutex> Turn() {
-  std::unique_lock turn(Get().turn, std::defer_lock);
+  std::unique_lock turn(TheIgnored().turn, std::defer_lock);
   static_cast<void>(turn.try_lock_for(kLongestTurn));
   return turn;
 }
@@ -57,7 +57,7 @@ dds_ignorelocal_kind_t ExchangePolicy(const ddsi_domaingv* gv, const Guid& guid,
 void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t kind) {
   std::vector<Guid> guids;
   {
-    State& state = Get();
+    Ignored& state = TheIgnored();
     const std::lock_guard lock(state.mutex);
     for (const auto& [domain, guid] : state.ignoring) {
       if (domain == gv) guids.push_back(guid);
@@ -100,13 +100,13 @@ void OwnMatches::Made(const ddsi_guid_t& inner) {
     const Awake awake(gv_);
     ExchangePolicy(gv_, guid, DDS_IGNORELOCAL_PROCESS);
   }
-  State& state = Get();
+  Ignored& state = TheIgnored();
   const std::lock_guard lock(state.mutex);
   state.ignoring.emplace_back(gv_, guid);
 }
 
 void ForgetIgnoring(const Guid& guid) {
-  State& state = Get();
+  Ignored& state = TheIgnored();
   const std::lock_guard lock(state.mutex);
   std::erase_if(state.ignoring, [&guid](const auto& entry) { return entry.second == guid; });
 }

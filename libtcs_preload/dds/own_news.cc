@@ -10,13 +10,13 @@
 namespace tcs::dds {
 namespace {
 
-struct State {
+struct KeptNews {
   std::mutex mutex;
   std::vector<OwnNews> news;
 };
 
-State& Get() {
-  static auto* state = new State;
+KeptNews& TheKeptNews() {
+  static auto* state = new KeptNews;
   return *state;
 }
 
@@ -29,7 +29,7 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
     return;
   }
   const Guid subject = GuidAt(message.subject);
-  State& state = Get();
+  KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);
   if ((message.flags & shm::kDdsGone) != 0) {
     // A participant takes its endpoints along.
@@ -50,7 +50,7 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
 }
 
 std::vector<OwnNews> NewsForItself() {
-  State& state = Get();
+  KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);
   std::vector<OwnNews> all;
   std::ranges::copy_if(state.news, std::back_inserter(all),

@@ -53,7 +53,7 @@ using Prefix = std::pair<std::uint64_t, std::uint32_t>;
 // What is kept of a writer that never unregisters its instances.
 constexpr std::size_t kMostInstances = 4096;
 
-struct State {
+struct ProgramState {
   std::mutex mutex;
   std::set<std::pair<std::uint32_t, Prefix>> shadows;  // by domain
   std::map<std::uint32_t, Domain> domains;
@@ -65,8 +65,8 @@ struct State {
 };
 
 // Never destroyed: the deliverer and Cyclone's threads outlive main.
-State& Get() {
-  static auto* state = new State;
+ProgramState& TheProgramState() {
+  static auto* state = new ProgramState;
   return *state;
 }
 
@@ -82,7 +82,7 @@ void Forget(Writer& writer, const ddsi_domaingv* gv) {
   for (auto& [iid, instance] : writer.instances) ddsi_tkmap_instance_unref(gv->m_tkmap, instance);
 }
 
-std::vector<Guid> LockedWritersOf(const State& state, std::uint32_t domain,
+std::vector<Guid> LockedWritersOf(const ProgramState& state, std::uint32_t domain,
                                   const std::string& topic, bool with_history) {
   std::vector<Guid> guids;
   for (const auto& [guid, writer] : state.writers) {
@@ -101,13 +101,13 @@ std::uint32_t NetworkDomain(const ddsi_domaingv& gv) {
 }
 
 void AddShadow(std::uint32_t domain, const Guid& participant) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   state.shadows.insert({domain, PrefixOf(InnerOf(participant))});
 }
 
 void RemoveShadow(std::uint32_t domain, const Guid& participant) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   state.shadows.erase({domain, PrefixOf(InnerOf(participant))});
 }
@@ -117,13 +117,13 @@ bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity) {
 }
 
 bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return state.shadows.contains({domain, PrefixOf(entity)});
 }
 
 ddsi_domaingv* DomainOf(std::uint32_t domain) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.domains.find(domain);
   if (found == state.domains.end() || found->second.participants.empty()) return nullptr;
@@ -131,7 +131,7 @@ ddsi_domaingv* DomainOf(std::uint32_t domain) {
 }
 
 std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<ddsi_domaingv*> domains;
   for (const auto& [id, domain] : state.domains) {
@@ -145,7 +145,7 @@ std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain) {
 bool MeetsItself(std::uint32_t network_domain) { return DomainsCalled(network_domain).size() > 1; }
 
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   Domain& domain = state.domains[gv->config.domainId];
   domain.gv = gv;
@@ -153,20 +153,20 @@ void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
 }
 
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::erase(state.domains[gv->config.domainId].participants, guid);
 }
 
 bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.domains.find(gv->config.domainId);
   return found != state.domains.end() && std::ranges::count(found->second.participants, guid) != 0;
 }
 
 bool IsLastParticipant(const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return std::any_of(state.domains.begin(), state.domains.end(), [&guid](const auto& domain) {
     return domain.second.participants == std::vector{guid};
@@ -174,7 +174,7 @@ bool IsLastParticipant(const Guid& guid) {
 }
 
 std::vector<std::uint32_t> Domains() {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<std::uint32_t> ids;
   for (const auto& [id, domain] : state.domains) ids.push_back(id);
@@ -182,14 +182,14 @@ std::vector<std::uint32_t> Domains() {
 }
 
 void AddType(std::uint32_t domain, const char* topic, const ddsi_sertype* type) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   ddsi_sertype*& held = state.domains[domain].types[{topic, type->type_name}];
   if (held == nullptr) held = ddsi_sertype_ref(type);
 }
 
 ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const std::string& type) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto& types = state.domains[domain].types;
   const auto found = types.find({topic, type});
@@ -197,7 +197,7 @@ ddsi_sertype* ReferType(std::uint32_t domain, const std::string& topic, const st
 }
 
 void ReleaseTypes(std::uint32_t domain) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   std::map<std::pair<std::string, std::string>, ddsi_sertype*> types;
   {
     const std::lock_guard lock(state.mutex);
@@ -207,7 +207,7 @@ void ReleaseTypes(std::uint32_t domain) {
 }
 
 bool HasTopic(std::uint32_t domain, const std::string& topic) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto& types = state.domains[domain].types;
   const auto first = types.lower_bound({topic, ""});
@@ -215,19 +215,19 @@ bool HasTopic(std::uint32_t domain, const std::string& topic) {
 }
 
 bool LookAround() {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return !std::exchange(state.looks_around, true);
 }
 
 bool LooksAround() {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return state.looks_around;
 }
 
 bool AddWriter(const ddsi_writer& writer) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto [place, is_new] = state.writers.try_emplace(GuidOf(writer.e.guid));
   if (!is_new) return false;
@@ -243,7 +243,7 @@ bool AddWriter(const ddsi_writer& writer) {
 }
 
 void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   Writer writer;
   {
     const std::lock_guard lock(state.mutex);
@@ -256,20 +256,20 @@ void RemoveWriter(const ddsi_domaingv* gv, const Guid& guid) {
 }
 
 bool IsWriter(const ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.writers.find(guid);
   return found != state.writers.end() && found->second.domain == gv->config.domainId;
 }
 
 std::vector<Guid> WritersOf(std::uint32_t domain, const std::string& topic) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return LockedWritersOf(state, domain, topic, false);
 }
 
 std::optional<std::int64_t> MostBlocking(const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.writers.find(guid);
   if (found == state.writers.end()) return std::nullopt;
@@ -280,14 +280,14 @@ std::optional<std::int64_t> MostBlocking(const Guid& guid) {
 
 namespace {
 
-bool IsReadReliably(const State& state, const Writer& writer, std::uint32_t process) {
+bool IsReadReliably(const ProgramState& state, const Writer& writer, std::uint32_t process) {
   return std::ranges::any_of(state.taps, [&](const Tap* tap) {
     return tap->process == process && tap->is_reliable && tap->domain == writer.domain &&
            tap->topic == writer.topic;
   });
 }
 
-bool LockedHasPromised(const State& state, Writer& writer, std::uint32_t process) {
+bool LockedHasPromised(const ProgramState& state, Writer& writer, std::uint32_t process) {
   if (!writer.is_reliable) return false;
   Promise& promise = writer.promises[process];
   if (promise.taps_version != state.taps_version) {
@@ -299,7 +299,7 @@ bool LockedHasPromised(const State& state, Writer& writer, std::uint32_t process
 }  // namespace
 
 std::vector<std::uint32_t> PromisedProcesses(const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<std::uint32_t> processes;
   const auto found = state.writers.find(guid);
@@ -313,7 +313,7 @@ std::vector<std::uint32_t> PromisedProcesses(const Guid& guid) {
 namespace {
 
 // `*unneeded`: to be unreferred to without the lock, since that may run a serdata's own code.
-Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const Tap& tap,
+Carries LockedCarriesSample(ProgramState& state, const ddsi_guid_t& writer_guid, const Tap& tap,
                             ddsi_serdata* sample, ddsi_tkmap_instance* instance,
                             ddsi_serdata** unneeded, WriterKeeps* keeps) {
   const auto found = state.writers.find(GuidOf(writer_guid));
@@ -346,7 +346,7 @@ Carries LockedCarriesSample(State& state, const ddsi_guid_t& writer_guid, const 
 
 Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* sample,
                       ddsi_tkmap_instance* instance, WriterKeeps* keeps) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   ddsi_serdata* unneeded = nullptr;
   Carries carries;
   {
@@ -358,13 +358,13 @@ Carries CarriesSample(const ddsi_guid_t& writer, const Tap& tap, ddsi_serdata* s
 }
 
 void AddReader(const ddsi_reader& reader) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   state.readers[GuidOf(reader.e.guid)] = {reader.e.gv->config.domainId, reader.xqos->topic_name};
 }
 
 bool RemoveReader(const ddsi_domaingv* gv, const Guid& guid) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.readers.find(guid);
   if (found == state.readers.end() || found->second.domain != gv->config.domainId) return false;
@@ -373,7 +373,7 @@ bool RemoveReader(const ddsi_domaingv* gv, const Guid& guid) {
 }
 
 std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<Guid> guids;
   for (const auto& [guid, reader] : state.readers) {
@@ -383,21 +383,21 @@ std::vector<Guid> ReadersOf(std::uint32_t domain, const std::string& topic) {
 }
 
 void AddTap(const Tap* tap) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   state.taps.push_back(tap);
   ++state.taps_version;
 }
 
 void RemoveTap(const Tap* tap) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::erase(state.taps, tap);
   ++state.taps_version;
 }
 
 std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::string& topic) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<LateReader> readers;
   for (const Tap* tap : state.taps) {
@@ -409,7 +409,7 @@ std::vector<LateReader> ReadersThatCatchUp(std::uint32_t domain, const std::stri
 }
 
 std::vector<Guid> CompleteTap(Tap& tap) {
-  State& state = Get();
+  ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   tap.is_complete = true;
   return LockedWritersOf(state, tap.domain, tap.topic, true);

@@ -58,10 +58,10 @@ void AwaitWrites(const dds_sample_info_t* infos, dds_return_t count) {
 }
 
 template <auto RealCalls::*kCall, bool kTakes, class Function>
-struct Hooked;
+struct HookedRead;
 
 template <auto RealCalls::*kCall, bool kTakes, class Result, class... Arguments>
-struct Hooked<kCall, kTakes, Result (*)(Arguments...)> {
+struct HookedRead<kCall, kTakes, Result (*)(Arguments...)> {
   static Result Do(Arguments... arguments) {
     const Reading reading;
     const Result result = (Real().*kCall)(arguments...);
@@ -85,7 +85,7 @@ void* ReadingHook(Call call) {
 #define TCS_DDS_HOOK(name)          \
   case kCall_##name:                \
     return reinterpret_cast<void*>( \
-        Hooked<&RealCalls::name, IsTake(#name), decltype(RealCalls::name)>::Do);
+        HookedRead<&RealCalls::name, IsTake(#name), decltype(RealCalls::name)>::Do);
     TCS_DDS_READING_CALLS(TCS_DDS_HOOK)
 #undef TCS_DDS_HOOK
     default:

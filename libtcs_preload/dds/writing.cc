@@ -47,10 +47,10 @@ template <class Argument>
 void Release(const Argument&) {}
 
 template <auto RealCalls::*kCall, class Function>
-struct Hooked;
+struct HookedWrite;
 
 template <auto RealCalls::*kCall, class... Arguments>
-struct Hooked<kCall, dds_return_t (*)(dds_entity_t, Arguments...)> {
+struct HookedWrite<kCall, dds_return_t (*)(dds_entity_t, Arguments...)> {
   static dds_return_t Do(dds_entity_t writer, Arguments... arguments) {
     if (!TheLink().any_is_full() || HasRoom(writer)) {
       return (Real().*kCall)(writer, arguments...);
@@ -66,7 +66,7 @@ void* WritingHook(Call call) {
   switch (call) {
 #define TCS_DDS_HOOK(name) \
   case kCall_##name:       \
-    return reinterpret_cast<void*>(Hooked<&RealCalls::name, decltype(RealCalls::name)>::Do);
+    return reinterpret_cast<void*>(HookedWrite<&RealCalls::name, decltype(RealCalls::name)>::Do);
     TCS_DDS_WRITING_CALLS(TCS_DDS_HOOK)
 #undef TCS_DDS_HOOK
     default:

@@ -29,7 +29,7 @@ struct Address {
   const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&name); }
 };
 
-std::variant<UniqueFd, std::string> Open() {
+std::variant<UniqueFd, std::string> OpenSocket() {
   UniqueFd fd(socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (fd) return fd;
   return std::string("cannot open a UNIX socket: ") + strerror(errno);
@@ -69,7 +69,7 @@ int RemoveStale(const UnixName& name) {
 }  // namespace
 
 std::variant<UnixSocket, std::string> UnixSocket::Bind(const UnixName& name) {
-  auto opened = Open();
+  auto opened = OpenSocket();
   if (auto* error = std::get_if<std::string>(&opened)) return std::move(*error);
   UnixSocket bound(std::move(std::get<UniqueFd>(opened)));
   const Address address(name);
@@ -92,7 +92,7 @@ std::variant<UnixSocket, std::string> UnixSocket::Bind(const UnixName& name) {
 }
 
 std::variant<UnixSocket, std::string> UnixSocket::ForSending() {
-  auto opened = Open();
+  auto opened = OpenSocket();
   if (auto* error = std::get_if<std::string>(&opened)) return std::move(*error);
   return UnixSocket(std::move(std::get<UniqueFd>(opened)));
 }
@@ -136,7 +136,7 @@ std::vector<std::string> UnixSocket::ReceiveAll() {
 
 // To be connected to is nothing that whoever has the name notices.
 bool IsListenedTo(const UnixName& name) {
-  auto opened = Open();
+  auto opened = OpenSocket();
   if (std::holds_alternative<std::string>(opened)) return true;
   const Address address(name);
   return connect(std::get<UniqueFd>(opened).get(), address.get(), address.size) == 0 ||

@@ -32,7 +32,7 @@ namespace {
 constexpr std::int64_t kTakesTrialsForNs = 300'000'000'000;
 constexpr int kStopped = 128 + SIGTERM;  // as a shell says it
 constexpr int kTellsEveryMs = 2000;
-constexpr int kLookMs = 200;
+constexpr int kSlurmLookMs = 200;
 // Who ends a job sends the signal to all its processes, and the run's clients may be the first.
 constexpr int kSignalIsLateByMs = 1000;
 
@@ -152,7 +152,7 @@ int SlurmJob::RunTrial(std::size_t index) {
   // Trials with the same fixed ports come one after the other in the machine's own network.
   FolderLock network;
   while (!own_network_ && !(network = FolderLock("/sys/class/net/lo")).IsOurs()) {
-    if (IsStopped(kLookMs)) return kStopped;
+    if (IsStopped(kSlurmLookMs)) return kStopped;
   }
   RunProcessRequest request;
   request.arguments = work_.trials[index].arguments;
