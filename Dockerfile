@@ -1,6 +1,6 @@
 # tcsim in a container: `docker build -t tcs .`, then, in a folder with a scenario,
 #   docker run --rm -v "$PWD:/work" --user "$(id -u):$(id -g)" tcs run --accounting fixed
-# It needs no rights. With --cap-add SYS_NICE --cap-add SYS_PTRACE runs take less time (`tcsim doctor`).
+# It needs no rights. With --ulimit rtprio=14 --cap-add SYS_PTRACE runs take less time (`tcsim doctor`).
 FROM debian:trixie AS build
 RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates git
 COPY . /src

@@ -10,7 +10,7 @@ namespace tcs {
 
 namespace {
 
-bool ignores_real_time_limits = false;
+bool ignores_lack_of_real_time_limit = false;
 
 bool IsPrivileged(const Credentials& credentials) {
   return (credentials.capabilities >> CAP_SYS_NICE & 1) != 0;
@@ -21,15 +21,14 @@ bool IsSameOwner(const Credentials& asking, pid_t tid) {
   return asking.effective_uid == owner.effective_uid || asking.effective_uid == owner.real_uid;
 }
 
-rlim_t LimitOf(pid_t tid, __rlimit_resource resource) {
-  if (resource == RLIMIT_RTPRIO && ignores_real_time_limits) return RLIM_INFINITY;
-  rlimit limit{};
-  return prlimit(tid, resource, nullptr, &limit) == 0 ? limit.rlim_cur : 0;
+rlim_t RealTimeLimitOf(pid_t tid) {
+  const rlim_t limit = ReadSoftLimit(tid, "Max realtime priority");
+  return limit == 0 && ignores_lack_of_real_time_limit ? RLIM_INFINITY : limit;
 }
 
 }  // namespace
 
-void IgnoreRealTimeLimits() { ignores_real_time_limits = true; }
+void IgnoreLackOfRealTimeLimit() { ignores_lack_of_real_time_limit = true; }
 
 bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
                       const SchedulingParameters& wanted) {
@@ -37,7 +36,7 @@ bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
   if (IsPrivileged(credentials)) return true;
   if (wanted.policy == SCHED_DEADLINE) return false;
   if (IsRealTime(wanted.policy)) {
-    const rlim_t most = LimitOf(tid, RLIMIT_RTPRIO);
+    const rlim_t most = RealTimeLimitOf(tid);
     if (wanted.policy != now.policy && most == 0) return false;
     const auto priority = static_cast<rlim_t>(wanted.priority);
     if (wanted.priority > now.priority && priority > most) return false;
@@ -45,7 +44,7 @@ bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
   // To leave SCHED_IDLE is to raise one's priority: to that of the nice value, which is 0 here.
   constexpr rlim_t kNiceLimitOfZero = 20;
   if (now.policy == SCHED_IDLE && wanted.policy != SCHED_IDLE &&
-      LimitOf(tid, RLIMIT_NICE) < kNiceLimitOfZero) {
+      ReadSoftLimit(tid, "Max nice priority") < kNiceLimitOfZero) {
     return false;
   }
   if (now.resets_on_fork && !wanted.resets_on_fork) return false;

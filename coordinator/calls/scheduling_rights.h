@@ -1,6 +1,7 @@
 // Which thread may ask the robot's scheduler for what: the kernel's rules (sched(7)), by the
 // credentials and resource limits that the program has in the kernel. The kernel itself cannot
-// check, because these calls never reach it.
+// check, because these calls never reach it. What else keeps tcsim from real-time priorities on the
+// host (a group without a budget, a filter) is the host's, and not the robot's.
 #pragma once
 
 #include <sys/types.h>
@@ -9,9 +10,9 @@
 
 namespace tcs {
 
-// On a robot its programs may have any real-time priority, whatever the limits of a user whom the
-// host does not even let tcsim have one.
-void IgnoreRealTimeLimits();
+// From now on a limit (RLIMIT_RTPRIO) of 0 allows every real-time priority: for runs of a user whom
+// the host gives neither a limit nor the capability, which says nothing of the robot.
+void IgnoreLackOfRealTimeLimit();
 
 // Threads by their kernel numbers. True for a thread with CAP_SYS_NICE; only such a thread may have
 // SCHED_DEADLINE.

@@ -24,6 +24,7 @@
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/own_network.h"
+#include "coordinator/os/real_time_facts.h"
 #include "coordinator/scenario/load.h"
 #include "coordinator/trials/local_launcher.h"
 #include "coordinator/trials/record.h"
@@ -195,7 +196,7 @@ std::string CheckLauncher(const TrialsArguments& arguments) {
 // For trials that are not to wait: who has the processors; empty if one is free, or none is needed
 // for a run alone.
 std::string WhoHasProcessors() {
-  if (!WhyNoRealTime().empty() || WhyNoDuplicates() != 0) return {};
+  if (AskForRealTime().error != 0 || WhyNoDuplicates() != 0) return {};
   const auto claim = ClaimCpu(false);  // and given back at once
   const auto* taken = std::get_if<std::string>(&claim);
   return taken == nullptr ? std::string() : *taken;

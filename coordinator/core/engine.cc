@@ -39,7 +39,8 @@ std::unique_ptr<Executor> MakeExecutor(bool gates_only) {
 }  // namespace
 
 Engine::Engine(const Scenario& scenario, const RunOptions& options)
-    : run_(scenario, options, !WhyNoRealTime().empty(), WhyNoDuplicates() != 0),
+    : real_time_(AskForRealTime()),
+      run_(scenario, options, real_time_.error != 0, WhyNoDuplicates() != 0),
       activations_(run_.IsCallback()),
       executor_(MakeExecutor(run_.gates_only)),
       host_cpu_(*executor_) {

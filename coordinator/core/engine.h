@@ -59,6 +59,7 @@
 #include "coordinator/network/robot_network.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_share.h"
+#include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/stop_request.h"
 #include "coordinator/policy/temporal_consistency.h"
 #include "coordinator/processes/births.h"
@@ -98,7 +99,7 @@ class Engine {
   [[nodiscard]] std::string Prepare();
   [[nodiscard]] std::string TakeCpu();
   int HomeCpu() const;
-  void TellOfMissingRights(bool may_have_levels) const;
+  void TellOfMissingRights() const;
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
   [[nodiscard]] std::string PrepareHostCpu();
@@ -221,6 +222,7 @@ class Engine {
 
   bool WorldGoesOn() const { return world_.present() && !run_.IsInGrace(); }
 
+  const RealTimeFacts real_time_;
   RunState run_;
   World world_{[this](const std::string& text) { run_.Warn(text); }};
   RobotNetwork network_;

@@ -44,6 +44,14 @@ void KeepFreedMemory() {
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
 }
 
+// The sentence for a kernel that lacks what runs without levels need.
+std::string WhyNoGates(const RealTimeFacts& facts) {
+  constexpr char kNeeds[] = ", and runs without it need Linux 5.19 or newer";
+  if (facts.error == 0) return std::string("pidfd_getfd is refused here") + kNeeds;
+  return "SCHED_FIFO is not permitted here (" + WhyNoRealTime(facts) + ")" + kNeeds +
+         "; to have it, " + MendOfRealTime(facts);
+}
+
 }  // namespace
 
 std::string Engine::Prepare() {
@@ -52,11 +60,7 @@ std::string Engine::Prepare() {
   state_link_.Does(Doing::kPrepares, __rdtsc());
   // What refuses the run comes first: before others are waited for, and before an earlier run's
   // results are written over.
-  const std::string no_real_time = WhyNoRealTime();
-  if (run_.gates_only && !TrapsHoldSignals()) {
-    return (no_real_time.empty() ? "pidfd_getfd is refused here" : no_real_time) +
-           ", and runs without it need Linux 5.19 or newer";
-  }
+  if (run_.gates_only && !TrapsHoldSignals()) return WhyNoGates(real_time_);
   if (std::string error = network_.Open(run_.scenario); !error.empty()) return error;
   const auto make_at = [this](const std::string& address, const std::function<void()>& make) {
     network_.MakeAt(address, make);
@@ -72,12 +76,13 @@ std::string Engine::Prepare() {
   state_link_.RunsOn(home);
   const std::vector<int> further = ComputingAhead::CpusBeside(home, run_);
   helpers_cpus_ = World::ProcessorsBeside(home, run_.options.host_cpus);
+  if (!GivesRealTime(real_time_)) IgnoreLackOfRealTimeLimit();
   if (!BindTo(0, home)) return "cannot bind to CPU " + std::to_string(home);
   if (run_.gates_only) {
-    IgnoreRealTimeLimits();
+    LeaveRealTime(0);  // which whoever started tcsim may have given it
     BeWokenInTime();
     UseNoLevels();
-    TellOfMissingRights(no_real_time.empty());
+    TellOfMissingRights();
   } else {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
@@ -124,12 +129,14 @@ std::string Engine::TakeCpu() {
 
 int Engine::HomeCpu() const { return share_.has_value() ? share_->cpu() : claim_.cpu; }
 
-void Engine::TellOfMissingRights(bool may_have_levels) const {
+void Engine::TellOfMissingRights() const {
   if (!run_.options.on_notice) return;
+  const bool may_have_levels = real_time_.error == 0;
   if (!may_have_levels) {
     run_.options.on_notice(
         "SCHED_FIFO is not permitted here, so gates keep the threads apart and the run takes "
-        "longer (`tcsim doctor` says more)");
+        "longer: " +
+        WhyNoRealTime(real_time_) + "; to have it, " + MendOfRealTime(real_time_));
   }
   if (run_.has_porters) {
     run_.options.on_notice(

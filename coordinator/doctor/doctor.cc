@@ -19,6 +19,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/os/own_computer.h"
 #include "coordinator/os/pipe.h"
+#include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/os/unique_fd.h"
 
@@ -31,18 +32,6 @@ std::string ReadFile(const char* path) {
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
-}
-
-// In a child, so that this process keeps its own priority.
-int TryRealTime() {
-  const pid_t child = fork();
-  if (child == 0) {
-    const sched_param param{static_cast<int>(Level::kKernelOnly)};
-    _exit(sched_setscheduler(0, SCHED_FIFO, &param) == 0 ? 0 : errno);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) return errno;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : EPERM;
 }
 
 Finding TryDescriptors() {
@@ -125,7 +114,7 @@ const char* Colour(Verdict verdict) {
 
 std::vector<Finding> Examine(const std::string& preload_library) {
   return {
-      JudgeRealTime(TryRealTime(), TrapsHoldSignals()),
+      JudgeRealTime(AskForRealTime(), TrapsHoldSignals()),
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
                       ReadFile("/proc/sys/kernel/sched_rt_period_us"),
                       ReadFile("/proc/sys/kernel/osrelease")),
@@ -135,7 +124,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       LookAtCpu(),
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
-      JudgeNetworks(WhyNoComputer(), geteuid() == 0),
+      JudgeNetworks(WhyNoComputer(), !MayMakeNamespaces()),
       JudgeLibc(gnu_get_libc_version()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),

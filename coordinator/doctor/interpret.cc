@@ -39,28 +39,25 @@ bool HasWord(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-Finding JudgeRealTime(int error, bool has_gates) {
+Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates) {
   constexpr char kName[] = "real-time priority";
-  if (error == 0) {
+  if (facts.error == 0) {
     return {kName, Verdict::kOk,
-            "SCHED_FIFO 13 is permitted: priorities keep the threads of a run apart; without them "
-            "gates would, with the same results, but more slowly",
+            fmt::format("SCHED_FIFO {} is permitted: priorities keep the threads of a run apart; "
+                        "without them gates would, with the same results, but more slowly",
+                        kRealTimeNeeded),
             ""};
   }
-  const std::string how =
-      "run tcsim as root, or put '@GROUP - rtprio 20' into /etc/security/limits.conf and log in "
-      "again (in a container: --cap-add SYS_NICE)";
+  const std::string refused =
+      fmt::format("SCHED_FIFO {} is refused ({})", kRealTimeNeeded, WhyNoRealTime(facts));
   if (!has_gates) {
-    return {kName, Verdict::kMissing,
-            fmt::format("SCHED_FIFO 13 is refused ({}), and runs without it need Linux 5.19",
-                        strerror(error)),
-            how};
+    return {kName, Verdict::kMissing, refused + ", and runs without it need Linux 5.19",
+            MendOfRealTime(facts)};
   }
-  return {kName, Verdict::kWarning,
-          fmt::format("SCHED_FIFO 13 is refused ({}): gates and a signal keep the threads of a run "
-                      "apart, with the same results",
-                      strerror(error)),
-          "with it, runs take less time, most of all beside other programs: " + how};
+  return {
+      kName, Verdict::kWarning,
+      refused + ": gates and a signal keep the threads of a run apart, with the same results",
+      "with it, runs take less time, most of all beside other programs: " + MendOfRealTime(facts)};
 }
 
 Finding JudgeThrottling(const std::string& runtime_us, const std::string& period_us,
@@ -167,12 +164,12 @@ Finding JudgeLayout(int error) {
           "docker's --security-opt seccomp=FILE can"};
 }
 
-Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root) {
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_namespace) {
   constexpr char kName[] = "networks of robots";
   if (!why_not) {
     return {kName, Verdict::kOk,
             fmt::format("`network` in a scenario works: {} and /dev/net/tun are permitted",
-                        is_root ? "namespaces" : "user namespaces"),
+                        in_user_namespace ? "user namespaces" : "namespaces"),
             ""};
   }
   return {kName, Verdict::kWarning,

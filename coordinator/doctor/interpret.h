@@ -6,12 +6,13 @@
 
 #include "coordinator/doctor/finding.h"
 #include "coordinator/os/own_computer.h"
+#include "coordinator/os/real_time_right.h"
 
 namespace tcs {
 
-// `error`: the errno of asking for the coordinator's real-time priority; 0 if it was granted.
-// `has_gates`: the kernel has what a run needs that goes without (TrapsHoldSignals).
-Finding JudgeRealTime(int error, bool has_gates);
+// `facts`: what the kernel said when it was asked (AskForRealTime). `has_gates`: the kernel has
+// what a run needs that goes without (TrapsHoldSignals).
+Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates);
 // Texts: /proc/sys/kernel/sched_rt_runtime_us, .../sched_rt_period_us and .../osrelease. From
 // Linux 6.12 on the scheduler's fair server does what throttling did, and does not heed its
 // setting.
@@ -28,9 +29,9 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated);
 Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates);
 // `error`: the errno of asking for a process without address-space randomisation; 0 if it worked.
 Finding JudgeLayout(int error);
-// `why_not`: of making a robot a computer of its own (WhyNoComputer); `is_root`: it takes no user
-// namespace.
-Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool is_root);
+// `why_not`: of making a robot a computer of its own (WhyNoComputer); `in_user_namespace`: it takes
+// one (MayMakeNamespaces).
+Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_namespace);
 // `version`: of the C library, such as "2.36".
 Finding JudgeLibc(const std::string& version);
 // `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.

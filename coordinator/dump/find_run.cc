@@ -85,19 +85,27 @@ std::string NameOf(pid_t pid) {
   return name;
 }
 
+// What the kernel says, whoever asks: root, too, takes CAP_SYS_PTRACE.
+bool MayLookInto(pid_t pid) {
+  DIR* descriptors = opendir((ProcOf(pid) + "/fd").c_str());
+  if (descriptors != nullptr) closedir(descriptors);
+  return descriptors != nullptr || errno == ENOENT;
+}
+
 std::string OnlyOwnerMayAsk(pid_t pid, uid_t owner) {
   const std::string name = NameOfUser(owner);
+  const char* root = geteuid() == 0 ? " or root with CAP_SYS_PTRACE" : " or root";
   return fmt::format("process {} is {}'s: only {} may ask for the state of its run", pid, name,
-                     owner == 0 ? name : name + " or root");
+                     owner == 0 ? name : name + root);
 }
 
 // One of somebody else's processes that is called as tcsim is.
 std::string OfOthers() {
-  const uid_t own = geteuid();
-  if (own == 0) return {};
   for (const pid_t pid : AllProcesses()) {
     const auto owner = UserOf(pid);
-    if (owner && *owner != own && NameOf(pid) == "tcsim") return OnlyOwnerMayAsk(pid, *owner);
+    if (owner && *owner != geteuid() && NameOf(pid) == "tcsim" && !MayLookInto(pid)) {
+      return OnlyOwnerMayAsk(pid, *owner);
+    }
   }
   return {};
 }
@@ -139,7 +147,7 @@ Chosen ChooseByProcess(std::vector<FoundRun> runs, const std::string& named) {
     return pid != run.coordinator && !DescendsFrom(pid, run.coordinator) &&
            !DescendsFrom(run.coordinator, pid);
   });
-  const bool is_others = runs.empty() && geteuid() != 0 && *owner != geteuid();
+  const bool is_others = runs.empty() && *owner != geteuid() && !MayLookInto(pid);
   if (is_others) return OnlyOwnerMayAsk(pid, *owner);
   return Only(std::move(runs),
               fmt::format("process {} belongs to no run of tcsim that has begun", named));

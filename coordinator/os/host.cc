@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -54,18 +55,6 @@ namespace {
 
 bool uses_no_levels = false;
 
-std::string TakeCoordinatorLevel() {
-  // The highest of the levels is one that clients get.
-  const sched_param highest{static_cast<int>(Level::kKernelOnly)};
-  const sched_param own{static_cast<int>(Level::kCoordinator)};
-  if (sched_setscheduler(0, SCHED_FIFO, &highest) == 0 &&
-      sched_setscheduler(0, SCHED_FIFO, &own) == 0) {
-    return {};
-  }
-  return "SCHED_FIFO is not permitted here; run tcsim as root, or allow real-time priority 14 "
-         "(ulimit -r, or rtprio in /etc/security/limits.conf); `tcsim doctor` shows the details";
-}
-
 }  // namespace
 
 bool BindTo(pid_t tid, int cpu) {
@@ -79,12 +68,6 @@ bool IsBoundTo(pid_t tid, int cpu) {
   cpu_set_t cpus;
   return sched_getaffinity(tid, sizeof cpus, &cpus) == 0 && CPU_COUNT(&cpus) == 1 &&
          CPU_ISSET(static_cast<std::size_t>(cpu), &cpus);
-}
-
-std::string WhyNoRealTime() {
-  std::string why = TakeCoordinatorLevel();
-  if (why.empty()) LeaveRealTime(0);
-  return why;
 }
 
 void UseNoLevels() { uses_no_levels = true; }
@@ -221,6 +204,18 @@ Credentials ReadCredentials(pid_t tid) {
     credentials.capabilities = strtoull(found + sizeof kCapabilities - 1, nullptr, 16);
   }
   return credentials;
+}
+
+std::uint64_t ReadSoftLimit(pid_t tid, const char* name) {
+  std::ifstream limits("/proc/" + std::to_string(tid) + "/limits");
+  for (std::string line; std::getline(limits, line);) {
+    if (!line.starts_with(name)) continue;
+    const std::string value = line.substr(strlen(name));
+    return value.find_first_not_of(' ') == value.find("unlimited")
+               ? RLIM_INFINITY
+               : strtoull(value.c_str(), nullptr, 10);
+  }
+  return 0;
 }
 
 SignalSets ReadSignalSets(pid_t tid) {

@@ -38,10 +38,7 @@ bool BindTo(pid_t tid, int cpu);
 // To that CPU alone.
 bool IsBoundTo(pid_t tid, int cpu);
 
-// Why this process cannot have the coordinator's level; empty if it can. It has it in between.
-std::string WhyNoRealTime();
-
-// False where it is not permitted.
+// False where it is not permitted (real_time_facts.h).
 bool SetLevel(pid_t tid, Level level);
 
 // From now on SetLevel does nothing in this process and its forks, as where it is not permitted.
@@ -103,6 +100,11 @@ struct Credentials {
   std::uint64_t capabilities = 0;
 };
 Credentials ReadCredentials(pid_t tid);
+
+// A resource limit that is in force for a thread, by the name that /proc/TID/limits gives it; 0 if
+// the thread has ended. Everybody may read it, where prlimit wants CAP_SYS_RESOURCE for the limits
+// of one who has become somebody else.
+std::uint64_t ReadSoftLimit(pid_t tid, const char* name);
 
 // With what the kernel would put into the signal of a timer; to a process, or one of its threads.
 struct TimerSignalRequest {

@@ -16,8 +16,10 @@
 #include <unistd.h>
 
 #include <climits>
+#include <fstream>
 #include <optional>
 #include <span>
+#include <sstream>
 
 #include "coordinator/os/netlink.h"
 #include "coordinator/os/own_network.h"
@@ -29,6 +31,15 @@ namespace {
 
 // Steps that have a mend of their own.
 constexpr char kTun[] = "/dev/net/tun", kSettingsStep[] = "/proc/sys/net";
+constexpr char kNamespacesStep[] = "unshare", kOwnMountsStep[] = "mount --make-rslave /";
+// What may be in the way of a user namespace.
+constexpr char kUserStep[] = "user namespace", kFilterStep[] = "a seccomp filter on unshare";
+constexpr char kChrootStep[] = "user namespace, in a chroot";
+constexpr char kMostStep[] = "user.max_user_namespaces";
+constexpr char kSwitchStep[] = "kernel.unprivileged_userns_clone";
+constexpr char kAppArmorStep[] = "kernel.apparmor_restrict_unprivileged_userns";
+
+constexpr int kOwnNamespaces = CLONE_NEWNET | CLONE_NEWUTS | CLONE_NEWNS;
 constexpr char kDevice[] = "eth0";
 constexpr std::uint32_t kDeviceQueue = 32768;  // packets; more than one call sends
 // Longer than any wait of the host's: the kernel's own limit.
@@ -102,7 +113,7 @@ class Maker {
 
   // The step that failed; null: none.
   const char* Make(UniqueFd* device) {
-    if (unshare(CLONE_NEWNET | CLONE_NEWUTS | CLONE_NEWNS) != 0) return "unshare";
+    if (unshare(kOwnNamespaces) != 0) return kNamespacesStep;
     if (sethostname(request_.name.data(), request_.name.size()) != 0) return "sethostname";
     if (!ChangeSettings()) return kSettingsStep;
     *device = MakeDevice();
@@ -114,6 +125,8 @@ class Maker {
     if (errno != 0) return "setting up the interface";
     if (!Raise("lo") || !Raise(kDevice)) return "raising the interfaces";
     if (!GiveAddresses(netlink, index)) return "addresses and routes";
+    // What is mounted here stays here. In a chroot whose / is no mount point the kernel refuses it.
+    if (mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) != 0) return kOwnMountsStep;
     return GiveFiles() ? nullptr : "mounting /etc/hosts";
   }
 
@@ -159,10 +172,7 @@ class Maker {
   // They are written where nobody else looks, then shown in the places of the host's.
   bool GiveFiles() {
     constexpr char kPlace[] = "/tmp";
-    if (mount(nullptr, "/", nullptr, MS_REC | MS_SLAVE, nullptr) != 0 ||
-        mount("tmpfs", kPlace, "tmpfs", MS_NOSUID | MS_NODEV, "mode=0755") != 0) {
-      return false;
-    }
+    if (mount("tmpfs", kPlace, "tmpfs", MS_NOSUID | MS_NODEV, "mode=0755") != 0) return false;
     const bool shown =
         Show(kPlace, "hosts", request_.hosts_file) &&
         (access("/etc/hostname", F_OK) != 0 || Show(kPlace, "hostname", request_.name + "\n"));
@@ -215,6 +225,37 @@ constexpr const char* kNamespaces[] = {"/proc/self/ns/net", "/proc/self/ns/uts",
   _exit(0);
 }
 
+char FirstOf(const char* path) {
+  char first = 0;
+  std::ifstream(path) >> first;
+  return first;
+}
+
+// As of a chroot into an ordinary folder.
+bool IsRootNoMountPoint() {
+  std::ifstream mounts("/proc/self/mountinfo");
+  for (std::string line; std::getline(mounts, line);) {
+    std::string id, parent, device, root, point;
+    std::stringstream(line) >> id >> parent >> device >> root >> point;
+    if (point == "/") return false;
+  }
+  return true;
+}
+
+// The step that names what is in the way.
+const char* WhyNoUserNamespace(int error) {
+  if (error == ENOSPC) {
+    return FirstOf("/proc/sys/user/max_user_namespaces") == '0' ? kMostStep : kNamespacesStep;
+  }
+  // To leave nothing is nothing to the kernel.
+  if (unshare(0) != 0) return kFilterStep;
+  if (FirstOf("/proc/sys/kernel/unprivileged_userns_clone") == '0') return kSwitchStep;
+  if (FirstOf("/proc/sys/kernel/apparmor_restrict_unprivileged_userns") == '1') {
+    return kAppArmorStep;
+  }
+  return IsRootNoMountPoint() ? kChrootStep : kUserStep;
+}
+
 }  // namespace
 
 std::string NoComputer::Sentence() const {
@@ -223,20 +264,54 @@ std::string NoComputer::Sentence() const {
 }
 
 std::string NoComputer::Mend() const {
+  // Root that is refused this has lost the capability.
+  const std::string as_root =
+      geteuid() == 0 ? "start it with CAP_SYS_ADMIN, or " : "run tcsim as root, or ";
   if (step == kSettingsStep) return "mount /proc/sys for writing, in a container with --privileged";
-  if (step != kTun) {
-    return "run tcsim as root, or allow user namespaces, in a container with --privileged";
+  if (step == kOwnMountsStep && error == EINVAL) {
+    return "/ is no mount point in this chroot: call `mount --rbind / /` and start tcsim by "
+           "`chroot "
+           "/.. tcsim`, or outside call `mount --rbind DIR DIR` before the chroot into DIR";
   }
+  if (step == kFilterStep) {
+    return "start tcsim outside of the filter, in a container with --privileged or with a profile "
+           "that permits unshare and mount (docker: --security-opt seccomp=FILE)";
+  }
+  if (step == kChrootStep) return "run tcsim as root, or outside of the chroot";
+  if (step == kMostStep) return as_root + "let root call `sysctl -w user.max_user_namespaces=1000`";
+  if (step == kSwitchStep) {
+    return as_root + "let root call `sysctl -w kernel.unprivileged_userns_clone=1`";
+  }
+  if (step == kAppArmorStep) {
+    return as_root + "let root call `sysctl -w kernel.apparmor_restrict_unprivileged_userns=0`";
+  }
+  if (step == kNamespacesStep && error == ENOSPC) {
+    return "let root call `sysctl -w user.max_net_namespaces=1000 user.max_mnt_namespaces=1000 "
+           "user.max_uts_namespaces=1000`";
+  }
+  if (step != kTun) return as_root + "allow user namespaces, in a container with --privileged";
   if (error == EACCES || error == EPERM) {
-    return "run tcsim as root, or let everybody open it (chmod 666 /dev/net/tun), in a container "
-           "with --privileged";
+    return (geteuid() == 0 ? "" : "run tcsim as root, or ") +
+           std::string(
+               "let everybody open it (chmod 666 /dev/net/tun), in a container with "
+               "--privileged");
   }
   return "load the module tun (modprobe tun), in a container add --device /dev/net/tun";
 }
 
+bool MayMakeNamespaces() {
+  const pid_t pid = fork();
+  if (pid == 0) _exit(unshare(kOwnNamespaces) == 0 ? 0 : 1);
+  int status = -1;
+  while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  return pid > 0 && status == 0;
+}
+
 std::optional<NoComputer> GetReadyForComputers() {
-  if (geteuid() == 0 || EnterOwnNetwork().empty()) return std::nullopt;
-  return NoComputer{"user namespace", errno};
+  if (MayMakeNamespaces() || EnterOwnNetwork().empty()) return std::nullopt;
+  const int error = errno;
+  return NoComputer{WhyNoUserNamespace(error), error};
 }
 
 std::variant<OwnComputer, NoComputer> MakeComputer(const ComputerRequest& request) {

@@ -41,8 +41,12 @@ struct NoComputer {
   std::string Mend() const;
 };
 
-// Comes before MakeComputer, in a process that is the only thread: whoever is not root makes
-// computers in a user namespace, which the process enters for good. Nothing on success.
+// Whether the kernel lets this process make a computer without a user namespace. A child tries it.
+[[nodiscard]] bool MayMakeNamespaces();
+
+// Comes before MakeComputer, in a process that is the only thread: where the kernel refuses
+// namespaces, computers are made in a user namespace, which the process enters for good. Nothing on
+// success.
 [[nodiscard]] std::optional<NoComputer> GetReadyForComputers();
 
 // A computer that lasts as long as its descriptors and its processes.

@@ -14,7 +14,7 @@
 
 #include <cstdint>
 
-#include "coordinator/os/host.h"
+#include "coordinator/os/real_time_facts.h"
 #include "coordinator/os/unique_fd.h"
 
 namespace tcs {
@@ -67,10 +67,10 @@ constexpr int kLosesRealTime = 255;  // not an errno
 
 // The exit status of a process that tries it: 0, an errno, or kLosesRealTime.
 [[noreturn]] void Try() {
-  const bool had_real_time = WhyNoRealTime().empty();
+  const bool had_real_time = AskForRealTime().error == 0;
   if (!EnterOwnNetwork().empty()) _exit(errno == 0 ? EPERM : errno);
   // A user namespace takes away what root and capabilities gave, and leaves what limits allow.
-  _exit(had_real_time && !WhyNoRealTime().empty() ? kLosesRealTime : 0);
+  _exit(had_real_time && AskForRealTime().error != 0 ? kLosesRealTime : 0);
 }
 
 }  // namespace

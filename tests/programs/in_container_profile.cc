@@ -4,16 +4,14 @@
 // clone3 is unknown, and whoever asks for another personality or for namespaces may not.
 #include <errno.h>
 #include <linux/audit.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <iterator>
-#include <vector>
+
+#include "tests/programs/seccomp_filter.h"
+
+using namespace seccomp_filter;
 
 namespace {
 
@@ -35,18 +33,6 @@ constexpr unsigned kRefused[] = {
     SYS_ustat};
 constexpr unsigned kPersonalities[] = {0, 0x8, 0x20000, 0x20008, 0xffffffff};
 constexpr unsigned kNamespaces = 0x7e020000;  // of clone's flags
-
-sock_filter Statement(unsigned code, unsigned k) {
-  return {static_cast<unsigned short>(code), 0, 0, k};
-}
-sock_filter Jump(unsigned test, unsigned k, std::size_t yes, std::size_t no) {
-  return {static_cast<unsigned short>(BPF_JMP | test | BPF_K), static_cast<unsigned char>(yes),
-          static_cast<unsigned char>(no), k};
-}
-sock_filter Load(std::size_t at) {
-  return Statement(BPF_LD | BPF_W | BPF_ABS, static_cast<unsigned>(at));
-}
-sock_filter Return(unsigned action) { return Statement(BPF_RET | BPF_K, action); }
 
 std::vector<sock_filter> Profile() {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW);
@@ -82,10 +68,7 @@ std::vector<sock_filter> Profile() {
 
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
-  std::vector<sock_filter> code = Profile();
-  const sock_fprog profile{static_cast<unsigned short>(code.size()), code.data()};
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
-      syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &profile) != 0) {
+  if (!Install(Profile())) {
     perror("in_container_profile: the profile cannot be installed");
     return 126;
   }

@@ -11,20 +11,21 @@ namespace tcs {
 namespace {
 
 TEST(Doctor, WithoutRealTimePriorityGatesKeepThreadsApart) {
-  const Finding permitted = JudgeRealTime(0, true);
+  const Finding permitted = JudgeRealTime({}, true);
   EXPECT_EQ(permitted.verdict, Verdict::kOk);
   EXPECT_NE(permitted.found.find("gates would"), std::string::npos);
-  const Finding refused = JudgeRealTime(EPERM, true);
+  const Finding refused = JudgeRealTime({.error = EPERM, .may_get_capability = true}, true);
   EXPECT_EQ(refused.verdict, Verdict::kWarning);
   EXPECT_NE(refused.found.find("gates and a signal keep"), std::string::npos);
   EXPECT_NE(refused.mend.find("less time"), std::string::npos);
+  EXPECT_NE(refused.found.find("CAP_SYS_NICE is missing"), std::string::npos);
   EXPECT_NE(refused.mend.find("limits.conf"), std::string::npos);
   EXPECT_TRUE(CanRun({permitted, refused}));
 }
 
 TEST(Doctor, WithoutEitherNothingRuns) {
-  EXPECT_EQ(JudgeRealTime(0, false).verdict, Verdict::kOk);
-  const Finding neither = JudgeRealTime(EPERM, false);
+  EXPECT_EQ(JudgeRealTime({}, false).verdict, Verdict::kOk);
+  const Finding neither = JudgeRealTime({.error = EPERM}, false);
   EXPECT_EQ(neither.verdict, Verdict::kMissing);
   EXPECT_NE(neither.found.find("5.19"), std::string::npos);
   EXPECT_FALSE(CanRun({neither}));
@@ -101,8 +102,8 @@ TEST(Doctor, AnAddressLayoutThatCannotBeFixedIsAWarning) {
 }
 
 TEST(Doctor, WhatRobotsWithNetworksLackIsNamedWithItsMend) {
-  EXPECT_EQ(JudgeNetworks(std::nullopt, true).verdict, Verdict::kOk);
-  EXPECT_NE(JudgeNetworks(std::nullopt, false).found.find("user namespaces"), std::string::npos);
+  EXPECT_EQ(JudgeNetworks(std::nullopt, false).verdict, Verdict::kOk);
+  EXPECT_NE(JudgeNetworks(std::nullopt, true).found.find("user namespaces"), std::string::npos);
   struct Case {
     NoComputer why_not;
     const char *found, *mend;
@@ -112,9 +113,16 @@ TEST(Doctor, WhatRobotsWithNetworksLackIsNamedWithItsMend) {
       {{"/dev/net/tun", EACCES}, "(/dev/net/tun: Permission denied)", "chmod 666 /dev/net/tun"},
       {{"/proc/sys/net", EROFS}, "Read-only", "mount /proc/sys for writing"},
       {{"user namespace", EPERM}, "(user namespace: ", "allow user namespaces"},
+      {{"mount --make-rslave /", EINVAL}, "(mount --make-rslave /: Inv", "mount --rbind DIR DIR"},
+      {{"a seccomp filter on unshare", EPERM}, "(a seccomp filter", "outside of the filter"},
+      {{"user namespace, in a chroot", EPERM}, "in a chroot: ", "outside of the chroot"},
+      {{"user.max_user_namespaces", ENOSPC}, "No space", "sysctl -w user.max_user_namespaces=1000"},
+      {{"unshare", ENOSPC}, "(unshare: No space", "user.max_net_namespaces=1000"},
+      {{"kernel.unprivileged_userns_clone", EPERM}, "(kernel.", "unprivileged_userns_clone=1"},
+      {{"kernel.apparmor_restrict_unprivileged_userns", EACCES}, "(kernel.", "_userns=0"},
   };
   for (const Case& c : cases) {
-    const Finding missing = JudgeNetworks(c.why_not, false);
+    const Finding missing = JudgeNetworks(c.why_not, true);
     EXPECT_EQ(missing.verdict, Verdict::kWarning);
     EXPECT_NE(missing.found.find(c.found), std::string::npos) << missing.found;
     EXPECT_NE(missing.mend.find(c.mend), std::string::npos) << missing.mend;

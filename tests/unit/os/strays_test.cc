@@ -8,6 +8,7 @@
 
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/host.h"
+#include "coordinator/os/real_time_facts.h"
 
 namespace tcs {
 namespace {
@@ -15,7 +16,9 @@ namespace {
 class Strays : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!WhyNoRealTime().empty()) GTEST_SKIP() << WhyNoRealTime();
+    if (const RealTimeFacts facts = AskForRealTime(); facts.error != 0) {
+      GTEST_SKIP() << WhyNoRealTime(facts);
+    }
     auto claim = ClaimCpu(true);  // nobody else's threads are lowered
     ASSERT_TRUE(std::holds_alternative<CpuClaim>(claim)) << std::get<std::string>(claim);
     claim_ = std::move(std::get<CpuClaim>(claim));
