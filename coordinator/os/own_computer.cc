@@ -225,7 +225,7 @@ constexpr const char* kNamespaces[] = {"/proc/self/ns/net", "/proc/self/ns/uts",
   _exit(0);
 }
 
-char FirstOf(const char* path) {
+char FirstCharOf(const char* path) {
   char first = 0;
   std::ifstream(path) >> first;
   return first;
@@ -245,12 +245,12 @@ bool IsRootNoMountPoint() {
 // The step that names what is in the way.
 const char* WhyNoUserNamespace(int error) {
   if (error == ENOSPC) {
-    return FirstOf("/proc/sys/user/max_user_namespaces") == '0' ? kMostStep : kNamespacesStep;
+    return FirstCharOf("/proc/sys/user/max_user_namespaces") == '0' ? kMostStep : kNamespacesStep;
   }
   // To leave nothing is nothing to the kernel.
   if (unshare(0) != 0) return kFilterStep;
-  if (FirstOf("/proc/sys/kernel/unprivileged_userns_clone") == '0') return kSwitchStep;
-  if (FirstOf("/proc/sys/kernel/apparmor_restrict_unprivileged_userns") == '1') {
+  if (FirstCharOf("/proc/sys/kernel/unprivileged_userns_clone") == '0') return kSwitchStep;
+  if (FirstCharOf("/proc/sys/kernel/apparmor_restrict_unprivileged_userns") == '1') {
     return kAppArmorStep;
   }
   return IsRootNoMountPoint() ? kChrootStep : kUserStep;
@@ -269,9 +269,9 @@ std::string NoComputer::Mend() const {
       geteuid() == 0 ? "start it with CAP_SYS_ADMIN, or " : "run tcsim as root, or ";
   if (step == kSettingsStep) return "mount /proc/sys for writing, in a container with --privileged";
   if (step == kOwnMountsStep && error == EINVAL) {
-    return "/ is no mount point in this chroot: call `mount --rbind / /` and start tcsim by "
-           "`chroot "
-           "/.. tcsim`, or outside call `mount --rbind DIR DIR` before the chroot into DIR";
+    return "call `mount --rbind / /` and start tcsim by `chroot /.. tcsim`, because / is no mount "
+           "point in this chroot, or outside call `mount --rbind DIR DIR` before the chroot into "
+           "DIR";
   }
   if (step == kFilterStep) {
     return "start tcsim outside of the filter, in a container with --privileged or with a profile "

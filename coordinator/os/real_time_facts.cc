@@ -24,13 +24,13 @@ static_assert(kRealTimeNeeded == static_cast<int>(Level::kKernelOnly));
 namespace {
 
 // What the child finds out, as it passes through a pipe.
-struct Answers {
+struct RealTimeAnswers {
   int error;
   bool reaches_kernel, can_raise_limit;
 };
 
-Answers Try() {
-  Answers answers{};
+RealTimeAnswers TryRealTime() {
+  RealTimeAnswers answers{};
   LeaveRealTime(0);  // one who already has it may keep it without any right
   // The kernel refuses a call without a parameter as invalid, before it looks at rights. A filter
   // does not see what the parameter points to, and refuses this call like the next one.
@@ -46,12 +46,12 @@ Answers Try() {
   return answers;
 }
 
-Answers TryInAChild() {
-  Answers answers{.error = EAGAIN, .reaches_kernel = true, .can_raise_limit = false};
+RealTimeAnswers TryRealTimeInAChild() {
+  RealTimeAnswers answers{.error = EAGAIN, .reaches_kernel = true, .can_raise_limit = false};
   std::optional<Pipe> told = Pipe::Make();
   const pid_t child = told ? fork() : -1;
   if (child == 0) {
-    const Answers found = Try();
+    const RealTimeAnswers found = TryRealTime();
     _exit(write(told->write_end.get(), &found, sizeof found) == sizeof found ? 0 : 1);
   }
   if (child < 0) {
@@ -61,7 +61,7 @@ Answers TryInAChild() {
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
   told->write_end.Reset();
-  Answers found;
+  RealTimeAnswers found;
   if (read(told->read_end.get(), &found, sizeof found) == sizeof found) answers = found;
   return answers;
 }
@@ -112,7 +112,7 @@ std::optional<RealTimeGroup> OwnGroup() {
   return group;
 }
 
-bool HasItem(const std::string& list, const std::string& item) {
+bool IsInList(const std::string& list, const std::string& item) {
   return ("," + list + ",").find("," + item + ",") != std::string::npos;
 }
 
@@ -122,7 +122,7 @@ std::optional<std::string> PathOfCpuGroup(const std::string& groups) {
   for (std::string line; std::getline(lines, line);) {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
     if (second == std::string::npos) continue;
-    if (HasItem(line.substr(first + 1, second - first - 1), "cpu")) return line.substr(second + 1);
+    if (IsInList(line.substr(first + 1, second - first - 1), "cpu")) return line.substr(second + 1);
   }
   return std::nullopt;
 }
@@ -139,7 +139,7 @@ std::optional<GroupPlace> PlaceOfCpuGroup(const std::string& groups, const std::
     std::string id, parent, device, root, point, type, source, options;
     std::stringstream(line.substr(0, separator)) >> id >> parent >> device >> root >> point;
     std::stringstream(line.substr(separator + 3)) >> type >> source >> options;
-    if (type != "cgroup" || !HasItem(options, "cpu")) continue;
+    if (type != "cgroup" || !IsInList(options, "cpu")) continue;
     if (root == "/") return GroupPlace{point, *path == "/" ? point : point + *path};
     // A container sees its own group as the top.
     if (*path == root || *path == "/") return GroupPlace{point, point};
@@ -149,7 +149,7 @@ std::optional<GroupPlace> PlaceOfCpuGroup(const std::string& groups, const std::
 }
 
 RealTimeFacts AskForRealTime() {
-  const Answers answers = TryInAChild();
+  const RealTimeAnswers answers = TryRealTimeInAChild();
   RealTimeFacts facts{.error = answers.error,
                       .reaches_kernel = answers.reaches_kernel,
                       .can_raise_limit = answers.can_raise_limit};

@@ -69,7 +69,7 @@ std::string MendOfGroup(const RealTimeGroup& group, bool is_root) {
          kNoThrottle;
 }
 
-std::string Mend(RealTimeObstacle obstacle, const RealTimeFacts& facts) {
+std::string MendOfObstacle(RealTimeObstacle obstacle, const RealTimeFacts& facts) {
   switch (obstacle) {
     case RealTimeObstacle::kFilter:
       return "start tcsim outside of it, or let it permit sched_setscheduler (systemd: "
@@ -86,8 +86,8 @@ std::string Mend(RealTimeObstacle obstacle, const RealTimeFacts& facts) {
          ", on the host if this is a container, or look for the security module in `dmesg`";
 }
 
-std::string Joined(const RealTimeFacts& facts, const char* separator,
-                   std::string (*say)(RealTimeObstacle, const RealTimeFacts&)) {
+std::string JoinedObstacles(const RealTimeFacts& facts, const char* separator,
+                            std::string (*say)(RealTimeObstacle, const RealTimeFacts&)) {
   std::string text;
   for (const RealTimeObstacle obstacle : ObstaclesOf(facts)) {
     text += (text.empty() ? "" : separator) + say(obstacle, facts);
@@ -113,8 +113,12 @@ bool GivesRealTime(const RealTimeFacts& facts) {
   return CapabilityCounts(facts) || facts.limit > 0;
 }
 
-std::string WhyNoRealTime(const RealTimeFacts& facts) { return Joined(facts, "; ", WhyNo); }
+std::string WhyNoRealTime(const RealTimeFacts& facts) {
+  return JoinedObstacles(facts, "; ", WhyNo);
+}
 
-std::string MendOfRealTime(const RealTimeFacts& facts) { return Joined(facts, "; then ", Mend); }
+std::string MendOfRealTime(const RealTimeFacts& facts) {
+  return JoinedObstacles(facts, "; then ", MendOfObstacle);
+}
 
 }  // namespace tcs

@@ -33,7 +33,7 @@ lacks() {  # REASON MEND COMMAND...
   [[ $finding == warning$'\n'*"($reason)"*$'\n'*"$mend"* ]] || fail "$*: the doctor says $finding"
   "$@" timeout 60 "$out/bin/tcsim" exec -- true >"$out/said" 2>&1 || fail "$*: $(cat "$out/said")"
   grep -qF "SCHED_FIFO is not permitted here, so gates keep the threads apart and the run takes longer: $reason; " \
-    "$out/said" && grep -qF "$mend" "$out/said" || fail "$*: the run says $(cat "$out/said")"
+    "$out/said" && grep -qF -- "$mend" "$out/said" || fail "$*: the run says $(cat "$out/said")"
 }
 [[ $(doctor env) == ok$'\n'* ]] || { echo "SKIPPED: $(doctor env)"; exit 77; }
 
