@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/topics/some_topics.h"
+#include "tests/unit/dds/some_topics.h"
 
 namespace tcs::dds {
 namespace {

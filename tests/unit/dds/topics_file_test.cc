@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <variant>
 
-#include "tests/unit/topics/some_topics.h"
+#include "tests/unit/dds/some_topics.h"
 
 namespace tcs::dds {
 namespace {
