@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # What a user of ./dev sees of a build (.ci/progress), with a terminal and without: how far it is, the compiler's words
-# when they matter, the command's exit status.
+# when they matter, the command's exit status; and where the page is (.ci/show_page).
 set -euo pipefail
 root=$1
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
 export TERM=xterm LC_ALL=C
+unset CI DISPLAY WAYLAND_DISPLAY SSH_CONNECTION SSH_TTY SUDO_USER
 
 # Recorded of ninja, shortened; a build of eight steps, the fifth of which fails with $1.
 cat >"$out/ninja" <<'BUILD'
@@ -92,3 +93,26 @@ presses_it() {
 presses_it | script -qec "'$root/.ci/progress' building '$out/ninja' 0 20" /dev/null >"$out/said" && fail "^C: status 0"
 [[ $(left <"$out/said") == *"./dev: interrupted" ]] || fail "after ^C: $(cat "$out/said")"
 ! grep -q 'done in' "$out/said" || fail "^C did not end the build"
+
+# The page: a link, and opened only before somebody who sits there.
+mkdir "$out/bin" "$out/a page"
+cat >"$out/bin/xdg-open" <<OPEN
+#!/bin/sh
+echo "\$1" >'$out/opened'
+OPEN
+chmod +x "$out/bin/xdg-open"
+touch "$out/a page/ü.html"
+export PATH="$out/bin:$PATH"
+link="file://$out/a%20page/%C3%BC.html"
+show="'$root/.ci/show_page' '$out/a page/ü.html'"
+said=$(DISPLAY=:7 "$root/.ci/show_page" "$out/a page/ü.html" 2>&1)
+[[ $said == *": $link" ]] || fail "the page is at $said"
+on_terminal 200 "$show" >/dev/null
+DISPLAY=:7 CI=true on_terminal 200 "$show" >/dev/null
+DISPLAY=:7 SSH_TTY=/dev/pts/1 on_terminal 200 "$show" >/dev/null
+sleep 0.1
+[[ ! -e $out/opened ]] || fail "the page was opened where nobody sits"
+said=$(DISPLAY=:7 on_terminal 200 "$show")
+[[ $said == *": $link" ]] || fail "the page that is opened is at $said"
+for _ in {1..200}; do [[ -s $out/opened ]] && break; sleep 0.05; done
+[[ $(cat "$out/opened") == "$link" ]] || fail "the page was not opened"
