@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "coordinator/text/as_time.h"
 
@@ -30,34 +31,46 @@ std::string LiveLine::ToGo(const RunProgress& progress) {
   last_real_ns_ = progress.real_ns;
   if (progress.real_ns < kTellingNs || rate_ <= 0) return {};
   const double left_s = Seconds(std::max<std::int64_t>(0, duration_ns_ - progress.virtual_ns));
-  return "  about " + AsTime(left_s / rate_) + " to go";
+  return "about " + AsTime(left_s / rate_) + " to go";
 }
 
 std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   const double passed_ns = static_cast<double>(progress.virtual_ns - last_virtual_ns_);
-  std::string text = fmt::format("{:.1f} of {:.1f} s  {:.2f} x real time  drift {:.3f} ms",
-                                 Seconds(progress.virtual_ns), Seconds(duration_ns_),
-                                 progress.real_ns > 0 ? static_cast<double>(progress.virtual_ns) /
-                                                            static_cast<double>(progress.real_ns)
-                                                      : 0.0,
-                                 Seconds(progress.drift_ns) * 1e3);
+  std::string text = fmt::format("{:.1f} of {:.1f} virtual s", Seconds(progress.virtual_ns),
+                                 Seconds(duration_ns_));
+  if (text.size() > columns) text.resize(columns);
+  // Whole, or not at all: whether there was room.
+  const auto add = [&](const std::string& item) {
+    const bool fits = text.size() + 2 + item.size() <= columns;
+    if (fits && !item.empty()) text += "  " + item;
+    return fits;
+  };
+  bool has_room = true;
+  add(fmt::format("{:.2f} x real time", progress.real_ns > 0
+                                            ? static_cast<double>(progress.virtual_ns) /
+                                                  static_cast<double>(progress.real_ns)
+                                            : 0.0));
   if (progress.pace.stands) {
-    text += "  paused";
+    add("paused");
   } else if (progress.pace.late_ns > kWorthSayingNs) {
-    text += fmt::format("  {:.1f} s behind pace {:g}", Seconds(progress.pace.late_ns),
-                        progress.pace.pace);
+    add(fmt::format("{:.1f} s behind pace {:g}", Seconds(progress.pace.late_ns),
+                    progress.pace.pace));
   } else {
-    text += ToGo(progress);
+    add(ToGo(progress));
   }
-  for (const RunProgress::Load& load : progress.clients) {
+  // The busiest of the whole run first, so that they seldom change places.
+  std::vector<RunProgress::Load> loads = progress.clients;
+  std::stable_sort(loads.begin(), loads.end(),
+                   [](const auto& a, const auto& b) { return a.charged_ns > b.charged_ns; });
+  for (const RunProgress::Load& load : loads) {
     std::int64_t& last_ns = last_charged_ns_[load.client];
     const double share =
         passed_ns > 0 ? static_cast<double>(load.charged_ns - last_ns) / passed_ns : 0.0;
-    text += fmt::format("  {} {:.0f} %", load.client, 100.0 * share);
+    has_room = has_room && add(fmt::format("{} {:.0f} %", load.client, 100.0 * share));
     last_ns = load.charged_ns;
   }
+  if (has_room) add(fmt::format("drift {:.3f} ms", Seconds(progress.drift_ns) * 1e3));
   last_virtual_ns_ = progress.virtual_ns;
-  if (text.size() > columns) text.resize(columns);
   return text;
 }
 

@@ -14,14 +14,16 @@ class LiveLine {
  public:
   explicit LiveLine(std::int64_t duration_ns) : duration_ns_(duration_ns) {}
 
-  // What to show for `progress`; loads are since the last call. Fits into `columns`.
+  // What to show for `progress`, the more important first: how far it is, how fast, and when it
+  // will be over; then what share of a processor each client had since the last call, the busiest
+  // first. What does not fit into `columns` is left out.
   std::string Text(const RunProgress& progress, std::size_t columns);
 
   void Show(const RunProgress& progress);
   void Clear() { line_.Clear(); }
 
  private:
-  // "  about 1:20 to go", in real time; empty while nothing can be said.
+  // "about 1:20 to go", in real time; empty while nothing can be said.
   std::string ToGo(const RunProgress& progress);
 
   std::int64_t duration_ns_;

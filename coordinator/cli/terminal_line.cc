@@ -4,10 +4,15 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace tcs {
 
-bool TerminalLine::IsSeen() { return isatty(STDERR_FILENO) == 1; }
+bool TerminalLine::IsSeen() {
+  const char* kind = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && kind != nullptr && std::strcmp(kind, "dumb") != 0;
+}
 
 std::size_t TerminalLine::Columns() {
   winsize size{};

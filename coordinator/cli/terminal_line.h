@@ -8,7 +8,7 @@ namespace tcs {
 
 class TerminalLine {
  public:
-  // True where somebody can see it: stderr is a terminal.
+  // True where somebody can see it: stderr is a terminal that can rewrite a line.
   static bool IsSeen();
   // How many characters fit.
   static std::size_t Columns();

@@ -37,9 +37,14 @@ TEST(LiveLine, FollowsWhatTheRunDoesLately) {
   EXPECT_THAT(text, HasSubstr("about 50 s to go"));
 }
 
-TEST(LiveLine, FitsTheTerminal) {
-  LiveLine line(100 * kSecond);
-  EXPECT_EQ(line.Text(At(kSecond, 2 * kSecond), 30).size(), 30u);
+TEST(LiveLine, ShowsTheBusiestFirstAndLeavesOutWhatDoesNotFit) {
+  RunProgress progress = At(10 * kSecond, 20 * kSecond);
+  progress.clients = {{"robot/controller", kSecond}, {"robot/planner", 5 * kSecond}};
+  EXPECT_EQ(LiveLine(100 * kSecond).Text(progress, 10), "10.0 of 10");
+  EXPECT_EQ(LiveLine(100 * kSecond).Text(progress, 39), "10.0 of 100.0 virtual s");
+  EXPECT_EQ(LiveLine(100 * kSecond).Text(progress, 79),
+            "10.0 of 100.0 virtual s  0.50 x real time  about 3:00 to go  robot/planner 50 %");
+  EXPECT_THAT(LiveLine(100 * kSecond).Text(progress, 200), HasSubstr("robot/controller 10 %  drift 0.000 ms"));
 }
 
 }  // namespace
