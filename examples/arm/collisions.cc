@@ -17,7 +17,7 @@ struct Capsule {
   Vector3d from, to;
   double radius_m;
 };
-enum Part : std::size_t { kShoulder, kUpperArm, kForearm, kWrist1, kWrist2, kWrist3, kCup, kParts };
+enum ArmPart : std::size_t { kShoulder, kUpperArm, kForearm, kWrist1, kWrist2, kWrist3, kCup, kParts };
 const std::array<Capsule, kParts> kCapsules = {{{0, {0, 0, 0}, {0, 0.12, 0}, 0.065},
                                                 {1, {0, 0, 0}, {0, 0, 0.425}, 0.06},
                                                 {2, {0, 0, 0}, {0, 0, 0.392}, 0.05},
@@ -26,7 +26,7 @@ const std::array<Capsule, kParts> kCapsules = {{{0, {0, 0, 0}, {0, 0.12, 0}, 0.0
                                                 {5, {0, 0, 0}, {0, 0.06, 0}, 0.04},
                                                 {5, {0, 0.06, 0}, {0, 0.18, 0}, 0.022}}};
 // Those that could meet: neighbours cannot.
-constexpr std::array<std::pair<Part, Part>, 9> kPairs = {{{kShoulder, kForearm},
+constexpr std::array<std::pair<ArmPart, ArmPart>, 9> kPairs = {{{kShoulder, kForearm},
                                                           {kShoulder, kWrist1},
                                                           {kShoulder, kWrist2},
                                                           {kShoulder, kCup},
