@@ -19,7 +19,7 @@ include(TcsSanitizers)
 function(tcs_target_defaults target)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "NO_SANITIZE" "" "")
   target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}")
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>
                                            -Wno-missing-field-initializers)
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -68,7 +68,6 @@ function(tcs_add_gtest target)
   cmake_parse_arguments(ARG "OPTIMISED" "LABEL" "SOURCES;LIBS" ${ARGN})
   tcs_add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main GTest::gmock)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
   if(NOT ARG_OPTIMISED)
     tcs_target_compile_quickly(${target})
   endif()

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kXcdr2 = 2;
 
-Payload Serialised(const void* what, const dds_topic_descriptor_t& type) {
+Payload SerialisedType(const void* what, const dds_topic_descriptor_t& type) {
   dds_ostreamLE_t stream;
   dds_ostreamLE_init(&stream, 0, kXcdr2);
   Payload bytes;
@@ -65,8 +65,8 @@ TypeCode CodeOf(const ddsi_sertype* type) {
   ddsi_typeinfo_t* information = ddsi_sertype_typeinfo(type);
   ddsi_typemap_t* mapping = information != nullptr ? ddsi_sertype_typemap(type) : nullptr;
   if (mapping != nullptr) {
-    code.information = Serialised(information, DDS_XTypes_TypeInformation_desc);
-    code.mapping = Serialised(mapping, DDS_XTypes_TypeMapping_desc);
+    code.information = SerialisedType(information, DDS_XTypes_TypeInformation_desc);
+    code.mapping = SerialisedType(mapping, DDS_XTypes_TypeMapping_desc);
     ddsi_typemap_fini(mapping);
     dds_free(mapping);
   }

@@ -9,7 +9,7 @@ namespace tcs::bench {
 
 namespace {
 
-constexpr int kPriority = 12;
+constexpr int kHandoverPriority = 12;
 
 struct Turns {
   pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
@@ -40,7 +40,7 @@ void* GiveBack(void* raw) {
 }  // namespace
 
 double HandoverTicks() {
-  const sched_param param{kPriority};
+  const sched_param param{kHandoverPriority};
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) return -1;
   Turns turns;
   pthread_t other;

@@ -12,7 +12,7 @@ namespace tcs::bench {
 
 namespace {
 
-constexpr int kPriority = 12;
+constexpr int kPingPongPriority = 12;
 
 // Until the other side closes its end.
 [[noreturn]] void Echo(int in, int out) {
@@ -25,7 +25,7 @@ constexpr int kPriority = 12;
 }  // namespace
 
 double PingPongTicks() {
-  const sched_param param{kPriority};
+  const sched_param param{kPingPongPriority};
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) return -1;
   int there[2], back[2];
   if (pipe(there) != 0 || pipe(back) != 0) return -1;

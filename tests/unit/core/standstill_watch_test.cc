@@ -13,7 +13,7 @@ constexpr HostDuration kPatience = StandstillWatch::kPatience,
 constexpr VirtualTime kOneSecond = VirtualTime() + VirtualDuration::Seconds(1),
                       kTwoSeconds = VirtualTime() + VirtualDuration::Seconds(2);
 
-constexpr HostTime At(HostDuration since_start) { return HostTime() + since_start; }
+constexpr HostTime HostAt(HostDuration since_start) { return HostTime() + since_start; }
 
 class StandstillWatchTest : public testing::Test {
  protected:
@@ -48,24 +48,24 @@ class StandstillWatchTest : public testing::Test {
 
 TEST_F(StandstillWatchTest, SaysOnceWhatIsWaitedForWhenPatienceIsOver) {
   AddClient("planner");
-  watch_.Look(At(kHostSecond), kTwoSeconds);
-  watch_.Look(At(kHostSecond + kPatience - HostNs(1)), kTwoSeconds);
+  watch_.Look(HostAt(kHostSecond), kTwoSeconds);
+  watch_.Look(HostAt(kHostSecond + kPatience - HostNs(1)), kTwoSeconds);
   EXPECT_TRUE(told_.empty());
-  watch_.Look(At(kHostSecond + kPatience), kTwoSeconds);
+  watch_.Look(HostAt(kHostSecond + kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(told_[0],
             "virtual time has stood still at 2.000 s for 5 s: only input from outside could make "
             "it go on; planner waits for DDS messages; Ctrl-C ends the run");
-  watch_.Look(At(kHostSecond + 3 * kPatience), kTwoSeconds);
+  watch_.Look(HostAt(kHostSecond + 3 * kPatience), kTwoSeconds);
   EXPECT_EQ(told_.size(), 1u);
 }
 
 TEST_F(StandstillWatchTest, SaysNothingWhileTimeGoesOnOrThreadsAreDispatched) {
   AddClient("planner");
-  watch_.Look(At({}), {});
-  watch_.Look(At(kPatience), RobotTime(1));
+  watch_.Look(HostAt({}), {});
+  watch_.Look(HostAt(kPatience), RobotTime(1));
   ++run_.report.switches;
-  watch_.Look(At(2 * kPatience), RobotTime(1));
+  watch_.Look(HostAt(2 * kPatience), RobotTime(1));
   EXPECT_TRUE(told_.empty());
 }
 
@@ -74,12 +74,12 @@ TEST_F(StandstillWatchTest, WhatAClientHasLeftIsSaidOnlyOfProgramsThatRunForAsLo
   Process& left = run_.table.AddProcess(1);
   left.robot = &robot_;
   run_.end = VirtualTime() + VirtualDuration::Seconds(60);
-  watch_.Look(At({}), {});
-  watch_.Look(At(kPatience), kOneSecond);
+  watch_.Look(HostAt({}), {});
+  watch_.Look(HostAt(kPatience), kOneSecond);
   EXPECT_TRUE(told_.empty());
   run_.end = VirtualTime::Never();
-  watch_.Look(At(kPatience), kOneSecond);
-  watch_.Look(At(2 * kPatience), kTwoSeconds);
+  watch_.Look(HostAt(kPatience), kOneSecond);
+  watch_.Look(HostAt(2 * kPatience), kTwoSeconds);
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_EQ(
       told_[0].find("tool has ended; the run goes on for the background processes that it has "

@@ -6,13 +6,12 @@
 #include <ostream>
 #include <string>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
-constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1);
-constexpr VirtualDuration kUs = VirtualDuration::Microseconds(1), kNs = VirtualNs(1), kNone;
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
+constexpr VirtualDuration kNone;
 
 // The turn begins at 10 ms.
 constexpr VirtualTime kStart = At(10 * kMs);

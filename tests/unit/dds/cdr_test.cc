@@ -9,6 +9,7 @@
 
 #include "coordinator/dds/participant_info.h"
 #include "coordinator/dds/ros_messages.h"
+#include "tests/unit/dds/samples.h"
 
 namespace tcs::dds {
 namespace {
@@ -39,8 +40,6 @@ std::string Complaint(const Bytes& cdr) {
   const auto* error = std::get_if<CdrError>(&result);
   return error == nullptr ? "" : error->message;
 }
-
-BodyState Flying() { return {{1, 2, 3}, {0, 0, 0.6, 0.8}, {4, 5, 6}, {7, 8, 9}}; }
 
 TEST(Cdr, AClockIsItsTwelveBytes) {
   EXPECT_EQ(ToCdr(ToClock(3'000'000'005)), Of({0, 1, 0, 0, 3, 0, 0, 0, 5, 0, 0, 0}));

@@ -8,6 +8,7 @@
 #include "coordinator/dds/participant_info.h"
 #include "coordinator/dds/ros_messages.h"
 #include "coordinator/dds/ros_names.h"
+#include "tests/unit/dds/samples.h"
 
 namespace tcs::dds {
 namespace {
@@ -69,8 +70,6 @@ class Cyclone : public testing::Test {
 
   dds_entity_t domain_ = 0, participant_ = 0, reader_ = 0, writer_ = 0;
 };
-
-BodyState Flying() { return {{1, 2, 3}, {0, 0, 0.6, 0.8}, {4, 5, 6}, {7, 8, 9}}; }
 
 TEST_F(Cyclone, WritesTheSameOdometry) {
   ExpectTheSameBytes("rt/odom", ToOdometry(1'700'000'000'123'456'789, "hunter", Flying()));

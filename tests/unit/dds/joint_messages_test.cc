@@ -44,9 +44,9 @@ std::vector<std::byte> States(const Lists& lists) {
   return ToCdr(message);
 }
 
-using Decoded = std::variant<std::vector<JointGoal>, MessageError>;
+using DecodedGoals = std::variant<std::vector<JointGoal>, MessageError>;
 
-std::vector<JointGoal> GoalsOf(const Decoded& decoded) {
+std::vector<JointGoal> GoalsOf(const DecodedGoals& decoded) {
   if (const auto* error = std::get_if<MessageError>(&decoded)) {
     ADD_FAILURE() << error->message;
     return {};
@@ -54,17 +54,17 @@ std::vector<JointGoal> GoalsOf(const Decoded& decoded) {
   return std::get<std::vector<JointGoal>>(decoded);
 }
 
-std::string Complaint(const Decoded& decoded) {
+std::string Complaint(const DecodedGoals& decoded) {
   const auto* error = std::get_if<MessageError>(&decoded);
   return error == nullptr ? "" : error->message;
 }
 
-Decoded FromArray(const std::vector<double>& numbers,
-                  JointQuantity quantity = JointQuantity::kEffort) {
+DecodedGoals FromArray(const std::vector<double>& numbers,
+                       JointQuantity quantity = JointQuantity::kEffort) {
   return DecodeJointCommand(CommandMessage::kFloat64MultiArray, kArm, quantity, Array(numbers));
 }
 
-Decoded FromStates(const Lists& lists) {
+DecodedGoals FromStates(const Lists& lists) {
   return DecodeJointCommand(CommandMessage::kJointState, kArm, JointQuantity::kPosition,
                             States(lists));
 }

@@ -8,10 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/unit/dds/samples.h"
+
 namespace tcs::dds {
 namespace {
 
-constexpr std::int64_t kStamp = 1'700'000'000'250'000'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(LaserScan, SaysWhatIsOutOfReachAsRosDoes) {

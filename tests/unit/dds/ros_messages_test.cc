@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "coordinator/dds/robot_topics.h"
+#include "tests/unit/dds/samples.h"
 
 namespace tcs::dds {
 namespace {
@@ -17,7 +18,6 @@ using testing::DoubleNear;
 using testing::HasSubstr;
 
 constexpr double kTight = 1e-12;
-constexpr std::int64_t kStamp = 1'700'000'000'250'000'000;
 
 // Turned left by 90 degrees: the body's x axis is the world's y axis.
 BodyState TurnedLeft() {

@@ -24,11 +24,6 @@ INSTANTIATE_TEST_SUITE_P(Engines, ContactForces, testing::ValuesIn(ModelEngines(
 
 constexpr double kEdgeM = 0.2;
 
-Shape Floor(double slope_rad = 0) {
-  return {
-      .geometry = PlaneShape{}, .pose = {{}, FromRollPitchYaw(0, slope_rad, 0)}, .friction = 0.8};
-}
-
 Shape CubeShape(double edge_m) {
   return {.geometry = BoxShape{{edge_m, edge_m, edge_m}}, .friction = 0.8};
 }
@@ -188,7 +183,7 @@ TEST_P(ContactForces, HaveFrictionAcrossTheNormal) {
     const Pose slope{{}, FromRollPitchYaw(0, angle, 0)};
     const Pose at = Times(slope, Pose{{0, 0, kEdgeM / 2}, {0, 0, 0, 1}});
     WorldSpec world = WorldOf({Box("box", 1, at.position_m, at.orientation_xyzw)}, GetParam());
-    world.fixtures = {Floor(angle)};
+    world.fixtures = {Floor(0.8, angle)};
     auto dynamics = MakeDynamics(world);
     // What slides on MuJoCo does so by one corner after the other.
     constexpr int kSteps = 200;

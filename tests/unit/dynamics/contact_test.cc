@@ -15,27 +15,6 @@ class ModelsInContact : public EveryModelEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, ModelsInContact, testing::ValuesIn(ModelEngines()), NameOfEngine);
 
-constexpr double kPi = std::numbers::pi;
-
-Shape ShapeOf(const Geometry& geometry, double friction = 0.8, const Pose& pose = {}) {
-  return {.name = "", .geometry = geometry, .pose = pose, .friction = friction};
-}
-
-Shape Floor(double friction = 0.8, double slope_rad = 0) {
-  return ShapeOf(PlaneShape{}, friction, {{}, FromRollPitchYaw(0, slope_rad, 0)});
-}
-
-// A body that floats, with one shape around its center.
-RobotModel Loose(const std::string& name, const Geometry& geometry, const Pose& at,
-                 double mass_kg = 1, double friction = 0.8, double moment_kgm2 = 0.01) {
-  RobotModel model;
-  model.name = name;
-  model.links.push_back(LinkOf(name, MassAt(mass_kg, {}, moment_kgm2)));
-  model.links[0].shapes.push_back(ShapeOf(geometry, friction));
-  model.at = at;
-  return model;
-}
-
 Geometry Cube(double edge_m) { return BoxShape{{edge_m, edge_m, edge_m}}; }
 
 // A tetrahedron's, a cube's: corners only.

@@ -4,7 +4,7 @@
 namespace tcs {
 namespace {
 
-constexpr int kBodies = 2;  // of BusyWorld
+constexpr int kBusyBodies = 2;  // of BusyWorld
 
 // Some further run: long and short pieces, commands between and in advance. Returns every state on
 // the way.
@@ -13,11 +13,11 @@ std::vector<std::vector<BodyState>> GoOn(Dynamics& dynamics) {
   const std::int64_t start = dynamics.Now().ns();
   std::int64_t ns = start;
   for (int i = 1; i <= 40; ++i) {
-    dynamics.Apply(i % kBodies, {.force_n = {1.0 * (i % 3), 0, 2}, .torque_nm = {0.01, 0, 0}},
+    dynamics.Apply(i % kBusyBodies, {.force_n = {1.0 * (i % 3), 0, 2}, .torque_nm = {0.01, 0, 0}},
                    At(ns + 1'234'567));
     ns += i % 4 == 0 ? 1'000'000 : 37'000'001;
     dynamics.AdvanceTo(At(ns));
-    states.push_back(ReadAll(dynamics, kBodies));
+    states.push_back(ReadAll(dynamics, kBusyBodies));
   }
   return states;
 }
@@ -31,7 +31,8 @@ TEST_P(Checkpoints, SavingDoesNotChangeTheRun) {
     auto checkpoint = saved->Save();
     saved->AdvanceTo(AtMs(23 * i));
     plain->AdvanceTo(AtMs(23 * i));
-    ASSERT_TRUE(SameBits(ReadAll(*saved, kBodies), ReadAll(*plain, kBodies))) << "at " << 23 * i;
+    ASSERT_TRUE(SameBits(ReadAll(*saved, kBusyBodies), ReadAll(*plain, kBusyBodies)))
+        << "at " << 23 * i;
   }
 }
 
@@ -42,13 +43,13 @@ TEST_P(Checkpoints, RestoringRepeatsTheOriginalRunBitwiseAnyNumberOfTimes) {
   dynamics->Apply(0, {.force_n = {3, 0, 0}, .torque_nm = {}},
                   At(dynamics->Now().ns() + 50'000'000));
   const VirtualTime time = dynamics->Now();
-  const auto state = ReadAll(*dynamics, kBodies);
+  const auto state = ReadAll(*dynamics, kBusyBodies);
   const auto checkpoint = dynamics->Save();
   const auto original = GoOn(*dynamics);
   for (int replay = 0; replay < 2; ++replay) {
     dynamics->Restore(*checkpoint);
     ASSERT_EQ(dynamics->Now(), time);
-    ASSERT_TRUE(SameBits(ReadAll(*dynamics, kBodies), state));
+    ASSERT_TRUE(SameBits(ReadAll(*dynamics, kBusyBodies), state));
     const auto repeated = GoOn(*dynamics);
     for (std::size_t i = 0; i < original.size(); ++i) {
       ASSERT_TRUE(SameBits(original[i], repeated[i])) << "replay " << replay << ", piece " << i;

@@ -8,8 +8,6 @@ class Commands : public EveryEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, Commands, testing::ValuesIn(Engines()), NameOfEngine);
 
-constexpr double kMass = 2.0;  // of OneBody
-
 Wrench PushX(double newtons) { return {.force_n = {newtons, 0, 0}, .torque_nm = {}}; }
 
 TEST_P(Commands, ActFromTheirExactTimeWhereverTheStepsAre) {

@@ -9,7 +9,6 @@
 namespace tcs {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Expects that `world` is refused with exactly `message`.

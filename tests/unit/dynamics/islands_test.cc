@@ -64,8 +64,6 @@ class EachEngine : public EveryEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, EachEngine, testing::ValuesIn(Engines()), NameOfEngine);
 
-constexpr double kMass = 2.0;  // of OneBody
-
 WorldSpec ManyBodies(int bodies, const IntegratorSpec& integrator) {
   WorldSpec world = OneBody(integrator);
   world.bodies.resize(static_cast<std::size_t>(bodies), world.bodies[0]);

@@ -9,9 +9,8 @@
 namespace tcs {
 namespace {
 
-constexpr double kMass = 2.0;  // of OneBody
-constexpr VirtualDuration kLag = VirtualDuration::Milliseconds(50);
-constexpr double kLagS = 0.05;
+constexpr VirtualDuration kCommandLag = VirtualDuration::Milliseconds(50);
+constexpr double kCommandLagS = 0.05;
 
 // Steps that are taken here, Simbody's own with error control and of a set length, and ODE's.
 std::vector<IntegratorSpec> EveryPath() {
@@ -35,7 +34,7 @@ Wrench BodyPush(double newtons) {
   return {.force_n = {newtons, 0, 0}, .torque_nm = {}, .in_body_frame = true};
 }
 Wrench SlowPush(double newtons) {
-  return {.force_n = {newtons, 0, 0}, .torque_nm = {}, .lag = kLag};
+  return {.force_n = {newtons, 0, 0}, .torque_nm = {}, .lag = kCommandLag};
 }
 
 TEST_P(LoadsOfEveryPath, AThrustInTheBodysFrameTurnsWithTheBody) {
@@ -84,10 +83,12 @@ TEST_P(LoadsOfEveryPath, ACommandInTheOtherFrameReplacesTheOneBefore) {
 
 // Of a body that a command with a lag pushes from rest, from time 0 on.
 double LaggingVelocity(double newtons, double t) {
-  return newtons / kMass * (t + kLagS * std::expm1(-t / kLagS));
+  return newtons / kMass * (t + kCommandLagS * std::expm1(-t / kCommandLagS));
 }
 double LaggingPosition(double newtons, double t) {
-  return newtons / kMass * (t * t / 2 - kLagS * t - kLagS * kLagS * std::expm1(-t / kLagS));
+  return newtons / kMass *
+         (t * t / 2 - kCommandLagS * t -
+          kCommandLagS * kCommandLagS * std::expm1(-t / kCommandLagS));
 }
 
 TEST_P(LoadsOfEveryPath, ACommandThatLagsComesNearExponentially) {
@@ -114,9 +115,9 @@ TEST_P(LoadsOfEveryPath, ACommandThatLagsBeginsWithWhatActs) {
   dynamics->Apply(0, SlowPush(4), At(0));
   dynamics->Apply(0, back, AtMs(40));
   dynamics->Apply(0, Push(1), AtMs(100));
-  const double at_40 = 4 * -std::expm1(-0.04 / kLagS), v_40 = LaggingVelocity(4, 0.04);
+  const double at_40 = 4 * -std::expm1(-0.04 / kCommandLagS), v_40 = LaggingVelocity(4, 0.04);
   const auto after_40 = [&](double t) {  // -6 + (at_40 + 6) e^(-t / lag), added up
-    return v_40 + (-6 * t - (at_40 + 6) * kLagS * std::expm1(-t / kLagS)) / kMass;
+    return v_40 + (-6 * t - (at_40 + 6) * kCommandLagS * std::expm1(-t / kCommandLagS)) / kMass;
   };
   for (int ms = 1; ms <= 100; ++ms) {
     dynamics->AdvanceTo(AtMs(ms));

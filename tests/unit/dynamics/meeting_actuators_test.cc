@@ -16,9 +16,9 @@ namespace tcs {
 namespace {
 
 // Longer than the robots are near each other: what was commanded before still fades afterwards.
-constexpr VirtualDuration kLag = VirtualDuration::Milliseconds(600);
-constexpr double kLagS = 0.6;
-constexpr double kThrust = 2e-6, kHullKg = 2, kRodKg = 0.1;
+constexpr VirtualDuration kSlowLag = VirtualDuration::Milliseconds(600);
+constexpr double kSlowLagS = 0.6;
+constexpr double kHullThrust = 2e-6, kHullKg = 2, kRodKg = 0.1;
 
 class ActuatorsThatMeet : public EveryModelEngine {};
 
@@ -35,16 +35,16 @@ RobotModel Craft(const std::string& name, int rods, int rotors, const Geometry& 
   model.has_fixed_base = false;
   model.links[0].inertial = MassAt(kHullKg, {}, 0.05);
   model.links[0].shapes.push_back({.name = "hull", .geometry = hull, .pose = {}, .friction = 0.5});
-  for (Joint& joint : model.joints) joint.drive_lag = kLag;
+  for (Joint& joint : model.joints) joint.drive_lag = kSlowLag;
   for (int i = 0; i < rotors; ++i) {
     Rotor rotor;
     rotor.name = "rotor" + std::to_string(i);
     rotor.link = 0;
     rotor.frame.position_m = {0, i % 2 == 0 ? 0.1 : -0.1, 0};
-    rotor.thrust_ns2 = kThrust;
+    rotor.thrust_ns2 = kHullThrust;
     rotor.drag_nms2 = 1e-8;
     rotor.is_clockwise = i % 2 == 0;
-    rotor.time_constant = kLag;
+    rotor.time_constant = kSlowLag;
     rotor.most_radps = 1000;
     model.rotors.push_back(rotor);
   }
@@ -95,10 +95,10 @@ Followed Follow(double until_s) {
                             ? std::min(until_s, 1e-9 * static_cast<double>(kAims[i + 1].at_ns))
                             : until_s;
     const double aim = kAims[i].value, missing = followed.value - aim,
-                 lags = (to_s - from_s) / kLagS;
+                 lags = (to_s - from_s) / kSlowLagS;
     followed.square_s += aim * aim * (to_s - from_s) -
-                         2 * aim * missing * kLagS * std::expm1(-lags) -
-                         missing * missing * kLagS / 2 * std::expm1(-2 * lags);
+                         2 * aim * missing * kSlowLagS * std::expm1(-lags) -
+                         missing * missing * kSlowLagS / 2 * std::expm1(-2 * lags);
     followed.value = aim + missing * std::exp(-lags);
   }
   return followed;
@@ -112,7 +112,7 @@ TEST_P(ActuatorsThatMeet, GoOnFadingFromIslandToIsland) {
     const Followed followed = Follow(1e-3 * ms);
     EXPECT_NEAR(ReadJoint(*dynamics, kJointOfA, AtMs(ms)).effort, 1e-5 * followed.value, 1e-12)
         << ms;
-    const double impulse = kRotorsOfB * kThrust * followed.square_s;
+    const double impulse = kRotorsOfB * kHullThrust * followed.square_s;
     EXPECT_NEAR(ReadLink(*dynamics, kHullOfB, AtMs(ms)).linear_velocity_mps[2],
                 impulse / (kHullKg + 2 * kRodKg), 1e-7)
         << ms;

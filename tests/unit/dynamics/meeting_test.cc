@@ -14,19 +14,12 @@ class ModelsThatMeet : public EveryModelEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, ModelsThatMeet, testing::ValuesIn(ModelEngines()), NameOfEngine);
 
-Shape ShapeOf(const Geometry& geometry) {
-  return {.name = "", .geometry = geometry, .pose = {}, .friction = 0.5};
-}
+constexpr double kFriction = 0.5;
 
-// A body that floats, with one shape around its center, one kilogram.
-RobotModel Loose(const std::string& name, const Geometry& geometry,
-                 const std::array<double, 3>& at_m,
-                 const std::array<double, 3>& velocity_mps = {}) {
-  RobotModel model;
-  model.name = name;
-  model.links.push_back(LinkOf(name, MassAt(1, {}, 0.01)));
-  model.links[0].shapes.push_back(ShapeOf(geometry));
-  model.at.position_m = at_m;
+RobotModel Moving(const std::string& name, const Geometry& geometry,
+                  const std::array<double, 3>& at_m,
+                  const std::array<double, 3>& velocity_mps = {}) {
+  RobotModel model = Loose(name, geometry, {at_m, {0, 0, 0, 1}}, 1, kFriction);
   model.linear_velocity_mps = velocity_mps;
   return model;
 }
@@ -63,7 +56,7 @@ WorldSpec InSpace(std::vector<RobotModel> models, const IntegratorSpec& spec) {
 // A ball hits a box off its centre.
 WorldSpec Collision(const IntegratorSpec& spec) {
   return InSpace(
-      {Loose("ball", kBall, {-4, 0.05, 0}, {1, 0, 0}), Loose("box", kBox, {4, 0, 0}, {-1, 0, 0})},
+      {Moving("ball", kBall, {-4, 0.05, 0}, {1, 0, 0}), Moving("box", kBox, {4, 0, 0}, {-1, 0, 0})},
       spec);
 }
 
@@ -146,10 +139,10 @@ TEST_P(ModelsThatMeet, PartAgainWhereTheMeetingIsTakenBack) {
 // taken back, saved and restored.
 WorldSpec FourOnAFloor(const IntegratorSpec& spec) {
   WorldSpec world = WorldOf({}, spec);
-  world.fixtures = {ShapeOf(PlaneShape{})};
+  world.fixtures = {ShapeOf(PlaneShape{}, kFriction)};
   for (int i = 0; i < 4; ++i) {
     world.models.push_back(
-        Loose("m" + std::to_string(i), i % 2 == 0 ? kBall : kBox, {0.8 * i, 0.1 * i, 0.1}));
+        Moving("m" + std::to_string(i), i % 2 == 0 ? kBall : kBox, {0.8 * i, 0.1 * i, 0.1}));
   }
   return world;
 }
@@ -216,7 +209,7 @@ TEST_P(ModelsThatMeet, AreTakenBackToTheByte) {
 // A model that is one shape and does not move.
 RobotModel Standing(const std::string& name, const Geometry& geometry,
                     const std::array<double, 3>& at_m) {
-  RobotModel model = Loose(name, geometry, at_m);
+  RobotModel model = Moving(name, geometry, at_m);
   model.has_fixed_base = true;
   return model;
 }
@@ -230,8 +223,8 @@ TEST_P(ModelsThatMeet, AreTakenBackToTheByteAmongWhatStands) {
 
 // From a standstill through 3 m in 0.17 s: much harder than zones trust.
 TEST_P(ModelsThatMeet, AreNotMissedHoweverHardTheyArePushed) {
-  WorldSpec world = InSpace({Loose("hammer", kBall, {0, 0, 0}), Loose("nail", kBox, {3, 0, 0}),
-                             Loose("wall", kBox, {0, 30, 0})},
+  WorldSpec world = InSpace({Moving("hammer", kBall, {0, 0, 0}), Moving("nail", kBox, {3, 0, 0}),
+                             Moving("wall", kBox, {0, 30, 0})},
                             GetParam());
   const auto strike = [&] {
     auto dynamics = MakeDynamics(world);
@@ -250,9 +243,9 @@ TEST_P(ModelsThatMeet, AreNotMissedHoweverHardTheyArePushed) {
 TEST_P(ModelsThatMeet, AFloorJoinsNobody) {
   const auto stand = [&](int count) {
     WorldSpec world = WorldOf({}, GetParam());
-    world.fixtures = {ShapeOf(PlaneShape{})};
+    world.fixtures = {ShapeOf(PlaneShape{}, kFriction)};
     for (int i = 0; i < count; ++i) {
-      world.models.push_back(Loose("robot" + std::to_string(i), kBox, {1.0 * i, 0, 0.11}));
+      world.models.push_back(Moving("robot" + std::to_string(i), kBox, {1.0 * i, 0, 0.11}));
     }
     auto dynamics = MakeDynamics(world);
     const auto states = ReadAllLinks(*dynamics, count, AtMs(500));
@@ -272,13 +265,13 @@ TEST_P(ModelsThatMeet, AFloorJoinsNobody) {
 TEST_P(ModelsThatMeet, ATableJoinsNobody) {
   const Geometry plate = BoxShape{{3, 1, 0.1}};
   WorldSpec world =
-      WorldOf({Standing("table", plate, {0, 0, 0.45}), Loose("left", kBox, {-1, 0, 0.61}),
-               Loose("right", kBox, {1, 0, 0.61}, {2, 0, 0})},
+      WorldOf({Standing("table", plate, {0, 0, 0.45}), Moving("left", kBox, {-1, 0, 0.61}),
+               Moving("right", kBox, {1, 0, 0.61}, {2, 0, 0})},
               GetParam());
-  world.fixtures = {ShapeOf(PlaneShape{})};
+  world.fixtures = {ShapeOf(PlaneShape{}, kFriction)};
   WorldSpec as_fixture = world;
   as_fixture.models.erase(as_fixture.models.begin());
-  as_fixture.fixtures.push_back(ShapeOf(plate));
+  as_fixture.fixtures.push_back(ShapeOf(plate, kFriction));
   as_fixture.fixtures.back().pose.position_m = {0, 0, 0.45};
   auto dynamics = MakeDynamics(world);
   auto known = MakeDynamics(as_fixture);
@@ -304,14 +297,14 @@ TEST_P(ModelsThatMeet, AnArmJoinsWhomItReachesAndItsBaseNobody) {
   RobotModel arm = Pendulum(1, 0.5, 1, 0.02);
   arm.name = "arm";
   arm.at.position_m = {0, 0, 1};
-  arm.links[0].shapes.push_back(ShapeOf(BoxShape{{0.4, 0.4, 0.1}}));
-  arm.links[1].shapes.push_back(ShapeOf(SphereShape{0.05}));
+  arm.links[0].shapes.push_back(ShapeOf(BoxShape{{0.4, 0.4, 0.1}}, kFriction));
+  arm.links[1].shapes.push_back(ShapeOf(SphereShape{0.05}, kFriction));
   arm.links[1].shapes[0].pose.position_m = {0, 0, -0.5};
   arm.joints[0].initial_position = {1.5};  // beside the base, from where it swings down
-  WorldSpec world = WorldOf({arm, Loose("on_top", SphereShape{0.05}, {0.05, 0.05, 1.1}),
-                             Loose("below", kBall, {0, 0, 0.42})},
+  WorldSpec world = WorldOf({arm, Moving("on_top", SphereShape{0.05}, {0.05, 0.05, 1.1}),
+                             Moving("below", kBall, {0, 0, 0.42})},
                             GetParam());
-  world.fixtures = {ShapeOf(PlaneShape{})};
+  world.fixtures = {ShapeOf(PlaneShape{}, kFriction)};
   world.fixtures[0].pose.position_m = {0, 0, 0.32};
   auto dynamics = MakeDynamics(world);
   (void)ReadAllLinks(*dynamics, 4, AtMs(20));

@@ -13,8 +13,6 @@
 namespace tcs {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 std::string FaultOf(const std::function<void(RobotModel&)>& spoil) {
   RobotModel model = Pendulum(2);
   spoil(model);

@@ -13,8 +13,6 @@ class ModelsInMotion : public EveryModelEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, ModelsInMotion, testing::ValuesIn(ModelEngines()), NameOfEngine);
 
-constexpr double kPi = std::numbers::pi;
-
 // Of a pendulum with moment `inertia` about its hinge and `torque` = m g l, that starts at rest at
 // `angle`: 4 sqrt(I / mgl) K(sin(angle / 2)), by the arithmetic-geometric mean.
 double PeriodOf(double inertia, double torque, double angle) {

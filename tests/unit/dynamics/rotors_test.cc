@@ -11,19 +11,19 @@
 namespace tcs {
 namespace {
 
-constexpr double kMass = 2, kMoment = 0.02;
-constexpr double kThrust = 1e-5, kDrag = 2e-7;
-constexpr VirtualDuration kLag = VirtualDuration::Milliseconds(50);
-constexpr double kLagS = 0.05;
+constexpr double kCraftKg = 2, kCraftMoment = 0.02;
+constexpr double kRotorThrust = 1e-5, kRotorDrag = 2e-7;
+constexpr VirtualDuration kRotorLag = VirtualDuration::Milliseconds(50);
+constexpr double kRotorLagS = 0.05;
 
 Rotor RotorAt(const std::string& name, const Pose& frame) {
   Rotor rotor;
   rotor.name = name;
   rotor.link = 0;
   rotor.frame = frame;
-  rotor.thrust_ns2 = kThrust;
-  rotor.drag_nms2 = kDrag;
-  rotor.time_constant = kLag;
+  rotor.thrust_ns2 = kRotorThrust;
+  rotor.drag_nms2 = kRotorDrag;
+  rotor.time_constant = kRotorLag;
   rotor.most_radps = 1000;
   return rotor;
 }
@@ -32,7 +32,7 @@ Rotor RotorAt(const std::string& name, const Pose& frame) {
 WorldSpec Craft(std::vector<Rotor> rotors, IntegratorSpec integrator) {
   RobotModel model;
   model.name = "craft";
-  model.links.push_back(LinkOf("base", MassAt(kMass, {}, kMoment)));
+  model.links.push_back(LinkOf("base", MassAt(kCraftKg, {}, kCraftMoment)));
   model.rotors = std::move(rotors);
   integrator.accuracy = 1e-9;
   WorldSpec world = WorldOf({model}, integrator);
@@ -44,11 +44,11 @@ WorldSpec Craft(std::vector<Rotor> rotors, IntegratorSpec integrator) {
 // has turned with `from`.
 double SquareOverTime(double from, double to, double t) {
   const double missing = from - to;
-  return to * to * t - 2 * to * missing * kLagS * std::expm1(-t / kLagS) -
-         missing * missing * kLagS / 2 * std::expm1(-2 * t / kLagS);
+  return to * to * t - 2 * to * missing * kRotorLagS * std::expm1(-t / kRotorLagS) -
+         missing * missing * kRotorLagS / 2 * std::expm1(-2 * t / kRotorLagS);
 }
 double SpeedAfter(double from, double to, double t) {
-  return to + (from - to) * std::exp(-t / kLagS);
+  return to + (from - to) * std::exp(-t / kRotorLagS);
 }
 
 class Rotors : public EveryModelEngine {};
@@ -71,7 +71,7 @@ TEST_P(Rotors, ThrustComesWithTheTimeConstantAndGoesAlongTheLink) {
     const double down = std::max(0.0, 1e-3 * ms - 1e-9 * kDownNs);
     const double square = SquareOverTime(0, 800, up) + SquareOverTime(fastest, 300, down);
     const LinkState state = ReadLink(*dynamics, 0, AtMs(ms));
-    ASSERT_NEAR(state.linear_velocity_mps[0], kThrust / kMass * square, 1e-7) << ms;
+    ASSERT_NEAR(state.linear_velocity_mps[0], kRotorThrust / kCraftKg * square, 1e-7) << ms;
     ASSERT_NEAR(state.linear_velocity_mps[2], 0, 1e-9) << ms;
   }
 }
@@ -82,7 +82,8 @@ TEST_P(Rotors, DragTurnsTheLinkAgainstTheWayThatTheRotorTurns) {
     world.models[0].rotors[0].is_clockwise = is_clockwise;
     auto dynamics = MakeDynamics(world);
     dynamics->Spin(0, 500, AtMs(0));
-    const double turned = (is_clockwise ? 1 : -1) * kDrag / kMoment * SquareOverTime(0, 500, 0.3);
+    const double turned =
+        (is_clockwise ? 1 : -1) * kRotorDrag / kCraftMoment * SquareOverTime(0, 500, 0.3);
     EXPECT_NEAR(ReadLink(*dynamics, 0, AtMs(300)).angular_velocity_radps[2], turned, 1e-7);
   }
 }
@@ -94,7 +95,7 @@ TEST_P(Rotors, PushWhereAndAsTheyAreMounted) {
   world.models[0].rotors[0].drag_nms2 = 0;
   auto dynamics = MakeDynamics(world);
   dynamics->Spin(0, 400, AtMs(0));
-  const double turned = 0.2 * kThrust / kMoment * SquareOverTime(0, 400, 0.2);
+  const double turned = 0.2 * kRotorThrust / kCraftMoment * SquareOverTime(0, 400, 0.2);
   const LinkState state = ReadLink(*dynamics, 0, AtMs(200));
   EXPECT_NEAR(state.angular_velocity_radps[2], turned, 1e-7);
   EXPECT_NEAR(state.angular_velocity_radps[0], 0, 1e-9);
@@ -106,7 +107,7 @@ TEST_P(Rotors, WithoutATimeConstantTurnAtOnce) {
   auto dynamics = MakeDynamics(world);
   dynamics->Spin(0, 100, At(50'000'001));
   EXPECT_NEAR(ReadLink(*dynamics, 0, At(150'000'001)).linear_velocity_mps[2],
-              kThrust / kMass * 100 * 100 * 0.1, 1e-12);
+              kRotorThrust / kCraftKg * 100 * 100 * 0.1, 1e-12);
 }
 
 TEST_P(Rotors, OfEachModelAreItsOwn) {
@@ -161,7 +162,7 @@ TEST_P(Rotors, ThatCannotBeAreRefusedByName) {
 // by what it would give where the joint is.
 TEST_P(Rotors, JointsCanBeDrivenWithALag) {
   RobotModel model = Pendulum(1);
-  model.joints[0].drive_lag = kLag;
+  model.joints[0].drive_lag = kRotorLag;
   WorldSpec world = WorldOf({model}, GetParam());
   world.gravity_mps2 = {};
   world.integrator.accuracy = 1e-9;
@@ -169,12 +170,13 @@ TEST_P(Rotors, JointsCanBeDrivenWithALag) {
   constexpr double kInertia = 1.01;
   dynamics->Drive(0, {.effort = 2}, AtMs(10));
   const JointState state = ReadJoint(*dynamics, 0, AtMs(70));
-  EXPECT_NEAR(state.effort, 2 * -std::expm1(-0.06 / kLagS), 1e-12);
-  EXPECT_NEAR(state.velocity, 2 / kInertia * (0.06 + kLagS * std::expm1(-0.06 / kLagS)), 1e-7);
+  EXPECT_NEAR(state.effort, 2 * -std::expm1(-0.06 / kRotorLagS), 1e-12);
+  EXPECT_NEAR(state.velocity, 2 / kInertia * (0.06 + kRotorLagS * std::expm1(-0.06 / kRotorLagS)),
+              1e-7);
   dynamics->AdvanceTo(AtMs(70));
   dynamics->Drive(0, {.stiffness = 10, .position = 1, .damping = 3}, AtMs(70));
   const JointState later = ReadJoint(*dynamics, 0, AtMs(90));
-  const double left = std::exp(-0.02 / kLagS);
+  const double left = std::exp(-0.02 / kRotorLagS);
   EXPECT_NEAR(later.effort,
               left * state.effort + (1 - left) * (10 * (1 - later.position) - 3 * later.velocity),
               1e-9);

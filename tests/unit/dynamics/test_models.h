@@ -3,15 +3,18 @@
 
 #include <array>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "simbody_bridge/model/pose.h"
 #include "tests/unit/dynamics/test_worlds.h"
 
 namespace tcs {
 
 inline constexpr double kG = 9.81;
+inline constexpr double kPi = std::numbers::pi;
 
 // The engines that have models, each as it is by default.
 inline std::vector<IntegratorSpec> ModelEngines() {
@@ -62,6 +65,25 @@ inline RobotModel Pendulum(int rods, double length_m = 1, double mass_kg = 1,
     model.joints.push_back(JointOf("hinge" + number, JointKind::kRevolute, i, i + 1, {0, 1, 0},
                                    {0, 0, i == 0 ? 0 : -length_m}));
   }
+  return model;
+}
+
+inline Shape ShapeOf(const Geometry& geometry, double friction = 0.8, const Pose& pose = {}) {
+  return {.name = "", .geometry = geometry, .pose = pose, .friction = friction};
+}
+
+inline Shape Floor(double friction = 0.8, double slope_rad = 0) {
+  return ShapeOf(PlaneShape{}, friction, {{}, FromRollPitchYaw(0, slope_rad, 0)});
+}
+
+// A body that floats, with one shape around its center.
+inline RobotModel Loose(const std::string& name, const Geometry& geometry, const Pose& at,
+                        double mass_kg = 1, double friction = 0.8, double moment_kgm2 = 0.01) {
+  RobotModel model;
+  model.name = name;
+  model.links.push_back(LinkOf(name, MassAt(mass_kg, {}, moment_kgm2)));
+  model.links[0].shapes.push_back(ShapeOf(geometry, friction));
+  model.at = at;
   return model;
 }
 

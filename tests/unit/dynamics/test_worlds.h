@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,13 @@ namespace tcs {
 inline VirtualTime At(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
 inline VirtualTime AtMs(std::int64_t ms) { return At(ms * 1'000'000); }
 
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+inline constexpr double kMass = 2.0;  // of OneBody
 inline WorldSpec OneBody(const IntegratorSpec& integrator = {}) {
   WorldSpec world;
   world.bodies.push_back(
-      {.name = "ship", .mass_kg = 2.0, .inertia_kgm2 = {0.1, 0.2, 0.25}, .initial = {}});
+      {.name = "ship", .mass_kg = kMass, .inertia_kgm2 = {0.1, 0.2, 0.25}, .initial = {}});
   world.integrator = integrator;
   return world;
 }

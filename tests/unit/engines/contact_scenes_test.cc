@@ -14,31 +14,14 @@
 namespace tcs {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 class ContactScenes : public EveryModelEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, ContactScenes, testing::ValuesIn(ModelEngines()), NameOfEngine);
-
-Shape Floor(double slope_rad = 0) {
-  return {
-      .geometry = PlaneShape{}, .pose = {{}, FromRollPitchYaw(0, slope_rad, 0)}, .friction = 0.8};
-}
 
 RobotModel Zoo(const std::string& file) {
   const Loaded loaded = LoadFile(ZooPath(file));
   EXPECT_EQ(loaded.mistake, "");
   return loaded.model;
-}
-
-RobotModel Loose(const std::string& name, const Geometry& geometry, const Pose& at, double mass_kg,
-                 double moment_kgm2) {
-  RobotModel model;
-  model.name = name;
-  model.links.push_back(LinkOf(name, MassAt(mass_kg, {}, moment_kgm2)));
-  model.links[0].shapes.push_back({.geometry = geometry, .friction = 0.8});
-  model.at = at;
-  return model;
 }
 
 // How high above each other the boxes of a stack are after three seconds, each of which lies
@@ -49,7 +32,7 @@ std::vector<double> HeightsOfStack(const IntegratorSpec& engine, double shift_m)
   for (int i = 0; i < 4; ++i) {
     const Pose at{{shift_m * i, 0, 0.1 + 0.2 * i}, {0, 0, 0, 1}};
     world.models.push_back(
-        Loose("box" + std::to_string(i), BoxShape{{0.2, 0.2, 0.2}}, at, 1, 1.0 / 150));
+        Loose("box" + std::to_string(i), BoxShape{{0.2, 0.2, 0.2}}, at, 1, 0.8, 1.0 / 150));
   }
   auto dynamics = MakeDynamics(world);
   std::vector<double> heights;
@@ -77,7 +60,7 @@ TEST_P(ContactScenes, ABallRollsDownASlope) {
   WorldSpec world = WorldOf({Loose("ball", SphereShape{kRadius},
                                    Times(slope, Pose{{0, 0, kRadius}, {0, 0, 0, 1}}), 1, 0.004)},
                             GetParam());
-  world.fixtures = {Floor(kSlope)};
+  world.fixtures = {Floor(0.8, kSlope)};
   auto dynamics = MakeDynamics(world);
   const LinkState state = ReadLink(*dynamics, 0, AtMs(2000));
   const auto down = Rotate(slope.orientation_xyzw, {1, 0, 0});

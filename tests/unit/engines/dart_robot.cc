@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "tests/unit/engines/to_eigen.h"
+
 namespace tcs {
 namespace {
 
@@ -18,8 +20,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-Vector3d ToEigen(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 dart::dynamics::SkeletonPtr Read(const std::string& urdf, const std::string& packages,
                                  bool has_fixed_base) {

@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <variant>
 
+#include "tests/unit/engines/to_eigen.h"
+
 namespace tcs {
 namespace {
 
@@ -27,20 +29,10 @@ using Eigen::Vector3d;
 
 constexpr double kStepS = 1e-3;
 
-Vector3d ToEigen(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
-Isometry3d ToEigen(const Pose& pose) {
-  const auto [x, y, z, w] = pose.orientation_xyzw;
-  Isometry3d at = Isometry3d::Identity();
-  at.linear() = Quaterniond(w, x, y, z).normalized().toRotationMatrix();
-  at.translation() = ToEigen(pose.position_m);
-  return at;
-}
-
 // DART's own detector knows no planes.
 constexpr double kSlabM = 40;
 
-ShapePtr ShapeOf(const Geometry& geometry) {
+ShapePtr DartShape(const Geometry& geometry) {
   if (const auto* box = std::get_if<tcs::BoxShape>(&geometry)) {
     return std::make_shared<dart::dynamics::BoxShape>(ToEigen(box->size_m));
   }
@@ -61,7 +53,7 @@ Isometry3d PlaceOf(const tcs::Shape& shape) {
 
 void AddShape(const tcs::Shape& shape, BodyNode* body) {
   ShapeNode* node =
-      body->createShapeNodeWith<CollisionAspect, DynamicsAspect>(ShapeOf(shape.geometry));
+      body->createShapeNodeWith<CollisionAspect, DynamicsAspect>(DartShape(shape.geometry));
   node->setRelativeTransform(PlaceOf(shape));
   node->getDynamicsAspect()->setFrictionCoeff(shape.friction);
 }

@@ -35,20 +35,6 @@ INSTANTIATE_TEST_SUITE_P(Engines, ScenesBesideDart, testing::ValuesIn(ModelEngin
 
 Pose Slope(double slope_rad) { return {{}, FromRollPitchYaw(0, slope_rad, 0)}; }
 
-Shape Floor(double friction = 0.8, double slope_rad = 0) {
-  return {.geometry = PlaneShape{}, .pose = Slope(slope_rad), .friction = friction};
-}
-
-RobotModel Loose(const std::string& name, const Geometry& geometry, const Pose& at,
-                 double moment_kgm2, double friction = 0.8) {
-  RobotModel model;
-  model.name = name;
-  model.links.push_back(LinkOf(name, MassAt(1, {}, moment_kgm2)));
-  model.links[0].shapes.push_back({.geometry = geometry, .friction = friction});
-  model.at = at;
-  return model;
-}
-
 double WayDown(const LinkState& state, double slope_rad) {
   return state.pose.position_m[0] * std::cos(slope_rad) -
          state.pose.position_m[2] * std::sin(slope_rad);
@@ -60,7 +46,7 @@ WorldSpec Stack(double shift_m, const IntegratorSpec& engine) {
   for (int i = 0; i < 4; ++i) {
     const Pose at{{shift_m * i, 0, 0.1 + 0.2 * i}, {0, 0, 0, 1}};
     world.models.push_back(
-        Loose("box" + std::to_string(i), BoxShape{{0.2, 0.2, 0.2}}, at, 1.0 / 150));
+        Loose("box" + std::to_string(i), BoxShape{{0.2, 0.2, 0.2}}, at, 1, 0.8, 1.0 / 150));
   }
   return world;
 }
@@ -81,7 +67,7 @@ TEST_P(ScenesBesideDart, AStackStandsAsLongAsItsWeightIsOverIt) {
 TEST_P(ScenesBesideDart, ABallRollsDownASlope) {
   constexpr double kRadius = 0.1, kSlope = 0.2;
   const Pose at = Times(Slope(kSlope), Pose{{0, 0, kRadius}, {0, 0, 0, 1}});
-  WorldSpec world = WorldOf({Loose("ball", SphereShape{kRadius}, at, 0.004)}, GetParam());
+  WorldSpec world = WorldOf({Loose("ball", SphereShape{kRadius}, at, 1, 0.8, 0.004)}, GetParam());
   world.fixtures = {Floor(0.8, kSlope)};
   for (const std::vector<LinkState>& end : EndsOf(world, 2000)) {
     const double way = 5.0 / 7 * kG * std::sin(kSlope) * 2;
@@ -97,8 +83,8 @@ TEST_P(ScenesBesideDart, ABlockOnAnInclineSlidesBeyondTheFrictionAngle) {
     for (const double beyond : {-0.005, 0.005}) {
       const double slope = std::atan(friction) + beyond;
       const Pose at = Times(Slope(slope), Pose{{0, 0, 0.1}, {0, 0, 0, 1}});
-      WorldSpec world =
-          WorldOf({Loose("block", BoxShape{{0.2, 0.2, 0.2}}, at, 1.0 / 150, friction)}, GetParam());
+      WorldSpec world = WorldOf(
+          {Loose("block", BoxShape{{0.2, 0.2, 0.2}}, at, 1, friction, 1.0 / 150)}, GetParam());
       world.fixtures = {Floor(1.5, slope)};
       // What is left of its weight moves it by so much in two seconds.
       const double way = 2 * kG * (std::sin(slope) - friction * std::cos(slope));

@@ -15,13 +15,8 @@ class Landing : public EveryModelEngine {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, Landing, testing::ValuesIn(ModelEngines()), NameOfEngine);
 
-RobotModel Loose(const Geometry& geometry, double moment_kgm2) {
-  RobotModel model;
-  model.name = "it";
-  model.links.push_back(LinkOf("it", MassAt(1, {}, moment_kgm2)));
-  model.links[0].shapes.push_back({.geometry = geometry, .friction = 0.8});
-  model.at.position_m = {0, 0, 0.1};
-  return model;
+RobotModel Resting(const Geometry& geometry, double moment_kgm2) {
+  return Loose("it", geometry, {{0, 0, 0.1}, {0, 0, 0, 1}}, 1, 0.8, moment_kgm2);
 }
 
 struct Course {
@@ -57,9 +52,9 @@ TEST_P(Landing, NothingBounces) {
   const Loaded rover = LoadFile(ZooPath("rover.urdf"));
   ASSERT_EQ(rover.mistake, "");
   const std::pair<const char*, RobotModel> all[] = {
-      {"ball", Loose(SphereShape{0.1}, 0.004)},
-      {"box", Loose(BoxShape{{0.2, 0.2, 0.2}}, 1.0 / 150)},
-      {"cylinder", Loose(CylinderShape{0.1, 0.2}, 1.0 / 150)},
+      {"ball", Resting(SphereShape{0.1}, 0.004)},
+      {"box", Resting(BoxShape{{0.2, 0.2, 0.2}}, 1.0 / 150)},
+      {"cylinder", Resting(CylinderShape{0.1, 0.2}, 1.0 / 150)},
       {"rover", rover.model}};
   for (const auto& [name, model] : all) {
     for (const double speed : {0.1, 1.0, 3.0, 10.0, 17.0, 30.0}) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,6 +27,9 @@ Tally FuzzResults(int count, std::uint64_t seed);
 // Robots' files, and their meshes: loaded, and moved on each engine that takes them. A refusal
 // names the file.
 Tally FuzzModels(int count, std::uint64_t seed);
+
+// The bytes of a file.
+std::string TextOf(const std::filesystem::path& path);
 
 // Says on stderr what went wrong, and keeps the input as a file that it names.
 void SayWrong(const std::string& what, int number, const std::string& wrong,

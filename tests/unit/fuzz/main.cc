@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "tests/unit/fuzz/attempt.h"
@@ -27,6 +28,12 @@ std::optional<std::string> Tally::Count(const std::function<std::string(bool* re
     return outcome;
   }
   return std::nullopt;
+}
+
+std::string TextOf(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 void SayWrong(const std::string& what, int number, const std::string& wrong,

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> Tokens() {
+std::vector<std::string> ModelTokens() {
   std::string deep, entities = "<!DOCTYPE robot [<!ENTITY a \"aaaaaaaaaa\">";
   for (int i = 0; i < 5'000; ++i) deep += "<link name=\"l\">";
   for (char c = 'b'; c < 'k'; ++c) {
@@ -74,12 +74,6 @@ std::vector<std::string> Tokens() {
           "f -1 9999999 0\n",
           deep,
           entities + "]>"};
-}
-
-std::string TextOf(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 // The zoo: robots, and the meshes that these are made of.
@@ -158,7 +152,7 @@ std::string Load(const std::string& urdf, const std::string& damaged, bool* refu
 Tally FuzzModels(int count, std::uint64_t seed) {
   const ModelFolder folder;
   const std::vector<Input> corpus = Corpus();
-  const std::vector<std::string> tokens = Tokens();
+  const std::vector<std::string> tokens = ModelTokens();
   std::vector<std::string> texts;
   for (const Input& input : corpus) texts.push_back(input.text);
   Tally tally;

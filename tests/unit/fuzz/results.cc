@@ -93,7 +93,7 @@ Files SoundFolder(std::size_t kind) {
   return files;
 }
 
-std::vector<std::string> Tokens() {
+std::vector<std::string> ResultTokens() {
   return {",",
           "\n",
           "\"",
@@ -194,7 +194,7 @@ Tally FuzzResults(int count, std::uint64_t seed) {
   const fs::path root = mkdtemp(made.data());
   Tally tally;
   for (int number = 0; number < count; ++number) {
-    Mutator mutator(seed * 1'000'003 + static_cast<std::uint64_t>(number), Tokens());
+    Mutator mutator(seed * 1'000'003 + static_cast<std::uint64_t>(number), ResultTokens());
     Files files = SoundFolder(mutator.Below(3));
     std::vector<std::string> texts;
     for (const auto& [name, text] : files) texts.push_back(text);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> Tokens() {
+std::vector<std::string> ScenarioTokens() {
   std::string list(2'000, '['), map, names;
   for (int i = 0; i < 1'000; ++i) map += "{a: ";
   for (int i = 0; i < 20'000; ++i) names += "\nk" + std::to_string(i) + ": 1";
@@ -94,12 +94,6 @@ std::vector<std::string> Tokens() {
           "9223372036854775807"};
 }
 
-std::string TextOf(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // The scenarios to damage; what the examples' files name is made to be there.
 std::vector<std::string> Corpus(const ScenarioFolder& folder) {
   std::vector<std::string> corpus{std::string(kGoodScenario), std::string(kGoodDdsScenario)};
@@ -140,7 +134,7 @@ std::string Load(const std::string& path, const std::vector<std::string>& set, b
 
 Tally FuzzScenarios(int count, std::uint64_t seed) {
   const ScenarioFolder folder;
-  const std::vector<std::string> corpus = Corpus(folder), tokens = Tokens();
+  const std::vector<std::string> corpus = Corpus(folder), tokens = ScenarioTokens();
   const std::vector<std::string> keys{
       "duration=",        "drift=",       "robots=", "bodies.a.mass=", "robots..",
       "dynamics.engine=", "channels[0]=", "=",       "robots[0][0]="};

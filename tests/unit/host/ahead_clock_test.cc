@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/host/nanoseconds.h"
+
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kUs = 1'000, kMs = 1'000'000, kAll = 1'000 * kMs;
+constexpr std::int64_t kAll = 1'000 * kMs;
 
 TEST(AheadClock, NothingIsComputedOnTheWay) {
   const AheadClock clock;

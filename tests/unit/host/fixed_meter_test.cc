@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/host/meter_times.h"
+
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kStart = 50 * kMs;
 constexpr ProgramTime kFar = OwnTime(kStart + 1000 * kMs);
 
 class FixedMeterTest : public testing::Test {

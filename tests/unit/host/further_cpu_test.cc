@@ -13,12 +13,11 @@
 #include <vector>
 
 #include "coordinator/os/cpu_places.h"
+#include "tests/unit/host/nanoseconds.h"
 #include "tests/unit/host/noting_executor.h"
 
 namespace tcs {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 class FurtherCpuTest : public testing::Test {
  protected:

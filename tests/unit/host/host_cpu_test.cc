@@ -12,14 +12,13 @@
 
 #include "coordinator/host/fixed_meter.h"
 #include "coordinator/host/measured_meter.h"
+#include "tests/unit/host/nanoseconds.h"
 #include "tests/unit/host/noting_executor.h"
 
 namespace tcs {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr std::int64_t kMs = 1'000'000;
 
 // Threads that are numbers and pages; nobody runs.
 class HostCpuTest : public testing::Test {

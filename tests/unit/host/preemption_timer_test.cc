@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/host/nanoseconds.h"
+
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kUs = 1'000;
 constexpr std::int64_t kComputes = 10 * kMs;  // the longest run of a thread that goes on and on
 
 TEST(PreemptionTimer, IsDueBeforeTheHorizonByWhatTimersAreLate) {

@@ -4,7 +4,8 @@
 
 #include <string>
 
-namespace tcs {
+// Its kMs is of virtual time, that of other tests here a count of nanoseconds.
+namespace tcs::settlement {
 namespace {
 
 constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1),
@@ -127,4 +128,4 @@ TEST(IsAtHorizon, IsSoAShortTimeBefore) {
 }
 
 }  // namespace
-}  // namespace tcs
+}  // namespace tcs::settlement

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/host/nanoseconds.h"
+
 namespace tcs {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 TEST(StolenUntold, NothingIsStolenFromATurnThatEndsBeforeItsTimerIsDue) {
   EXPECT_EQ(StolenUntold({.counted_ns = 3 * kMs, .asked_ns = 4 * kMs, .usual_ns = 15'000}), 0);

@@ -70,7 +70,7 @@ TEST_P(HostileUrdfTest, EndsInASentenceSoon) {
 #endif
 }
 
-std::string Label(const testing::TestParamInfo<Attack>& info) {
+std::string AttackLabel(const testing::TestParamInfo<Attack>& info) {
   return std::string(info.param.name);
 }
 
@@ -157,7 +157,7 @@ const Attack kAttacks[] = {
      "three numbers"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, HostileUrdfTest, testing::ValuesIn(kAttacks), Label);
+INSTANTIATE_TEST_SUITE_P(All, HostileUrdfTest, testing::ValuesIn(kAttacks), AttackLabel);
 
 TEST(HostileUrdf, TheLongestChainIsTakenSoon) {
   const ModelFolder folder;
@@ -182,14 +182,6 @@ TEST(HostileUrdf, APipeIsNotWaitedFor) {
   ASSERT_EQ(mkfifo(folder.Path("robot.urdf").c_str(), 0600), 0);
   EXPECT_THAT(LoadFile(folder.Path("robot.urdf")).mistake, HasSubstr("is not a regular file"));
   EXPECT_THAT(LoadFile("/dev/zero").mistake, HasSubstr("is not a regular file"));
-}
-
-std::string TextOfZoo(std::string_view name) {
-  FILE* file = fopen(ZooPath(name).c_str(), "re");
-  std::string text(1 << 20, '\0');
-  text.resize(fread(text.data(), 1, text.size(), file));
-  fclose(file);
-  return text;
 }
 
 TEST(HostileUrdf, WhatIsCutOffIsASentence) {

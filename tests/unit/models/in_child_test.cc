@@ -13,20 +13,21 @@
 namespace tcs {
 namespace {
 
-constexpr std::size_t kMost = 1 << 20;
+constexpr std::size_t kMostBytes = 1 << 20;
 
 TEST(InChild, ReturnsWhatTheWorkReturned) {
   const std::string text(300'000, 'x');
-  const ChildWork done = DoInChild([&text] { return text; }, 5, kMost);
+  const ChildWork done = DoInChild([&text] { return text; }, 5, kMostBytes);
   EXPECT_EQ(done.failure, "");
   EXPECT_EQ(done.result, text);
 }
 
 TEST(InChild, SaysHowItEnded) {
-  EXPECT_EQ(DoInChild([]() -> std::string { abort(); }, 5, kMost).failure,
+  EXPECT_EQ(DoInChild([]() -> std::string { abort(); }, 5, kMostBytes).failure,
             "the library that reads it crashes (Aborted)");
-  EXPECT_EQ(DoInChild([]() -> std::string { throw std::runtime_error("no"); }, 5, kMost).failure,
-            "the library that reads it fails");
+  EXPECT_EQ(
+      DoInChild([]() -> std::string { throw std::runtime_error("no"); }, 5, kMostBytes).failure,
+      "the library that reads it fails");
 }
 
 TEST(InChild, EndsWhatComputesForEver) {
@@ -37,7 +38,7 @@ TEST(InChild, EndsWhatComputesForEver) {
         }
         return "";
       },
-      1, kMost);
+      1, kMostBytes);
   EXPECT_EQ(done.failure, "reading it takes more than 1 s of processor time");
 }
 
@@ -48,18 +49,18 @@ TEST(InChild, EndsWhatTakesMemoryForEver) {
         std::vector<std::string> all;
         while (true) all.emplace_back(1 << 24, 'x');
       },
-      20, kMost);
+      20, kMostBytes);
   EXPECT_EQ(done.failure, "reading it takes more than 1 GiB of memory");
 }
 #endif
 
 TEST(InChild, EndsWhatSaysTooMuch) {
-  const ChildWork done = DoInChild([] { return std::string(1 << 24, 'x'); }, 5, kMost);
+  const ChildWork done = DoInChild([] { return std::string(1 << 24, 'x'); }, 5, kMostBytes);
   EXPECT_NE(done.failure, "");
 }
 
 TEST(InChild, LeavesNoProcessBehind) {
-  static_cast<void>(DoInChild([] { return std::string(); }, 5, kMost));
+  static_cast<void>(DoInChild([] { return std::string(); }, 5, kMostBytes));
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
   EXPECT_EQ(errno, ECHILD);
 }

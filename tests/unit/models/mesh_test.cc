@@ -14,12 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string TextOfZoo(std::string_view name) {
-  std::ostringstream text;
-  text << std::ifstream(ZooPath(name)).rdbuf();
-  return text.str();
-}
-
 std::string Complaint(const std::string& path) {
   try {
     static_cast<void>(MeshLibrary().Take(path, {1, 1, 1}));

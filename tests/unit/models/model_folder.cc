@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -68,5 +69,11 @@ const Joint& JointNamed(const RobotModel& model, std::string_view name) {
 }
 
 std::string ZooPath(std::string_view name) { return TCS_MODEL_ZOO "/" + std::string(name); }
+
+std::string TextOfZoo(std::string_view name) {
+  std::ostringstream text;
+  text << std::ifstream(ZooPath(name), std::ios::binary).rdbuf();
+  return text.str();
+}
 
 }  // namespace tcs

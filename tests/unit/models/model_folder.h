@@ -42,5 +42,6 @@ const Joint& JointNamed(const RobotModel& model, std::string_view name);
 
 // A file of tests/models.
 std::string ZooPath(std::string_view name);
+std::string TextOfZoo(std::string_view name);
 
 }  // namespace tcs

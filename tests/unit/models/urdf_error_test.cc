@@ -330,7 +330,7 @@ TEST_P(UrdfOddityTest, IsSaidOnceAndLeftOut) {
   EXPECT_THAT(loaded.warnings, ElementsAre(std::string(oddity.sentence)));
 }
 
-std::string Label(const testing::TestParamInfo<Oddity>& info) {
+std::string OddityLabel(const testing::TestParamInfo<Oddity>& info) {
   return std::string(info.param.name);
 }
 
@@ -354,7 +354,7 @@ const Oddity kOddities[] = {
      "given"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, UrdfOddityTest, testing::ValuesIn(kOddities), Label);
+INSTANTIATE_TEST_SUITE_P(All, UrdfOddityTest, testing::ValuesIn(kOddities), OddityLabel);
 
 TEST(Urdf, ALimitOfAJointThatHasNoneIsSaidAndLeftOut) {
   const ModelFolder folder;

@@ -10,19 +10,19 @@ namespace tcs {
 namespace {
 
 // It began at 0 and has run for `spent`, when it wakes at `woken`.
-struct Case {
+struct ServerCase {
   const char* name;
   DeadlineParameters parameters;
   std::int64_t spent_ns, woken_ns;
   std::int64_t deadline_ns, budget_ns, throttled_until_ns;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const ServerCase& test) { return out << test.name; }
 
-class DeadlineServerTest : public testing::TestWithParam<Case> {};
+class DeadlineServerTest : public testing::TestWithParam<ServerCase> {};
 
 TEST_P(DeadlineServerTest, HasADeadlineAndABudgetWhenItWakes) {
-  const Case& test = GetParam();
+  const ServerCase& test = GetParam();
   DeadlineServer server;
   server.Start(test.parameters, 0);
   server.Spend(test.spent_ns, test.spent_ns);
@@ -35,7 +35,7 @@ TEST_P(DeadlineServerTest, HasADeadlineAndABudgetWhenItWakes) {
 
 constexpr DeadlineParameters kThird{30, 100, 100}, kConstrained{30, 60, 100}, kNoRuntime{0, 100, 0};
 
-const Case kCases[] = {
+const ServerCase kServerCases[] = {
     {"KeepsWhatFits", kThird, 20, 50, 100, 10, 0},
     {"BeginsAnewWhereTooMuchIsLeft", kThird, 10, 50, 150, 30, 0},
     {"BeginsAnewAtItsDeadline", kThird, 20, 100, 200, 30, 0},
@@ -50,7 +50,7 @@ const Case kCases[] = {
     {"WithoutARuntimeEachReleaseBeginsAnew", kNoRuntime, 70, 80, 180, INT64_MAX, 0},
 };
 
-INSTANTIATE_TEST_SUITE_P(Which, DeadlineServerTest, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Which, DeadlineServerTest, testing::ValuesIn(kServerCases),
                          testing::PrintToStringParamName());
 
 TEST(DeadlineServer, WhoGivesUpIsThrottledUntilItsNextPeriod) {

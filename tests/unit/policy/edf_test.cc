@@ -10,8 +10,7 @@
 namespace tcs {
 namespace {
 
-constexpr int kOne = 1, kTwo = 2;
-constexpr SchedulingParameters kOrdinary{}, kFifo{.policy = SCHED_FIFO, .priority = 99};
+constexpr SchedulingParameters kFifo{.policy = SCHED_FIFO, .priority = 99};
 
 SchedulingParameters Deadline(std::int64_t runtime_ns, std::int64_t period_ns) {
   return {.policy = SCHED_DEADLINE,
@@ -19,16 +18,16 @@ SchedulingParameters Deadline(std::int64_t runtime_ns, std::int64_t period_ns) {
 }
 
 // A thread runs, and another one sleeps: how far the first may run.
-struct Case {
+struct EdfCase {
   const char* name;
   SchedulingParameters running, other;
   RobotScheduler::Wait wait;
   std::int64_t horizon_ns;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const EdfCase& test) { return out << test.name; }
 
-class DeadlineHorizon : public testing::TestWithParam<Case> {};
+class DeadlineHorizon : public testing::TestWithParam<EdfCase> {};
 
 TEST_P(DeadlineHorizon, IsWhereAnEarlierDeadlineBegins) {
   SimulatedRobot robot;
@@ -39,7 +38,7 @@ TEST_P(DeadlineHorizon, IsWhereAnEarlierDeadlineBegins) {
             GetParam().horizon_ns);
 }
 
-const Case kCases[] = {
+const EdfCase kEdfCases[] = {
     {"AnEarlierOneWakes",
      Deadline(8 * kMilli, 20 * kMilli),
      Deadline(kMilli, 10 * kMilli),
@@ -83,7 +82,7 @@ const Case kCases[] = {
      kMilli},
 };
 
-INSTANTIATE_TEST_SUITE_P(Where, DeadlineHorizon, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Where, DeadlineHorizon, testing::ValuesIn(kEdfCases),
                          testing::PrintToStringParamName());
 
 TEST(EarliestDeadlineFirst, WhoHasUsedUpItsBudgetRunsInItsNextPeriod) {

@@ -11,9 +11,6 @@ namespace tcs {
 namespace {
 
 constexpr int kRunning = 0, kOther = 1;
-constexpr SchedulingParameters kOrdinary{}, kBatch{.policy = SCHED_BATCH},
-    kIdle{.policy = SCHED_IDLE}, kFifo50{.policy = SCHED_FIFO, .priority = 50},
-    kFifo60{.policy = SCHED_FIFO, .priority = 60}, kRoundRobin{.policy = SCHED_RR, .priority = 50};
 using Wait = RobotScheduler::Wait;
 using Outlook = RobotScheduler::Outlook;
 
@@ -34,7 +31,7 @@ constexpr Outlook kGivenWay{.input = RobotTime(kNow),
 constexpr Outlook kOwnRobotsInput{.input = RobotTime(kSoon), .acts_at_once = true};
 constexpr Outlook kSensor{.output = RobotTime(kSoon)};
 
-struct Case {
+struct HorizonCase {
   const char* name;
   SchedulingParameters running, other;
   Wait wait;
@@ -42,12 +39,12 @@ struct Case {
   std::int64_t horizon_ns;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& test) { return out << test.name; }
+std::ostream& operator<<(std::ostream& out, const HorizonCase& test) { return out << test.name; }
 
-class Horizon : public testing::TestWithParam<Case> {};
+class Horizon : public testing::TestWithParam<HorizonCase> {};
 
 TEST_P(Horizon, IsTheFirstInstantAtWhichTheOtherCouldTakeTheCore) {
-  const Case& test = GetParam();
+  const HorizonCase& test = GetParam();
   SimulatedRobot robot;
   robot.ComeTo(0, kNow - kHad);
   robot.Add(kOther, test.other);
@@ -63,7 +60,7 @@ constexpr Wait kSleepsShort{.until = RobotTime(kSoon)}, kSleepsLong{.until = Rob
     kForever{.until = RobotTime(kNever)}, kTimer{.next_expiry = RobotTime(kSoon)},
     kReads{.for_input = true}, kFutex{.for_thread = true};
 
-const Case kCases[] = {
+const HorizonCase kHorizonCases[] = {
     // Somebody who is more urgent.
     {"UrgentSleeperWakes", kOrdinary, kFifo50, kSleepsShort, kNothing, kSoon},
     {"UrgentTimerExpires", kOrdinary, kFifo50, kTimer, kNothing, kSoon},
@@ -98,7 +95,7 @@ const Case kCases[] = {
      kNow + 100 * kMilli - kHad},
 };
 
-INSTANTIATE_TEST_SUITE_P(BecauseOf, Horizon, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(BecauseOf, Horizon, testing::ValuesIn(kHorizonCases),
                          testing::PrintToStringParamName());
 
 TEST(HorizonOf, IsNeverBeyondItsLimit) {

@@ -12,10 +12,7 @@
 namespace tcs {
 namespace {
 
-constexpr SchedulingParameters kOrdinary{}, kBatch{.policy = SCHED_BATCH},
-    kIdle{.policy = SCHED_IDLE}, kFifo50{.policy = SCHED_FIFO, .priority = 50},
-    kFifo60{.policy = SCHED_FIFO, .priority = 60}, kRoundRobin{.policy = SCHED_RR, .priority = 50};
-constexpr int kOne = 1, kTwo = 2, kThree = 3, kNobody = RobotScheduler::kNobody;
+constexpr int kThree = 3, kNobody = RobotScheduler::kNobody;
 
 // Two threads that compute without end, on one core: how long the first one runs until the other
 // one has its turn, if it ever does.

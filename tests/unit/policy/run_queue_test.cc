@@ -6,8 +6,7 @@ namespace tcs {
 namespace {
 
 constexpr int kPlanner = 1, kController = 2, kLogger = 3;
-constexpr int kNobody = RunQueue::kNobody;
-constexpr std::int64_t kNever = INT64_MAX;
+constexpr std::int64_t kNeverNs = INT64_MAX;
 
 RunQueue::Thread FirstOfOneCore(RunQueue& robot) {
   robot.Assign({RobotTime(0)});
@@ -16,8 +15,8 @@ RunQueue::Thread FirstOfOneCore(RunQueue& robot) {
 
 TEST(RunQueue, NobodyRunsWhereNobodyIsReady) {
   RunQueue robot(1);
-  EXPECT_EQ(FirstOfOneCore(robot), kNobody);
-  EXPECT_EQ(robot.Next(0).start.ns(), kNever);
+  EXPECT_EQ(FirstOfOneCore(robot), RunQueue::kNobody);
+  EXPECT_EQ(robot.Next(0).start.ns(), kNeverNs);
 }
 
 TEST(RunQueue, TheMostUrgentRunsWheneverItBecameReady) {
@@ -87,7 +86,7 @@ TEST(RunQueue, WhoGoesFirstPrecedesNobodyMoreUrgent) {
   robot.Add({kLogger, 10, RobotTime(0), RunQueue::kEveryCore, true});
   EXPECT_EQ(FirstOfOneCore(robot), kController);
   EXPECT_FALSE(robot.YieldsTo(0, 10));
-  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNever);
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNeverNs);
 }
 
 TEST(RunQueue, ACoreHearsFromWhenOnAnEqualGoesBeforeItsThread) {
@@ -132,7 +131,7 @@ TEST(RunQueue, AThreadRunsNoEarlierThanItHasCome) {
   robot.Assign({RobotTime(500)});
   EXPECT_EQ(robot.Next(0).thread, kController);
   EXPECT_EQ(robot.Next(0).start.ns(), 600);
-  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNever);
+  EXPECT_EQ(robot.NextToPrecede(0).ns(), kNeverNs);
 }
 
 TEST(RunQueue, EachCoreRunsAThreadOfItsOwn) {
@@ -153,7 +152,7 @@ TEST(RunQueue, AThreadStaysOnItsCoreThoughAnotherOneIsLessAdvanced) {
   robot.Ran(1, kPlanner);
   robot.Assign({RobotTime(300), RobotTime(500)});
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
-  EXPECT_EQ(robot.Next(0).thread, kNobody);
+  EXPECT_EQ(robot.Next(0).thread, RunQueue::kNobody);
 }
 
 TEST(RunQueue, WhoWakesTakesTheIdleCore) {
@@ -194,7 +193,7 @@ TEST(RunQueue, AffinityIsKept) {
   robot.Add({kPlanner, 10, RobotTime(0), 2});
   robot.Add({kLogger, 10, RobotTime(0), 2});
   robot.Assign({RobotTime(0), RobotTime(0)});
-  EXPECT_EQ(robot.Next(0).thread, kNobody);
+  EXPECT_EQ(robot.Next(0).thread, RunQueue::kNobody);
   EXPECT_EQ(robot.Next(1).thread, kPlanner);
   EXPECT_TRUE(robot.HasWaitingEqual(1));
 }

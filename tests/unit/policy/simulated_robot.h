@@ -10,6 +10,10 @@
 
 namespace tcs {
 
+constexpr int kOne = 1, kTwo = 2;
+constexpr SchedulingParameters kOrdinary{}, kBatch{.policy = SCHED_BATCH},
+    kIdle{.policy = SCHED_IDLE}, kFifo50{.policy = SCHED_FIFO, .priority = 50},
+    kFifo60{.policy = SCHED_FIFO, .priority = 60}, kRoundRobin{.policy = SCHED_RR, .priority = 50};
 constexpr std::int64_t kMicro = 1'000, kMilli = 1'000'000;
 constexpr std::int64_t kNever = RobotScheduler::kNever.ns();
 

@@ -14,7 +14,7 @@ constexpr VirtualTime operator""_ns(unsigned long long ns) {
 }
 
 constexpr VirtualDuration kDrift = VirtualDuration::Milliseconds(1);
-constexpr VirtualTime kEnd = 20'000'000'000_ns, kNever = VirtualTime::Never();
+constexpr VirtualTime kEnd = 20'000'000'000_ns;
 
 TEST(TemporalConsistency, TheLeastAdvancedLeafActs) {
   TemporalConsistency root(kDrift, kEnd);
@@ -30,13 +30,14 @@ TEST(TemporalConsistency, TheSoonestAreToldInTheirOrder) {
   const auto a = root.AddLeaf(0), b = root.AddLeaf(1), c = root.AddLeaf(2), d = root.AddLeaf(3);
   root.Update(a, 0_ns, 700_ns);
   root.Update(b, 0_ns, 300_ns);
-  root.Update(c, 0_ns, kNever);
+  root.Update(c, 0_ns, VirtualTime::Never());
   root.Update(d, 0_ns, 500_ns);
   std::array<TemporalConsistency::Leaf, 4> leaves{};
   EXPECT_EQ(root.Soonest(701_ns, leaves), 3u);
   EXPECT_THAT(std::span(leaves).first(3), testing::ElementsAre(b, d, a));
   EXPECT_EQ(root.Soonest(700_ns, leaves), 2u) << "those before that time";
-  EXPECT_EQ(root.Soonest(kNever, std::span(leaves).first(1)), 1u) << "as many as there is room for";
+  EXPECT_EQ(root.Soonest(VirtualTime::Never(), std::span(leaves).first(1)), 1u)
+      << "as many as there is room for";
   EXPECT_EQ(leaves[0], b);
 }
 
@@ -51,9 +52,9 @@ TEST(TemporalConsistency, TiesGoToTheLeafAddedFirst) {
 TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
   TemporalConsistency root(kDrift, kEnd);
   const auto a = root.AddLeaf(0), b = root.AddLeaf(1), c = root.AddLeaf(2);
-  root.Update(a, 0_ns, kNever);
+  root.Update(a, 0_ns, VirtualTime::Never());
   root.Update(b, 0_ns, 0_ns);
-  root.Update(c, 0_ns, kNever);
+  root.Update(c, 0_ns, VirtualTime::Never());
   ASSERT_EQ(root.First(), b);
   root.FirstActs();
   root.Update(b, 500_ns, 500_ns);
@@ -69,12 +70,12 @@ TEST(TemporalConsistency, TiesGoToTheLeafThatActedLast) {
 TEST(TemporalConsistency, ABlockedLeafHoldsNobodyBack) {
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
-  root.Update(prey, 100_ns, kNever);
+  root.Update(prey, 100_ns, VirtualTime::Never());
   root.Update(predator, 5'000'000_ns, 5'000'000_ns);
   EXPECT_EQ(root.First(), predator);
   EXPECT_EQ(root.Horizon(predator), kEnd);
-  EXPECT_EQ(root.ReadSafe(predator), kNever);
-  root.Update(predator, 5'000'000_ns, kNever);
+  EXPECT_EQ(root.ReadSafe(predator), VirtualTime::Never());
+  root.Update(predator, 5'000'000_ns, VirtualTime::Never());
   EXPECT_EQ(root.First(), -1);
 }
 
@@ -92,7 +93,7 @@ TEST(TemporalConsistency, NobodyRunsFurtherAheadOfTheDynamicsThanTheDriftBound) 
   TemporalConsistency root(kDrift, kEnd);
   const auto predator = root.AddLeaf(0);
   root.Update(predator, 7'000'000_ns, 7'000'000_ns);
-  EXPECT_EQ(root.DynamicsHorizon(), kNever);
+  EXPECT_EQ(root.DynamicsHorizon(), VirtualTime::Never());
   root.UpdateDynamics(7'000'000_ns, 10'000'000_ns);
   EXPECT_EQ(root.DynamicsHorizon(), 7'000'000_ns + kDrift);
 }
@@ -117,14 +118,14 @@ TEST(TemporalConsistency, AReadWaitsForWhatTheDynamicsSendAtItsInstant) {
   root.Update(predator, 0_ns, 0_ns);
   root.UpdateDynamics(0_ns, 10'000'000_ns);
   EXPECT_EQ(root.ReadSafe(predator), 9'999'999_ns);
-  root.UpdateDynamics(0_ns, kNever);
-  EXPECT_EQ(root.ReadSafe(predator), kNever);
+  root.UpdateDynamics(0_ns, VirtualTime::Never());
+  EXPECT_EQ(root.ReadSafe(predator), VirtualTime::Never());
 }
 
 TEST(TemporalConsistency, InputComesFromOtherLeavesFromOtherComputersAndFromTheDynamics) {
   TemporalConsistency root(kDrift, kEnd);
   const auto one = root.AddLeaf(0), two = root.AddLeaf(0), prey = root.AddLeaf(1);
-  EXPECT_EQ(root.NextOutput(), kNever);
+  EXPECT_EQ(root.NextOutput(), VirtualTime::Never());
   root.UpdateDynamics(0_ns, 10'000'000_ns);
   EXPECT_EQ(root.NextOutput(), 10'000'000_ns);
   root.Update(two, 200_ns, 200_ns);
@@ -132,8 +133,8 @@ TEST(TemporalConsistency, InputComesFromOtherLeavesFromOtherComputersAndFromTheD
   EXPECT_EQ(root.NextInput(one), 200_ns);
   EXPECT_EQ(root.NextInputFromOutside(one), 300_ns);
   EXPECT_EQ(root.NextInputFromOutside(prey), 200_ns);
-  root.Update(prey, 300_ns, kNever);
-  EXPECT_EQ(root.NextInputFromOutside(one), kNever);
+  root.Update(prey, 300_ns, VirtualTime::Never());
+  EXPECT_EQ(root.NextInputFromOutside(one), VirtualTime::Never());
 }
 
 TEST(TemporalConsistency, ALeafGivesWayToOthersOfItsInstantAndToNoneAtTheNext) {
@@ -169,7 +170,7 @@ TEST(TemporalConsistency, WhereAllGiveWayOneActsAllTheSame) {
 TEST(TemporalConsistency, NobodyIsWokenFurtherBehindTheOthersThanTheDriftBound) {
   TemporalConsistency root(kDrift, kEnd);
   const auto drone = root.AddLeaf(0), ground = root.AddLeaf(1);
-  root.Update(ground, 0_ns, kNever);
+  root.Update(ground, 0_ns, VirtualTime::Never());
   root.Update(drone, 0_ns + 5 * kDrift, 0_ns + 5 * kDrift);
   EXPECT_EQ(root.EarliestWake(), 0_ns + 4 * kDrift);
   root.Update(ground, 0_ns, root.EarliestWake());
@@ -181,21 +182,21 @@ TEST(TemporalConsistency, DriftIsTheLargestDifferenceSoFar) {
   const auto predator = root.AddLeaf(0), prey = root.AddLeaf(1);
   root.Update(predator, 0_ns, 0_ns);
   root.Update(prey, 0_ns, 0_ns);
-  root.UpdateDynamics(0_ns, kNever);
+  root.UpdateDynamics(0_ns, VirtualTime::Never());
   root.Update(predator, 900'000_ns, 900'000_ns);
   EXPECT_EQ(root.drift(), VirtualNs(900'000));
   root.Update(prey, 800'000_ns, 800'000_ns);
-  root.UpdateDynamics(800'000_ns, kNever);
+  root.UpdateDynamics(800'000_ns, VirtualTime::Never());
   EXPECT_EQ(root.drift(), VirtualNs(900'000));
 }
 
 TEST(TemporalConsistency, TheRunsEndBoundsEveryHorizonWithoutOverflow) {
-  TemporalConsistency root(VirtualNs(kNever.ns()), kEnd);
+  TemporalConsistency root(VirtualNs(VirtualTime::Never().ns()), kEnd);
   const auto predator = root.AddLeaf(0);
   root.Update(predator, 1_ns, 1_ns);
-  root.UpdateDynamics(1_ns, kNever);
+  root.UpdateDynamics(1_ns, VirtualTime::Never());
   EXPECT_EQ(root.Horizon(predator), kEnd);
-  EXPECT_EQ(root.DynamicsHorizon(), kNever);
+  EXPECT_EQ(root.DynamicsHorizon(), VirtualTime::Never());
 }
 
 TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
@@ -207,9 +208,9 @@ TEST(TemporalConsistency, ARunMayGetAnotherEndThatTheDynamicsDoNotShare) {
   root.EndDynamics();
   root.EndAt(kEnd + VirtualNs(100));
   EXPECT_EQ(root.Horizon(leaf), kEnd + VirtualNs(100));
-  EXPECT_EQ(root.DynamicsHorizon(), kNever);
-  EXPECT_EQ(root.NextOutput(), kNever);
-  EXPECT_EQ(root.ReadSafe(leaf), kNever);
+  EXPECT_EQ(root.DynamicsHorizon(), VirtualTime::Never());
+  EXPECT_EQ(root.NextOutput(), VirtualTime::Never());
+  EXPECT_EQ(root.ReadSafe(leaf), VirtualTime::Never());
 }
 
 TEST(TemporalConsistency, WhoDoesNothingForAWhileLetsOthersGoFirst) {
@@ -245,9 +246,9 @@ TEST(TemporalConsistency, WhatIsLocalToAComputerDoesNotDependOnOthers) {
   const auto other = root.AddLeaf(1), reader = root.AddLeaf(2), third = root.AddLeaf(3);
   root.Update(other, 300_ns, 300_ns);
   root.Update(reader, 500_ns, 500_ns);
-  root.Update(third, 0_ns, kNever);
+  root.Update(third, 0_ns, VirtualTime::Never());
   EXPECT_EQ(root.ReadSafe(reader), 300_ns);
-  EXPECT_EQ(root.LocalReadSafe(reader), kNever);
+  EXPECT_EQ(root.LocalReadSafe(reader), VirtualTime::Never());
 }
 
 TEST(TemporalConsistency, WhatIsLocalDependsOnTheDynamics) {
@@ -270,7 +271,7 @@ TEST(TemporalConsistency, WhatIsLocalDependsOnTheComputersOtherCores) {
   EXPECT_EQ(root.LocalReadSafe(first), 450_ns) << "the other computer may wake it at 300";
   root.Update(before, 300_ns, 600_ns);
   EXPECT_EQ(root.LocalReadSafe(first), 600_ns);
-  root.Update(before, 300_ns, kNever);
+  root.Update(before, 300_ns, VirtualTime::Never());
   EXPECT_EQ(root.LocalReadSafe(first), 700_ns);
 }
 

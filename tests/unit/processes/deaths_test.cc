@@ -5,12 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
-
-constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1);
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 class NoExecutor : public Executor {
  public:

@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
-
-constexpr VirtualDuration kSecond = VirtualDuration::Seconds(1);
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 // Three clients live when the grace begins, at 10 s. No signal is sent: they are no processes.
 class GraceTest : public testing::Test {

@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
-
-constexpr VirtualDuration kSecond = VirtualDuration::Seconds(1);
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 
 // One robot, and a run of 60 s.
 class LaunchesTest : public testing::Test {

@@ -10,7 +10,7 @@
 namespace tcs {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kSecond = 1'000'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000, kSecondNs = 1'000'000'000;
 
 // A thread that was given a clock from 1 s on, with a horizon at 1.01 s, and has stopped.
 class SlotCheckTest : public testing::Test {
@@ -18,17 +18,17 @@ class SlotCheckTest : public testing::Test {
   SlotCheckTest() {
     task_.process = &process_;
     task_.slot_memory = slot_.get();
-    task_.metered.page_origin_ns = 5 * kMs;
-    page().host_cpu_origin_ns = 5 * kMs;
-    task_.grant.base_time_ns = kSecond;
-    task_.grant.horizon_ns = kSecond + 10 * kMs;
-    task_.grant.most_idle_ns = kSecond + 4 * kMs;
-    task_.grant.read_safe_ns = kSecond + 7 * kMs;
+    task_.metered.page_origin_ns = 5 * kMillisecondNs;
+    page().host_cpu_origin_ns = 5 * kMillisecondNs;
+    task_.grant.base_time_ns = kSecondNs;
+    task_.grant.horizon_ns = kSecondNs + 10 * kMillisecondNs;
+    task_.grant.most_idle_ns = kSecondNs + 4 * kMillisecondNs;
+    task_.grant.read_safe_ns = kSecondNs + 7 * kMillisecondNs;
     task_.grant.NoteLimits();
     task_.grant.WriteTo(page());
-    page().last_shown_ns.store(kSecond + 10 * kMs);
-    page().staleness_ns.store(3 * kMs);
-    page().stolen_ns.store(2 * kSecond);
+    page().last_shown_ns.store(kSecondNs + 10 * kMillisecondNs);
+    page().staleness_ns.store(3 * kMillisecondNs);
+    page().stolen_ns.store(2 * kSecondNs);
   }
   shm::ClockPage& page() { return slot_->clock; }
   // What is found wrong, or nothing.
@@ -44,7 +44,7 @@ class SlotCheckTest : public testing::Test {
   Process process_;
   std::unique_ptr<shm::ThreadSlot> slot_ = std::make_unique<shm::ThreadSlot>();
   Task task_;
-  std::int64_t run_ns_ = 2 * kSecond;
+  std::int64_t run_ns_ = 2 * kSecondNs;
   SlotCheck measured_{false, [this] { return run_ns_; }}, fixed_{true, [this] { return run_ns_; }};
 
  private:
@@ -62,38 +62,38 @@ TEST_F(SlotCheckTest, AClockThatIsNotTheOneGivenIsNot) {
 }
 
 TEST_F(SlotCheckTest, NoClockShowsATimeBeyondItsHorizon) {
-  page().last_shown_ns.store(kSecond + 10 * kMs + 1);
+  page().last_shown_ns.store(kSecondNs + 10 * kMillisecondNs + 1);
   EXPECT_EQ(Measured(), "a time beyond what it was given");
 }
 
 TEST_F(SlotCheckTest, NobodySleepsLongerThanItMay) {
-  page().waited_adjust.store(14 * kMs);
+  page().waited_adjust.store(14 * kMillisecondNs);
   EXPECT_EQ(Measured(), "");  // what clocks differ by
-  page().waited_adjust.store(14 * kMs + 1);
+  page().waited_adjust.store(14 * kMillisecondNs + 1);
   EXPECT_EQ(Measured(), "a sleep beyond what it was allowed");
 }
 
 TEST_F(SlotCheckTest, NothingIsOlderThanWhatCouldBeRead) {
-  page().staleness_ns.store(3 * kMs + 1);
+  page().staleness_ns.store(3 * kMillisecondNs + 1);
   EXPECT_EQ(Measured(), "data older than any can be");
   EXPECT_EQ(SlotCheck::StalenessOf(task_), 0);
-  page().staleness_ns.store(3 * kMs);
-  EXPECT_EQ(SlotCheck::StalenessOf(task_), 3 * kMs);
+  page().staleness_ns.store(3 * kMillisecondNs);
+  EXPECT_EQ(SlotCheck::StalenessOf(task_), 3 * kMillisecondNs);
 }
 
 TEST_F(SlotCheckTest, NoMoreIsStolenThanTimeHasPassed) {
-  run_ns_ = kSecond - 1;  // and a second of slack
+  run_ns_ = kSecondNs - 1;  // and a second of slack
   EXPECT_EQ(Measured(), "more stolen than there was");
   EXPECT_EQ(measured_.StolenOf(task_), 0);
-  run_ns_ = kSecond;
+  run_ns_ = kSecondNs;
   EXPECT_EQ(Measured(), "");
-  EXPECT_EQ(measured_.StolenOf(task_), 2 * kSecond);
+  EXPECT_EQ(measured_.StolenOf(task_), 2 * kSecondNs);
 }
 
 TEST_F(SlotCheckTest, NoClockGoesAheadByMoreTimeThanHasPassed) {
-  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecond));
+  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecondNs));
   EXPECT_EQ(Measured(), "");
-  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecond + 1));
+  page().executed_adjust.store(static_cast<std::uint64_t>(3 * kSecondNs + 1));
   EXPECT_EQ(Measured(), "a clock that went ahead");
   EXPECT_EQ(Fixed(), "");
 }
@@ -101,7 +101,7 @@ TEST_F(SlotCheckTest, NoClockGoesAheadByMoreTimeThanHasPassed) {
 TEST_F(SlotCheckTest, OnAFasterRobotTheSameIsMoreOfTheHostsTime) {
   robot_.speed = 2.0;
   EXPECT_EQ(Measured(), "more stolen than there was");
-  run_ns_ = 3 * kSecond;
+  run_ns_ = 3 * kSecondNs;
   EXPECT_EQ(Measured(), "");
 }
 

@@ -8,7 +8,7 @@ namespace tcs {
 namespace {
 
 constexpr std::uint32_t kAnyBit = ~std::uint32_t{0};
-constexpr FutexKey kWord{.pid = 7, .address = 0x1000}, kOther{.pid = 7, .address = 0x2000},
+constexpr FutexKey kWord{.pid = 7, .address = 0x1000}, kOtherWord{.pid = 7, .address = 0x2000},
     kLock{.pid = 7, .address = 0x3008};
 
 class FutexTableTest : public testing::Test {
@@ -58,15 +58,15 @@ TEST_F(FutexTableTest, WordsOfOtherProcessesAtTheSameAddressAreOthers) {
 }
 
 TEST_F(FutexTableTest, WhoeverWaitsForAnyOfSeveralIsFoundAtEachAndLeavesAll) {
-  table_.WaitForAny(1, {kWord, kOther}, kAnyBit);
+  table_.WaitForAny(1, {kWord, kOtherWord}, kAnyBit);
   EXPECT_TRUE(table_.WaitsForAny(1));
   EXPECT_EQ(table_.MostUrgent(kWord, kAnyBit), 1);
-  EXPECT_EQ(table_.MostUrgent(kOther, kAnyBit), 1);
+  EXPECT_EQ(table_.MostUrgent(kOtherWord, kAnyBit), 1);
   EXPECT_EQ(table_.IndexOf(1, kWord), 0u);
-  EXPECT_EQ(table_.IndexOf(1, kOther), 1u);
+  EXPECT_EQ(table_.IndexOf(1, kOtherWord), 1u);
   table_.Leave(1);
   EXPECT_EQ(table_.MostUrgent(kWord, kAnyBit), FutexTable::kNobody);
-  EXPECT_EQ(table_.MostUrgent(kOther, kAnyBit), FutexTable::kNobody);
+  EXPECT_EQ(table_.MostUrgent(kOtherWord, kAnyBit), FutexTable::kNobody);
   EXPECT_FALSE(table_.WaitsForAny(1));
 }
 
@@ -79,14 +79,14 @@ TEST_F(FutexTableTest, OneWordTwiceIsLeftTwice) {
 
 TEST_F(FutexTableTest, WhoeverIsMovedWaitsBehindThoseAtTheOtherWord) {
   table_.Wait(1, kWord, kAnyBit);
-  table_.Wait(2, kOther, kAnyBit);
-  table_.Move(1, kWord, kOther);
+  table_.Wait(2, kOtherWord, kAnyBit);
+  table_.Move(1, kWord, kOtherWord);
   EXPECT_TRUE(table_.WaitersAt(kWord).empty());
-  EXPECT_EQ(table_.WaitersAt(kOther), (Threads{2, 1}));
-  EXPECT_EQ(table_.WordOf(1), kOther);
+  EXPECT_EQ(table_.WaitersAt(kOtherWord), (Threads{2, 1}));
+  EXPECT_EQ(table_.WordOf(1), kOtherWord);
   // Not from where it does not wait.
   table_.Move(1, kWord, kLock);
-  EXPECT_EQ(table_.WordOf(1), kOther);
+  EXPECT_EQ(table_.WordOf(1), kOtherWord);
 }
 
 TEST_F(FutexTableTest, WhoeverExpectsALockIsWokenOnlyThere) {

@@ -5,7 +5,7 @@
 namespace tcs {
 namespace {
 
-constexpr KernelObject kSemaphore{.kind = 1, .id = 7}, kOther{.kind = 1, .id = 8},
+constexpr KernelObject kSemaphore{.kind = 1, .id = 7}, kOtherSemaphore{.kind = 1, .id = 8},
     kQueue{.kind = 2, .id = 7};
 
 using Threads = std::vector<WaitQueues::Thread>;
@@ -20,7 +20,7 @@ TEST(WaitQueues, ThreadsWaitInTheOrderInWhichTheyCame) {
   WaitQueues queues;
   queues.Wait(5, kSemaphore, false);
   queues.Wait(3, kSemaphore, false);
-  queues.Wait(4, kOther, false);
+  queues.Wait(4, kOtherSemaphore, false);
   queues.Wait(1, kQueue, false);
   EXPECT_EQ(queues.WaitersFor(kSemaphore), (Threads{5, 3}));
   EXPECT_EQ(queues.WaitersFor(kQueue), (Threads{1}));
@@ -49,9 +49,9 @@ TEST(WaitQueues, APlaceIsInTheQueueOfOneObjectOnly) {
   WaitQueues queues;
   queues.Wait(5, kSemaphore, false);
   queues.Leave(5);
-  queues.Wait(3, kOther, false);
-  queues.Wait(5, kOther, true);
-  EXPECT_EQ(queues.WaitersFor(kOther), (Threads{3, 5}));
+  queues.Wait(3, kOtherSemaphore, false);
+  queues.Wait(5, kOtherSemaphore, true);
+  EXPECT_EQ(queues.WaitersFor(kOtherSemaphore), (Threads{3, 5}));
 }
 
 TEST(WaitQueues, WhoeverGetsTheNumberOfOneThatHasEndedHasNoPlace) {
@@ -78,7 +78,7 @@ TEST(WaitQueues, EachAwaitedObjectIsNamedOnceByTheLeastOfItsWaiters) {
   queues.Wait(5, kSemaphore, false);
   queues.Wait(3, kQueue, false);
   queues.Wait(4, kSemaphore, false);
-  queues.Wait(1, kOther, false);
+  queues.Wait(1, kOtherSemaphore, false);
   queues.Leave(1);
   EXPECT_EQ(queues.AwaitedObjects(), (std::vector<KernelObject>{kQueue, kSemaphore}));
 }
@@ -86,7 +86,7 @@ TEST(WaitQueues, EachAwaitedObjectIsNamedOnceByTheLeastOfItsWaiters) {
 TEST(WaitQueues, AThreadWaitsInOneQueueAtATime) {
   WaitQueues queues;
   queues.Wait(5, kSemaphore, false);
-  EXPECT_DEATH(queues.Wait(5, kOther, false), "a bug in tcs");
+  EXPECT_DEATH(queues.Wait(5, kOtherSemaphore, false), "a bug in tcs");
 }
 
 }  // namespace

@@ -92,8 +92,8 @@ TEST(ContactTrack, LeavesOutWhatComesTooLate) {
 // What does not change takes a byte for each number.
 TEST(ContactTrack, IsWrittenSmall) {
   const std::size_t moments = 1000;
-  const nlohmann::json json = ToJson(Steps(moments, 1'000'000), moments);
-  EXPECT_LT(json["data"].get<std::string>().size(), moments * (1 + 3 * 7) * 4 / 3 + 100);
+  const nlohmann::json track = ToJson(Steps(moments, 1'000'000), moments);
+  EXPECT_LT(track["data"].get<std::string>().size(), moments * (1 + 3 * 7) * 4 / 3 + 100);
   EXPECT_TRUE(ToJson(ContactTrack(), moments).is_null());
 }
 

@@ -21,7 +21,6 @@ using testing::Not;
 using testing::Pointwise;
 using testing::SizeIs;
 
-constexpr std::size_t kRoom = 10'000'000;
 constexpr const char* kBodiesHead =
     "time_s,body,x_m,y_m,z_m,qx,qy,qz,qw,vx_mps,vy_mps,vz_mps,wx_radps,wy_radps,wz_radps\n";
 

@@ -11,6 +11,9 @@
 
 namespace tcs::report {
 
+// Enough for any replay here.
+inline constexpr std::size_t kRoom = 10'000'000;
+
 class ResultFolderTest : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(root_); }

@@ -80,10 +80,10 @@ TEST_F(TimelineTest, SlicesThatAreCloseInOneTimeOnlyStayApart) {
 TEST_F(TimelineTest, SlicesAreDifferencesInBytesOfSevenBits) {
   const Timeline timeline =
       Read(std::string(kHeader) + "r/a,0,300000,1000,301000\nr/a,100000,200000,400000,500000\n");
-  const auto json = nlohmann::json::parse(Encoded(timeline));
-  EXPECT_EQ(json.at("count"), 2);
+  const auto encoded = nlohmann::json::parse(Encoded(timeline));
+  EXPECT_EQ(encoded.at("count"), 2);
   // 0; 0; 300 = 172 2; 1; 300 | 0; 100-300 = -200, zigzag 399 = 143 3; 100; 400-1 = 143 3; 100
-  EXPECT_EQ(json.at("slices"), "AACsAgGsAgCPA2SPA2Q=");
+  EXPECT_EQ(encoded.at("slices"), "AACsAgGsAgCPA2SPA2Q=");
 }
 
 TEST_F(TimelineTest, ANameCannotEndTheScript) {

@@ -6,6 +6,7 @@
 
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
@@ -15,8 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
-
-constexpr auto Ms = VirtualDuration::Milliseconds;
 
 class LoadDdsTest : public testing::Test {
  protected:
@@ -150,7 +149,7 @@ TEST_F(LoadDdsTest, TheReleaseOfRosDecidesTheFormOfWhatItsToolsAreTold) {
   }
 }
 
-struct Mistake {
+struct WrongDds {
   std::string_view name;
   std::string_view from;  // in kGoodDdsScenario
   std::string_view to;
@@ -158,13 +157,13 @@ struct Mistake {
   std::vector<std::string_view> words;
 };
 
-void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+void PrintTo(const WrongDds& mistake, std::ostream* out) { *out << mistake.name; }
 
-class DdsMistakeTest : public testing::TestWithParam<Mistake> {};
+class DdsMistakeTest : public testing::TestWithParam<WrongDds> {};
 
 TEST_P(DdsMistakeTest, IsOneSentenceWithItsPlace) {
   const ScenarioFolder folder;
-  const Mistake& mistake = GetParam();
+  const WrongDds& mistake = GetParam();
   const std::string complaint =
       Complaint(folder, WithReplaced(mistake.from, mistake.to, kGoodDdsScenario));
   EXPECT_THAT(complaint, StartsWith("s.yaml:" + std::to_string(mistake.line) + ": "));
@@ -174,7 +173,7 @@ TEST_P(DdsMistakeTest, IsOneSentenceWithItsPlace) {
   EXPECT_EQ(complaint.find('\n'), std::string::npos);
 }
 
-const Mistake kMistakes[] = {
+const WrongDds kWrongDds[] = {
     {"UnknownTransport",
      "dds: sockets",
      "dds: socket",
@@ -300,7 +299,7 @@ const Mistake kMistakes[] = {
     {"BadClockTopic", "/sim/clock", "/sim/clock/", 13, {"clock.topic", "ends with '/'"}},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, DdsMistakeTest, testing::ValuesIn(kMistakes),
+INSTANTIATE_TEST_SUITE_P(All, DdsMistakeTest, testing::ValuesIn(kWrongDds),
                          [](const auto& mistake) { return std::string(mistake.param.name); });
 
 }  // namespace

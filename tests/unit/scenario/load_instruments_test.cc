@@ -7,6 +7,7 @@
 
 #include "coordinator/scenario/load.h"
 #include "tests/unit/scenario/scenario_folder.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-constexpr auto Ms = VirtualDuration::Milliseconds;
 
 constexpr std::string_view kRobot = R"(<robot name="cart">
   <link name="base"/>
@@ -29,7 +28,7 @@ constexpr std::string_view kRobot = R"(<robot name="cart">
 )";
 
 // Its lines are counted on below.
-constexpr std::string_view kGood = R"(duration: 1s
+constexpr std::string_view kGoodInstruments = R"(duration: 1s
 dynamics: {gravity: [0, 0, -9.81]}
 models:
   crate: {box: [1, 1, 1], mass: 2, position: [5, 0, 1]}
@@ -67,7 +66,7 @@ class LoadInstruments : public testing::Test {
 };
 
 TEST_F(LoadInstruments, AreAsWritten) {
-  const Scenario scenario = ScenarioOf(LoadScenario(folder_.Write("s.yaml", kGood)));
+  const Scenario scenario = ScenarioOf(LoadScenario(folder_.Write("s.yaml", kGoodInstruments)));
   ASSERT_EQ(scenario.sensors.size(), 3u);
   const SensorChannelSpec& imu = scenario.sensors[0];
   const Mount& mount = std::get<ImuSpec>(imu.instrument.value()).mount;
@@ -104,8 +103,8 @@ TEST_F(LoadInstruments, AreAsWritten) {
 }
 
 TEST_F(LoadInstruments, WithoutAnglesNoTwoRaysOfALidarLookTheSameWay) {
-  const Scenario scenario = ScenarioOf(LoadScenario(
-      folder_.Write("s.yaml", WithReplaced("rays: 181, angles: [-1.5, 1.5]", "rays: 4", kGood))));
+  const Scenario scenario = ScenarioOf(LoadScenario(folder_.Write(
+      "s.yaml", WithReplaced("rays: 181, angles: [-1.5, 1.5]", "rays: 4", kGoodInstruments))));
   const auto& lidar = std::get<LidarSpec>(scenario.sensors[2].instrument.value());
   EXPECT_NEAR(lidar.first_rad, -std::numbers::pi, 1e-12);
   EXPECT_NEAR(lidar.last_rad, std::numbers::pi / 2, 1e-12);
@@ -113,7 +112,7 @@ TEST_F(LoadInstruments, WithoutAnglesNoTwoRaysOfALidarLookTheSameWay) {
 }
 
 TEST_F(LoadInstruments, RobotsOnWheelsAreAsWritten) {
-  const Scenario scenario = ScenarioOf(LoadScenario(folder_.Write("s.yaml", kGood)));
+  const Scenario scenario = ScenarioOf(LoadScenario(folder_.Write("s.yaml", kGoodInstruments)));
   const JointDriveSpec& joints = scenario.commands.at(0).joints.value();
   const WheelDriveSpec& wheels = joints.wheels.value();
   EXPECT_THAT(joints.group.names, ElementsAre("left_joint", "right_joint"));
@@ -141,8 +140,8 @@ constexpr std::string_view kMore = R"(
 )";
 
 TEST_F(LoadInstruments, AllKindsAreAsWritten) {
-  const Scenario scenario = ScenarioOf(
-      LoadScenario(folder_.Write("s.yaml", std::string(kGood) + std::string(kMore).substr(1))));
+  const Scenario scenario = ScenarioOf(LoadScenario(
+      folder_.Write("s.yaml", std::string(kGoodInstruments) + std::string(kMore).substr(1))));
   ASSERT_EQ(scenario.sensors.size(), 14u);
   const auto spec = [&](std::size_t i) { return scenario.sensors[i].instrument.value(); };
   const auto end = [&](std::size_t i) { return std::get<DdsSensorEnd>(scenario.sensors[i].to); };
@@ -182,18 +181,20 @@ TEST_F(LoadInstruments, AllKindsAreAsWritten) {
   EXPECT_EQ(scenario.commands.at(1).joints->setpoint_period, Ms(20));
 }
 
-struct Mistake {
+struct WrongInstrument {
   const char* name;
   std::string_view from, to, place;
   std::vector<std::string_view> words;
 };
-void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+void PrintTo(const WrongInstrument& mistake, std::ostream* out) { *out << mistake.name; }
 
-class InstrumentMistake : public LoadInstruments, public testing::WithParamInterface<Mistake> {};
+class InstrumentMistake : public LoadInstruments,
+                          public testing::WithParamInterface<WrongInstrument> {};
 
 TEST_P(InstrumentMistake, IsOneSentenceWithItsPlace) {
-  const Mistake& mistake = GetParam();
-  const std::string path = folder_.Write("s.yaml", WithReplaced(mistake.from, mistake.to, kGood));
+  const WrongInstrument& mistake = GetParam();
+  const std::string path =
+      folder_.Write("s.yaml", WithReplaced(mistake.from, mistake.to, kGoodInstruments));
   const std::string complaint = Complaint(folder_, LoadScenario(path));
   EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
   for (const std::string_view words : mistake.words) {
@@ -201,11 +202,11 @@ TEST_P(InstrumentMistake, IsOneSentenceWithItsPlace) {
   }
 }
 
-class MoreMistakes : public LoadInstruments, public testing::WithParamInterface<Mistake> {};
+class MoreMistakes : public LoadInstruments, public testing::WithParamInterface<WrongInstrument> {};
 
 TEST_P(MoreMistakes, AreOneSentenceWithItsPlace) {
-  const Mistake& mistake = GetParam();
-  const std::string text = std::string(kGood) + std::string(kMore).substr(1);
+  const WrongInstrument& mistake = GetParam();
+  const std::string text = std::string(kGoodInstruments) + std::string(kMore).substr(1);
   const std::string path = folder_.Write("s.yaml", WithReplaced(mistake.from, mistake.to, text));
   const std::string complaint = Complaint(folder_, LoadScenario(path));
   EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
@@ -214,7 +215,7 @@ TEST_P(MoreMistakes, AreOneSentenceWithItsPlace) {
   }
 }
 
-const Mistake kMoreMistakes[] = {
+const WrongInstrument kMoreMistakes[] = {
     {"TransformsOfABox",
      "kind: transforms, model: cart, world_frame: map",
      "kind: transforms, model: crate",
@@ -266,7 +267,7 @@ const Mistake kMoreMistakes[] = {
 INSTANTIATE_TEST_SUITE_P(Of, MoreMistakes, testing::ValuesIn(kMoreMistakes),
                          [](const auto& mistake) { return mistake.param.name; });
 
-const Mistake kMistakes[] = {
+const WrongInstrument kWrongInstruments[] = {
     {"UnknownKind", "kind: imu", "kind: imus", "s.yaml:12", {"unknown 'imus'", "'imu'?"}},
     {"UnknownLink",
      "on: cart/hull",
@@ -311,7 +312,7 @@ const Mistake kMistakes[] = {
      "s.yaml:22",
      {"unknown key 'model'"}},
 };
-INSTANTIATE_TEST_SUITE_P(Of, InstrumentMistake, testing::ValuesIn(kMistakes),
+INSTANTIATE_TEST_SUITE_P(Of, InstrumentMistake, testing::ValuesIn(kWrongInstruments),
                          [](const auto& mistake) { return mistake.param.name; });
 
 }  // namespace

@@ -37,7 +37,7 @@ constexpr std::string_view kTetrahedron =
     "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 // Its lines are counted on.
-constexpr std::string_view kGood = R"(duration: 1s
+constexpr std::string_view kGoodModels = R"(duration: 1s
 dynamics: {gravity: [0, 0, -9.81]}
 models:
   arm:
@@ -64,7 +64,7 @@ struct Folder : ScenarioFolder {
   }
 };
 
-Scenario Loaded(const Folder& folder, std::string_view text = kGood) {
+Scenario Loaded(const Folder& folder, std::string_view text = kGoodModels) {
   return ScenarioOf(LoadScenario(folder.Write("s.yaml", text)));
 }
 
@@ -78,7 +78,7 @@ const RobotModel& Named(const Scenario& scenario, std::string_view name) {
 TEST(LoadModels, ThoseThatStandTogetherAreOneIsland) {
   const Folder folder;
   EXPECT_TRUE(Loaded(folder).world->models_together.empty());
-  std::string text(kGood);
+  std::string text(kGoodModels);
   const std::string_view gravity = "gravity: [0, 0, -9.81]";
   text.replace(text.find(gravity), gravity.size(), "together: [[ball, crate]]");
   const WorldSpec world = *Loaded(folder, text).world;
@@ -91,7 +91,7 @@ TEST(LoadModels, ThoseThatStandTogetherAreOneIsland) {
 
 TEST(LoadModels, ABodyAndAModelDoNotStandTogether) {
   const Folder folder;
-  std::string text(kGood);
+  std::string text(kGoodModels);
   const std::string_view gravity = "gravity: [0, 0, -9.81]";
   text.replace(text.find(gravity), gravity.size(), "together: [[ship, crate]]");
   text += "bodies: {ship: {mass: 1, inertia: [1, 1, 1]}}\n";
@@ -118,7 +118,7 @@ TEST(LoadModels, ARobotStandsWhereTheScenarioSays) {
 TEST(LoadModels, AJointMayMoveAtTheStart) {
   const Folder folder;
   const Scenario scenario =
-      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: [1.5, -2], shoulder: 3}", kGood));
+      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: [1.5, -2], shoulder: 3}", kGoodModels));
   const RobotModel& arm = Named(scenario, "arm");
   EXPECT_THAT(arm.joints.at(1).initial_position, ElementsAre(1.5));
   EXPECT_THAT(arm.joints.at(1).initial_velocity, ElementsAre(-2));
@@ -149,7 +149,8 @@ TEST(LoadModels, ANormalIsTheWayUpFromAPlane) {
   for (const Case& each : {Case{"[2, 0, 0]", {1, 0, 0}}, Case{"[0, -3, 0]", {0, -1, 0}},
                            Case{"[0, 0, -1]", {0, 0, -1}}, Case{"[3, 0, 4]", {0.6, 0, 0.8}}}) {
     const Scenario scenario = Loaded(
-        folder, WithReplaced("plane: [0, 0, 1]", "plane: " + std::string(each.written), kGood));
+        folder,
+        WithReplaced("plane: [0, 0, 1]", "plane: " + std::string(each.written), kGoodModels));
     const auto up = Rotate(scenario.world->fixtures[0].pose.orientation_xyzw, {0, 0, 1});
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(up[i], each.normal[i], 1e-12) << each.written;
   }
@@ -195,7 +196,7 @@ TEST(LoadModels, AJointWithSeveralCoordinatesStartsWithAsMany) {
   const Folder folder;
   folder.Write("arm.urdf", WithReplaced("type=\"continuous\"", "type=\"planar\"", kArm));
   const Scenario scenario =
-      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: 1, shoulder: [1, 2, 3]}", kGood));
+      Loaded(folder, WithReplaced("{elbow: 1.5}", "{elbow: 1, shoulder: [1, 2, 3]}", kGoodModels));
   EXPECT_THAT(Named(scenario, "arm").joints.at(0).initial_position, ElementsAre(1, 2, 3));
 }
 
@@ -205,30 +206,31 @@ TEST(LoadModels, PackagesAreLookedForWhereTheScenarioSays) {
   folder.Write("share/rocks/rock.obj", kTetrahedron);
   folder.Write("arm.urdf", WithReplaced("<sphere radius=\"0.1\"/>",
                                         "<mesh filename=\"package://rocks/rock.obj\"/>", kArm));
-  EXPECT_THAT(Complaint(folder, kGood), HasSubstr("is in the package 'rocks'"));
-  const Scenario scenario =
-      Loaded(folder,
-             WithReplaced("    friction: 0.5", "    packages: [\"${scenario_dir}/share\"]", kGood));
+  EXPECT_THAT(Complaint(folder, kGoodModels), HasSubstr("is in the package 'rocks'"));
+  const Scenario scenario = Loaded(
+      folder,
+      WithReplaced("    friction: 0.5", "    packages: [\"${scenario_dir}/share\"]", kGoodModels));
   EXPECT_TRUE(
       std::holds_alternative<MeshShape>(Named(scenario, "arm").links.at(1).shapes.at(0).geometry));
 }
 
-struct Mistake {
+struct WrongModel {
   std::string_view name;
-  std::string_view from;  // in kGood
+  std::string_view from;  // in kGoodModels
   std::string_view to;
   std::string_view place;
   std::vector<std::string_view> words;
 };
 
-void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+void PrintTo(const WrongModel& mistake, std::ostream* out) { *out << mistake.name; }
 
-class ModelMistakeTest : public testing::TestWithParam<Mistake> {};
+class ModelMistakeTest : public testing::TestWithParam<WrongModel> {};
 
 TEST_P(ModelMistakeTest, IsOneSentenceWithItsPlace) {
   const Folder folder;
-  const Mistake& mistake = GetParam();
-  const std::string path = folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, kGood));
+  const WrongModel& mistake = GetParam();
+  const std::string path =
+      folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, kGoodModels));
   const std::string complaint = Complaint(folder, LoadScenario(path));
   EXPECT_THAT(complaint, StartsWith(std::string(mistake.place) + ": "));
   for (const std::string_view words : mistake.words) {
@@ -236,7 +238,7 @@ TEST_P(ModelMistakeTest, IsOneSentenceWithItsPlace) {
   }
 }
 
-const Mistake kMistakes[] = {
+const WrongModel kWrongModels[] = {
     {"NoDynamics",
      "dynamics: {gravity: [0, 0, -9.81]}\n",
      "",
@@ -377,10 +379,10 @@ const Mistake kMistakes[] = {
     {"MeshOfAnotherKind", "rock.obj", "arm.urdf", "s.yaml:16", {".stl, .obj or .dae"}},
 };
 
-std::string NameOf(const testing::TestParamInfo<Mistake>& info) {
+std::string NameOfWrongModel(const testing::TestParamInfo<WrongModel>& info) {
   return std::string(info.param.name);
 }
-INSTANTIATE_TEST_SUITE_P(All, ModelMistakeTest, testing::ValuesIn(kMistakes), NameOf);
+INSTANTIATE_TEST_SUITE_P(All, ModelMistakeTest, testing::ValuesIn(kWrongModels), NameOfWrongModel);
 
 TEST(LoadModels, SomethingMoves) {
   const Folder folder;
@@ -452,11 +454,11 @@ TEST(LoadRotors, AreOnLinksAndChannelsSpinThem) {
   EXPECT_EQ(scenario.commands[3].joints.value().limits[0].upper, 2);
 }
 
-class RotorMistakeTest : public testing::TestWithParam<Mistake> {};
+class RotorMistakeTest : public testing::TestWithParam<WrongModel> {};
 
 TEST_P(RotorMistakeTest, IsOneSentenceWithItsPlace) {
   const Folder folder;
-  const Mistake& mistake = GetParam();
+  const WrongModel& mistake = GetParam();
   const std::string path =
       folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, std::string(kFlying)));
   const std::string complaint = Complaint(folder, LoadScenario(path));
@@ -466,7 +468,7 @@ TEST_P(RotorMistakeTest, IsOneSentenceWithItsPlace) {
   }
 }
 
-const Mistake kRotorMistakes[] = {
+const WrongModel kRotorMistakes[] = {
     {"UnknownKey", "thrust: 2e-5", "trust: 2e-5", "s.yaml:10", {"'trust'", "'thrust'?"}},
     {"NoThrust",
      "      shoulder: {thrust: 1e-5}",
@@ -528,7 +530,8 @@ const Mistake kRotorMistakes[] = {
      {"'elbow' with another lag than channel servo"}},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, RotorMistakeTest, testing::ValuesIn(kRotorMistakes), NameOf);
+INSTANTIATE_TEST_SUITE_P(All, RotorMistakeTest, testing::ValuesIn(kRotorMistakes),
+                         NameOfWrongModel);
 
 constexpr std::string_view kChannels = R"(channels:
   states: {type: udp_json, sensors: {model: arm, rate: 50, to: "127.0.0.1:47010"}}
@@ -551,7 +554,7 @@ constexpr std::string_view kChannels = R"(channels:
 
 // A model with two joints comes before the arm.
 std::string WithChannels() {
-  std::string text(kGood);
+  std::string text(kGoodModels);
   text.insert(text.find("  arm:"),
               "  other: {urdf: arm.urdf, fixed_base: true, joints: {elbow: 1}}\n");
   return text + std::string(kChannels);
@@ -582,11 +585,11 @@ TEST(LoadJoints, ChannelsAreAboutJointsOfAModel) {
   EXPECT_THAT(servos.gains, ElementsAre(JointGains{100, 7}, JointGains{200, 7}));
 }
 
-class JointMistakeTest : public testing::TestWithParam<Mistake> {};
+class JointMistakeTest : public testing::TestWithParam<WrongModel> {};
 
 TEST_P(JointMistakeTest, IsOneSentenceWithItsPlace) {
   const Folder folder;
-  const Mistake& mistake = GetParam();
+  const WrongModel& mistake = GetParam();
   const std::string path =
       folder.Write("s.yaml", WithReplaced(mistake.from, mistake.to, WithChannels()));
   const std::string complaint = Complaint(folder, LoadScenario(path));
@@ -596,7 +599,7 @@ TEST_P(JointMistakeTest, IsOneSentenceWithItsPlace) {
   }
 }
 
-const Mistake kJointMistakes[] = {
+const WrongModel kJointMistakes[] = {
     {"UnknownModel",
      "{model: arm, rate",
      "{model: amr, rate",
@@ -650,7 +653,8 @@ const Mistake kJointMistakes[] = {
      {"JointState"}},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, JointMistakeTest, testing::ValuesIn(kJointMistakes), NameOf);
+INSTANTIATE_TEST_SUITE_P(All, JointMistakeTest, testing::ValuesIn(kJointMistakes),
+                         NameOfWrongModel);
 
 }  // namespace
 }  // namespace tcs

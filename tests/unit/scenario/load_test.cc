@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "tests/unit/scenario/scenario_folder.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
@@ -25,8 +26,6 @@ class LoadTest : public testing::Test {
 
   ScenarioFolder folder_;
 };
-
-constexpr auto Ms = VirtualDuration::Milliseconds;
 
 TEST_F(LoadTest, TheRunIsAsWritten) {
   const Scenario scenario = Load(kGoodScenario);

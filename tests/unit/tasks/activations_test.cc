@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
-constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1);
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
 constexpr ProgramTime OwnAt(VirtualDuration since_start) { return ProgramTime() + since_start; }
 
 // A thread that has registered, and never runs.

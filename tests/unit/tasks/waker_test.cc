@@ -5,12 +5,12 @@
 
 #include <memory>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
-constexpr VirtualDuration kMs = VirtualDuration::Milliseconds(1), kNs = VirtualNs(1), kNone;
-
-constexpr VirtualTime At(VirtualDuration since_start) { return VirtualTime() + since_start; }
+constexpr VirtualDuration kNone;
 
 Scenario WithDriftBound(VirtualDuration bound) {
   Scenario scenario;

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "coordinator/world/commands.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-VirtualTime AtMs(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
 
 class CommandQueueTest : public testing::Test {
  protected:

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
@@ -152,7 +154,6 @@ class ActuatorsTest : public testing::Test {
 std::vector<JointGoal> Speeds(double left, double right) {
   return {{.joint = 0, .velocity = left}, {.joint = 1, .velocity = right}};
 }
-VirtualTime AtMs(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
 
 TEST_F(ActuatorsTest, RotorsAreSpunByTheirShareOrSpeed) {
   commands_.Take(1, AtMs(1), Speeds(0.5, 1));
@@ -253,9 +254,6 @@ class WheelCommandsTest : public testing::Test {
     int joint;
     JointDrive drive;
   };
-  static constexpr VirtualTime Ms(std::int64_t ms) {
-    return VirtualTime::FromNanoseconds(ms * 1'000'000);
-  }
   std::vector<Driven> driven_;
   Commands commands_{[](const std::string&) {},
                      {},
@@ -265,7 +263,7 @@ class WheelCommandsTest : public testing::Test {
 };
 
 TEST_F(WheelCommandsTest, EachWheelTurnsAsTheRobotIsToGo) {
-  commands_.Take(0, Ms(7), PlanarSpeed{.forward_mps = 1, .turn_radps = 2});
+  commands_.Take(0, AtMs(7), PlanarSpeed{.forward_mps = 1, .turn_radps = 2});
   ASSERT_EQ(driven_.size(), 3u);
   EXPECT_EQ(driven_[0].joint, 4);
   EXPECT_EQ(driven_[0].drive, (JointDrive{.damping = 2, .velocity = 5}));
@@ -274,31 +272,31 @@ TEST_F(WheelCommandsTest, EachWheelTurnsAsTheRobotIsToGo) {
 }
 
 TEST_F(WheelCommandsTest, NoWheelIsToTurnFasterThanItCanAndTheArcStays) {
-  commands_.Take(0, Ms(7), PlanarSpeed{.forward_mps = 2, .turn_radps = 8});
+  commands_.Take(0, AtMs(7), PlanarSpeed{.forward_mps = 2, .turn_radps = 8});
   EXPECT_EQ(driven_[0].drive.velocity, 0);
   EXPECT_EQ(driven_[1].drive.velocity, 20);
 }
 
 TEST_F(WheelCommandsTest, WithoutACommandTheRobotStops) {
   EXPECT_EQ(commands_.NextStop(), VirtualTime::Never());
-  commands_.Take(0, Ms(100), PlanarSpeed{.forward_mps = 1});
-  commands_.Take(0, Ms(300), PlanarSpeed{.forward_mps = 1});
-  EXPECT_EQ(commands_.NextStop(), Ms(800));
-  commands_.ActUntil(Ms(799));
+  commands_.Take(0, AtMs(100), PlanarSpeed{.forward_mps = 1});
+  commands_.Take(0, AtMs(300), PlanarSpeed{.forward_mps = 1});
+  EXPECT_EQ(commands_.NextStop(), AtMs(800));
+  commands_.ActUntil(AtMs(799));
   EXPECT_EQ(driven_.size(), 6u);
-  commands_.ActUntil(Ms(900));
+  commands_.ActUntil(AtMs(900));
   ASSERT_EQ(driven_.size(), 9u);
   EXPECT_EQ(driven_[6].sent_ms, 800);
   EXPECT_EQ(driven_[6].drive.velocity, 0);
   EXPECT_EQ(commands_.NextStop(), VirtualTime::Never());
-  commands_.ActUntil(Ms(2000));
+  commands_.ActUntil(AtMs(2000));
   EXPECT_EQ(driven_.size(), 9u);
 }
 
 // The dynamics may learn of a command only when its time to stop has passed as well.
 TEST_F(WheelCommandsTest, TheRobotHasStoppedInTimeWhoeverSendsAfterwards) {
-  commands_.Take(0, Ms(100), PlanarSpeed{.forward_mps = 1});
-  commands_.Take(0, Ms(700), PlanarSpeed{.forward_mps = 1});
+  commands_.Take(0, AtMs(100), PlanarSpeed{.forward_mps = 1});
+  commands_.Take(0, AtMs(700), PlanarSpeed{.forward_mps = 1});
   ASSERT_EQ(driven_.size(), 9u);
   EXPECT_EQ(driven_[3].sent_ms, 600);
   EXPECT_EQ(driven_[3].drive.velocity, 0);

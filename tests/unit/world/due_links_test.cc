@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "coordinator/world/instruments/instrument.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr VirtualTime Ms(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
 
 RobotModel Falling(const std::string& name, double height_m) {
   Link link;
@@ -77,27 +76,27 @@ TEST_F(DueLinksTest, AreAllThatSensorsLookAtInTheInstant) {
   Look(2, 10);
   Look(0, 20);
   Look(2, 20);
-  EXPECT_THAT(ActAt(Ms(0)), ElementsAre(2, 0, 2));
-  EXPECT_THAT(ActAt(Ms(10)), ElementsAre(2));
-  EXPECT_THAT(ActAt(Ms(20)), ElementsAre(2, 0, 2));
+  EXPECT_THAT(ActAt(AtMs(0)), ElementsAre(2, 0, 2));
+  EXPECT_THAT(ActAt(AtMs(10)), ElementsAre(2));
+  EXPECT_THAT(ActAt(AtMs(20)), ElementsAre(2, 0, 2));
 }
 
 TEST_F(DueLinksTest, NoOthersAreRead) {
   Look(0, 10);
-  dynamics_->AdvanceTo(Ms(10));
+  dynamics_->AdvanceTo(AtMs(10));
   const std::int64_t before = dynamics_->work().steps;
-  due_links_.Read(sensors_, Ms(10), *dynamics_);
+  due_links_.Read(sensors_, AtMs(10), *dynamics_);
   const std::int64_t one = dynamics_->work().steps - before;
   LinkState other;
   const int link = 1;
-  dynamics_->ReadLinks(Ms(10), {&link, 1}, {&other, 1});
+  dynamics_->ReadLinks(AtMs(10), {&link, 1}, {&other, 1});
   EXPECT_GT(one, 0);
   EXPECT_GT(dynamics_->work().steps, before + one);
 }
 
 TEST_F(DueLinksTest, WhatIsNotDueIsNotGiven) {
   Look(0, 10);
-  ActAt(Ms(0));
+  ActAt(AtMs(0));
   LinkState state;
   const int link = 1;
   EXPECT_DEATH(due_links_.Give({&link, 1}, {&state, 1}), "a bug in tcs");

@@ -6,12 +6,12 @@
 
 #include "coordinator/world/instruments/instrument.h"
 #include "simbody_bridge/engines.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
 
 constexpr double kG = 9.81;
-constexpr auto Ms = VirtualDuration::Milliseconds;
 
 Link Massive(const std::string& name, double size_m = 0.2) {
   Link link;
@@ -89,14 +89,12 @@ class Instruments : public testing::TestWithParam<EngineKind> {
                  }};
 };
 
-constexpr VirtualTime At(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
-
 TEST_P(Instruments, AnImuAtRestFeelsG) {
   world_.models = {Block("block", {0, 0, 0.1})};
   world_.fixtures = {Fixture(PlaneShape{})};
   Start();
   const auto imu =
-      Last<ImuMeasurement>(ImuSpec{{0, {{0.05, 0, 0}, {0, 0, 0, 1}}, "imu"}}, Ms(10), At(2000));
+      Last<ImuMeasurement>(ImuSpec{{0, {{0.05, 0, 0}, {0, 0, 0, 1}}, "imu"}}, Ms(10), AtMs(2000));
   const auto& felt = imu.felt.proper_acceleration_mps2.value();
   EXPECT_EQ(imu.frame, "imu");
   EXPECT_NEAR(felt[0], 0, 1e-3);
@@ -107,7 +105,7 @@ TEST_P(Instruments, AnImuAtRestFeelsG) {
 TEST_P(Instruments, AnImuInFreeFallFeelsNothing) {
   world_.models = {Block("block", {0, 0, 100})};
   Start();
-  const auto imu = Last<ImuMeasurement>(ImuSpec{{0, {}, "imu"}}, Ms(10), At(1000));
+  const auto imu = Last<ImuMeasurement>(ImuSpec{{0, {}, "imu"}}, Ms(10), AtMs(1000));
   for (const double axis : imu.felt.proper_acceleration_mps2.value()) EXPECT_NEAR(axis, 0, 1e-6);
 }
 
@@ -115,8 +113,8 @@ TEST_P(Instruments, AnImuOnATurntableFeelsTheCentripetalAcceleration) {
   constexpr double kRate = 6, kRadius = 0.4;
   world_.models = {Turntable(kRate)};
   Start();
-  const auto imu =
-      Last<ImuMeasurement>(ImuSpec{{1, {{kRadius, 0, 0}, {0, 0, 0, 1}}, "imu"}}, Ms(10), At(1000));
+  const auto imu = Last<ImuMeasurement>(ImuSpec{{1, {{kRadius, 0, 0}, {0, 0, 0, 1}}, "imu"}},
+                                        Ms(10), AtMs(1000));
   const auto& felt = imu.felt.proper_acceleration_mps2.value();
   EXPECT_NEAR(felt[0], -kRate * kRate * kRadius, 1e-5);
   EXPECT_NEAR(felt[1], 0, 1e-5);
@@ -131,7 +129,7 @@ TEST_P(Instruments, OdometryTellsTheMountsPoseAndItsVelocityAlongItsOwnAxes) {
   TruthSpec spec;
   spec.mount.link = 1;
   spec.mount.at.position_m = {0.5, 0, 0.1};
-  const auto truth = Last<OdometryMeasurement>(spec, Ms(10), At(1000));
+  const auto truth = Last<OdometryMeasurement>(spec, Ms(10), AtMs(1000));
   EXPECT_NEAR(truth.pose.position_m[0], 0.5 * std::cos(kRate), 1e-6);
   EXPECT_NEAR(truth.pose.position_m[1], 0.5 * std::sin(kRate), 1e-6);
   EXPECT_NEAR(truth.pose.position_m[2], 0.1, 1e-9);
@@ -162,7 +160,7 @@ TEST_P(Instruments, ALidarInARoomSeesItsWalls) {
   lidar.rays = 720;
   lidar.last_rad = std::numbers::pi * (1 - 2.0 / 720);
   lidar.sweep = Ms(100);
-  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), At(500));
+  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), AtMs(500));
   ASSERT_EQ(scan.ranges_m.size(), 720u);
   for (std::size_t i = 0; i < 720; ++i) {
     const double angle = scan.first_rad + static_cast<double>(i) * scan.step_rad;
@@ -182,7 +180,7 @@ TEST_P(Instruments, EachRayOfASweepLooksAtItsOwnInstant) {
   lidar.first_rad = -1.5;
   lidar.last_rad = 1.5;
   lidar.sweep = Ms(90);
-  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), At(300));
+  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), AtMs(300));
   EXPECT_NEAR(scan.ray_s, 0.09 / 180, 1e-12);
   for (std::size_t i = 0; i < lidar.rays; ++i) {
     const double turned = kRate * (0.3 + static_cast<double>(i) * scan.ray_s);
@@ -203,7 +201,7 @@ TEST_P(Instruments, WhatIsOutOfReachIsAtInfinity) {
   lidar.last_rad = std::numbers::pi / 2;
   lidar.reach.least_m = 3.5;
   lidar.reach.most_m = 4.5;
-  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), At(0));
+  const auto scan = Last<ScanMeasurement>(lidar, Ms(100), AtMs(0));
   EXPECT_EQ(scan.ranges_m[0], kNoLimit);
   EXPECT_EQ(scan.ranges_m[1], -kNoLimit);
 }
@@ -221,7 +219,7 @@ TEST_P(Instruments, ALidarWithLayersMeetsTheWallsAndTheFloor) {
   spec.layers = 3;
   spec.lowest_rad = -0.3;
   spec.highest_rad = 0.3;
-  const auto cloud = Last<CloudMeasurement>(spec, Ms(100), At(500));
+  const auto cloud = Last<CloudMeasurement>(spec, Ms(100), AtMs(500));
   ASSERT_EQ(cloud.points.size(), 270u);
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const auto& [direction, range_m, after_s, layer] = cloud.points[i];
@@ -245,11 +243,11 @@ TEST_P(Instruments, ARangeFinderSeesWhatIsNearestInItsCone) {
   RangeSpec spec;
   spec.mount.link = 1;
   spec.field_of_view_rad = 0.2;
-  const auto range = Last<RangeMeasurement>(spec, Ms(100), At(0));
+  const auto range = Last<RangeMeasurement>(spec, Ms(100), AtMs(0));
   EXPECT_NEAR(range.range_m, std::hypot(2, 0.2) - 0.2, 1e-4);
   spec.field_of_view_rad = 0.0001;
   spec.reach.most_m = 1;
-  EXPECT_EQ(Last<RangeMeasurement>(spec, Ms(100), At(0)).range_m, kNoLimit);
+  EXPECT_EQ(Last<RangeMeasurement>(spec, Ms(100), AtMs(0)).range_m, kNoLimit);
 }
 
 TEST_P(Instruments, ADepthCameraSeesHowFarAheadThingsAre) {
@@ -262,7 +260,7 @@ TEST_P(Instruments, ADepthCameraSeesHowFarAheadThingsAre) {
   spec.mount.link = 1;
   spec.width = 8;
   spec.height = 6;
-  const auto depth = Last<DepthMeasurement>(spec, Ms(100), At(0));
+  const auto depth = Last<DepthMeasurement>(spec, Ms(100), AtMs(0));
   ASSERT_EQ(depth.depths_m.size(), 48u);
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 8; ++column) {
@@ -279,21 +277,21 @@ TEST_P(Instruments, TheSensorsOfTheSkyAreWhereTheirMountIs) {
   gnss.mount.link = 1;
   gnss.mount.at.position_m = {2, 0, 3};
   gnss.origin = {48, 11, 500};
-  const auto fix = Last<GnssMeasurement>(gnss, Ms(10), At(1000));
+  const auto fix = Last<GnssMeasurement>(gnss, Ms(10), AtMs(1000));
   EXPECT_NEAR(fix.enu_m[0], 0, 1e-5);
   EXPECT_NEAR(fix.enu_m[1], 2, 1e-5);
   EXPECT_NEAR(fix.position().altitude_m, 503, 1e-5);
   MagnetometerSpec magnetometer;
   magnetometer.mount.link = 1;
   magnetometer.field_t = {0, 2e-5, -4e-5};
-  const auto field = Last<MagneticMeasurement>(magnetometer, Ms(10), At(1000));
+  const auto field = Last<MagneticMeasurement>(magnetometer, Ms(10), AtMs(1000));
   EXPECT_NEAR(field.field_t[0], 2e-5, 1e-10);  // it looks to the north by now
   EXPECT_NEAR(field.field_t[1], 0, 1e-10);
   EXPECT_NEAR(field.field_t[2], -4e-5, 1e-15);
   BarometerSpec barometer;
   barometer.mount.link = 1;
   barometer.mount.at.position_m = {0, 0, 1000};
-  const auto pressure = Last<PressureMeasurement>(barometer, Ms(10), At(1000));
+  const auto pressure = Last<PressureMeasurement>(barometer, Ms(10), AtMs(1000));
   EXPECT_NEAR(pressure.pressure_pa, 89'874.6, 1);  // ISA's table
 }
 
@@ -303,7 +301,7 @@ TEST_P(Instruments, TransformsLeadFromTheWorldToEachLink) {
   world_.models[0].joints[0].origin.position_m = {0, 0, 0.5};
   Start();
   const TransformsSpec spec{{{-1, 0, "map", "base"}, {0, 1, "base", "table"}}};
-  const auto told = Last<TransformsMeasurement>(spec, Ms(10), At(1000));
+  const auto told = Last<TransformsMeasurement>(spec, Ms(10), AtMs(1000));
   ASSERT_EQ(told.transforms.size(), 2u);
   EXPECT_EQ(told.transforms[0].frame, "map");
   EXPECT_EQ(told.transforms[0].pose.position_m, (std::array<double, 3>{1, 2, 3}));
@@ -317,8 +315,8 @@ TEST_P(Instruments, ABumperFeelsWhatItsLinkStandsOn) {
   world_.fixtures = {Fixture(PlaneShape{})};
   Start();
   const ContactSpec spec{};
-  EXPECT_FALSE(Last<ContactMeasurement>(spec, Ms(10), At(200)).is_touching);
-  EXPECT_TRUE(Last<ContactMeasurement>(spec, Ms(10), At(2000)).is_touching);
+  EXPECT_FALSE(Last<ContactMeasurement>(spec, Ms(10), AtMs(200)).is_touching);
+  EXPECT_TRUE(Last<ContactMeasurement>(spec, Ms(10), AtMs(2000)).is_touching);
 }
 
 std::vector<EngineKind> EnginesWithModels() {

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-VirtualTime At(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
+VirtualTime AtNs(std::int64_t ns) { return VirtualTime::FromNanoseconds(ns); }
 
 // A cart with a mast that is fixed to it, and a wheel that turns at 2 rad/s.
 RobotModel Cart() {
@@ -129,7 +129,7 @@ TEST_F(RecordsTest, JointsThatMoveHaveALineEach) {
   ASSERT_EQ(file.Open(path_, kJointsCsvHead), "");
   const auto dynamics = MakeDynamics(world);
   lines.Write(*dynamics, &file);
-  dynamics->AdvanceTo(At(10'000'000));
+  dynamics->AdvanceTo(AtNs(10'000'000));
   lines.Write(*dynamics, &file);
   ASSERT_EQ(file.Close(), "");
   const std::string text = Written();
@@ -161,7 +161,7 @@ TEST_F(RecordsTest, ContactsHaveALineEach) {
   ASSERT_EQ(file.Open(path_, kContactsCsvHead), "");
   const auto dynamics = MakeDynamics(world);
   lines.Write(*dynamics, &file);
-  dynamics->AdvanceTo(At(500'000'000));
+  dynamics->AdvanceTo(AtNs(500'000'000));
   lines.Write(*dynamics, &file);
   ASSERT_EQ(file.Close(), "");
   std::istringstream text(Written());
@@ -206,12 +206,12 @@ TEST_F(CommandRecords, AreWhatIsGivenToThePhysics) {
                                  .is_normalised = true};
   commands_.Open({thruster, arm, motors}, {"ship", "boat"});
   ASSERT_EQ(commands_.log().Open(path_), "");
-  commands_.Take(0, At(5), {.force_n = {7, 0, -0.25}, .torque_nm = {0, 0, 3}});
+  commands_.Take(0, AtNs(5), {.force_n = {7, 0, -0.25}, .torque_nm = {0, 0, 3}});
   const JointGoal goals[] = {{.joint = 0, .position = 9, .effort = 0.125},
                              {.joint = 1, .velocity = 4}};
-  commands_.Take(1, At(6), goals);
+  commands_.Take(1, AtNs(6), goals);
   const JointGoal spin[] = {{.joint = 0, .velocity = 0.5}};
-  commands_.Take(2, At(7), spin);
+  commands_.Take(2, AtNs(7), spin);
   ASSERT_EQ(commands_.log().Close(), "");
   EXPECT_EQ(Written(),
             "sent_ns,acts_ns,channel,target,quantity,value\n"
@@ -234,8 +234,8 @@ TEST_F(CommandRecords, OfWheelsAreHowTheRobotIsToGo) {
       .base = {}, .left = 1, .most_radps = 100, .timeout = VirtualDuration::Nanoseconds(50)};
   commands_.Open({drive});
   ASSERT_EQ(commands_.log().Open(path_), "");
-  commands_.Take(0, At(5), PlanarSpeed{.forward_mps = 1.5, .turn_radps = -1});
-  commands_.ActUntil(At(100));
+  commands_.Take(0, AtNs(5), PlanarSpeed{.forward_mps = 1.5, .turn_radps = -1});
+  commands_.ActUntil(AtNs(100));
   ASSERT_EQ(commands_.log().Close(), "");
   EXPECT_EQ(Written(),
             "sent_ns,acts_ns,channel,target,quantity,value\n"

@@ -7,14 +7,12 @@
 #include <vector>
 
 #include "coordinator/channel/on_the_way.h"
+#include "tests/unit/times.h"
 
 namespace tcs {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr VirtualTime Ms(std::int64_t ms) { return VirtualTime::FromNanoseconds(ms * 1'000'000); }
-constexpr VirtualDuration MsLong(std::int64_t ms) { return VirtualDuration::Milliseconds(ms); }
 
 // Keeps what it is given until it is due, as a socket's outlet does.
 class Keeping : public Outlet {
@@ -34,12 +32,12 @@ class Keeping : public Outlet {
   std::vector<std::string> arrived;
 };
 
-BodyState At(double x) { return {.position_m = {x, 0, 0}}; }
+BodyState ShipAt(double x) { return {.position_m = {x, 0, 0}}; }
 
 class SensorsTest : public testing::Test {
  protected:
   bool ActAt(VirtualTime now) {
-    return sensors_.Act(now, [this](int body) { return At(x_ + body); });
+    return sensors_.Act(now, [this](int body) { return ShipAt(x_ + body); });
   }
 
   Keeping outlet_;
@@ -50,28 +48,28 @@ class SensorsTest : public testing::Test {
 TEST_F(SensorsTest, WithoutAnyThereIsNothingToDo) {
   EXPECT_EQ(sensors_.NextStop(), VirtualTime::Never());
   EXPECT_EQ(sensors_.NextArrival(), VirtualTime::Never());
-  EXPECT_FALSE(ActAt(Ms(5)));
+  EXPECT_FALSE(ActAt(AtMs(5)));
 }
 
 TEST_F(SensorsTest, TheFirstSampleIsAtTimeZero) {
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
-  EXPECT_EQ(sensors_.NextStop(), Ms(0));
-  EXPECT_TRUE(ActAt(Ms(0)));
+  sensors_.Add({{0, "ship"}}, {Ms(10), {}}, {}, outlet_);
+  EXPECT_EQ(sensors_.NextStop(), AtMs(0));
+  EXPECT_TRUE(ActAt(AtMs(0)));
   EXPECT_THAT(outlet_.arrived, ElementsAre("0"));
-  EXPECT_EQ(sensors_.NextStop(), Ms(10));
+  EXPECT_EQ(sensors_.NextStop(), AtMs(10));
   EXPECT_EQ(sensors_.samples(), 1);
 }
 
 TEST_F(SensorsTest, WhatIsReadIsOfTheSampleNotOfItsArrival) {
-  sensors_.Add({{1, "ship"}, {0, "rock"}}, {MsLong(10), MsLong(15)}, {}, outlet_);
+  sensors_.Add({{1, "ship"}, {0, "rock"}}, {Ms(10), Ms(15)}, {}, outlet_);
   x_ = 7;
-  EXPECT_FALSE(ActAt(Ms(0)));
-  EXPECT_EQ(sensors_.NextStop(), Ms(10));     // to sample,
-  EXPECT_EQ(sensors_.NextArrival(), Ms(15));  // but nothing arrives there
+  EXPECT_FALSE(ActAt(AtMs(0)));
+  EXPECT_EQ(sensors_.NextStop(), AtMs(10));     // to sample,
+  EXPECT_EQ(sensors_.NextArrival(), AtMs(15));  // but nothing arrives there
   x_ = 9;
-  EXPECT_FALSE(ActAt(Ms(10)));
-  EXPECT_EQ(sensors_.NextStop(), Ms(15));
-  EXPECT_TRUE(ActAt(Ms(15)));
+  EXPECT_FALSE(ActAt(AtMs(10)));
+  EXPECT_EQ(sensors_.NextStop(), AtMs(15));
+  EXPECT_TRUE(ActAt(AtMs(15)));
   EXPECT_THAT(outlet_.arrived, ElementsAre("0"));
   ASSERT_EQ(outlet_.readings[0].bodies.size(), 2u);
   EXPECT_EQ(outlet_.readings[0].bodies[0].name, "ship");
@@ -80,32 +78,32 @@ TEST_F(SensorsTest, WhatIsReadIsOfTheSampleNotOfItsArrival) {
 }
 
 TEST_F(SensorsTest, BetweenSamplesNothingHappens) {
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
-  ActAt(Ms(0));
-  EXPECT_FALSE(ActAt(Ms(9)));
+  sensors_.Add({{0, "ship"}}, {Ms(10), {}}, {}, outlet_);
+  ActAt(AtMs(0));
+  EXPECT_FALSE(ActAt(AtMs(9)));
   EXPECT_EQ(sensors_.samples(), 1);
 }
 
 TEST_F(SensorsTest, OfSeveralTheNextCounts) {
   Keeping other;
-  sensors_.Add({{0, "ship"}}, {MsLong(10), {}}, {}, outlet_);
-  sensors_.Add({}, {MsLong(4), MsLong(1)}, {}, other);
-  ActAt(Ms(0));
-  EXPECT_EQ(sensors_.NextStop(), Ms(1));
-  EXPECT_EQ(sensors_.NextArrival(), Ms(1));
-  ActAt(Ms(1));
-  EXPECT_EQ(sensors_.NextStop(), Ms(4));
-  EXPECT_EQ(sensors_.NextArrival(), Ms(5));
+  sensors_.Add({{0, "ship"}}, {Ms(10), {}}, {}, outlet_);
+  sensors_.Add({}, {Ms(4), Ms(1)}, {}, other);
+  ActAt(AtMs(0));
+  EXPECT_EQ(sensors_.NextStop(), AtMs(1));
+  EXPECT_EQ(sensors_.NextArrival(), AtMs(1));
+  ActAt(AtMs(1));
+  EXPECT_EQ(sensors_.NextStop(), AtMs(4));
+  EXPECT_EQ(sensors_.NextArrival(), AtMs(5));
 }
 
 TEST_F(SensorsTest, ReadsAllJointsOfASensorAtOnce) {
-  sensors_.AddJoints({"arm", {7, 3}, {"wrist", "elbow"}}, {MsLong(10), {}}, {}, outlet_);
+  sensors_.AddJoints({"arm", {7, 3}, {"wrist", "elbow"}}, {Ms(10), {}}, {}, outlet_);
   int calls = 0;
   const auto read_joints = [&](std::span<const int> joints, std::span<JointState> states) {
     ++calls;
     for (std::size_t i = 0; i < joints.size(); ++i) states[i].position = joints[i] * 0.5;
   };
-  sensors_.Act(Ms(0), {}, {.links = {}, .joints = read_joints});
+  sensors_.Act(AtMs(0), {}, {.links = {}, .joints = read_joints});
   EXPECT_EQ(calls, 1);
   ASSERT_EQ(outlet_.readings.size(), 1u);
   EXPECT_TRUE(outlet_.readings[0].bodies.empty());

@@ -6,29 +6,28 @@
 #include <limits>
 #include <vector>
 
+#include "tests/unit/times.h"
+
 namespace tcs {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr VirtualDuration MsLong(std::int64_t ms) { return VirtualDuration::Milliseconds(ms); }
-constexpr VirtualTime Ms(std::int64_t ms) { return VirtualTime{} + MsLong(ms); }
-
 JointTrajectory To(double position, std::int64_t ms) {
-  return {.joints = {1}, .points = {{MsLong(ms), {position}, {}}}, .start = {}};
+  return {.joints = {1}, .points = {{Ms(ms), {position}, {}}}, .start = {}};
 }
 
 TEST(JointTrajectory, WithoutVelocitiesIsMadeOfStraightLines) {
   JointTrajectory trajectory = To(2, 100);
-  trajectory.points.push_back({MsLong(300), {1}, {}});
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(0)).position, 1);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(25)).position, 1.25);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(25)).velocity, 10);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(200)).position, 1.5);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(200)).velocity, -5);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(300)).position, 1);
-  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, MsLong(9000)).velocity, 0);
+  trajectory.points.push_back({Ms(300), {1}, {}});
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(0)).position, 1);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(25)).position, 1.25);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(25)).velocity, 10);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(200)).position, 1.5);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(200)).velocity, -5);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(300)).position, 1);
+  EXPECT_DOUBLE_EQ(SetpointAt(trajectory, 0, 1, Ms(9000)).velocity, 0);
 }
 
 // t^3 - 2 t^2 + t + 3 is a cubic, and so it comes out again.
@@ -38,11 +37,11 @@ TEST(JointTrajectory, WithVelocitiesIsMadeOfCubics) {
   JointTrajectory trajectory{.joints = {0}, .points = {}, .start = {}};
   for (const std::int64_t ms : {0, 500, 2000}) {
     const double t = static_cast<double>(ms) * 1e-3;
-    trajectory.points.push_back({MsLong(ms), {position(t)}, {velocity(t)}});
+    trajectory.points.push_back({Ms(ms), {position(t)}, {velocity(t)}});
   }
   for (const std::int64_t ms : {1, 300, 700, 1999}) {
     const double t = static_cast<double>(ms) * 1e-3;
-    const JointSetpoint wanted = SetpointAt(trajectory, 0, 77, MsLong(ms));
+    const JointSetpoint wanted = SetpointAt(trajectory, 0, 77, Ms(ms));
     EXPECT_NEAR(wanted.position, position(t), 1e-12) << t;
     EXPECT_NEAR(wanted.velocity, velocity(t), 1e-12) << t;
   }
@@ -51,11 +50,11 @@ TEST(JointTrajectory, WithVelocitiesIsMadeOfCubics) {
 TEST(JointTrajectory, WhatIsNoneIsSaid) {
   JointTrajectory trajectory = To(2, 100);
   EXPECT_EQ(WhatIsWrongWith(trajectory), "");
-  trajectory.points.push_back({MsLong(100), {1}, {}});
+  trajectory.points.push_back({Ms(100), {1}, {}});
   EXPECT_THAT(WhatIsWrongWith(trajectory), HasSubstr("not after the one before"));
-  trajectory.points[1] = {MsLong(200), {1, 2}, {}};
+  trajectory.points[1] = {Ms(200), {1, 2}, {}};
   EXPECT_THAT(WhatIsWrongWith(trajectory), HasSubstr("another number"));
-  trajectory.points[1] = {MsLong(200), {std::numeric_limits<double>::quiet_NaN()}, {}};
+  trajectory.points[1] = {Ms(200), {std::numeric_limits<double>::quiet_NaN()}, {}};
   EXPECT_THAT(WhatIsWrongWith(trajectory), HasSubstr("not finite"));
   EXPECT_THAT(WhatIsWrongWith({}), HasSubstr("no points"));
 }
@@ -82,7 +81,7 @@ class TrajectoryFollowerTest : public testing::Test {
     EXPECT_THAT(positions_, testing::Pointwise(testing::DoubleNear(1e-12), wanted));
   }
 
-  TrajectoryFollower follower_{{"arm", {7, 8}, {"shoulder", "elbow"}}, MsLong(10)};
+  TrajectoryFollower follower_{{"arm", {7, 8}, {"shoulder", "elbow"}}, Ms(10)};
   double was_at_ = 0;
   std::vector<std::int64_t> at_ms_, read_ms_;
   std::vector<double> positions_;
@@ -90,11 +89,11 @@ class TrajectoryFollowerTest : public testing::Test {
 
 TEST_F(TrajectoryFollowerTest, LeadsTheJointFromWhereItIsToTheEnd) {
   was_at_ = 1;
-  follower_.Follow(Ms(5), To(2, 25));
-  EXPECT_EQ(follower_.NextStop(), Ms(5));
-  ActUntil(Ms(14));
-  EXPECT_EQ(follower_.NextStop(), Ms(15));
-  ActUntil(Ms(1000));
+  follower_.Follow(AtMs(5), To(2, 25));
+  EXPECT_EQ(follower_.NextStop(), AtMs(5));
+  ActUntil(AtMs(14));
+  EXPECT_EQ(follower_.NextStop(), AtMs(15));
+  ActUntil(AtMs(1000));
   EXPECT_THAT(at_ms_, ElementsAre(5, 15, 25, 30));
   ExpectPositions({1, 1.4, 1.8, 2});
   EXPECT_THAT(read_ms_, ElementsAre(5));
@@ -102,31 +101,31 @@ TEST_F(TrajectoryFollowerTest, LeadsTheJointFromWhereItIsToTheEnd) {
 }
 
 TEST_F(TrajectoryFollowerTest, ANewTrajectoryReplacesTheOldOneWhenItStarts) {
-  follower_.Follow(Ms(0), To(10, 100));
+  follower_.Follow(AtMs(0), To(10, 100));
   JointTrajectory later = To(0, 20);
-  later.start = Ms(25);
-  follower_.Follow(Ms(3), later);
-  ActUntil(Ms(20));
+  later.start = AtMs(25);
+  follower_.Follow(AtMs(3), later);
+  ActUntil(AtMs(20));
   was_at_ = 5;
-  ActUntil(Ms(1000));
+  ActUntil(AtMs(1000));
   EXPECT_THAT(at_ms_, ElementsAre(0, 10, 20, 25, 35, 45));
   ExpectPositions({0, 1, 2, 5, 2.5, 0});
 }
 
 TEST_F(TrajectoryFollowerTest, WhatWasToStartLaterIsReplacedAtOnce) {
   JointTrajectory later = To(7, 20);
-  later.start = Ms(500);
-  follower_.Follow(Ms(0), later);
-  follower_.Follow(Ms(10), To(1, 10));
-  ActUntil(Ms(1000));
+  later.start = AtMs(500);
+  follower_.Follow(AtMs(0), later);
+  follower_.Follow(AtMs(10), To(1, 10));
+  ActUntil(AtMs(1000));
   EXPECT_THAT(at_ms_, ElementsAre(10, 20));
 }
 
 TEST_F(TrajectoryFollowerTest, OneThatHasBegunBeforeItComesGoesOnFromThere) {
   JointTrajectory late = To(4, 40);
-  late.start = Ms(10);
-  follower_.Follow(Ms(30), late);
-  ActUntil(Ms(1000));
+  late.start = AtMs(10);
+  follower_.Follow(AtMs(30), late);
+  ActUntil(AtMs(1000));
   EXPECT_THAT(at_ms_, ElementsAre(30, 40, 50));
   ExpectPositions({2, 3, 4});
 }
