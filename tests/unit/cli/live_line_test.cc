@@ -44,7 +44,8 @@ TEST(LiveLine, ShowsTheBusiestFirstAndLeavesOutWhatDoesNotFit) {
   EXPECT_EQ(LiveLine(100 * kSecond).Text(progress, 39), "10.0 of 100.0 virtual s");
   EXPECT_EQ(LiveLine(100 * kSecond).Text(progress, 79),
             "10.0 of 100.0 virtual s  0.50 x real time  about 3:00 to go  robot/planner 50 %");
-  EXPECT_THAT(LiveLine(100 * kSecond).Text(progress, 200), HasSubstr("robot/controller 10 %  drift 0.000 ms"));
+  EXPECT_THAT(LiveLine(100 * kSecond).Text(progress, 200),
+              HasSubstr("robot/controller 10 %  drift 0.000 ms"));
 }
 
 }  // namespace
