@@ -61,16 +61,32 @@ function(tcs_add_executable target)
   tcs_target_defaults(${target})
 endfunction()
 
-# One GoogleTest executable, its cases registered with CTest under one label. Its own sources are compiled quickly, as
-# what they test is not; OPTIMISED: they are not, either.
-#   tcs_add_gtest(name LABEL unit [OPTIMISED] SOURCES a.cc b.cc LIBS x y)
+# One GoogleTest executable, registered with CTest under one label: each suite is a test, or each case where CASES says
+# so, for those that take long. A process for each case would double the time of `ctest -L unit`. Its own sources are
+# compiled quickly, as what they test is not; OPTIMISED: they are not, either.
+#   tcs_add_gtest(name LABEL unit [OPTIMISED] [CASES] SOURCES a.cc b.cc LIBS x y)
 function(tcs_add_gtest target)
-  cmake_parse_arguments(ARG "OPTIMISED" "LABEL" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED;CASES" "LABEL" "SOURCES;LIBS" ${ARGN})
   tcs_add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LIBS} GTest::gtest GTest::gtest_main GTest::gmock)
   if(NOT ARG_OPTIMISED)
     tcs_target_compile_quickly(${target})
   endif()
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60
-                       PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)
+  if(ARG_CASES)
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${ARG_LABEL} TIMEOUT 120)
+  else()
+    tcs_register_suites(${target} ${ARG_LABEL})
+  endif()
+endfunction()
+
+function(tcs_register_suites target label)
+  set(suites "${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake")
+  add_custom_command(
+    TARGET ${target} POST_BUILD BYPRODUCTS "${suites}" VERBATIM
+    COMMAND "${CMAKE_COMMAND}" -D "EXECUTABLE=$<TARGET_FILE:${target}>" -D "FOLDER=${CMAKE_CURRENT_BINARY_DIR}"
+            -D "LABEL=${label}" -D "FILE=${suites}" -P "${CMAKE_SOURCE_DIR}/cmake/TcsSuites.cmake")
+  file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake"
+       "if(EXISTS \"${suites}\")\n  include(\"${suites}\")\nelse()\n  add_test(${target}_NOT_BUILT ${target}_NOT_BUILT)\n"
+       "  set_tests_properties(${target}_NOT_BUILT PROPERTIES LABELS ${label})\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake")
 endfunction()

@@ -57,9 +57,10 @@ TEST_P(ContactScenes, AStackStandsAsLongAsItsWeightIsOverIt) {
 TEST_P(ContactScenes, ABallRollsDownASlope) {
   constexpr double kRadius = 0.1, kSlope = 0.2;
   const Pose slope{{}, FromRollPitchYaw(0, kSlope, 0)};
-  WorldSpec world = WorldOf({Loose("ball", SphereShape{kRadius},
-                                   Times(slope, Pose{{0, 0, kRadius}, {0, 0, 0, 1}}), 1, 0.004)},
-                            GetParam());
+  WorldSpec world =
+      WorldOf({Loose("ball", SphereShape{kRadius},
+                     Times(slope, Pose{{0, 0, kRadius}, {0, 0, 0, 1}}), 1, 0.8, 0.004)},
+              GetParam());
   world.fixtures = {Floor(0.8, kSlope)};
   auto dynamics = MakeDynamics(world);
   const LinkState state = ReadLink(*dynamics, 0, AtMs(2000));
