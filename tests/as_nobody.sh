@@ -9,6 +9,6 @@ nobody=(prlimit --rtprio=0:0 --nice=0:0)
 install_for_everybody() {
   local build=$1 folder=$2
   shift 2
-  install -D -m 755 -t "$folder/bin" "$build/bin/tcsim" "${@/#/$build/bin/}"
+  install -D -m 755 -t "$folder/bin" "$build/bin/tcsim" "$build/bin/tcsim-tools" "${@/#/$build/bin/}"
   install -D -m 755 -t "$folder/lib" "$build"/lib/libtcs_{preload,allocations,dds}.so
 }

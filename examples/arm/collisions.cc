@@ -17,7 +17,16 @@ struct Capsule {
   Vector3d from, to;
   double radius_m;
 };
-enum ArmPart : std::size_t { kShoulder, kUpperArm, kForearm, kWrist1, kWrist2, kWrist3, kCup, kParts };
+enum ArmPart : std::size_t {
+  kShoulder,
+  kUpperArm,
+  kForearm,
+  kWrist1,
+  kWrist2,
+  kWrist3,
+  kCup,
+  kParts
+};
 const std::array<Capsule, kParts> kCapsules = {{{0, {0, 0, 0}, {0, 0.12, 0}, 0.065},
                                                 {1, {0, 0, 0}, {0, 0, 0.425}, 0.06},
                                                 {2, {0, 0, 0}, {0, 0, 0.392}, 0.05},
@@ -27,14 +36,14 @@ const std::array<Capsule, kParts> kCapsules = {{{0, {0, 0, 0}, {0, 0.12, 0}, 0.0
                                                 {5, {0, 0.06, 0}, {0, 0.18, 0}, 0.022}}};
 // Those that could meet: neighbours cannot.
 constexpr std::array<std::pair<ArmPart, ArmPart>, 9> kPairs = {{{kShoulder, kForearm},
-                                                          {kShoulder, kWrist1},
-                                                          {kShoulder, kWrist2},
-                                                          {kShoulder, kCup},
-                                                          {kUpperArm, kWrist1},
-                                                          {kUpperArm, kWrist2},
-                                                          {kUpperArm, kCup},
-                                                          {kForearm, kWrist3},
-                                                          {kForearm, kCup}}};
+                                                                {kShoulder, kWrist1},
+                                                                {kShoulder, kWrist2},
+                                                                {kShoulder, kCup},
+                                                                {kUpperArm, kWrist1},
+                                                                {kUpperArm, kWrist2},
+                                                                {kUpperArm, kCup},
+                                                                {kForearm, kWrist3},
+                                                                {kForearm, kCup}}};
 
 struct Line {
   Vector3d from, way;

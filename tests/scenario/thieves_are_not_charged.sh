@@ -21,7 +21,7 @@ work_beside() {
   "$build/bin/processor_thief" "$1" "$pid" || thief=$?
   wait "$run" || { cat "$out.txt"; fail "the run beside $1 has failed"; }
   [ "$thief" != 77 ] || exit 77
-  read -r median most < "$out/robot-worker.out.log"
+  read -r median most _ < "$out/robot-worker.out.log"
   echo "$1, $2: $median us, at most $most us"
   # A theft that no clock tells of is found by a timer that is set anew every 4.1 ms.
   awk -v median="$median" -v most="$most" 'BEGIN { exit !(most < 3 * median + 8000) }' ||
