@@ -1,5 +1,5 @@
 // Does the same work again and again, and prints what it was charged for one piece: the median,
-// the most and the least, in µs.
+// the most, and what a quarter cost less than, in µs.
 //
 //   steady_worker short COUNT  some 100 µs of it, then sleeps 0.1 ms
 //   steady_worker long COUNT   some ms of it, without looking at a clock
@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
     if (is_short) usleep(100);
   }
   std::sort(charged.begin(), charged.end());
-  printf("%.0f %.0f %.0f\n", charged[charged.size() / 2], charged.back(), charged.front());
+  printf("%.0f %.0f %.0f\n", charged[charged.size() / 2], charged.back(),
+         charged[charged.size() / 4]);
   return 0;
 }

@@ -90,8 +90,8 @@ says 'there is no process 99999999' "$tcsim" dump 99999999
 says "there is no folder '$out/none'" "$tcsim" dump "$out/none"
 says "no run writes to the folder '$out' just now" "$tcsim" dump "$out"
 
-# A second one, which waits for a processor, where the first has the only one, or runs.
-"$tcsim" exec -- sleep 3000000 >/dev/null 2>&1 9>&- &
+# A second one, which waits for a processor, where the first has the only one, or for ever.
+"$tcsim" exec -- python3 -c 'import threading; threading.Lock().acquire(); threading.Event().wait()' >/dev/null 2>&1 9>&- &
 second=$!
 runs+=("$second")
 for _ in $(seq 100); do

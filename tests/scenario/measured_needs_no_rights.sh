@@ -110,7 +110,7 @@ for log, (charged, passed) in took.items():
 assert took["other-hears"][1] < 1.02 * took["other-hears"][0], took
 assert took["robot-deaf"][1] > 1.2 * took["robot-deaf"][0], took
 # What two runs, one after the other, are charged for the same work depends on what the host did meanwhile, and so do
-# most pieces of one run: a neighbour may have half of the core for a while. The cheapest ones met a quiet host. In one run
+# most pieces of one run: a neighbour may have half of the core for a while. The cheapest quarter met a quiet host. In one run
 # the long pieces of both robots are computed at the same time, a millisecond here and a millisecond there, and so are
 # the short ones, each of which is 0.03 of a long one.
 for rights in ("with", "without"):
