@@ -11,7 +11,8 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 option(TCS_WERROR "Treat warnings as errors, as developers and CI do; compilers that come later warn of more" OFF)
 # Three quarters of compiling go into headers, which are read once for all sources that are compiled as one. Missing
 # includes do not show then: `./dev build dev` compiles each source by itself.
-option(TCS_UNITY "Compile the sources of a library twelve at a time" OFF)
+option(TCS_UNITY "Compile many sources of a library at a time" OFF)
+set(TCS_UNITY_BATCH 24)
 
 include(TcsSanitizers)
 
@@ -36,7 +37,7 @@ function(tcs_target_defaults target)
     tcs_target_sanitize(${target})
   endif()
   if(TCS_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${TCS_UNITY_BATCH})
   endif()
 endfunction()
 

@@ -16,7 +16,7 @@ constexpr std::int64_t kWorthSayingNs = 50'000'000;
 constexpr double kWeight = 0.2;                     // of the last stretch among all before it
 constexpr std::int64_t kTellingNs = 1'000'000'000;  // of real time, for a first guess
 
-double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+double AsSeconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
@@ -30,14 +30,14 @@ std::string LiveLine::ToGo(const RunProgress& progress) {
   }
   last_real_ns_ = progress.real_ns;
   if (progress.real_ns < kTellingNs || rate_ <= 0) return {};
-  const double left_s = Seconds(std::max<std::int64_t>(0, duration_ns_ - progress.virtual_ns));
+  const double left_s = AsSeconds(std::max<std::int64_t>(0, duration_ns_ - progress.virtual_ns));
   return "about " + AsTime(left_s / rate_) + " to go";
 }
 
 std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   const double passed_ns = static_cast<double>(progress.virtual_ns - last_virtual_ns_);
-  std::string text = fmt::format("{:.1f} of {:.1f} virtual s", Seconds(progress.virtual_ns),
-                                 Seconds(duration_ns_));
+  std::string text = fmt::format("{:.1f} of {:.1f} virtual s", AsSeconds(progress.virtual_ns),
+                                 AsSeconds(duration_ns_));
   if (text.size() > columns) text.resize(columns);
   // Whole, or not at all: whether there was room.
   const auto add = [&](const std::string& item) {
@@ -53,7 +53,7 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
   if (progress.pace.stands) {
     add("paused");
   } else if (progress.pace.late_ns > kWorthSayingNs) {
-    add(fmt::format("{:.1f} s behind pace {:g}", Seconds(progress.pace.late_ns),
+    add(fmt::format("{:.1f} s behind pace {:g}", AsSeconds(progress.pace.late_ns),
                     progress.pace.pace));
   } else {
     add(ToGo(progress));
@@ -69,7 +69,7 @@ std::string LiveLine::Text(const RunProgress& progress, std::size_t columns) {
     has_room = has_room && add(fmt::format("{} {:.0f} %", load.client, 100.0 * share));
     last_ns = load.charged_ns;
   }
-  if (has_room) add(fmt::format("drift {:.3f} ms", Seconds(progress.drift_ns) * 1e3));
+  if (has_room) add(fmt::format("drift {:.3f} ms", AsSeconds(progress.drift_ns) * 1e3));
   last_virtual_ns_ = progress.virtual_ns;
   return text;
 }

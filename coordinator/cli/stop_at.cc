@@ -8,7 +8,7 @@ namespace tcs {
 
 namespace {
 
-std::string Seconds(VirtualDuration time) { return SecondsText(time.ns()); }
+std::string TimeText(VirtualDuration time) { return SecondsText(time.ns()); }
 
 }  // namespace
 
@@ -26,15 +26,16 @@ std::string WhyNoStopAt(const Scenario& scenario, VirtualDuration duration,
   }
   if (stop_at > duration) {
     return fmt::format("--stop-at: {} is after the end, {}; --duration sets a later one",
-                       Seconds(stop_at), Seconds(duration));
+                       TimeText(stop_at), TimeText(duration));
   }
   const std::int64_t period_ns = scenario.csv_period.ns(), rest_ns = stop_at.ns() % period_ns;
   if (rest_ns == 0) return {};
   return fmt::format(
       "--stop-at: the world is written every {} (csv_period), at {} and at {}, but not at {}; take "
       "one of these, or another period",
-      Seconds(scenario.csv_period), Seconds(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns)),
-      Seconds(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns + period_ns)), Seconds(stop_at));
+      TimeText(scenario.csv_period), TimeText(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns)),
+      TimeText(VirtualDuration::Nanoseconds(stop_at.ns() - rest_ns + period_ns)),
+      TimeText(stop_at));
 }
 
 std::string NoWayBack(const std::string& from) {

@@ -17,9 +17,9 @@ constexpr std::size_t kMostThreads = 16;  // of a robot: all of them are looked 
 // So many turns in a row have to be so short before one is had beside; and twice as many each time
 // that the thread then did what ends such a turn.
 constexpr int kShortTurns = 3, kMostShortTurns = 256;
-constexpr HostDuration kShort = HostDuration::Microseconds(200);
+constexpr HostDuration kShortTurn = HostDuration::Microseconds(200);
 // Between two looks, while a turn is waited for, at what the kernel has to say.
-constexpr std::int64_t kLookNs = 20'000;
+constexpr std::int64_t kLookBesideNs = 20'000;
 // So long a thread may be kept from running by others of the host.
 constexpr std::int64_t kPatienceNs = 1'000'000;
 
@@ -92,7 +92,7 @@ bool TurnsBeside::IsOver(const Task& task) const {
 bool TurnsBeside::Await(Task& task) {
   Beat();
   const RunClock& clock = parts_.clock;
-  const std::uint64_t begun_tsc = __rdtsc(), look_ticks = clock.TicksIn(kLookNs);
+  const std::uint64_t begun_tsc = __rdtsc(), look_ticks = clock.TicksIn(kLookBesideNs);
   const std::uint64_t until_tsc = begun_tsc + clock.TicksIn(kPatienceNs);
   std::uint64_t now_tsc = begun_tsc, look_tsc = begun_tsc + look_ticks;
   while (!IsOver(task) && now_tsc < until_tsc) {
@@ -139,7 +139,7 @@ void TurnsBeside::Forget(Task& task) {
 
 void TurnsBeside::NoteTurn(Task& task, bool beside) const {
   if (cpu_ == nullptr) return;
-  const bool computes = task.ran >= kShort || task.used_up >= Task::kComputes;
+  const bool computes = task.ran >= kShortTurn || task.used_up >= Task::kComputes;
   // Where the dynamics have something for the robot by then, it has to hold wherever it runs.
   const bool holds_for_others =
       task.state == TaskState::kHolding && OwnNow(task).ns() <= task.grant.local_read_safe_ns;

@@ -15,7 +15,7 @@ namespace tcs {
 namespace {
 
 // A thread that makes others while it is looked for makes them on the CPU that it is to leave.
-constexpr int kMostPasses = 8;
+constexpr int kMostMovePasses = 8;
 
 // Threads that are bound elsewhere stay there. False if there was none.
 bool MoveThreadsOf(pid_t pid, int from, int to) {
@@ -29,7 +29,7 @@ bool MoveThreadsOf(pid_t pid, int from, int to) {
 void MoveAll(int from, int to) {
   BindTo(0, to);  // first: here hardly anything is left to it
   bool found = true;
-  for (int pass = 0; found && pass < kMostPasses; ++pass) {
+  for (int pass = 0; found && pass < kMostMovePasses; ++pass) {
     found = MoveThreadsOf(getpid(), from, to);
     for (const pid_t pid : DescendantsOf(getpid())) found |= MoveThreadsOf(pid, from, to);
   }

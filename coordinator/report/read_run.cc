@@ -85,14 +85,14 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
   return run;
 }
 
-struct Point {
+struct BodyPoint {
   double x = 0, y = 0, z = 0;
 };
 
-std::optional<Point> PointOf(const CsvFields& fields) {
+std::optional<BodyPoint> PointOf(const CsvFields& fields) {
   const auto x = ToReal(fields[2]), y = ToReal(fields[3]), z = ToReal(fields[4]);
   if (!x || !y || !z) return {};
-  return Point{*x, *y, *z};
+  return BodyPoint{*x, *y, *z};
 }
 
 // The links of a model are called MODEL/LINK.
@@ -137,7 +137,7 @@ class TrackBuilder {
   Run& run_;
   std::vector<std::string> wanted_;
   const bool takes_first_ = wanted_.empty();
-  Point points_[2];
+  BodyPoint points_[2];
   double times_[2] = {-1, -2}, last_ = -1;
 };
 

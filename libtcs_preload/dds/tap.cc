@@ -97,8 +97,8 @@ class InstanceOfWriter {
   ddsi_tkmap_instance* held_ = nullptr;
 };
 
-bool Store(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
-           ddsi_tkmap_instance* instance) {
+bool StoreTapped(ddsi_rhc* rhc, const ddsi_writer_info* info, ddsi_serdata* sample,
+                 ddsi_tkmap_instance* instance) {
   Tap& tap = TapOf(rhc);
   std::unique_lock lock(tap.mutex, std::defer_lock);
   if (tap.catches_up) lock.lock();
@@ -124,7 +124,7 @@ void UnregisterWriter(ddsi_rhc*, const ddsi_writer_info*) {}
 void RelinquishOwnership(ddsi_rhc*, const std::uint64_t) {}
 void SetQos(ddsi_rhc*, const dds_qos_t*) {}
 
-void Free(ddsi_rhc* rhc) {
+void FreeTap(ddsi_rhc* rhc) {
   Tap* tap = &TapOf(rhc);
   RemoveTap(tap);
   for (ddsi_serdata* sample : tap->had) ddsi_serdata_unref(sample);
@@ -146,15 +146,16 @@ dds_return_t Associate(dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) 
   return DDS_RETCODE_OK;
 }
 
-constexpr dds_rhc_ops kOperations = {{Store, UnregisterWriter, RelinquishOwnership, SetQos, Free},
-                                     ReadNothing,
-                                     ReadNothing,
-                                     ReadNoCdr,
-                                     ReadNoCdr,
-                                     AddCondition,
-                                     RemoveCondition,
-                                     LockSamples,
-                                     Associate};
+constexpr dds_rhc_ops kOperations = {
+    {StoreTapped, UnregisterWriter, RelinquishOwnership, SetQos, FreeTap},
+    ReadNothing,
+    ReadNothing,
+    ReadNoCdr,
+    ReadNoCdr,
+    AddCondition,
+    RemoveCondition,
+    LockSamples,
+    Associate};
 
 }  // namespace
 

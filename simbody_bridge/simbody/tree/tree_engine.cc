@@ -12,7 +12,7 @@
 namespace tcs {
 namespace {
 
-constexpr double kFirstTryS = 1e-3;
+constexpr double kFirstTreeTryS = 1e-3;
 // Where something touches, or is about to.
 constexpr VirtualDuration kContactStep = VirtualDuration::Milliseconds(1);
 
@@ -50,7 +50,7 @@ class TreeEngine : public ForestEngine<SteppedTree> {
         longest_step_(world.integrator.StepOr(kLongestStep)),
         accuracy_(world.integrator.accuracy) {}
 
-  IslandStart StartOf(int island) override { return {At(island).start(), kFirstTryS}; }
+  IslandStart StartOf(int island) override { return {At(island).start(), kFirstTreeTryS}; }
   VirtualDuration LongestStep(int /*island*/) const override { return longest_step_; }
   bool has_set_steps() const override { return has_set_steps_; }
 
