@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Under fixed accounting each allocation costs what it is said to, whatever function makes it and in
 # each thread, and from 1000 locks in a row on each a hundredth of that; computing costs nothing. 1000 of them stand between two readings of the clock, the
 # second of which costs 1 us; a thread that has just begun may owe one more, or have paid it.
+# Topics: accounting, threads.
 costs() {
   local each=$1 said names
   shift

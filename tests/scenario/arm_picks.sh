@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example's arm takes all parts off the belt, twice the same to the byte where computing costs what is
 # set, and on Simbody, too. Where computing takes time, a quick computer of four cores takes them all, too, and a slow one of one
 # core misses most, because its plans are not ready.
+# Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 pick() {

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What a body does depends on the commands to it, and not on who has come how far: the same bytes for
 # every drift bound, however programs compute, charged by the clock or not, and with others who look.
+# Topics: determinism, physics, commands, drift.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/planners_world.sh"
 # A planner whose next DDS sample is always there has an activation for each one that it takes, though
 # it never waits, however it takes them; one that only reads samples has none for that.
+# Topics: activations, dds.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 kinds=(taking waiting loaned reading draining)

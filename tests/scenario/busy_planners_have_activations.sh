@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A planner whose next message is always there already never waits, and has an activation for each
 # message all the same, however it receives. Those that wait have no more than before: neither for what
 # they receive in one go, nor for several messages of one period.
+# Topics: activations, udp.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 python=$(python3 -c 'import sys; print(sys.executable)')  # python3 may be a script that runs it

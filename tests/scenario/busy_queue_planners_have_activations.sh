@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/planners_world.sh"
 # A planner whose next message is always there in a queue of the kernel's, System V's or POSIX's, has
 # an activation for each message that it takes, though it never waits. One that takes all there is at
 # each turn has one for the turn.
+# Topics: activations.
 out=$(mktemp -d)
 keys=$((($$ & 0xffffff) * 16))
 remove_queues() {

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The same binaries in a world that stands still while they compute: a planner of one second, asked
 # again every 0.1 s, runs ten times as far as the world, and the more the longer the run. Set costs
 # make it quick.
+# Topics: scheduling, activations, examples.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for ms in 500 1000; do

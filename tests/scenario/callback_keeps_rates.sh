@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # While a program waits the world catches up with it: one that computes for 4 ms of every 10 ms runs
 # 100 times in a second of the world, and is never ahead of it by more than it computes at a time.
+# Topics: scheduling, timers.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/paced.py" <<'PY'

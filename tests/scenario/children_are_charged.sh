@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A client's row counts all that it has started: what a shell runs, children of children, those that
 # go into the background by themselves, threads that have ended, and threads killed with their process.
+# Topics: accounting, processes, threads.
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"

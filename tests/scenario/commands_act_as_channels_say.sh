@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Channels say along whose axes commands act and how they lag, bodies have drag in a wind: what the bodies of a run do
 # follows the closed forms, on both engines.
+# Topics: commands, physics.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The dynamics lead while a program computes on and on. What it commands meanwhile acts from the very
 # moment of the send all the same: the push between two commands is as long as the time between them. Another
 # robot never rests, so that the program sends at times that others have not come to.
+# Topics: commands, udp, physics.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What a program sends to the world by UNIX and UDP datagrams goes through its postbox: neither is the program stopped for
 # it, nor does tcsim wake. It acts when it was sent, as what the kernel carries, whatever call has sent it, and in the same
 # order, also where the kernel carries some of it. What cannot be sent fails as it does natively.
+# Topics: commands, udp, unix sockets, scheduling, containers.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 contained=0

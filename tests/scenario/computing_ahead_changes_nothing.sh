@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two robots whose planners compute, a controller of 100 Hz beside each, and a body that moves: what they are charged is
 # what they have computed, and the run's invariants hold, with one processor of the host and with two,
 # where planners compute ahead.
+# Topics: host processors, accounting, scheduling.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 {

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A scenario that asks for contact forces gets contacts.csv: what lies on the floor is held up by its weight,
 # what falls touches nothing. A run that does not ask for them writes the same bytes otherwise.
+# Topics: contacts, physics.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for engine in simbody mujoco; do

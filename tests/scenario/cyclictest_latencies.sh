@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # cyclictest measures how late a periodic thread wakes. Alone on its processor: by the call that
 # asks for the time under fixed accounting, by what it has computed under measured. The other
 # threads of several wait for those that are due at the same instant.
+# Topics: scheduling, timers, ordinary programs.
 latencies() { on_cores 1 "$@"; }
 on_cores() {
   "$tcsim" exec --cores "$1" --accounting "$2" -- cyclictest -q -p 80 -i 1000 "${@:3}"

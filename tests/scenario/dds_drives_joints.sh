@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A Cyclone DDS program that knows nothing of tcs reads a pendulum's JointState and holds it where it
 # wants by efforts of its own, as ros2_control's forward controllers are told them; twice the same bytes.
+# Topics: dds, models, commands, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/s.yaml" <<YAML

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program with another Cyclone DDS than Debian's is told so in one line, and uses sockets.
+# Topics: dds, packages, failures.
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
   <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
 work=$(mktemp -d)

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # gdb and strace inside a run end with a sentence that says what works; and tcsim run --gdb opens a client in gdb, for
 # which virtual time stands still.
+# Topics: debuggers.
 type gdb strace cc >/dev/null 2>&1 || exit 77
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -4,6 +4,7 @@ source "$source_root/tests/as_nobody.sh"
 # `tcsim doctor` says what robots with networks of their own take, and what of it is missing. A run of such robots finds
 # the same: with all of it; without /dev/net/tun; where that is root's alone; where TCP's timers cannot be turned off;
 # where the kernel makes no networks; in a chroot whose / is no mount point; as root without CAP_SYS_ADMIN.
+# Topics: doctor, network, rights.
 ((EUID == 0)) || exit 77  # to take away what there is
 command -v python3 >/dev/null || exit 77
 "$source_root/tests/scenario/can_have_networks.sh" || exit 77

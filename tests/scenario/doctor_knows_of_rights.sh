@@ -4,6 +4,7 @@ source "$source_root/tests/as_nobody.sh"
 # `tcsim doctor` and each run name what keeps tcsim from real-time priorities, and the command that mends it: the missing
 # capability and limit of a user, and of root; a limit that is too low; a user namespace; a real-time group without a
 # budget; a seccomp filter. Where the command can be called here, it helps.
+# Topics: doctor, rights, priorities.
 ((EUID == 0)) || exit 77  # to take away what there is
 command -v python3 >/dev/null || exit 77
 out=$(mktemp -d)

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Robots that talk over TCP and compute in between, without a world: whenever the kernel hands over
 # what one of them sent, nobody comes further apart than the drift bound.
+# Topics: drift, tcp.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/peer.py" <<'PY'

@@ -4,6 +4,7 @@ source "$source_root/tests/as_nobody.sh"
 # `tcsim dump` says of a run that goes on what each thread does or waits for, since when, until when and on whom. It
 # changes nothing of the run. Of a coordinator that does not answer it says so, and what can be seen from outside.
 # What cannot be asked is one sentence.
+# Topics: dump, failures.
 out=$(mktemp -d)
 chmod 755 "$out"
 runs=()

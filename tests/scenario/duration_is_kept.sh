@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A run of programs that never end lasts exactly its duration, with a world and without one: whether
 # they wait for what never comes, sleep beyond the end, or compute.
+# Topics: ends.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 mkfifo "$out/never"

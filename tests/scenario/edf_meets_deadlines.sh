@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # 2 ms of every 5 and 4 ms of every 7 are 97 % of a core: more than fixed priorities can keep (Liu and
 # Layland, 1973), and within what the earliest deadline first keeps. The same programs on the same
 # computer, to the microsecond as in the textbook.
+# Topics: scheduling, priorities.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 scenario() {  # SCHEDULER DEADLINE_OF_FIVE DEADLINE_OF_SEVEN

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A signal to tcsim ends the run in order: the programs get their grace, and the exit status is 128
 # and the signal's number. A second one at the same moment changes nothing; one that comes later
 # does not wait for the grace any more.
+# Topics: ends, signals.
 out=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$out"' EXIT
 

@@ -4,6 +4,7 @@ source "$source_root/tests/dds/soak/scenario.sh"
 # Under fixed accounting it changes nothing how long the environment is (the home directory, PATH, the folder that tcs is in), nor
 # how many digits process numbers have: main's stack is at the same address, and DDS programs, which order things by their
 # addresses, do the same at the same times.
+# Topics: determinism, dds.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 lengths="0 7 40 3000"

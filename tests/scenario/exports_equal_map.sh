@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The libraries that programs get export what their maps list, no more and no less, and depend on
 # libc alone, but for the one that is for programs that use Cyclone DDS.
+# Topics: packages, preloading.
 check() {
   local library=$build/lib/$1 map=$source_root/libtcs_preload/$2 allowed=$3 listed has needed
   listed=$(sed -n 's/^ *\([A-Za-z_0-9]*\);$/\1/p' "$map" | LC_ALL=C sort)

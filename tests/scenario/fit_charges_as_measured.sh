@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What `tcsim fit` finds in a measured run of the example makes fixed runs charge the same: each
 # client within 5 %, its planner does as much in as many plans, within 10 %. And they repeat to the byte.
+# Topics: accounting, examples, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 example=$build/examples/predator_prey/scenario.yaml

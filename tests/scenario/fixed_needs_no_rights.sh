@@ -4,6 +4,7 @@ source "$source_root/tests/as_nobody.sh"
 # Who may not have a real-time priority runs the same worlds under --accounting fixed, and what is written is
 # the same to the byte: by threads, children, births and ends, signals, pipes, and the example's flight. So it is
 # where Docker's default profile refuses pidfd_getfd besides, whether a real-time priority is to be had or not.
+# Topics: rights, determinism, containers.
 ((EUID == 0)) || exit 77  # to have both
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

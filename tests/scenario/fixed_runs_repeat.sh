@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two deterministic runs of the example write the same bytes: body states, commands, what programs
 # said and when, schedule trace, activations and dispatches.
+# Topics: determinism, examples.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for run in first second; do

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Who lives at the run's end gets a signal, and virtual time to write what it has and to exit; who
 # does not is killed. The run itself, and what it says of itself, ends where it was to end.
+# Topics: ends, signals.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 

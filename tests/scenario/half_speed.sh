@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A fixed piece of work takes twice as long on a processor half as fast. The least of several runs in
 # turn: a hypervisor that takes the processor away unseen, or a busy neighbour, looks like work.
+# Topics: cores, accounting.
 program='
 import time
 t = time.monotonic()

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # While the kernel holds the thread whose turn it is, others get the processor that were sent a
 # signal or were stopped halfway in a call; and whatever they wait in may be interrupted, as where a
 # container is frozen for a moment. Nothing of a fixed run may depend on that.
+# Topics: determinism, threads, signals.
 out=$(mktemp -d)
 trap 'kill ${writer:-} 2>/dev/null || true; rm -rf "$out"' EXIT
 mkfifo "$out/fifo"

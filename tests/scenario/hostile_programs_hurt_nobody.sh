@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Beside a program that does its worst an honest one prints to the byte what it prints alone, the run
 # ends in time, and nothing is left of it. TCS_HOSTILE_ROUNDS asks for more rounds than the kinds of
 # what it does, TCS_HOSTILE_FIRST for another one to begin with.
+# Topics: isolation, determinism, clean-up.
 rounds=${TCS_HOSTILE_ROUNDS:-32}
 first=${TCS_HOSTILE_FIRST:-0}
 out=$(mktemp -d)

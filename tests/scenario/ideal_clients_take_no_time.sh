@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # On an ideal robot time stands still while a program computes and goes on while it waits: a bridge answers at the
 # instant. What never waits there does not hold the world up for ever.
+# Topics: accounting, timers, scenario files.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/computes.py" <<'PY'

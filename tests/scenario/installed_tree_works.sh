@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # An installed tree is all that a user needs, wherever it has been moved to: the first flight, programs of a project
 # that finds it, the manual pages and completions.
+# Topics: packages.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/made" >"$work/installed" 2>&1 || fail "$(tail -n 5 "$work/installed")"

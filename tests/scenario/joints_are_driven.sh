@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program that knows nothing of tcs holds a pendulum of a URDF file where it wants it: by efforts of
 # its own, and by one command to the channel's servo. Both as the closed form has it, and twice the same bytes.
+# Topics: models, commands, physics, udp, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/hold.py" <<'PY'

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # DDS between two robots takes the link's time, in shared memory as by sockets: a ping of ddsperf's,
 # Debian's Cyclone DDS as it is, takes 40 ms where 20 ms are in between.
+# Topics: network, dds.
 command -v ddsperf python3 > /dev/null || exit 77
 "$source_root/tests/scenario/can_have_networks.sh" || exit 77
 scratch=$(mktemp -d)

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # 20 ms between two robots are pings of 40 ms. iperf3 finds by TCP the bandwidth that was set, and by
 # UDP the loss. All by Debian's programs as they are. The same packets are lost in each run with one
 # seed.
+# Topics: network, tcp, udp, ordinary programs.
 PATH=$PATH:/usr/sbin
 command -v ping iperf3 python3 > /dev/null || exit 77
 "$source_root/tests/scenario/can_have_networks.sh" || exit 77

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A run watched in a browser while it goes: the robot is where bodies.csv says, the page goes with the run,
 # pauses, steps and paces it by its buttons; at 400 pixels and in the dark; afterwards `tcsim view` shows it.
+# Topics: live page, examples.
 for command in chromium chromedriver; do
   command -v "$command" >/dev/null || fail "$command is not installed (cmake/packages.txt)"
 done

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A run that is watched, paused, stepped and paced from its page: steps are exact, what it writes is the
 # same to the byte as without all that, and whoever watches badly, or dies, keeps it from nothing.
+# Topics: live page, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 "$tcsim" run "$build/examples/rover/scenario.yaml" --accounting fixed --duration 2s --out "$out/plain" >"$out/said" 2>&1 || fail "$(cat "$out/said")"

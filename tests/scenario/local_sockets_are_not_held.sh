@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Who looks into a socket that only its own robot's programs, and sensors, can send to, or sends there, does not wait for
 # other robots: a tick of a loop is one dispatch, though other robots tick, too. And from another robot's first
 # datagram on, whichever way it is sent, nothing is seen too late: it counts as sent when the socket was last looked into.
+# Topics: scheduling, unix sockets, network.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/ticks.py" <<'PY'

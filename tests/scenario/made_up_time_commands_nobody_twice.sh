@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program commands a rotor on and on while the processor is taken away from it again and again. Where what was stolen is
 # made good its clock stands still, so that commands have one time though it computed in between: nothing is said of that. Two
 # programs that command a rotor at one instant are named.
+# Topics: commands, host processors, accounting.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cp "$(dirname -- "${BASH_SOURCE[0]}")/craft.urdf" "$out"

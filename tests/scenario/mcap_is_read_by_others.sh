@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The recording of a whole run in MCAP is read by Foxglove's reader: its messages decode to what was written, on
 # DDS, on channels of JSON and of the world; it has what the same run's bag in SQLite has; and what was recorded
 # until the coordinator was killed can be read.
+# Topics: recording, dds, failures.
 if ! MCAP_READER=$("$source_root/tests/mcap/install.sh" "$build" 2>&1); then
   printf 'SKIPPED: %s\n' "$MCAP_READER"
   exit 77

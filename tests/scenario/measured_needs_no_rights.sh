@@ -5,6 +5,7 @@ source "$source_root/tests/as_nobody.sh"
 # same to the byte. Measured, drift and staleness keep their bounds, charges agree with the threads' own CPU
 # clocks, and known work costs the same with and without calls, beside others and alone.
 # The example's two flights are the same where Docker's default profile refuses pidfd_getfd besides.
+# Topics: rights, accounting, drift, containers.
 ((EUID == 0)) || exit 77  # to have both
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

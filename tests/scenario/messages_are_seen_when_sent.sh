@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # busy with another program, whatever the drift bound. The sender sleeps between them, so that this
 # costs three dispatches for each under measured accounting: of the sender, of the receiver, of the
 # busy program.
+# Topics: scheduling, udp, threads.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 program="$build/bin/paced_datagrams"

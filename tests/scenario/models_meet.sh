@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two crates slide towards each other among others that stand on the same floor: they collide and share
 # their momentum, the others stand, and a run that integrates on two processors writes the same bytes.
+# Topics: contacts, physics, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 {

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Debian's MQTT broker and its clients, unmodified: a message is seen when it is sent, the first one
 # 1 s after the subscription, the others 5 s apart, by one publisher or by one for each.
+# Topics: ordinary programs, tcp, timers, containers.
 PATH=$PATH:/usr/sbin
 command -v mosquitto mosquitto_sub mosquitto_pub > /dev/null || exit 77
 scratch=$(mktemp -d)

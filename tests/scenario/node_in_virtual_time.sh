@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Timers, workers and child processes of Node.js.
+# Topics: languages, timers, threads, processes.
 command -v node >/dev/null || exit 77
 program=$(mktemp --suffix .js)
 trap 'rm -f "$program"' EXIT

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Whoever is killed, and however: no process of the run is left, nor anything in /dev/shm. The client
 # and its own child both spin at real-time priority.
+# Topics: clean-up, priorities, containers.
 mark="tcs_mark_$$"
 program="sh -c 'while :; do :; done # $mark' & while :; do :; done # $mark"
 trap 'pkill -9 -f "$mark" || true' EXIT

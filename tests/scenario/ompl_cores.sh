@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Stock OMPL with threads, as it is, on one core and on four. Four planners on four cores explore
 # about four times as much in the same virtual time as the same four on one core.
+# Topics: ompl, cores, threads.
 plan() { "$tcsim" exec --cores "$1" -- "$build/bin/ompl_planners" "$2" 0.3; }
 checks() { plan "$1" parallel | awk '{for (i = 2; i <= NF; ++i) if ($i == "checks,") print $(i - 1)}'; }
 # How fast the host is may change between the two: another try then.

@@ -10,6 +10,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 #   VectorFieldConservative, VectorFieldNonconservative, StateSampling,
 #   RigidBodyPlanningWithODESolverAndControls, RigidBodyPlanningWithIntegrationAndControls
 #                                up to 10 s or 30 s natively, with no option to make it less
+# Topics: ompl, ordinary programs.
 demos=$build/bin/ompl_demos
 [[ -x $demos/RigidBodyPlanning ]] || { echo "OMPL's demos are not built" >&2; exit 77; }
 work=$(mktemp -d)

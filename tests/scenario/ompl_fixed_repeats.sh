@@ -5,6 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # OMPL's own thread sleeps at the end, 1 us for each of the calls that it has made, and what the
 # planner does until it looks at the thread's flag: of PRMstar that is a search of its whole roadmap,
 # thousands of allocations, of AnytimePathShortening a path's simplification.
+# Topics: ompl, determinism, threads.
 repeats() {
   local cores=$1 cost=$2 first second
   shift 2

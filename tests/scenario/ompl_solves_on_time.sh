@@ -7,6 +7,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # really cost is a matter of the host, natively some 5 us each, and 10 us where a neighbour keeps half of
 # the core; but a look that is missed costs 10 ms. Four planners on one core keep the thread no longer from the core than one does. Nor does a
 # planner that computes ahead, on a second processor of the host, keep it waiting.
+# Topics: ompl, timers, threads.
 took() {
   "$tcsim" exec --host-cpus "$1" --accounting "$2" --cores "$3" -- "$build/bin/ompl_planners" "$4" 1.0 |
     awk '{for (i = 1; i < NF; ++i) if ($i == "took") print $(i + 1)}'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$source_root/tests/as_nobody.sh"
 # A client cannot stop, kill, trace or starve tcsim's own processes, nor reach anybody outside the run
 # with a signal to all; and where somebody else stops them, the run goes on.
+# Topics: isolation, signals, containers.
 out=$(mktemp -d)
 trap 'kill $outsider 2>/dev/null || true; rm -rf "$out"' EXIT
 sleep 600 &

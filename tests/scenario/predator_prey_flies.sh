@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example flies: drift within its bound, every client served, charges as the CPU clocks say.
+# Topics: examples, drift, accounting, dds.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 3s --out "$out" >"$out/said"

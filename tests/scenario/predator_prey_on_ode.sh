@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example flies on ODE as on Simbody: the same commands at the same times move its bodies the
 # same way, but for what a first-order step of 1 ms adds. Under set costs the computing is the same,
 # so that two runs on ODE are identical, too.
+# Topics: examples, physics, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 fly() {

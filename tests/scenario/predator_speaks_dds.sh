@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The predator's programs are Cyclone DDS programs like any other: natively, over the real network,
 # they find a robot and each other, plan, and follow their plans.
+# Topics: examples, dds.
 export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
   <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
 example=$build/examples/predator_prey

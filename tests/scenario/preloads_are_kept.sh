@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What the user preloads is there beside the shim, and before it: set around tcsim, in a scenario,
 # or by a program for its children. Nobody who sets LD_PRELOAD, or empties the environment, loses the shim.
+# Topics: preloading, processes.
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"

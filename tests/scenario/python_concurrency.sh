@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Threads, event loops, processes, pools, queues and signals of Python: each takes the virtual time
 # that its sleeps say, and at most what starting interpreters costs besides.
+# Topics: languages, threads, processes, containers.
 program=$(mktemp --suffix .py)
 trap 'rm -f "$program"' EXIT
 cat >"$program" <<'PY'

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Every way that Python sleeps and waits is virtual: the sum of them all is exact to 0.1 s.
+# Topics: languages, timers.
 program='
 import time, select, socket, signal
 t0, m0 = time.time(), time.monotonic()

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Python's waits for signals end at their virtual time: at the deadline, with a timer, with the
 # signal of another thread, at the end of a child.
+# Topics: languages, signals, timers.
 program='
 import os, signal, subprocess, threading, time
 start = time.monotonic()

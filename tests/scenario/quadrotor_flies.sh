@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example flies, twice the same to the byte where computing costs what is set; on a slower computer it
 # loses more height to the same push. A swarm of three flies, too.
+# Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 folder=$build/examples/quadrotor

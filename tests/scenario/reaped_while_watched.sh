@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Somebody looks into /proc all the time, as `top` does, while processes of several threads end and
 # are reaped. The threads themselves remove their entries there, in the kernel: were one of them kept
 # from it, whoever reaps its process would spin in the kernel for ever.
+# Topics: processes, threads.
 watchers=()
 trap '((${#watchers[@]})) && kill "${watchers[@]}" 2>/dev/null; true' EXIT
 for ((cpu = 0; cpu < $(nproc); ++cpu)); do

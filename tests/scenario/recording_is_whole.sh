@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The recording of a whole run is a bag as ROS 2 reads it: the database is in order, metadata.yaml
 # counts what is in it, all messages can be read, and say what was written, at its virtual time.
+# Topics: recording, ros, determinism.
 out=$(mktemp -d)
 run=
 trap '[[ -z $run ]] || kill -9 "$run" 2>/dev/null || true; rm -rf "$out"' EXIT

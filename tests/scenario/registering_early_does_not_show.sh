@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # While the kernel holds the process whose turn it is, the child that it has just made gets the
 # processor, and comes to register before its own turn: nothing of a fixed run may depend on that.
+# Topics: determinism, processes.
 out=$(mktemp -d)
 trap 'kill ${writer:-} 2>/dev/null || true; rm -rf "$out"' EXIT
 mkfifo "$out/fifo"

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The world of a run, shown again in a browser: the robot is where bodies.csv says, whichever way the time
 # is set (slider, keys, playing, a click in the timeline or on what a program said); at 400 pixels, by
 # touch, in the dark, in print, and without WebGL. Contact forces are arrows, which point where they push.
+# Topics: report, contacts, examples.
 for command in chromium chromedriver; do
   command -v "$command" >/dev/null || fail "$command is not installed (cmake/packages.txt)"
 done

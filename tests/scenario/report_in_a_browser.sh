@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Real runs, their page, and what a browser makes of it: every figure is there, nothing is asked of
 # anybody else, nothing is wider than a telephone, and the timeline shows the part that its address
 # names.
+# Topics: report, trials, examples.
 command -v chromium >/dev/null || fail "chromium is not installed (cmake/packages.txt)"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

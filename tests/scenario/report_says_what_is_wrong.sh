@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What no page can be made of is refused with one sentence; what one can is reported without it.
+# Topics: report, failures.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cd "$out"

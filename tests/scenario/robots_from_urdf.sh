@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Robots from URDF files move as their files say: a pendulum with the period of the closed form, a
 # rover that drops onto its wheels; twice the same bytes. What is wrong in a file is said with its line.
+# Topics: models, physics, failures, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cp -r "$source_root/tests/models" "$out/models"

@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # addresses and ports, finds the other by its name, and reads 20 ms later what the other has written,
 # by UDP and by TCP. None of the programs was written for this. In `fixed` two runs of it, also at
 # once, write the same bytes.
+# Topics: network, udp, tcp, determinism.
 command -v python3 > /dev/null || exit 77
 "$source_root/tests/scenario/can_have_networks.sh" || exit 77
 scratch=$(mktemp -d)

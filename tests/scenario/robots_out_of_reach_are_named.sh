@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A robot whose programs do not reach it has done nothing: the end of the run says so, and why; a robot
 # that is reached gets no warning. What a program that failed said last is part of the sentence.
+# Topics: failures, commands, udp.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cp "$source_root"/examples/hover/hover.{py,yaml} "$out"

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A Cyclone DDS program that knows nothing of tcs reads the sensors of a rover that stands on blocks in
 # a room, and turns its wheels by Twist: all as closed forms have it; twice the same bytes.
+# Topics: sensors, dds, ros, models, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/s.yaml" <<YAML

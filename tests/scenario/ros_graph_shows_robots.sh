@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # ROS 2's graph tools find a node for each robot, with its publishers and subscriptions by the GUIDs
 # that DDS has for them; who comes late finds it, too, in the form of the release that the scenario
 # names; a tool of the other one finds none.
+# Topics: ros, dds.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/scenario.yaml" <<YAML

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Debian's ROS 1, a master, a publisher, a subscriber that measures rates and a recorder, talks over
 # TCP and XML-RPC in Python and C++: half a minute of it at exactly the rate that was asked for.
+# Topics: ros, tcp, recording, timers.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/session.sh" <<'SESSION'

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program that knows nothing of tcs spins the rotors of a robot and pushes its link: it climbs and turns as the
 # closed form has it, on each engine; what was commanded twice, beyond a limit or never is said at the end.
+# Topics: models, commands, physics.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cp "$(dirname -- "${BASH_SOURCE[0]}")/craft.urdf" "$out"

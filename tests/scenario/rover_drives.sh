@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The example drives, twice the same to the byte where computing costs what is set; on a slow computer, and beside a
 # process that eats its time, fewer scans are answered, and later.
+# Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 drive() {

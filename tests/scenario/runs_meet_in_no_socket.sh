@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two runs of one scenario at once, from one folder, and of another example beside them: each has sockets of its own, so
 # that with fixed costs each writes the same bytes as a run alone.
+# Topics: determinism, unix sockets, examples.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 fly() {  # EXAMPLE NAME DURATION

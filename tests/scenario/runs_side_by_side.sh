@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Runs started at once do not stop each other's threads: each claims a CPU, and waits for one.
+# Topics: host processors.
 program='
 import time
 t = time.monotonic()

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Runs that wait for a processor get it in the order in which they came, whatever becomes of those ahead of them, and
 # say how many runs are ahead.
+# Topics: host processors.
 out=$(mktemp -d)
 holders=() runs=()
 trap 'kill "${holders[@]}" 2>/dev/null || true; kill -9 "${runs[@]}" 2>/dev/null || true; rm -rf "$out"' EXIT

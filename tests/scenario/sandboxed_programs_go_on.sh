@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program that asks for Landlock's version, and cuts itself off from whatever that version lets it, as xz does on
 # Debian 13, goes on to start threads and children.
+# Topics: processes, threads, ordinary programs.
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cat >"$folder/sandboxed.py" <<'PY'

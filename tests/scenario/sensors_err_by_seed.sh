@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Sensors say what a body feels, with the errors that the scenario gives them: the same ones for the same seed, whoever else
 # runs; commands are held to their limits.
+# Topics: sensors, commands, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/log.py" <<'PY'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Jobs, traps and timeouts of bash, and what people write in pipelines. Allocations cost nothing,
 # so that a shell does what it does next before its child has begun. Where seconds are counted, they
 # are those of the calendar: each begins with a new one, for computing takes some milliseconds.
+# Topics: languages, signals, processes, timers.
 begin='sleep 0.$(printf %09d $((1000000000 - 1$(date +%N) + 1000000000)))'
 expect() {
   local wanted=$1 said accounting

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Signals come from outside in any instant of a program's calls, between a call and the moment in which the coordinator
 # has it: no call fails that natively does not, with rights and without.
+# Topics: signals, rights.
 out=$(mktemp -d)
 sender=
 trap '[[ -z $sender ]] || kill "$sender" 2>/dev/null || true; rm -rf "$out"' EXIT

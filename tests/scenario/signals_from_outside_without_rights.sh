@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Without rights the kernel keeps signals from a thread that waits in a call which tcs holds: one from
 # outside, ^C say, reaches its handler all the same.
+# Topics: signals, rights.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 program='

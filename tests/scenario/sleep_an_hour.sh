@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two readings of the clock around an hour's sleep are an hour apart, and what the programs compute between; where that
 # has a set cost, they are in the same second of their hours. Whoever waited for the hour would meet this test's timeout.
+# Topics: timers.
 read_clock() {  # ACCOUNTING FORMAT: into t
   mapfile -t t < <("$tcsim" exec --accounting "$1" -- sh -c "date +$2; sleep 3600; date +$2")
   ((${#t[@]} == 2)) || fail "$1: the clock was read ${#t[@]} times"

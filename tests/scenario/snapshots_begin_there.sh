@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A snapshot of a run's world is a piece of a scenario: a run with it begins in that state, to 1e-15 of each number,
 # and bodies move on as they did. Programs cannot be taken back, which is said in one sentence.
+# Topics: scenario files, physics, models.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 run() { "$build/bin/in_own_network" "$tcsim" run "$@" --accounting fixed >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }

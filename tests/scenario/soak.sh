@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # 200 clients of mixed kinds for a minute of virtual time: nobody hangs, loses anything or leaves
 # anything behind, the coordinator does not grow, and progress stays together.
+# Topics: soak, clean-up, drift.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 kinds=(periodic bursts threads births children stream datagrams signals descriptors)

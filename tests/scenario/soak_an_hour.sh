@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # 100 clients, whose children come and go, a hundred of each in an hour of virtual time: the
 # coordinator's memory and descriptors do not grow. A third argument is how many seconds of it,
 # instead of twenty minutes: 3600 are the hour, and 10,000 children.
+# Topics: soak, processes.
 seconds=${3:-1200}
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

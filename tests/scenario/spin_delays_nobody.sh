@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A pure spin, without any system call, on one robot; a 100 Hz loop on another. The loop is dispatched
 # at every one of its deadlines, to the nanosecond, and the spin gets all of its own processor.
+# Topics: scheduling, timers.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/loop.pl" <<'PERL'

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A program that spins on the clock for one second is charged one second, within 1 %.
+# Topics: accounting.
 program='
 import time
 t = time.monotonic(); c = time.process_time()

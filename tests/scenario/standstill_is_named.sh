@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Where nothing can happen any more by itself, a run says after a while whom it waits for, and what
 # that one waits for: once, whichever command the run is of. Where input comes soon, or a user sits
 # at a terminal, it says nothing.
+# Topics: failures.
 out=$(mktemp -d)
 run=''
 trap '[ -z "$run" ] || kill "$run" 2>/dev/null || true; rm -rf "$out"' EXIT

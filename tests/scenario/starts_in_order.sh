@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Programs start when their scenario says, at a virtual time or after another one, and in the folders
 # that it names: those of a run's own are fresh in each run and each trial.
+# Topics: scenario files, processes, trials.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A command acts from the instant of its send on: velocity and position follow the closed form of that instant, to
 # the integrator's accuracy, with one body, two and 96, and with any drift bound.
+# Topics: physics, commands, drift.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'

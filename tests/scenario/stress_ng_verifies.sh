@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # stress-ng checks for itself what its stressors get: those that wait. It ends by itself, after so
 # many operations or so much virtual time.
+# Topics: ordinary programs.
 expect_verified() {
   local said accounting
   for accounting in measured fixed; do

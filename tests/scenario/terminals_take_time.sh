@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A robot's programs open /dev/ttyUSB0: Python's termios, C's with VTIME, stdio, socat. Each byte takes the time of its
 # bits in both directions, to the nanosecond.
+# Topics: serial, languages.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/bytes.py" <<'PY'

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Who takes the processor away in the middle of a program's work is not paid for by the program:
 # neither where the kernel charges the thief, nor where no clock tells. What was left out is shown.
+# Topics: accounting, host processors.
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Threads that compute ahead, on a second processor of the host, and end there, each while others compute on: their
 # program joins them, and takes as long as on one processor.
+# Topics: threads, host processors, cores.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/scenario.yaml" <<END

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Fourteen threads and their children do the same in each run under fixed accounting, every reading
 # of the clock included, on one core and on four.
+# Topics: threads, determinism, cores.
 many() {
   "$tcsim" exec --cores "$1" --accounting fixed -- "$build/bin/conformance_many_threads" fixed
 }

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # `tcsim trace` makes one compressed trace of a run: who ran when, an arrow from each message's send to its receive,
 # counters of poses and commands, what programs printed; all of it as the run's tables have it.
+# Topics: recording, examples.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 refused() {  # what is to be said, arguments

@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # their gate and the moment at which their clock is set. Nobody is expelled for that, nor charged more than its CPU clock
 # has counted; less, where a busy host lets the tracer wait, and the program compute meanwhile, out of turn. Threads that
 # are new then (a planner's clock thread, with each plan) are the hard ones.
+# Topics: debuggers, accounting, threads.
 type strace >/dev/null 2>&1 || exit 77
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A Cyclone DDS program sends a JointTrajectory, and the pendulum's servo follows it: where it is to be
 # at each instant, less what the servo lags behind; twice the same bytes, on both engines.
+# Topics: dds, ros, commands, models.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for engine in simbody mujoco; do

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # A trial that fails is named and does not end the others; the next call runs it again, and only it.
 # What would mix trials of two kinds in one folder is refused, and changes nothing.
+# Topics: trials, failures.
 trials() { "$tcsim" trials "$out/scenario.yaml" --accounting fixed --out "$out/t" "$@"; }
 status=0; FAILING_SEED=2 trials --trials 3 --name "three pilots" >"$out/said" 2>"$out/errors" ||
   status=$?

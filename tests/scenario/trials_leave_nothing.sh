@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # Whichever process of `tcsim trials` is killed, and however: nothing of its runs is left, and the
 # next call goes on.
+# Topics: trials, clean-up.
 victims() {  # what to kill of the call whose process is $1
   case $2 in
     guardian) echo "$1" ;;

@@ -5,6 +5,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # A sweep over a cluster of four nodes, one of which is killed in the middle of a trial: each trial has one result, the
 # lost one is named and run again, and all results are those of the same sweep on this machine, to the byte.
 # TCS_SLURM_TRIALS: how many trials.
+# Topics: trials, slurm, determinism.
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 many=$((${TCS_SLURM_TRIALS:-24} / 2))
 trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=1s,1100ms)

@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/slurm_world.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # What a cluster cannot do is said in one sentence; trials that fail are named, and trials whose jobs end are run again,
 # but not for ever; ^C ends the jobs and leaves what is done, and the next call goes on.
+# Topics: trials, slurm, failures, signals.
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 elsewhere=()
 # Longer than a run of somebody else's may hold the processor for which a trial waits.

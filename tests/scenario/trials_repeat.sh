@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # Trials side by side are the same runs as alone, to the byte, whoever has their ports on this
 # machine; so are those of a call that was interrupted and made again.
+# Topics: trials, determinism, network.
 unshare --net true 2>/dev/null || exit 77
 seeds=$(seq 4 7)
 for seed in $seeds; do

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
 # All seeds for each value of a key; a value that comes later gets its trials without those before it.
+# Topics: trials, scenario files.
 trials() {
   "$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials 2 --out "$out/t" \
     --set csv_period=20ms "$@" >"$out/said" 2>&1 || fail "$(cat "$out/said")"

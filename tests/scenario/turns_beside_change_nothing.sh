@@ -4,6 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # look finds all readings from before it and none from after it, each command acts when it was sent, each line of output has
 # its time, and the invariants hold; also where a program does now and then what needs its order: computes for long, makes
 # calls raw, prints, or has the kernel carry a command.
+# Topics: scheduling, host processors, commands, sensors.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 ticks=1500

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Every command of docs/TUTORIAL.md works as it is printed, one after the other, and the results are
 # those that it tells of.
+# Topics: examples, dds, report.
 type idlc gcc python3 >/dev/null 2>&1 || exit 77
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

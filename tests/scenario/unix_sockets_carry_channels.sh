@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A controller on UNIX sockets flies as it does on UDP, to the byte; the socket's file is gone after the run, also
 # after one that was killed, and what is in its way is named.
+# Topics: unix sockets, udp, clean-up, containers.
 out=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$out"' EXIT
 cat >"$out/client.py" <<'PY'

@@ -3,6 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # At the run's end SIGINT goes to the main thread, as the kernel has it, while all of the program's threads wait for each
 # other: none of them is told that a signal has ended its wait but that one. So also where more threads have ended
 # before than the coordinator keeps, so that the main thread has no place before the others.
+# Topics: ends, signals, threads, containers.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 chmod 755 "$out"

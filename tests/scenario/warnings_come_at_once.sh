@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # What tcsim exec warns of stands where it happened in what the program says on its stderr.
+# Topics: failures.
 said=$(timeout 60 "$tcsim" exec -- python3 -c '
 import os, sys, time
 read_end, write_end = os.pipe()

@@ -2,6 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # A Cyclone DDS program drives a rover on a floor by Twist. Where its firmware reckons it from its wheels
 # is where it is, but for their slip; a wrong radius makes it reckon wrong by as much.
+# Topics: dds, ros, models, sensors.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/s.yaml" <<YAML

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Where other runs have all processors, a run says who has them; with --no-wait it fails at once.
+# Topics: host processors, failures.
 out=$(mktemp -d)
 holders=()
 trap 'for pid in "${holders[@]}"; do kill "$pid" 2>/dev/null || true; done; rm -rf "$out"' EXIT
