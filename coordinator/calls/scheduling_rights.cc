@@ -21,8 +21,14 @@ bool IsSameOwner(const Credentials& asking, pid_t tid) {
   return asking.effective_uid == owner.effective_uid || asking.effective_uid == owner.real_uid;
 }
 
+// Where the kernel refuses to say it, as of who has changed users, /proc does; that takes longer.
+rlim_t LimitOf(pid_t tid, __rlimit_resource resource, const char* name) {
+  rlimit limit{};
+  return prlimit(tid, resource, nullptr, &limit) == 0 ? limit.rlim_cur : ReadSoftLimit(tid, name);
+}
+
 rlim_t RealTimeLimitOf(pid_t tid) {
-  const rlim_t limit = ReadSoftLimit(tid, "Max realtime priority");
+  const rlim_t limit = LimitOf(tid, RLIMIT_RTPRIO, "Max realtime priority");
   return limit == 0 && ignores_lack_of_real_time_limit ? RLIM_INFINITY : limit;
 }
 
@@ -44,7 +50,7 @@ bool MaySetScheduling(pid_t asking, pid_t tid, const SchedulingParameters& now,
   // To leave SCHED_IDLE is to raise one's priority: to that of the nice value, which is 0 here.
   constexpr rlim_t kNiceLimitOfZero = 20;
   if (now.policy == SCHED_IDLE && wanted.policy != SCHED_IDLE &&
-      ReadSoftLimit(tid, "Max nice priority") < kNiceLimitOfZero) {
+      LimitOf(tid, RLIMIT_NICE, "Max nice priority") < kNiceLimitOfZero) {
     return false;
   }
   if (now.resets_on_fork && !wanted.resets_on_fork) return false;
