@@ -4,6 +4,7 @@
 
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <stdio.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -30,6 +31,23 @@ inline bool Install(std::vector<sock_filter> code) {
   const sock_fprog program{static_cast<unsigned short>(code.size()), code.data()};
   return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
          syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program) == 0;
+}
+
+// Executes the words after the first behind that filter. Returns the exit status if it cannot, or
+// if `refuses`, which is asked at once, is false: the tests that use this would show nothing.
+inline int ExecuteBehind(const std::vector<sock_filter>& filter, bool (*refuses)(), char** words) {
+  if (words[0] == nullptr || words[1] == nullptr) return 2;
+  if (!Install(filter)) {
+    perror("the filter cannot be installed");
+    return 126;
+  }
+  if (!refuses()) {
+    fprintf(stderr, "%s: what is to be refused is not, or more is\n", words[0]);
+    return 126;
+  }
+  execvp(words[1], words + 1);
+  perror(words[1]);
+  return 127;
 }
 
 }  // namespace seccomp_filter

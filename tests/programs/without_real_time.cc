@@ -6,7 +6,6 @@
 #include <linux/sched.h>
 #include <sched.h>
 #include <stddef.h>
-#include <stdio.h>
 
 #include "tests/programs/seccomp_filter.h"
 
@@ -32,22 +31,12 @@ std::vector<sock_filter> Filter() {
   return code;
 }
 
+bool RefusesRealTimeAlone() {
+  const sched_param one{1}, none{0};
+  return sched_setscheduler(0, SCHED_FIFO, &one) != 0 && errno == EPERM &&
+         sched_setscheduler(0, SCHED_OTHER, &none) == 0;
+}
+
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc < 2) return 2;
-  if (!Install(Filter())) {
-    perror("without_real_time: the filter cannot be installed");
-    return 126;
-  }
-  // Refused at once, or the tests that use this would show nothing.
-  const sched_param one{1}, none{0};
-  if (sched_setscheduler(0, SCHED_FIFO, &one) == 0 || errno != EPERM ||
-      sched_setscheduler(0, SCHED_OTHER, &none) != 0) {
-    fputs("without_real_time: not SCHED_FIFO alone is refused\n", stderr);
-    return 126;
-  }
-  execvp(argv[1], argv + 1);
-  perror(argv[1]);
-  return 127;
-}
+int main(int, char** argv) { return ExecuteBehind(Filter(), RefusesRealTimeAlone, argv); }

@@ -71,7 +71,7 @@ for rights in with without contained; do
   run $rights flight "$out/example/scenario.yaml" --duration 3s
 done
 run without deaf "$out/deaf.yaml"
-for rights in with without; do run $rights work "$out/work.yaml" --host-cpus 1; done
+for rights in with without; do run $rights pieces "$out/work.yaml" --host-cpus 1; done
 ! grep -q 'SCHED_FIFO is not permitted here' "$out/with/flight.said" || exit 77
 for said in "$out"/{without,contained}/*.said; do
   grep -q 'SCHED_FIFO is not permitted here' "$said" || fail "it ran with rights: $said"
@@ -115,8 +115,8 @@ assert took["robot-deaf"][1] > 1.2 * took["robot-deaf"][0], took
 # the long pieces of both robots are computed at the same time, a millisecond here and a millisecond there, and so are
 # the short ones, each of which is 0.03 of a long one.
 for rights in ("with", "without"):
-    check(summary(rights, "work"))
-    cost = {log: float(open(f"{folder}/{rights}/work/{log}.out.log").read().split()[2])
+    check(summary(rights, "pieces"))
+    cost = {log: float(open(f"{folder}/{rights}/pieces/{log}.out.log").read().split()[2])
             for log in ("alone-long", "shared-long", "shared-short")}
     beside, shorter = cost["shared-long"] / cost["alone-long"], cost["shared-short"] / cost["shared-long"] / 0.03
     print("a piece costs", cost, "us", rights, "rights; beside others", beside, "in short pieces", shorter)
