@@ -88,7 +88,7 @@ bool OffersTheSameOnly(const Task& first, const Task& other, Looks& looks) {
 
 }  // namespace
 
-void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
+bool SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
   std::vector<EventWaiter> waiters;
   for (const Task* task : awaiters) {
     waiters.push_back(WaiterOf(*task));
@@ -101,8 +101,10 @@ void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
         return IsSameFile(DescriptorOf(one), DescriptorOf(other)) ||
                OffersTheSameOnly(one, other, looks);
       });
+  bool passes_over = false;
   for (const EventShare& share : shares) {
     if (share.passed_over_for == kNoThread) continue;
+    passes_over = true;
     PassOver(run_.table.At(share.thread), run_.table.At(share.passed_over_for));
   }
   for (const EventShare& share : shares) {
@@ -110,6 +112,7 @@ void SharedEvents::Wake(const std::vector<Task*>& awaiters, Moment moment) {
     const bool is_woken = share.passed_over_for == kNoThread && task.wait.has_value();
     if (is_woken) waker_.Wake(task, shm::WakeReason::kGo, moment);
   }
+  return passes_over;
 }
 
 void SharedEvents::PassOver(Task& task, Task& first) {
@@ -124,8 +127,8 @@ void SharedEvents::PassOver(Task& task, Task& first) {
       first.follow_up = FollowUp::kTaken;
     }
   }
-  // What is there already comes once more, at once, and is not for it.
-  wait.skips_event = HasEvent(task);
+  // What is there already comes once more, in the next look, and is not for it.
+  wait.skips_in = HasEvent(task) ? reactor_.next_look() : 0;
   reactor_.Modify(fd, wait.events | EPOLLET, DescriptorWaits::SubjectOf(task, wait));
   wait.is_edge_armed = true;
 }

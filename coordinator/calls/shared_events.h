@@ -21,8 +21,9 @@ class SharedEvents {
       : run_(run), waker_(waker), reactor_(reactor) {}
 
   // The threads for which an event has come, in one look at the kernel: they go on, or are passed
-  // over.
-  void Wake(const std::vector<Task*>& awaiters, Moment moment);
+  // over. True if some are: then the reactor is to look again before anybody acts, for it tells of
+  // what they were passed over for once more.
+  bool Wake(const std::vector<Task*>& awaiters, Moment moment);
   // The thread has tried what it was woken for: what it has left is for the next.
   void PassOn(Task& first, Moment moment);
 

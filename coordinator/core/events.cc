@@ -256,9 +256,9 @@ Reactor::Found Engine::WakeReadyAwaiters(Moment moment) {
                       std::none_of(awaiters.begin(), awaiters.end(), [this](const Task* task) {
                         return run_.turn.IsOn(*task->process->robot);
                       });
-  shared_events_.Wake(awaiters, moment);
+  const bool passes_over = shared_events_.Wake(awaiters, moment);
   if (beside) GoOnBesideWoken();
-  return {.stops_running = !beside, .wakes_others = true};
+  return {.stops_running = !beside, .wakes_others = true, .looks_again = passes_over};
 }
 
 }  // namespace tcs

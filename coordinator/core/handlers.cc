@@ -72,7 +72,9 @@ Reactor::Found Engine::OnAwaited(Subject subject, std::uint32_t, Moment) {
   Task& task = run_.table.At(static_cast<int>(subject.index));
   auto* wait = task.Awaits<awaited::Descriptors>();
   if (wait == nullptr || subject != DescriptorWaits::SubjectOf(task, *wait)) return {};
-  if (std::exchange(wait->skips_event, false)) return {};
+  // What comes in a later look is news: what was there may have gone before it was looked for.
+  const std::uint64_t skips_in = std::exchange(wait->skips_in, 0);
+  if (skips_in != 0 && skips_in + 1 >= reactor_.next_look()) return {};
   ready_awaiters_.push_back(&task);
   return {.wakes_others = true};
 }

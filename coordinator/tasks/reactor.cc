@@ -66,6 +66,7 @@ std::size_t Reactor::Wait(HostDuration timeout) {
     queue_[i] = {Unpacked(events[i].data.u64), events[i].events};
   }
   is_full_ = count_ == kAtOnce;
+  if (!is_full_) ++next_look_;
   return count_;
 }
 

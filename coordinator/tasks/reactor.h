@@ -75,6 +75,9 @@ class Reactor {
   std::size_t Wait(HostDuration timeout);
   // True if the kernel may have more at this instant than the last wait took.
   bool IsFull() const { return is_full_; }
+  // The number of the look that the next wait takes, or completes: a look is all that the kernel
+  // has at an instant, in as many waits as that takes.
+  std::uint64_t next_look() const { return next_look_; }
   // True if something has come since that the next wait takes.
   bool HasMore() const;
   // Has what is queued handled, all of it at that moment.
@@ -90,6 +93,7 @@ class Reactor {
 
   UniqueFd epoll_;
   bool is_full_ = false, is_handling_ = false;
+  std::uint64_t next_look_ = 1;
   std::array<Queued, kAtOnce> queue_;
   std::size_t count_ = 0;  // in it
   std::array<Handler, static_cast<std::size_t>(Tag::kCount)> handlers_;

@@ -54,7 +54,7 @@ struct Descriptors {
   std::uint64_t order = 0;        // of waiting, over several attempts
   int passed_over_for = kNobody;  // the thread that the last event was for, until it has tried
   bool is_edge_armed = false;     // the descriptor tells of every further event,
-  bool skips_event = false;       // and the next one is of what is there
+  std::uint64_t skips_in = 0;     // and the one in this look of the reactor's is of what was there
 };
 
 // That a child ends, or also that it stops or goes on.

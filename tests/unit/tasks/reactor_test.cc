@@ -124,11 +124,14 @@ TEST(Reactor, SaysWhetherThereMayBeMore) {
     sources.push_back(std::make_unique<Source>());
     ASSERT_TRUE(reactor.Add(sources.back()->fd(), EPOLLIN | EPOLLONESHOT, {Tag::kPipe, i}));
   }
+  const std::uint64_t look = reactor.next_look();
   reactor.Wait(HostNs(0));
   EXPECT_TRUE(reactor.IsFull());
+  EXPECT_EQ(reactor.next_look(), look) << "of which this was only a part";
   reactor.Handle({});
   reactor.Wait(HostNs(0));
   EXPECT_FALSE(reactor.IsFull());
+  EXPECT_EQ(reactor.next_look(), look + 1);
   reactor.Handle({});
   ASSERT_EQ(seen.size(), 100u);
   std::vector<bool> found(100);
