@@ -1,12 +1,14 @@
 // Takes the processor that a program is bound to away from it, again and again.
 //
-//   processor_thief computing PID   by computing above everybody, for 30 ms each time: the kernel
-//                                   charges that to the thief
-//   processor_thief interrupts PID  by the interrupt in which very many timers run out at once: the
-//                                   kernel charges that to the program which it hits, as it does
-//                                   with what a hypervisor takes and does not tell
+//   processor_thief computing PID [TIMES]   by computing above everybody, for 30 ms each time: the
+//                                           kernel charges that to the thief
+//   processor_thief interrupts PID [TIMES]  by the interrupt in which very many timers run out at
+//                                           once: the kernel charges that to the program which it
+//                                           hits, as it does with what a hypervisor takes and does
+//                                           not tell
 //
-// It ends when the program has ended, and after 15 s at the latest. Ends with 77 where it may not.
+// It ends when the program has ended, and after 15 s at the latest; or after so many times, when it
+// sends SIGTERM to the program. It says how long each took. Ends with 77 where it may not.
 #include <sched.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -17,6 +19,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -24,6 +27,7 @@
 namespace {
 
 constexpr std::size_t kTimers = 100'000;
+constexpr int kForEver = 1'000'000;
 constexpr std::int64_t kMs = 1'000'000, kSecond = 1'000'000'000;
 constexpr std::int64_t kMostNs = 15 * kSecond, kEveryNs = 300 * kMs, kTakesNs = 30 * kMs,
                        kSettingTakesNs = 150 * kMs;
@@ -40,6 +44,8 @@ void SleepUntil(std::int64_t ns) {
   const timespec until = At(ns);
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
+
+void SayHowLong(std::int64_t since) { printf("%.1f ms ", static_cast<double>(Now() - since) / kMs); }
 
 // Above everybody on the processor of `pid`.
 bool GoThere(pid_t pid) {
@@ -66,8 +72,10 @@ std::vector<int> MakeTimers() {
   return timers;
 }
 
-// The rest has a child of this one, and so on. All run out at the same instants.
-void TakeByInterrupts(pid_t pid, std::int64_t start, std::size_t missing) {
+// The rest has a child of this one, and so on. All run out at the same instants. True of the first
+// of them, which alone says how long it took.
+bool TakeByInterrupts(pid_t pid, std::int64_t start, int times, std::size_t missing) {
+  const bool is_first = missing == kTimers;
   std::vector<int> timers = MakeTimers();
   timers.resize(std::min(timers.size(), missing));
   missing -= timers.size();
@@ -75,36 +83,47 @@ void TakeByInterrupts(pid_t pid, std::int64_t start, std::size_t missing) {
   const pid_t child = missing == 0 ? 0 : fork();
   if (child == 0 && missing > 0) {
     for (const int timer : timers) close(timer);
-    return TakeByInterrupts(pid, start, missing);
+    return TakeByInterrupts(pid, start, times, missing);
   }
-  for (std::int64_t next = start; next < start + kMostNs && kill(pid, 0) == 0; next += kEveryNs) {
+  std::int64_t next = start;
+  for (; times > 0 && next < start + kMostNs && kill(pid, 0) == 0; next += kEveryNs) {
     if (next < Now() + kSettingTakesNs) continue;
     const itimerspec when{{0, 0}, At(next)};
     for (const int timer : timers) timerfd_settime(timer, TFD_TIMER_ABSTIME, &when, nullptr);
-    SleepUntil(next + kMs);
+    SleepUntil(next);
+    if (is_first) SayHowLong(next);
+    --times;
   }
   if (child > 0) waitpid(child, nullptr, 0);
+  return is_first;
 }
 
-void TakeByComputing(pid_t pid, std::int64_t start) {
+bool TakeByComputing(pid_t pid, std::int64_t start, int times) {
   if (!GoThere(pid)) exit(77);
-  for (std::int64_t next = start; next < start + kMostNs && kill(pid, 0) == 0; next += kEveryNs) {
+  std::int64_t next = start;
+  for (; times > 0 && next < start + kMostNs && kill(pid, 0) == 0; next += kEveryNs) {
     SleepUntil(next);
     while (Now() < next + kTakesNs) {
     }
+    SayHowLong(next);
+    --times;
   }
+  return true;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc < 3 || argc > 4) return 2;
   const pid_t pid = atoi(argv[2]);
+  const bool ends_it = argc == 4;
+  const int times = ends_it ? atoi(argv[3]) : kForEver;
   const std::int64_t start = Now() + kEveryNs;
-  if (strcmp(argv[1], "interrupts") == 0) {
-    TakeByInterrupts(pid, start, kTimers);
-  } else {
-    TakeByComputing(pid, start);
-  }
+  const bool is_first = strcmp(argv[1], "interrupts") == 0
+                            ? TakeByInterrupts(pid, start, times, kTimers)
+                            : TakeByComputing(pid, start, times);
+  if (!is_first) return 0;
+  puts("taken");
+  if (ends_it) kill(pid, SIGTERM);
   return 0;
 }
