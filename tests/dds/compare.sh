@@ -4,6 +4,7 @@
 set -euo pipefail
 build=$(realpath -- "$1") name=$2 variant=$3 domain=$4
 here=$(dirname -- "${BASH_SOURCE[0]}")
+source "$here/../steadily.sh"
 export TCS_DDS_DOMAIN=$domain
 export CYCLONEDDS_URI="<CycloneDDS><Domain Id=\"any\"><General>
   <Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces>
@@ -56,8 +57,7 @@ END
 }
 
 if [[ $variant == native ]]; then
-  # The machine may stall for longer than a lease or a lifespan: another try.
-  agrees native "${program[@]}" || agrees native "${program[@]}"
+  steadily "$build" agrees native "${program[@]}"
 else
   # A core for each; both on one, and every run the same; a computer for each.
   agrees "$variant, two cores" "$build/bin/tcsim" exec --cores 2 "${dds[@]}" -- "${program[@]}"

@@ -1,0 +1,23 @@
+# Sourced by tests that run programs natively, as the reference for what they do under tcs.
+#
+# steadily BUILD COMMAND...: the time of COMMAND is real time, which a loaded machine bends. Where it fails and the machine has
+# kept a thread waiting for longer than 5 ms meanwhile, the failure says nothing of COMMAND, which is run again, five times
+# in all. A failure on a machine that did not stall stands.
+steadily() {
+  local build=$1 status ready stall
+  shift
+  for _ in 1 2 3 4 5; do
+    coproc stall_watch { exec "$build/bin/stall_watch"; }
+    local watch=$stall_watch_PID from=${stall_watch[0]}
+    read -r ready <&"$from"
+    status=0
+    "$@" || status=$?
+    kill "$watch"
+    read -r stall <&"$from"
+    wait "$watch"
+    ((status != 0)) || return 0
+    echo "ended with $status; the machine kept threads waiting for $stall us at most" >&2
+    ((stall > 5000)) || return "$status"
+  done
+  return "$status"
+}
