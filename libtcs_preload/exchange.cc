@@ -168,8 +168,12 @@ void TakeOutWait(shm::ClockPage& page, const Charged& at_notification, std::int6
                  own.ns + own.way_ns, most_ns);
 }
 
+// How many handlers of a thread's had begun before it waits; one that begins later ends the wait.
+// None: no handler ends it.
+using HandlersBefore = const std::uint32_t*;
+
 // False if a signal handler has run and the gate is still shut.
-bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charged,
+bool WaitAtGate(shm::ThreadSlot& slot, HandlersBefore handlers, const Charged& charged,
                 std::int64_t most_ns = kMostExchangeNs) {
   for (;;) {
     std::uint32_t gate = slot.gate.load(std::memory_order_acquire);
@@ -185,13 +189,16 @@ bool WaitAtGate(shm::ThreadSlot& slot, bool interruptible, const Charged& charge
     if (gate == shm::kGateClosed && !slot.gate.compare_exchange_strong(gate, shm::kGateWaiting)) {
       continue;
     }
+    // One that begins after this look shuts the gate anew (NoteHandler), and the kernel does not
+    // wait.
+    if (handlers != nullptr && t_thread.handlers != *handlers) return false;
     const long result =
         RawSyscall(SYS_futex, Arg(&slot.gate), FUTEX_WAIT, shm::kGateWaiting, Arg(&kGateTurn));
     if (result == 0 && !OnlyCpuClockTells(slot.clock) && !RunsBeside(slot)) {
       shm::TakeOutGate(slot.clock, shm::ReadClock(slot.clock), kMostGateNs);
     }
     if (result == -ETIMEDOUT) DieIfCoordinatorIsGone();
-    if (result == -EINTR && interruptible &&
+    if (result == -EINTR && handlers != nullptr &&
         slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) {
       return false;
     }
@@ -241,7 +248,7 @@ Ended EndWait(GuestThread& thread) {
       FillRecord(slot, Request{.kind = NotificationKind::kInterrupted}, reading);
   Notify(thread, reading);
   none.Allow(0);
-  WaitAtGate(slot, false, charged);
+  WaitAtGate(slot, nullptr, charged);
   return slot.reply[0] != 0 ? Ended::kWait : Ended::kNothing;
 }
 
@@ -260,9 +267,10 @@ Reply ExchangeOnce(GuestThread& thread, const Request& request) {
     if (slot.gate.load(std::memory_order_acquire) != shm::kGateOpen) EndWait(thread);
     return Reply{WakeReason::kSignal, {0, 0}};
   }
+  const std::uint32_t handlers = thread.handlers;
   // The coordinator's own signal is no end of a wait.
   none.Allow(request.interruptible ? OwnSignalsHeldInWaits() : 0);
-  if (!WaitAtGate(slot, request.interruptible, charged)) {
+  if (!WaitAtGate(slot, request.interruptible ? &handlers : nullptr, charged)) {
     const Ended ended = EndWait(thread);
     if (g_header->gates_only == 0 && ended != Ended::kByOther) {
       return Reply{WakeReason::kSignal, {0, 0}};
@@ -330,6 +338,13 @@ void AwaitTurn(GuestThread& thread) {
   if (!IsShutDown()) Exchange(thread, Request{.kind = NotificationKind::kCall});
 }
 
+void NoteHandler(GuestThread& thread) {
+  ++thread.handlers;
+  if (thread.depth == 0) return;
+  std::uint32_t gate = shm::kGateWaiting;
+  thread.slot->gate.compare_exchange_strong(gate, shm::kGateClosed);
+}
+
 bool IsBeside(const GuestThread& thread) { return RunsBeside(*thread.slot); }
 
 bool IsAtGate(const GuestThread& thread) {
@@ -337,9 +352,9 @@ bool IsAtGate(const GuestThread& thread) {
 }
 
 void AwaitFirstDispatch(GuestThread& thread) {
-  WaitAtGate(*thread.slot, false, {}, g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
+  WaitAtGate(*thread.slot, nullptr, {}, g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
 }
 
-void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, false, {}); }
+void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, nullptr, {}); }
 
 }  // namespace tcs::preload

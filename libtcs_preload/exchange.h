@@ -44,6 +44,10 @@ bool IsBeside(const GuestThread& thread);
 // True in a handler that has interrupted an exchange of the thread's whose answer is not there yet.
 bool IsAtGate(const GuestThread& thread);
 
+// A handler of the program's begins. If it has interrupted an exchange on its way to the gate, the
+// thread does not wait there as if nothing had come.
+void NoteHandler(GuestThread& thread);
+
 // The gate without a notification: the attach itself was one.
 void AwaitFirstDispatch(GuestThread& thread);
 

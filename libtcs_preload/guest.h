@@ -28,6 +28,7 @@ struct GuestThread {
   std::uint32_t index = 0;
   int depth = 0;  // exchanges under way; above 1 in a handler that interrupted one
   bool attaching = false;
+  std::uint32_t handlers = 0;  // of the program's that have begun in it
   // Since it last waited for its turn (exchange.h) it has begun a call; where the thread's own
   // clock keeps it from going on, one whose end others may see.
   bool in_call = false;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "libtcs_preload/errno_result.h"
+#include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/interrupted_call.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -58,6 +59,7 @@ bool HasWaited() {
 // What the kernel runs for every handler of the program's.
 void OnSignal(int signal, siginfo_t* info, void* context) {
   const Wanted wanted = g_wanted[signal].load();
+  NoteHandler(t_thread);
   InterruptedCall call(*static_cast<ucontext_t*>(context));
   if (call.IsMadeAgain()) {
     const EndBySignal end = call.HowItEnds();

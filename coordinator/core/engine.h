@@ -210,6 +210,7 @@ class Engine {
   bool MayGoOn(Task& task);
   void BringToGate(Task& task);
   Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
+  Reactor::Found AwaitSleepAtGates(Moment moment);
   void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);

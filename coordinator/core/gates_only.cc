@@ -20,6 +20,7 @@ namespace {
 // may go first.
 constexpr HostDuration kMostWayToGate = HostDuration::Microseconds(100);
 constexpr HostDuration kGateLook = HostDuration::Microseconds(500);
+constexpr HostDuration kShortGateLook = HostDuration::Microseconds(50);  // at one who is there soon
 constexpr int kMostGateLooks = 400;
 constexpr int kMostAtOnce = 1000;  // events of one instant
 
@@ -41,6 +42,13 @@ bool MayCompute(const Task& task) {
                            task.notified_early || task.is_put_off || task.is_call_put_off;
   return task.state != TaskState::kDead && task.slot >= 0 && !has_stopped && !task.executes &&
          !task.process->expelled;
+}
+
+// It waits at its gate, as it has said, but does not sleep there: it is on its way, or a handler
+// that it runs will end the wait.
+bool IsAwakeAtGate(const Task& task) {
+  return task.state == TaskState::kWaiting && task.slot >= 0 && task.parked && task.trap_id == 0 &&
+         !task.process->expelled && ThreadState(task.tid) == 'R';
 }
 
 }  // namespace
@@ -136,8 +144,28 @@ Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
     }
     if (awaits) found |= TakeEvents(kGateLook, moment, true);
   }
+  found |= AwaitSleepAtGates(moment);
   for (int turn = 0; turn < kMostAtOnce && reactor_.HasMore(); ++turn) {
     found |= TakeEvents(kNoWait, moment, true);
+  }
+  return found;
+}
+
+// Before and after a signal is sent. A thread that has said that it waits, and has yet to fall
+// asleep, may run the handler at once: then no signal is there for it any more, and only the thread
+// itself can tell that its wait is over. The world must not go on past that.
+Reactor::Found Engine::AwaitSleepAtGates(Moment moment) {
+  Reactor::Found found;
+  std::map<const Task*, HostDuration> seen;  // and when first, by their CPU clocks
+  bool awaits = true;
+  for (int look = 0; awaits && look < kMostGateLooks; ++look) {
+    awaits = false;
+    for (Task& task : run_.table.tasks()) {
+      if (!IsAwakeAtGate(task)) continue;
+      const HostDuration now = HostNs(HostClockOf(task));
+      awaits |= now <= seen.try_emplace(&task, now).first->second + kMostWayToGate;
+    }
+    if (awaits) found |= TakeEvents(kShortGateLook, moment, true);
   }
   return found;
 }
