@@ -45,10 +45,11 @@ Pair CommandsFor(const DdsperfCase& what, bool gently) {
     return command;
   };
   if (what.exchange == Exchange::kThroughput) {
-    return {with({"sub"}), with({"pub", gently ? "1kHz" : "inf", "size", what.size}), false};
+    return {with({"sub"}), with({"pub", gently ? "100Hz" : "inf", "size", what.size}), false};
   }
   const std::string by = what.exchange == Exchange::kWaitset ? "waitset" : "listener";
-  return {with({"pong", by}), with({"ping", gently ? "1kHz" : "inf", "size", what.size, by}), true};
+  return {with({"pong", by}), with({"ping", gently ? "100Hz" : "inf", "size", what.size, by}),
+          true};
 }
 
 // What ddsperf has printed, and how many round trips or samples there were in all.

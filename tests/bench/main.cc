@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (quick) asked_rounds = 1;
   const int rounds = asked_rounds.value_or(kRounds);
-  const double work_seconds = quick ? 0.05 : 0.3;
+  const double work_seconds = quick ? 0.05 : 0.3, planning_seconds = quick ? 0.1 : 1;
   tcs::bench::Results results;
   results.rounds = rounds;
   bool complete = true;
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     complete = complete && rows.has_value();
   }
   if (Wanted(only, kPlanning)) {
-    auto rows = tcs::bench::MeasurePlanningUnderLoad(rounds);
+    auto rows = tcs::bench::MeasurePlanningUnderLoad(rounds, planning_seconds);
     if (rows) results.planning = *rows;
     complete = complete && rows.has_value();
   }

@@ -11,7 +11,7 @@ enum class World { kNative, kFaketime, kTcs };
 struct Probe {
   std::string what;  // the probe's word for it
   World world = World::kNative;
-  std::string steps = "0";  // of `work`
+  std::string steps = "0";  // of `work`; of `explored`: seconds
 };
 
 // The probe's number; none, with a sentence on stderr, if it could not be had.

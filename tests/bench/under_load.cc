@@ -78,8 +78,8 @@ std::optional<std::vector<LoadRow>> MeasureWorkUnderLoad(int rounds, double seco
   return MeasureUnderLoad({"work", World::kNative, *steps}, rounds);
 }
 
-std::optional<std::vector<LoadRow>> MeasurePlanningUnderLoad(int rounds) {
-  return MeasureUnderLoad({"explored"}, rounds);
+std::optional<std::vector<LoadRow>> MeasurePlanningUnderLoad(int rounds, double seconds) {
+  return MeasureUnderLoad({"explored", World::kNative, fmt::format("{}", seconds)}, rounds);
 }
 
 }  // namespace tcs::bench

@@ -24,7 +24,7 @@ struct LoadRow {
 // By the program's own clock, the seconds that fixed work of about `seconds` takes.
 std::optional<std::vector<LoadRow>> MeasureWorkUnderLoad(int rounds, double seconds);
 
-// The states that OMPL explores in one second of the program's own clock.
-std::optional<std::vector<LoadRow>> MeasurePlanningUnderLoad(int rounds);
+// The states that OMPL explores in so many seconds of the program's own clock.
+std::optional<std::vector<LoadRow>> MeasurePlanningUnderLoad(int rounds, double seconds);
 
 }  // namespace tcs::bench

@@ -4,7 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # does not is killed. The run itself, and what it says of itself, ends where it was to end.
 # Topics: ends, signals.
 out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
+trap 'wait; rm -rf "$out"' EXIT
 
 # Its stdout is a file, so what it prints stays with it until it ends in order.
 cat >"$out/keeper.py" <<'PY'
@@ -52,6 +52,30 @@ robots:
       none: {command: [python3, -u, keeper.py, SIGTERM, "0"], stop_grace: 0}
       stopped: {command: [python3, -u, -c, "import os, signal, sys\nsignal.signal(15, lambda n, f: print('woken') or sys.exit(0))\nos.kill(os.getpid(), signal.SIGSTOP)\nsignal.pause()"]}
 YAML
+
+# Who computes on and ignores the signal is killed, too: after so much virtual time, or where
+# computing takes none, real time: that takes 5 s, beside the others.
+cat >"$out/spin.yaml" <<'YAML'
+duration: 500ms
+dynamics: {}
+bodies: {b: {mass: 1, inertia: [1, 1, 1]}}
+robots:
+  r:
+    cpu: {cores: 2}
+    clients:
+      spinner: {command: [bash, -c, "trap '' TERM; while :; do :; done"]}
+      child: {command: [bash, -c, "trap '' TERM; (while :; do :; done) & wait; wait"]}
+YAML
+spinners_are_killed() {
+  timeout 60 "$tcsim" run "$out/spin.yaml" --set robots.r.clients.child=null --duration 200ms \
+    --set 'robots.r.clients.spinner.command=[python3, -c, "import signal\nsignal.signal(15, signal.SIG_IGN)\nwhile True: pass"]' \
+    --accounting fixed --out "$out/spin" >"$out/spin.said" 2>&1 || fail "fixed: status $?: $(cat "$out/spin.said")"
+  grep -q 'r/spinner was killed: after SIGTERM' "$out/spin.said" || fail "fixed: $(cat "$out/spin.said")"
+  timeout 60 "$tcsim" run "$out/spin.yaml" --out "$out/spin" >"$out/spin.said" 2>&1 || fail "status $?: $(cat "$out/spin.said")"
+  grep -q 'r/spinner was killed: after SIGTERM' "$out/spin.said" || fail "$(cat "$out/spin.said")"
+}
+spinners_are_killed &
+spins=$!
 
 said_by() { cat "$out/run/$1.out.log"; }
 check() {
@@ -110,24 +134,6 @@ done
 [[ $(cat "$out/with/r-keeper.out.log" "$out/with/r-stdio.out.log") == $'bye\nbegun\nended by 15' ]] || fail "no grace"
 [[ -z $(cat "$out/without/"*.out.log) ]] || fail "a grace of 0 is none"
 
-# Who computes on and ignores the signal is killed, too: after so much virtual time, or where
-# computing takes none, real time.
-cat >"$out/spin.yaml" <<'YAML'
-duration: 1s
-dynamics: {}
-bodies: {b: {mass: 1, inertia: [1, 1, 1]}}
-robots:
-  r:
-    cpu: {cores: 2}
-    clients:
-      spinner: {command: [bash, -c, "trap '' TERM; while :; do :; done"]}
-      child: {command: [bash, -c, "trap '' TERM; (while :; do :; done) & wait; wait"]}
-YAML
-timeout 60 "$tcsim" run "$out/spin.yaml" --out "$out/spin" >"$out/said" 2>&1 || fail "status $?: $(cat "$out/said")"
-grep -q 'r/spinner was killed: after SIGTERM' "$out/said" || fail "$(cat "$out/said")"
-timeout 60 "$tcsim" run "$out/spin.yaml" --set robots.r.clients.child=null --duration 200ms \
-  --set 'robots.r.clients.spinner.command=[python3, -c, "import signal\nsignal.signal(15, signal.SIG_IGN)\nwhile True: pass"]' \
-  --accounting fixed --out "$out/spin" >"$out/said" 2>&1 || fail "fixed: status $?: $(cat "$out/said")"
-grep -q 'r/spinner was killed: after SIGTERM' "$out/said" || fail "fixed: $(cat "$out/said")"
+wait "$spins"
 pgrep -f "$out/" && fail "something is left"
 true

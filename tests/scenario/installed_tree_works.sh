@@ -4,7 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # that finds it, the manual pages and completions.
 # Topics: packages.
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap 'wait; rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/made" >"$work/installed" 2>&1 || fail "$(tail -n 5 "$work/installed")"
 mv "$work/made" "$work/prefix"
 prefix=$work/prefix
@@ -16,8 +16,19 @@ grep -rlF -- "$build" "$prefix" >"$work/names" && fail "these name the build tre
 [[ $("$installed" exec -- sh -c 'echo $LD_PRELOAD') == "$prefix"/lib*/tcs/libtcs_preload.so ]] ||
   fail "the shim is not the installed one: $("$installed" exec -- sh -c 'echo $LD_PRELOAD')"
 
-# From nothing.
 cd "$work"
+cat >marks.yaml <<'END'
+duration: 1s
+robots: {r: {clients: {loop: {command: [./by_pkg_config]}}}}
+END
+# These take a second or two each, and are looked at further below.
+PATH=$prefix/bin:$PATH "$source_root/.ci/zsh_completes" --from "$prefix/share/zsh/vendor-completions" >zsh_said 'tcsim ru' \
+  'tcsim run --accounting m' 'tcsim run --accounting=m' 'tcsim exec -- basena' 'tcsim check marks.ya' &
+completes=$!
+{ cmake -S "$source_root/tests/scenario/outside" -B outside -DCMAKE_PREFIX_PATH="$prefix" && cmake --build outside; } >outside_said 2>&1 &
+builds=$!
+
+# From nothing.
 for language in python c; do
   "$installed" new --language $language $language >"$work/said" || fail "tcsim new: $(cat "$work/said")"
   (
@@ -37,8 +48,7 @@ done
 grep -q "'c' exists already" "$work/said" || fail "it says instead: $(cat "$work/said")"
 
 # A project of somebody else's, by CMake and by pkg-config.
-cmake -S "$source_root/tests/scenario/outside" -B outside -DCMAKE_PREFIX_PATH="$prefix" >"$work/said" 2>&1 &&
-  cmake --build outside >>"$work/said" 2>&1 || fail "the project outside does not build: $(tail -n 5 "$work/said")"
+wait "$builds" || fail "the project outside does not build: $(tail -n 5 outside_said)"
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name tcs.pc)") pkg-config --cflags --libs tcs >"$work/flags"
 cc "$source_root/tests/scenario/outside/marks.c" $(cat "$work/flags") -o by_pkg_config ||
   fail "what pkg-config says does not build: $(cat "$work/flags")"
@@ -50,10 +60,6 @@ ordered=$("$installed" exec --cores 2 --accounting fixed -- outside/shared_memor
 unordered=$("$installed" exec --cores 2 --accounting fixed -- outside/shared_memory unordered)
 [[ $unordered =~ ^"in a run, wrong "[1-9] ]] || fail "the test does not see what is out of order: $unordered"
 
-cat >marks.yaml <<'END'
-duration: 1s
-robots: {r: {clients: {loop: {command: [./by_pkg_config]}}}}
-END
 "$installed" run --accounting fixed --out marks marks.yaml >/dev/null || fail "what marks its activations fails"
 activations=$(grep -c '^r/loop,\|,r/loop,' marks/activations.csv)
 # The first one begins with the program.
@@ -76,9 +82,7 @@ complete_of() {  # WORDS...: what bash completes behind them
 [[ $(complete_of tcsim run --acc) == --accounting ]] || fail "bash completes an option to: $(complete_of tcsim run --acc)"
 [[ $(complete_of tcsim run --accounting m) == measured ]] || fail "bash completes no values"
 [[ $(complete_of tcsim run --accounting = m) == measured ]] || fail "bash completes no values behind a sign"
-PATH=$prefix/bin:$PATH "$source_root/.ci/zsh_completes" --from "$prefix/share/zsh/vendor-completions" >zsh_said 'tcsim ru' \
-  'tcsim run --accounting m' 'tcsim run --accounting=m' 'tcsim exec -- basena' 'tcsim check marks.ya' ||
-  fail "zsh completes nothing: $(cat zsh_said)"
+wait "$completes" || fail "zsh completes nothing: $(cat zsh_said)"
 printf '%s \n' 'tcsim run' 'tcsim run --accounting measured' 'tcsim run --accounting=measured' 'tcsim exec -- basename' \
   'tcsim check marks.yaml' | diff - zsh_said || fail "zsh completes otherwise"
 

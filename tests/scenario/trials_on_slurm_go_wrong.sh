@@ -18,8 +18,8 @@ refused() {  # PATTERN OPTIONS...
   [[ $(wc -l <"$out/stderr") == 1 ]] || fail "not one line: $(cat "$out/stderr")"
   grep -Eq "^tcsim: .*$pattern" "$out/stderr" || fail "$(cat "$out/stderr")"
 }
-no_jobs() {
-  for _ in $(seq 100); do [[ -z $(squeue -h) ]] && return; sleep 0.1; done
+no_jobs() {  # [OPTIONS of squeue]
+  for _ in $(seq 100); do [[ -z $(squeue -h "$@") ]] && return; sleep 0.1; done
   fail "jobs are left: $(squeue)"
 }
 mkdir "$out/no_slurm"
@@ -51,6 +51,34 @@ else
   echo "not shown, for want of rights to mount: a folder that nodes do not see"
 fi
 
+long() { timeout --foreground "$limit" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1000h --launcher slurm "$@"; }
+claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1 || true; }
+begun() {  # FOLDER [JOB]: waits for a trial that another job has begun; that is `job` then
+  for _ in $(seq 300); do
+    job=$(claim "$1")
+    [[ -n $job && $job != "${2:-}" ]] && return
+    sleep 0.1
+  done
+  fail "no trial has begun: $(cat "$out/$1.said")"
+}
+# The job of one trial is cancelled each time that it begins. Most of that is waiting for Slurm: the next ones go on beside.
+cancelled() {
+  local call job="" status=0 said=$out/cancelled.said _
+  long --trials 1 --out "$out/cancelled" >"$said" 2>&1 &
+  call=$!
+  for _ in 1 2 3; do
+    begun cancelled "$job"
+    scancel "${job%@*}"
+  done
+  wait "$call" || status=$?
+  ((status == 1)) || fail "exit status $status: $(cat "$said")"
+  (($(grep -c '^tcsim: seed 1 was lost on node n[12] (CANCELLED: .*); it is run again' "$said") == 2)) || fail "$(cat "$said")"
+  grep -q '^tcsim: seed 1 failed: its job was lost 3 times, at last on node n[12] (CANCELLED: somebody has cancelled its job)$' \
+    "$said" || fail "$(cat "$said")"
+}
+cancelled &
+beside=$!
+
 # A trial that fails by itself is not run again.
 status=0; FAILING_SEED=2 trials --trials 3 --out "$out/t" >"$out/said" 2>"$out/errors" || status=$?
 ((status == 1)) || fail "exit status $status: $(cat "$out/said" "$out/errors")"
@@ -60,65 +88,42 @@ grep -q 'lost' "$out/errors" && fail "$(cat "$out/errors")"
 grep -q 'not for me' "$out/t/seed-0002/r-pilot.err.log" || fail "its last words are lost"
 trials --trials 3 --out "$out/t" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 grep -q '2 of 3 trials are done already' "$out/said" || fail "$(cat "$out/said")"
-no_jobs
-
-# The job of one trial is cancelled each time that it begins.
-long() { timeout --foreground "$limit" "$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 1h --launcher slurm "$@"; }
-claim() { find "$out/$1/slurm" -path '*/claims/*' -printf '%l\n' 2>/dev/null | head -n 1 || true; }
-begun() {  # FOLDER [JOB]: waits for a trial that another job has begun; that is `job` then
-  for _ in $(seq 300); do
-    job=$(claim "$1")
-    [[ -n $job && $job != "${2:-}" ]] && return
-    sleep 0.1
-  done
-  fail "no trial has begun: $(cat "$out/said")"
-}
-long --trials 1 --out "$out/cancelled" >"$out/said" 2>&1 &
-call=$!
-job=""
-for _ in 1 2 3; do
-  begun cancelled "$job"
-  scancel "${job%@*}"
-done
-status=0; wait "$call" || status=$?
-((status == 1)) || fail "exit status $status: $(cat "$out/said")"
-(($(grep -c '^tcsim: seed 1 was lost on node n[12] (CANCELLED: .*); it is run again' "$out/said") == 2)) ||
-  fail "$(cat "$out/said")"
-grep -q '^tcsim: seed 1 failed: its job was lost 3 times, at last on node n[12] (CANCELLED: somebody has cancelled its job)$' "$out/said" ||
-  fail "$(cat "$out/said")"
-no_jobs
 
 # As ^C does it: to all processes of the terminal.
 set -m
-"$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 400ms --launcher slurm --trials 20 --jobs 1 \
+"$tcsim" trials "$out/scenario.yaml" --accounting fixed --duration 400ms --launcher slurm --trials 10 --jobs 1 \
   --out "$out/resumed" >"$out/said" 2>&1 &
 call=$!
 for _ in $(seq 600); do [[ -e $out/resumed/seed-0001/summary.json ]] && break; sleep 0.05; done
-(($(squeue -h --array | wc -l) <= 1)) || fail "more than one job: $(squeue --array)"
+name=$(ls "$out/resumed/slurm")
+(($(squeue -h --array --name="$name" | wc -l) <= 1)) || fail "more than one job: $(squeue --array)"
 kill -INT -- "-$call"
 status=0; wait "$call" || status=$?
 ((status == 130)) || fail "exit status $status after ^C: $(cat "$out/said")"
-grep -Eq 'interrupted; [0-9]+ of 20 trials are done, and the same call goes on' "$out/said" || fail "$(cat "$out/said")"
-no_jobs
+grep -Eq 'interrupted; [0-9]+ of 10 trials are done, and the same call goes on' "$out/said" || fail "$(cat "$out/said")"
+no_jobs --name="$name"
 [[ ! -e $out/resumed/slurm ]] || fail "left: $(find "$out/resumed/slurm")"
 done_before=$(find "$out/resumed" -name summary.json | wc -l)
-((done_before < 20)) || fail "nothing was interrupted"
+((done_before < 10)) || fail "nothing was interrupted"
 first=$(stat -c %Y.%i "$out/resumed/seed-0001/summary.json")
-trials --trials 20 --out "$out/resumed" >"$out/said" 2>&1 ||
+trials --trials 10 --out "$out/resumed" >"$out/said" 2>&1 ||
   fail "$(cat "$out/said") $(grep -h 'waiting for' "$out"/resumed/slurm/*/runs/*/tcsim.log 2>/dev/null || true)"
-grep -q "^$done_before of 20 trials are done already" "$out/said" || fail "$done_before: $(cat "$out/said")"
+grep -q "^$done_before of 10 trials are done already" "$out/said" || fail "$done_before: $(cat "$out/said")"
 [[ $(stat -c %Y.%i "$out/resumed/seed-0001/summary.json") == "$first" ]] || fail "what was done was run again"
-(($(find "$out/resumed" -name summary.json | wc -l) == 20)) || fail "$(cat "$out/said")"
+(($(find "$out/resumed" -name summary.json | wc -l) == 10)) || fail "$(cat "$out/said")"
+wait "$beside"
+no_jobs
 
 # A caller that is killed leaves jobs that change nothing any more once there is another call.
-long --trials 2 --out "$out/killed" >"$out/said" 2>&1 &
+long --trials 2 --out "$out/killed" >"$out/killed.said" 2>&1 &
 call=$!
 begun killed
 # shellcheck disable=SC2046
 kill -KILL $(with_descendants "$call")
 wait "$call" 2>/dev/null || true
 # Its descendants are not this shell's to wait for, and the folder is theirs until the kernel is through with them.
-for _ in $(seq 200); do pgrep -f -- "--out $out/killed" >/dev/null || break; sleep 0.05; done
+# The runs of its jobs, which are to go on, write to a folder in that one.
+for _ in $(seq 200); do pgrep -f -- "--out $out/killed\$" >/dev/null || break; sleep 0.05; done
 [[ -n $(squeue -h) ]] || fail "the jobs are gone by themselves, so this shows nothing"
 trials --restart --trials 2 --out "$out/killed" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 no_jobs

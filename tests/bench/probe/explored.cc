@@ -25,7 +25,7 @@ bool IsFree(const ob::State* state) {
 
 }  // namespace
 
-double StatesExplored() {
+double StatesExplored(double seconds) {
   ompl::msg::noOutputHandler();
   ompl::RNG::setSeed(1);
   const auto space = std::make_shared<ob::SE3StateSpace>();
@@ -47,7 +47,7 @@ double StatesExplored() {
   goal->rotation().setIdentity();
   setup.setStartAndGoalStates(start, goal);
   setup.setPlanner(std::make_shared<ompl::geometric::RRT>(setup.getSpaceInformation()));
-  setup.solve(1.0);
+  setup.solve(seconds);
   return static_cast<double>(explored);
 }
 

@@ -1,6 +1,6 @@
 // tcs_bench_probe WORLD WHAT [STEPS]: measures one thing and prints one number, TSC ticks per call
-// (of `work`: seconds, of `explored`: states). Exit status 1, with a sentence on stderr, where it
-// could not.
+// (of `work`: seconds, of `explored`: states in STEPS seconds). Exit status 1, with a sentence on
+// stderr, where it could not.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -28,7 +28,7 @@ double Measure(const std::string& what, const char* steps) {
   if (what == "handover") return tcs::bench::HandoverTicks();
   if (what == "ping_pong") return tcs::bench::PingPongTicks();
   if (what == "work") return tcs::bench::SecondsOfWork(std::atoll(steps));
-  if (what == "explored") return tcs::bench::StatesExplored();
+  if (what == "explored") return tcs::bench::StatesExplored(std::atof(steps));
   return -1;
 }
 
