@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import time
+import urllib.request
 
 from browser import Browser
 from live import PATIENCE, LiveRun
@@ -20,9 +21,6 @@ def states():
     with open(f"{OUT}/plain/bodies.csv") as lines:
         return {round(float(row["time_s"]), 6): [float(row[f"{axis}_m"]) for axis in "xyz"]
                 for row in csv.DictReader(lines) if row["body"] == "rover/base_footprint"}
-
-
-ROVER = states()
 
 
 def until(browser, script, *args):
@@ -184,21 +182,27 @@ def is_shown_again(browser):
         run.wish(f"step {500 * MS}")
         run.stands_at(500 * MS)
         shown = subprocess.Popen([TCSIM, "view", f"{OUT}/again"], stderr=subprocess.PIPE, text=True)
-        browser.open(re.search(r"http://\S+/", shown.stderr.readline())[0])
+        url = re.search(r"http://\S+/", shown.stderr.readline())[0]
+        browser.open(url)
         until(browser, "return tcs.run && tcs.run.end === 0.5")
         assert browser.js("return document.querySelector('[data-run=go]').hidden"), "nobody would hear it"
         run.tell("go")
         until(browser, "return document.querySelector('#run').dataset.stage === 'ended' && tcs.run.end === 2")
         is_where_it_should_be(browser)
         run.end()
-        browser.open(browser.js("return location.href"))
-        assert browser.js("return document.querySelector('#run') === null"), "it has ended, and this is not its report"
+        with urllib.request.urlopen(url) as answer:
+            page = answer.read()
+        assert b'id="replay"' in page and b'id="run"' not in page, "it has ended, and this is not its report"
     shown.terminate()
     shown.wait()
 
 
 os.mkdir(f"{OUT}/profile")
+plain = subprocess.Popen([TCSIM, "run", SCENARIO, "--accounting", "fixed", "--duration", "6s", "--out", f"{OUT}/plain"],
+                         stdout=subprocess.DEVNULL)
 with Browser(f"{OUT}/profile") as its_browser:
+    assert plain.wait() == 0, plain.returncode
+    ROVER = states()
     with LiveRun(TCSIM, SCENARIO, f"{OUT}/run", "--duration", "6s", "--pause", "--set", "csv_contacts=true",
                  held=True) as its_run:
         for check in (starts_standing, shows_forces, goes_on, looks_back, small_and_dark, ends):
