@@ -24,13 +24,15 @@ def states():
 
 
 def until(browser, script, *args):
-    """What the page says once it says something; not for longer than there is a run that it may hear of."""
+    """What the page says once it says something; not for longer than there is a run that it may hear of. Not asked between
+    pictures: a page that loads itself again meanwhile would never answer."""
     deadline = time.monotonic() + PATIENCE
     while True:
         is_over = browser.js("return ['ended', 'gone'].includes(document.querySelector('#run')?.dataset.stage)")
-        if value := browser.after_pictures(script, *args):
+        if value := browser.js(script, *args):
             return value
         assert not is_over and time.monotonic() < deadline, (script, how(browser))
+        time.sleep(0.03)
 
 
 def end(browser):
@@ -88,6 +90,7 @@ def shows_forces(browser, run):
         return found.length > 2 && found.filter(each => each.first.startsWith('rover/')).reduce((sum, each) => sum + each.force[2], 0);""")
     assert abs(held - 94.18) < 0.1, f"the floor holds {held} N of a rover of 9.6 kg"
     assert not browser.js("return document.querySelector('.of-forces').hidden")
+    browser.after_pictures()
     before = pixels(browser)
     browser.js("document.querySelector('[data-set=forces]').click()")
     browser.after_pictures()
@@ -109,6 +112,7 @@ def goes_on(browser, run):
     # All that it has done until then comes, and nothing more.
     until(browser, "return arguments[0] - tcs.run.end < 0.02 && Math.abs(tcs.time - tcs.run.end) < 1e-9", at)
     assert end(browser) <= at
+    browser.after_pictures()
     after = pixels(browser)
     assert sum(abs(a - b) > 12 for a, b in zip(before, after)) > 60, "the picture does not change"
     is_where_it_should_be(browser)
