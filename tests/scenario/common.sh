@@ -16,6 +16,15 @@ new_in_shm() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort); }
 # The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
 # stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
 library() { ldconfig -p | awk -v pattern="$1" '$0 ~ pattern && !found { found = 1; print $NF }'; }
+# Starts a function beside what goes on already. `all_done` waits for all of these, and ends the test if one has failed.
+started=()
+beside() { "$@" & started+=("$!"); }
+all_done() {
+  local pid failed=0
+  for pid in "${started[@]}"; do wait "$pid" || failed=1; done
+  started=()
+  ((failed == 0)) || exit 1
+}
 # Runs a scenario on one processor of the host, and again on two, where threads compute ahead: into the folders 1 and
 # 2 of the one that is given.
 run_on_one_and_two() {  # SCENARIO FOLDER

@@ -64,13 +64,19 @@ while True:
     s.sendto(b"?", ("127.0.0.1", 27483 - int(sys.argv[1])))
     s.recv(100)
 PY
-run() {  # COMMANDS
-  sed -i "/^  world/d" "$out/s.yaml"
-  echo "  world: {cpu: ideal, clients: {$1}}" >>"$out/s.yaml"
-  timeout 60 "$tcsim" run "$out/s.yaml" --accounting fixed --duration 200ms --out "$out/run" >"$out/said" 2>&1 || fail "status $?: $(cat "$out/said")"
+run() {  # NAME COMMANDS SENTENCE
+  cat >"$out/$1.yaml" <<YAML
+duration: 200ms
+robots:
+  world: {cpu: ideal, clients: {$2}}
+  robot: {clients: {sleeps: {command: [sleep, "9"]}}}
+YAML
+  timeout 80 "$tcsim" run "$out/$1.yaml" --accounting fixed --out "$out/$1" >"$out/$1.said" 2>&1 || fail "status $?: $(cat "$out/$1.said")"
+  grep -Eq "$3" "$out/$1.said" || fail "$(cat "$out/$1.said")"
 }
-sed -i 's/asks.py/-c, "import time; time.sleep(9)"/' "$out/s.yaml"
-run 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}'
-grep -Eq 'warning: world/(talker|other) has been busy for 10 s at one instant of virtual time; its robot is ideal, .* from 0.000 s on the world goes on without' "$out/said" || fail "$(cat "$out/said")"
-run 'spinner: {command: [python3, -c, "while True: pass"]}'
-grep -q 'warning: world/spinner has computed for 10 s at one instant of virtual time; its robot is ideal' "$out/said" || fail "$(cat "$out/said")"
+# 10 s of real time each.
+beside run talkers 'talker: {command: [python3, talks.py, "0"]}, other: {command: [python3, talks.py, "1"]}' \
+  'warning: world/(talker|other) has been busy for 10 s at one instant of virtual time; its robot is ideal, .* from 0.000 s on the world goes on without'
+beside run spinner 'spinner: {command: [python3, -c, "while True: pass"]}' \
+  'warning: world/spinner has computed for 10 s at one instant of virtual time; its robot is ideal'
+all_done

@@ -1,17 +1,37 @@
 """A run that goes on with a page, for tests: started, asked and told over HTTP."""
 import http.client
 import json
+import os
 import re
 import subprocess
 import time
 
+PATIENCE = 100  # s of real time: so long no wait of a test takes, however busy the host is
+
+
+def full_pipe():
+    """Its ends: whoever writes into it waits until somebody reads."""
+    read_end, write_end = os.pipe()
+    os.set_blocking(write_end, False)
+    try:
+        while True:
+            os.write(write_end, bytes(4096))
+    except BlockingIOError:
+        os.set_blocking(write_end, True)
+    return read_end, write_end
+
 
 class LiveRun:
-    def __init__(self, tcsim, scenario, out, *options, accounting="fixed"):
+    def __init__(self, tcsim, scenario, out, *options, accounting="fixed", held=False):
+        """`held`: it is not through before `release`, for it cannot print its summary. A run that has ended gives those
+        who watch it a second to see that; a test is not to depend on who is that fast."""
         self.out = out
         self.said = open(f"{out}.said", "w+")
+        self.full, stdout = full_pipe() if held else (None, self.said)
         self.process = subprocess.Popen([tcsim, "run", scenario, "--accounting", accounting, "--out", out, "--view", *options],
-                                        stdout=self.said, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+                                        stdout=stdout, stderr=self.said, stdin=subprocess.DEVNULL)
+        if held:
+            os.close(stdout)
         self.url = self.until(self.find_url)
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([0-9a-f]{32})/", self.url)
         assert found, self.url
@@ -27,8 +47,10 @@ class LiveRun:
         return found and found[1]
 
     def until(self, condition):
-        """What it is once it is something. The test's own time limit ends a wait in vain."""
+        """What it is once it is something."""
+        deadline = time.monotonic() + PATIENCE
         while not (value := condition()):
+            assert time.monotonic() < deadline, ("waited in vain", self.process.poll(), self.words())
             time.sleep(0.02)
         return value
 
@@ -58,7 +80,7 @@ class LiveRun:
         return self.news()["status"]
 
     def wish(self, words):
-        """Returns once the run has taken it."""
+        """Returns once the run has taken it. Not for what may let it go to its end: nobody would say so any more."""
         status, content = self.ask("wish", words.encode())
         assert status == 200, (words, status)
         asked = json.loads(content)["asked"]
@@ -67,8 +89,21 @@ class LiveRun:
     def stands_at(self, ns):
         return self.until(lambda: (now := self.status())["stage"] == "stands" and now["now"] == ns)
 
+    def tell(self, words):
+        """For what may let it go to its end, with which its server goes: the answer may not come."""
+        try:
+            status, _ = self.ask("wish", words.encode())
+            assert status in (200, 409), (words, status)  # 409: it has ended
+        except (OSError, http.client.HTTPException):
+            pass
+
+    def release(self):
+        with open(self.full, "rb") as pipe:
+            self.full = None
+            pipe.read()
+
     def end(self, status=0):
-        assert self.process.wait() == status, (self.process.returncode, self.words())
+        assert self.process.wait(PATIENCE) == status, (self.process.returncode, self.words())
         return self.words()
 
     def __enter__(self):
@@ -77,5 +112,7 @@ class LiveRun:
     def __exit__(self, *_):
         if self.process.poll() is None:
             self.process.terminate()
-            self.process.wait()
+        if self.full is not None:
+            self.release()
+        self.process.wait()
         self.said.close()

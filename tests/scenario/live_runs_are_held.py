@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from live import LiveRun
 
@@ -16,8 +17,8 @@ MS = 1_000_000
 FILES = ["bodies.csv", "joints.csv", "commands.csv", "output.csv", "scene.json", "trace.json", "activations.csv", "dispatches.csv"]
 
 
-def start(name, *options):
-    return LiveRun(TCSIM, SCENARIO, f"{OUT}/{name}", "--duration", "2s", *options)
+def start(name, *options, **more):
+    return LiveRun(TCSIM, SCENARIO, f"{OUT}/{name}", "--duration", "2s", *options, **more)
 
 
 def is_the_same(name):
@@ -66,7 +67,7 @@ def steps():
         run.wish("pace 0")
         time.sleep(6)  # longer than a standstill is borne in silence
         assert run.status()["now"] == at
-        run.wish("go")
+        run.tell("go")
         words = run.end()
         assert "it was paused for" in words and "stood still" not in words, words
     is_the_same("steps")
@@ -75,32 +76,44 @@ def steps():
 
 
 def pauses():
-    """Again and again while it goes, and with another pace each time."""
-    with start("pauses", "--pace", "2") as run:
+    """Again and again while it goes, at another pace each time: so slow that it hears of it before its end on any host."""
+    with start("pauses", "--pace", "0.05") as run:
         before = -1
-        for pace in ("1", "5", "0.5", "0", "1000"):
-            if run.wish(f"pace {pace}")["stage"] == "ended" or run.wish("stand")["stage"] == "ended":
-                break
+        for pace in ("0.05", "0.02", "0.1"):
+            assert run.wish(f"pace {pace}")["pace"] == float(pace)
+            run.until(lambda: run.status()["now"] > before)
+            run.wish("stand")
             stands = run.until(lambda: (now := run.status())["stage"] == "stands" and now)["now"]
-            assert stands >= before
+            assert stands > before
             before = stands
             time.sleep(0.1)
             assert run.status()["now"] == stands
             run.wish("go")
+        run.wish("stand")
+        at = run.until(lambda: (now := run.status())["stage"] == "stands" and now)["now"]
+        for pace in ("5", "1000", "0"):
+            run.wish(f"pace {pace}")
+            run.wish(f"step {50 * MS}")
+            at += 50 * MS
+            run.stands_at(at)
+        # As fast as it can, it may hear the second of these on its way, or not at all.
+        for words in ("go", "stand", "go"):
+            run.tell(words)
         run.end()
     is_the_same("pauses")
 
 
 def bad_watchers():
     """One asks for the page and never reads it, one says half a request, and the server is stopped."""
-    with start("bad", "--pause") as run:
+    with start("bad", "--pause", held=True) as run:
         held = []
         for request in (f"GET /{run.token}/ HTTP/1.1\r\nHost: 127.0.0.1:{run.port}\r\n\r\n", "GET /", ""):
             held.append(socket.create_connection(("127.0.0.1", run.port)))
             held[-1].setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
             held[-1].sendall(request.encode())
-        run.wish("go")
+        run.tell("go")
         os.kill(server_of(run), signal.SIGSTOP)
+        run.release()
         run.end()
         for one in held:
             one.close()
@@ -144,10 +157,10 @@ def computing_is_charged():
         file.write("duration: 20s\ndynamics: {}\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}\n"
                    f"robots: {{b: {{clients: {{c: {{command: [python3, -c, {json.dumps(COMPUTES)}]}}}}}}}}\n")
     with LiveRun(TCSIM, f"{OUT}/computes.yaml", f"{OUT}/computes", "--pause", accounting="measured") as run:
-        for _ in range(30):  # no more than the program sleeps alone: it has not ended then
-            assert run.wish(f"step {20 * MS}")["stage"] != "ended"
+        for _ in range(12):  # no more than the program sleeps alone: it has not ended then
+            assert run.wish(f"step {50 * MS}")["stage"] != "ended"
             time.sleep(0.1)
-        run.wish("go")
+        run.tell("go")
         run.end()
     with open(f"{OUT}/computes/summary.json") as file:
         client = json.load(file)["clients"]["b/c"]
@@ -180,6 +193,10 @@ def sentences():
     assert "is no result of `tcsim run`" in fails("view", f"{OUT}/empty")
 
 
-for check in (steps, pauses, bad_watchers, a_dead_server, an_end_while_it_stands, computing_is_charged, sentences):
-    check()
-    print(check.__name__, flush=True)
+# Two at a time: that of `steps` stands for long.
+with ThreadPoolExecutor(2) as two:
+    checks = [(check, two.submit(check)) for check in
+              (steps, pauses, bad_watchers, a_dead_server, an_end_while_it_stands, computing_is_charged, sentences)]
+    for its_check, outcome in checks:
+        outcome.result()
+        print(its_check.__name__, flush=True)

@@ -243,8 +243,6 @@ def forces(browser):
     left, top, width, height = browser.rect("[data-set=forces]")
     browser.click(left + width / 2, top + height / 2)
     assert browser.after_pictures(ARROWS)["count"] == 0, "they stay"
-    browser.open(f"{FOLDER}/rover.html")
-    assert browser.js("return document.querySelector('.of-forces').hidden"), "nobody has recorded the rover's"
 
 
 def small_and_touched(browser):
@@ -252,6 +250,7 @@ def small_and_touched(browser):
     browser.open(f"{FOLDER}/rover.html")
     browser.after_pictures()
     assert browser.js("return [document.scrollingElement.scrollWidth, innerWidth]") == [400, 400]
+    assert browser.js("return document.querySelector('.of-forces').hidden"), "nobody has recorded the rover's forces"
     left, top, width, height = browser.rect(".stage")
     before = browser.js("return tcs.view.orbit.turn")
     browser.finger(*[(left + 60 + 20 * i, top + height / 2) for i in range(8)])
@@ -263,7 +262,6 @@ def small_and_touched(browser):
 
 
 def dark(browser):
-    browser.open(f"{FOLDER}/rover.html")
     browser.after_pictures()
     light = pixels(browser)
     browser.media(dark=True)

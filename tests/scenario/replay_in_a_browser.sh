@@ -9,7 +9,12 @@ for command in chromium chromedriver; do
 done
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-"$tcsim" run "$build/examples/rover/scenario.yaml" --accounting fixed --duration 4s --out "$out/rover" >"$out/said" || fail "$(cat "$out/said")"
+show() {  # NAME SCENARIO OPTIONS
+  "$tcsim" run "$2" --accounting fixed --out "$out/$1" "${@:3}" >"$out/$1.said" || fail "$(cat "$out/$1.said")"
+  "$tcsim" report "$out/$1" --out "$out/$1.html" >"$out/$1.said" || fail "$(cat "$out/$1.said")"
+  (($(stat -c %s "$out/$1.html") < 2000000)) || fail "the page of a few seconds is large"
+}
+beside show rover "$build/examples/rover/scenario.yaml" --duration 4s
 cat >"$out/talk.yaml" <<'YAML'
 duration: 2s
 dynamics: {}
@@ -19,7 +24,7 @@ robots:
     clients:
       talker: {command: [python3, -u, -c, "import time\nfor i in range(4):\n  time.sleep(0.4)\n  print('mark: half way' if i == 1 else 'tick <%.6f>' % time.monotonic())"]}
 YAML
-"$tcsim" run "$out/talk.yaml" --accounting fixed --out "$out/talk" >"$out/said" || fail "$(cat "$out/said")"
+beside show talk "$out/talk.yaml"
 cat >"$out/crates.yaml" <<'YAML'
 duration: 2s
 csv_contacts: true
@@ -30,10 +35,7 @@ models:
   lid: {box: [0.2, 0.2, 0.2], mass: 1, position: [0, 0, 1.2]}
 robots: {r: {clients: {c: {command: [sleep, "2"]}}}}
 YAML
-"$tcsim" run "$out/crates.yaml" --accounting fixed --out "$out/crates" >"$out/said" || fail "$(cat "$out/said")"
-for run in rover talk crates; do
-  "$tcsim" report "$out/$run" --out "$out/$run.html" >"$out/said" || fail "$(cat "$out/said")"
-  (($(stat -c %s "$out/$run.html") < 2000000)) || fail "the page of a few seconds is large"
-done
+beside show crates "$out/crates.yaml"
+all_done
 cd "$(dirname -- "${BASH_SOURCE[0]}")"
-timeout 400 python3 -B replay_in_a_browser.py "$out" || fail "the page is not as it should be"
+timeout 280 python3 -B replay_in_a_browser.py "$out" || fail "the page is not as it should be"

@@ -11,14 +11,15 @@ example=$build/examples/predator_prey/scenario.yaml
 
 plan() { printf '{"name": "%s", "first_seed": 1, "trials": %s, "vary": %s}' "$2" "$3" "$4" >"$1/trials.json"; }
 fly() { "$tcsim" run "$example" --out "$out/$1" "${@:2}" >>"$out/said"; }
-fly tcs/seed-0001 --duration 1.2s --seed 1
-fly tcs/seed-0002 --duration 1.2s --seed 2
+fly tcs/seed-0001 --duration 1.2s --seed 1  # alone, for its real time is looked at
+beside fly tcs/seed-0002 --duration 1.2s --seed 2
 mkdir "$out/tcs/seed-0003"
 echo 'tcsim: predator/planner cannot be started: <gone>' >"$out/tcs/seed-0003/tcsim.log"
 plan "$out/tcs" 'tcs & co' 3 null
-fly callback --duration 0.15s --sync callback
-fly sweep/0.5s/seed-0001 --duration 0.5s --accounting fixed
-fly sweep/1s/seed-0001 --duration 1s --accounting fixed
+beside fly callback --duration 0.15s --sync callback
+beside fly sweep/0.5s/seed-0001 --duration 0.5s --accounting fixed
+beside fly sweep/1s/seed-0001 --duration 1s --accounting fixed
+all_done
 plan "$out/sweep" 'tcs & co' 1 '{"key": "duration", "values": ["0.5s", "1s"]}'
 # Planning for 1 s is what the example does.
 python3 - "$out/tcs/seed-0001" <<'PY' || fail "the activations of a run are not what it did"
@@ -96,25 +97,25 @@ addEventListener('load', () => setTimeout(() => {
 </script>"""
 open(folder + "/probe.html", "w", encoding="utf-8").write(
     page.replace("<title>", before + "<title>", 1).replace("</main>", "</main>" + after, 1))
-# In a frame, for no window is as narrow as a telephone.
-for name, part in ("whole", ""), ("part", "#t=0.4-0.5"):
-    open(f"{folder}/frame-{name}.html", "w").write(
-        "<script>onmessage = event => { document.title = event.data; };</script>"
-        f"<iframe src='probe.html{part}' width=400 height=800 style='border:0'></iframe>")
+# In frames, for no window is as narrow as a telephone: whole, and the part that the address names.
+open(f"{folder}/frames.html", "w").write("""<script>
+const seen = {};
+onmessage = event => {
+  seen[event.source === frames[0] ? 'whole' : 'part'] = JSON.parse(event.data);
+  if (seen.whole && seen.part) document.title = JSON.stringify(seen);
+};
+</script>
+<iframe src='probe.html' width=400 height=800 style='border:0'></iframe>
+<iframe src='probe.html#t=0.4-0.5' width=400 height=800 style='border:0'></iframe>""")
 PY
-look() {
-  timeout 60 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
-    --user-data-dir="$out/browser" --window-size=600,900 --virtual-time-budget=8000 --dump-dom "file://$out/frame-$1.html" \
-    >"$out/$1.html" 2>"$out/$1.err" || fail "chromium: $(tail -3 "$out/$1.err")"
-}
-look whole
-look part
-python3 - "$out" <<'PY' || fail "the page is not as it should be"
+timeout 100 chromium --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
+  --user-data-dir="$out/browser" --window-size=1000,900 --virtual-time-budget=8000 --dump-dom "file://$out/frames.html" \
+  >"$out/seen.html" 2>"$out/seen.err" || fail "chromium: $(tail -3 "$out/seen.err")"
+python3 - "$out/seen.html" <<'PY' || fail "the page is not as it should be"
 import html, json, re, sys
-def seen(name):
-    dom = open(f"{sys.argv[1]}/{name}.html", encoding="utf-8").read()
-    return json.loads(html.unescape(re.search(r"<title>(\{.*?\})</title>", dom, re.S).group(1)))
-whole, part = seen("whole"), seen("part")
+dom = open(sys.argv[1], encoding="utf-8").read()
+seen = json.loads(html.unescape(re.search(r"<title>(\{.*?\})</title>", dom, re.S).group(1)))
+whole, part = seen["whole"], seen["part"]
 for page in whole, part:
     assert page["errors"] == [] and page["refused"] == [] and page["resources"] == [], page
     assert page["width"] <= page["window"] == 400, (page["width"], page["window"])

@@ -8,12 +8,12 @@ trap 'rm -rf "$out"' EXIT
 drive() {
   "$tcsim" run "$build/examples/rover/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 }
-drive first --accounting fixed --duration 6s
-drive second --accounting fixed --duration 6s
+drive first --accounting fixed --duration 3s
+drive second --accounting fixed --duration 3s
 cmp "$out/first/bodies.csv" "$out/second/bodies.csv" || fail "a second drive is another one"
-drive quick --duration 8s --set robots.rover.cpu.speed=1
-drive slow --duration 8s --set robots.rover.cpu.speed=0.1
-drive eaten --duration 8s --set robots.rover.cpu.speed=0.1 --set 'robots.rover.clients.eater.command=[./eater, "100"]'
+drive quick --duration 4s --set robots.rover.cpu.speed=1
+drive slow --duration 4s --set robots.rover.cpu.speed=0.1
+drive eaten --duration 4s --set robots.rover.cpu.speed=0.1 --set 'robots.rover.clients.eater.command=[./eater, "100"]'
 PYTHONDONTWRITEBYTECODE=1 python3 - "$out" "$source_root" <<'PY' || fail "$(cat "$out/said")"
 import json, re, statistics, sys
 from pathlib import Path
