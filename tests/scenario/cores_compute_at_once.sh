@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
-# Four computing threads of a quarter of a second each take that long on four cores, half a second on two, a second on one.
+# Four computing threads of a quarter of a second each take that long on four cores, half a second on two, a second
+# on one.
 # Topics: cores, threads.
 for cores in 4 2 1; do
   took=$("$tcsim" exec --cores "$cores" -- "$build/bin/computing_threads" 4 0.25)
