@@ -5,16 +5,36 @@
 #include <pthread.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
+#include <new>
+
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 namespace {
 
 using namespace conformance;
 
-char g_path[] = "/tmp/tcs_locks_XXXXXX";
+char g_path[32];
+
+// A file that nobody else locks.
+void MakeFile() {
+  strcpy(g_path, "/tmp/tcs_locks_XXXXXX");
+  const int made = mkstemp(g_path);
+  EXPECT(made >= 0, "mkstemp");
+  close(made);
+}
+
+// What orders processes natively: where each has told that it comes to its wait.
+conformance::InOrder& NewOrder() {
+  void* memory = mmap(nullptr, sizeof(conformance::InOrder), PROT_READ | PROT_WRITE,
+                      MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  EXPECT(memory != MAP_FAILED, "mmap");
+  return *new (memory) conformance::InOrder;
+}
 
 void SleepUntil(std::int64_t until) {
   const timespec t = ToTimespec(until);
@@ -69,27 +89,29 @@ int Open() {
 
 enum class Ends { kByCall, kByClose, kByExit };
 
-// Of the times below. A loaded host wakes who sleeps late, natively.
-std::int64_t Ms() { return g_mode == Mode::kNative ? 2 * kMs : kMs; }
-
 // A child has the lock for 100 ms; the parent waits for it from 50 ms on, and computes on.
 void BetweenProcesses(const Kind& kind, Ends ends) {
+  InOrder& order = NewOrder();
   const std::int64_t start = Now();
   const pid_t child = fork();
   if (child == 0) {
     const int fd = Open();
     EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
-    SleepUntil(start + 100 * Ms());
+    order.Comes(0);
+    SleepUntil(start + 100 * kMs);
+    order.AwaitAll(2);
     if (ends == Ends::kByCall) EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
     if (ends == Ends::kByClose) EXPECT(close(fd) == 0, "%s", kind.name);
-    if (ends != Ends::kByExit) SleepUntil(start + 200 * Ms());
+    if (ends != Ends::kByExit) SleepUntil(start + 200 * kMs);
     _exit(0);
   }
   const int fd = Open();
-  SleepUntil(start + 50 * Ms());
+  SleepUntil(start + 50 * kMs);
+  NativelyUntil([&] { return order.tids[0] != 0; });
   EXPECT(kind.try_it(fd) == -1 && (errno == EAGAIN || errno == EACCES), "%s: not held", kind.name);
+  if (g_mode == Mode::kNative) order.tids[1] = gettid();
   EXPECT(kind.lock(fd) == 0, "%s: %s", kind.name, strerror(errno));
-  ExpectPassed(start, 100 * Ms(), kind.name);
+  ExpectPassed(start, 100 * kMs, kind.name);
   EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
@@ -97,9 +119,10 @@ void BetweenProcesses(const Kind& kind, Ends ends) {
 }
 
 // Three wait one after another, each has it for 20 ms.
-void InOrder(const Kind& kind) {
+void ServedInOrder(const Kind& kind) {
   const int fd = Open();
   EXPECT(kind.lock(fd) == 0, "%s", kind.name);
+  InOrder& order = NewOrder();
   const std::int64_t start = Now();
   pid_t children[3];
   for (int i = 0; i < 3; ++i) {
@@ -107,14 +130,16 @@ void InOrder(const Kind& kind) {
     if (children[i] != 0) continue;
     close(fd);
     const int own = Open();
-    SleepUntil(start + (i + 1) * 10 * Ms());
+    SleepUntil(start + (i + 1) * 10 * kMs);
+    order.Comes(i);
     EXPECT(kind.lock(own) == 0, "%s", kind.name);
-    ExpectPassed(start, (100 + i * 20) * Ms(), kind.name);
-    SleepUntil(start + (120 + i * 20) * Ms());
+    ExpectPassed(start, (100 + i * 20) * kMs, kind.name);
+    SleepUntil(start + (120 + i * 20) * kMs);
     EXPECT(kind.unlock(own) == 0, "%s", kind.name);
     _exit(0);
   }
-  SleepUntil(start + 100 * Ms());
+  SleepUntil(start + 100 * kMs);
+  order.AwaitAll(3);
   EXPECT(kind.unlock(fd) == 0, "%s", kind.name);
   for (const pid_t child : children) {
     int status = 0;
@@ -137,7 +162,7 @@ void Interrupted(const Kind& kind) {
   if (child == 0) {
     const int fd = Open();
     EXPECT(kind.lock(fd) == 0 && write(ready[1], "x", 1) == 1, "%s", kind.name);
-    SleepUntil(start + 60 * Ms());
+    SleepUntil(start + 60 * kMs);
     // On a loaded host the parent may not have come to its wait yet.
     pollfd released{release[0], POLLIN, 0};
     do {
@@ -148,7 +173,7 @@ void Interrupted(const Kind& kind) {
   const int fd = Open();
   EXPECT(read(ready[0], &byte, 1) == 1, "read");
   EXPECT(kind.lock(fd) == -1 && errno == EINTR, "%s: %s", kind.name, strerror(errno));
-  ExpectPassed(start, 60 * Ms(), "a handler");
+  ExpectPassed(start, 60 * kMs, "a handler");
   EXPECT(write(release[1], "x", 1) == 1, "write");
   pid_t ended = 0;
   while ((ended = waitpid(child, nullptr, 0)) == -1 && errno == EINTR) {
@@ -178,37 +203,40 @@ void Deadlock() {
     return fcntl(fd, command, &part);
   };
   EXPECT(lock(F_SETLK, 0) == 0, "fcntl");
+  InOrder& order = NewOrder();
   const std::int64_t start = Now();
   const pid_t child = fork();
   if (child == 0) {
     EXPECT(lock(F_SETLKW, 100) == 0, "fcntl");
-    SleepUntil(start + 50 * Ms());
+    SleepUntil(start + 50 * kMs);
+    order.Comes(0);
     _exit(lock(F_SETLKW, 0) == 0 ? 0 : 1);
   }
-  SleepUntil(start + 100 * Ms());
+  SleepUntil(start + 100 * kMs);
+  order.AwaitAll(1);
   EXPECT(lock(F_SETLKW, 100) == -1 && errno == EDEADLK, "%s", strerror(errno));
-  ExpectPassed(start, 100 * Ms(), "EDEADLK");
+  ExpectPassed(start, 100 * kMs, "EDEADLK");
   EXPECT(lock(F_SETLKW, 200) == 0, "fcntl");
   close(fd);
   int status = 0;
   EXPECT(waitpid(child, &status, 0) == child && status == 0, "status %x", status);
-  ExpectPassed(start, 100 * Ms(), "the other one");
+  ExpectPassed(start, 100 * kMs, "the other one");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
-  const int made = mkstemp(g_path);
-  EXPECT(made >= 0, "mkstemp");
-  close(made);
-  for (const Kind& kind : kKinds) {
+  ForEachAtOnceNatively(kKinds, [](const Kind& kind) {
+    MakeFile();
     for (const Ends ends : {Ends::kByCall, Ends::kByClose, Ends::kByExit}) {
       BetweenProcesses(kind, ends);
     }
-    InOrder(kind);
+    ServedInOrder(kind);
     Interrupted(kind);
-  }
+    unlink(g_path);
+  });
+  MakeFile();
   Shared();
   Deadlock();
   unlink(g_path);

@@ -1,7 +1,7 @@
 // Many threads at once: mutexes, condition variables, timed waits, sleeps, births and deaths of
 // threads, signals, fork and exec. Whatever they do, nobody else is inside a mutex, no wake-up is
 // lost, no clock goes back and no wait ends early. It prints what it has done, and a hash of all
-// its readings of the clock.
+// its readings of the clock. After the mode may come for how many ms.
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
@@ -17,7 +17,7 @@ using namespace conformance;
 namespace {
 
 constexpr int kWorkers = 8, kBorn = 4;
-constexpr std::int64_t kRun = 500 * kMs;
+std::int64_t g_run = 200 * kMs;
 
 pthread_mutex_t g_mutex = PTHREAD_MUTEX_INITIALIZER, g_lending;
 std::atomic<int> g_inside{0}, g_lent{0};
@@ -153,7 +153,7 @@ Worker g_workers[kWorkers];
 
 void* Work(void* argument) {
   Worker& w = *static_cast<Worker*>(argument);
-  const std::int64_t end = w.Look() + kRun;
+  const std::int64_t end = w.Look() + g_run;
   while (w.Look() < end) {
     ++w.rounds;
     switch (w.Draw(16)) {
@@ -223,6 +223,7 @@ void* Play(void* argument) {
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
+  if (argc > 2) g_run = atoi(argv[2]) * kMs;
   struct sigaction action {};
   action.sa_handler = OnSignal;
   sigaction(SIGUSR1, &action, nullptr);

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/wait.h>
 
 #include <atomic>
 
@@ -15,6 +16,28 @@ namespace conformance {
 template <class Condition>
 void NativelyUntil(Condition holds) {
   while (g_mode == Mode::kNative && !holds()) usleep(1'000);
+}
+
+// Natively all parts run at once, each in a process of its own, because they mostly wait; under
+// tcs, where waiting takes no real time, one after the other.
+template <class Parts, class Run>
+void ForEachAtOnceNatively(const Parts& parts, Run run) {
+  int children = 0, failed = 0, status = 0;
+  for (const auto& part : parts) {
+    if (g_mode != Mode::kNative) {
+      run(part);
+      continue;
+    }
+    const pid_t child = fork();
+    EXPECT(child >= 0, "fork: %s", strerror(errno));
+    if (child == 0) {
+      run(part);
+      _exit(0);
+    }
+    ++children;
+  }
+  for (; children > 0; --children) failed += wait(&status) < 0 || status != 0;
+  EXPECT(failed == 0, "%d parts failed", failed);
 }
 
 // True if the thread, of any process, sleeps in the kernel until something wakes it.

@@ -221,9 +221,11 @@ void ByThreads() {
       EXPECT(after <= due + 10 * kCallNs, "call %d after %lld ns", i, (long long)after);
   }
   EXPECT(timer_delete(timer) == 0, "timer_delete");
-  const int calls = g_calls;
+  // Natively calls for what ran out before may still be on their way.
+  const std::int64_t most =
+      g_mode == Mode::kNative ? (Now() - start) / (20 * kMs) : std::int64_t{g_calls};
   usleep(100'000);
-  EXPECT(g_calls == calls, "a deleted timer called");
+  EXPECT(g_calls <= most, "a deleted timer called");
 }
 
 std::atomic<bool> g_done{false};
@@ -338,9 +340,11 @@ void ToOneThread() {
   const std::int64_t start = Now();
   Set(timer, 15 * kMs);
   usleep(100'000);
+  NativelyUntil([] { return g_count >= 1; });
   EXPECT(g_count == 1 && g_tid == g_sleeper, "%d signals, the last in %d", int(g_count), g_tid);
   ExpectAt(g_at[0] - start, 15 * kMs, "a thread's signal");
   g_done = true;
+  pthread_kill(thread, SIGRTMIN + 4);  // natively its sleep takes a second
   pthread_join(thread, nullptr);
   timer_delete(timer);
 }

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include "tests/conformance/conformance.h"
+#include "tests/conformance/natively_until.h"
 
 using namespace conformance;
 
@@ -115,7 +116,6 @@ void Memory() {
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
-  Messages();
-  Semaphores();
-  Memory();
+  ForEachAtOnceNatively(std::initializer_list<void (*)()>{Messages, Semaphores, Memory},
+                        [](void (*part)()) { part(); });
 }

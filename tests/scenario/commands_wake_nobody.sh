@@ -26,20 +26,21 @@ channels:
 YAML
 }
 run() {  # FOLDER OPTIONS...: of the scenario there
-  "$tcsim" run "$out/$1.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$1: $(cat "$out/said")"
-  ! grep -q warning "$out/said" || fail "$1: $(cat "$out/said")"
+  "$tcsim" run "$out/$1.yaml" --out "$out/$1" "${@:2}" >"$out/$1.said" 2>&1 || fail "$1: $(cat "$out/$1.said")"
+  ! grep -q warning "$out/$1.said" || fail "$1: $(cat "$out/$1.said")"
 }
 # The commands, each at the tick at which it was sent: a call takes a nanosecond.
 ticks_of() { sed -E 's/^([0-9]*)[0-9]{4},[0-9]*,/\1,/' "$out/$1/commands.csv"; }
 # Whether they act as those of the other run: by the nanosecond where as many calls have sent them.
 act_alike() {  # NAME OTHER
-  diff <(ticks_of "$2") <(ticks_of "$1") >"$out/differ" || fail "$1: other commands than $2: $(head -5 "$out/differ")"
+  diff <(ticks_of "$2") <(ticks_of "$1") >"$out/$1.differ" || fail "$1: other commands than $2: $(head -5 "$out/$1.differ")"
   case $1 in *sendmmsg*|*child*|*thread*) return ;; esac
   cmp "$out/$2/commands.csv" "$out/$1/commands.csv" || fail "$1: commands at other times than $2"
   cmp "$out/$2/bodies.csv" "$out/$1/bodies.csv" || fail "$1: another flight than $2"
 }
 unix='@${run}/hands' udp=127.0.0.1:27493
-for type in unix udp; do
+send_each_way() {  # TYPE
+  local type=$1 count rows way name
   for count in 2 40; do  # 40 are more than a postbox takes
     scenario $type "${!type}" write $count >"$out/$type$count.yaml"
     run $type$count --accounting fixed
@@ -55,7 +56,11 @@ for type in unix udp; do
       act_alike $name $type$count
     done
   done
-done
+}
+# Beside each other.
+send_each_way unix &
+send_each_way udp
+wait $!
 cmp "$out/unix2/commands.csv" "$out/udp2/commands.csv" || fail "UNIX and UDP differ"
 
 # Each command that the kernel carries stops the program and wakes tcsim, where these have priorities.

@@ -67,8 +67,8 @@ run() {  # with|without|contained NAME SCENARIO ARGUMENTS...: into FOLDER/NAME
     --out "$folder/$name" >"$folder/$name.said" 2>&1 || fail "$(cat "$folder/$name.said")"
 }
 for rights in with without contained; do
-  run $rights fixed "$out/example/scenario.yaml" --duration 2s --accounting fixed
-  run $rights flight "$out/example/scenario.yaml" --duration 3s
+  run $rights fixed "$out/example/scenario.yaml" --duration 1.2s --accounting fixed
+  run $rights flight "$out/example/scenario.yaml" --duration 1.2s
 done
 run without deaf "$out/deaf.yaml"
 for rights in with without; do run $rights pieces "$out/work.yaml" --host-cpus 1; done

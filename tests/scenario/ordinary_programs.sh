@@ -19,7 +19,7 @@ cat >pools.py <<'PY'
 import asyncio, multiprocessing, time
 
 def square(x):
-    time.sleep(0.5)
+    time.sleep(0.05)
     return x * x
 
 async def cat():
@@ -35,7 +35,7 @@ PY
 like_native 'python3 pools.py'
 like_native 'tar cf - -C /usr/share/doc/bash . | gzip -n | sha1sum'
 like_native 'seq 100000 | sort -R --random-source=/bin/bash | sort -n --parallel=4 -S 4M | sha1sum'
-like_native 'dd if=/dev/zero bs=64k count=20 status=none | sha1sum; timeout 1 sleep 3'
+like_native 'dd if=/dev/zero bs=64k count=20 status=none | sha1sum; timeout 0.1 sleep 3'
 if command -v g++ >/dev/null; then
   like_native 'echo "int main() { return 3; }" >three.cc; g++ -o three three.cc && ./three'
 fi
@@ -52,10 +52,10 @@ if command -v sqlite3 >/dev/null; then
 fi
 if command -v socat >/dev/null; then
   # Some versions tell of the signal that ends them, with the date.
-  like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat 2>/dev/null & sleep 0.5
-    echo hello | socat -t1 - TCP:127.0.0.1:5599; kill $!'
+  like_native 'socat TCP-LISTEN:5599,reuseaddr,fork EXEC:cat 2>/dev/null &
+    echo hello | socat -t1 - TCP:127.0.0.1:5599,retry=1000,interval=0.01; kill $!'
 fi
 # One that goes into the background by itself is waited for, and so is one on a terminal of its own.
 like_native 'python3 -c "import ctypes, time
-ctypes.CDLL(None).daemon(1, 1); time.sleep(1); print(7)" | cat'
-like_native 'python3 -c "import pty; pty.spawn([\"sh\", \"-c\", \"sleep 1; echo 7\"])"'
+ctypes.CDLL(None).daemon(1, 1); time.sleep(0.1); print(7)" | cat'
+like_native 'python3 -c "import pty; pty.spawn([\"sh\", \"-c\", \"sleep 0.1; echo 7\"])"'

@@ -28,7 +28,7 @@ fi
 
 # Whoever is stopped from outside: nothing hangs, and it is said where it is the coordinator.
 for victim in coordinator keeper; do
-  "$tcsim" exec -- sh -c 'i=0; while [ $i -lt 3000000 ]; do i=$((i + 1)); done' 2>"$out/warned" &
+  "$tcsim" exec -- sh -c 'i=0; while [ $i -lt 1000000 ]; do i=$((i + 1)); done' 2>"$out/warned" &
   run=$!
   for _ in $(seq 100); do
     process=$(coordinator_of $run 2>/dev/null || true)
@@ -37,7 +37,7 @@ for victim in coordinator keeper; do
   done
   [[ $victim == coordinator ]] || process=$(pgrep -P $run)
   kill -STOP "$process"
-  for _ in $(seq 300); do kill -0 $run 2>/dev/null || break; sleep 0.1; done
+  for _ in $(seq 1500); do kill -0 $run 2>/dev/null || break; sleep 0.02; done
   ! kill -0 $run 2>/dev/null || fail "a run whose $victim was stopped hangs"
   wait $run || fail "status $?: $(cat "$out/warned")"
   [[ $victim == keeper ]] || grep -q '^tcsim: the coordinator .* was stopped by a signal' "$out/warned" ||

@@ -7,7 +7,6 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 unset PYTHONUNBUFFERED LD_PRELOAD
-modes=(measured fixed)
 
 # The C library holds back what it prints to a pipe until its program ends; under stdbuf each line
 # is there at once.
@@ -27,7 +26,14 @@ print()
 PY
 held='python3 printer.py | python3 reader.py'
 at_once='stdbuf -oL python3 printer.py | python3 reader.py'
-for mode in "${modes[@]}"; do
+# Both accountings beside each other.
+in_each_mode() {  # FUNCTION
+  local mode checks=() check
+  for mode in measured fixed; do "$1" "$mode" & checks+=($!); done
+  for check in "${checks[@]}"; do wait "$check" || exit 1; done
+}
+prints() {  # MODE
+  local mode=$1 run says
   run=(timeout 30 "$tcsim" exec --accounting "$mode" -- sh -c)
   says=$("${run[@]}" "$held")
   [[ $says == "3 3 3 " ]] || fail "$mode, without stdbuf: '$says'"
@@ -35,7 +41,8 @@ for mode in "${modes[@]}"; do
   [[ $says == "0 1 2 " ]] || fail "$mode, stdbuf inside: '$says'"
   says=$(stdbuf -oL "${run[@]}" "$held")
   [[ $says == "0 1 2 " ]] || fail "$mode, stdbuf around tcsim: '$says'"
-done
+}
+in_each_mode prints
 
 # A whole list of one's own, none, and an empty environment: virtual time goes on.
 slept='import os, time; a = time.monotonic(); time.sleep(1000); print(round(time.monotonic() - a), os.environ.get("LD_PRELOAD", ""))'
@@ -72,12 +79,13 @@ YAML
 jemalloc=$(library 'libjemalloc.so.2 .*x86-64')
 if [[ -n $jemalloc ]]; then
   maps='import time; time.sleep(1000); print("jemalloc" in open("/proc/self/maps").read())'
-  for mode in "${modes[@]}"; do
-    [[ $(LD_PRELOAD=$jemalloc timeout 30 "$tcsim" exec --accounting "$mode" -- python3 -c "$maps") == True ]] ||
-      fail "$mode: jemalloc around tcsim"
-    [[ $(timeout 30 "$tcsim" exec --accounting "$mode" -- env LD_PRELOAD="$jemalloc" python3 -c "$maps") == True ]] ||
-      fail "$mode: jemalloc inside"
-  done
+  jemalloc_is_there() {  # MODE
+    [[ $(LD_PRELOAD=$jemalloc timeout 30 "$tcsim" exec --accounting "$1" -- python3 -c "$maps") == True ]] ||
+      fail "$1: jemalloc around tcsim"
+    [[ $(timeout 30 "$tcsim" exec --accounting "$1" -- env LD_PRELOAD="$jemalloc" python3 -c "$maps") == True ]] ||
+      fail "$1: jemalloc inside"
+  }
+  in_each_mode jemalloc_is_there
 fi
 
 # Programs linked to AddressSanitizer, and such that have it preloaded: it finds what it finds.
@@ -102,20 +110,22 @@ int main(int argc, char** argv) {
 CC
 g++ -O0 -fsanitize=address -o checked checked.cc 2>/dev/null || exit 0
 asan=$(ldd ./checked | awk '/libasan/ {print $3}')
-checks() {  # WORD WANTED COMMAND...
-  local status=0 word=$1 wanted=$2
-  shift 2
-  timeout 60 "$@" ./checked "$word" >said 2>&1 || status=$?
-  grep -qx 1000 said || fail "$word: no virtual time: $* says $(cat said)"
-  [[ $wanted == nothing ]] && { ((status == 0)) || fail "status $status: $*: $(cat said)"; return; }
-  ((status != 0 && status != 124)) || fail "status $status: $*: $(cat said)"
-  grep -q "$wanted" said || fail "no $wanted: $*: $(cat said)"
+checks() {  # SAID WORD WANTED COMMAND...
+  local status=0 said=$1 word=$2 wanted=$3
+  shift 3
+  timeout 60 "$@" ./checked "$word" >"$said" 2>&1 || status=$?
+  grep -qx 1000 "$said" || fail "$word: no virtual time: $* says $(cat "$said")"
+  [[ $wanted == nothing ]] && { ((status == 0)) || fail "status $status: $*: $(cat "$said")"; return; }
+  ((status != 0 && status != 124)) || fail "status $status: $*: $(cat "$said")"
+  grep -q "$wanted" "$said" || fail "no $wanted: $*: $(cat "$said")"
 }
-for mode in "${modes[@]}"; do
+checks_all() {  # MODE
+  local mode=$1 run
   for run in "$tcsim exec --accounting $mode --" "$tcsim exec --accounting $mode -- env LD_PRELOAD=$asan" \
     "env LD_PRELOAD=$asan $tcsim exec --accounting $mode --"; do
-    checks in nothing $run
-    checks over heap-buffer-overflow $run
-    checks leak 'detected memory leaks' $run
+    checks "$mode.said" in nothing $run
+    checks "$mode.said" over heap-buffer-overflow $run
+    checks "$mode.said" leak 'detected memory leaks' $run
   done
-done
+}
+in_each_mode checks_all

@@ -24,5 +24,5 @@ at_once() {  # DURATION EXAMPLE...: each twice
     python3 -c 'import json, sys; s = json.load(open(sys.argv[1])); assert s["commands"] > 30, s' "$out/$example-one/summary.json"
   done
 }
-at_once 3s quadrotor rover
-at_once 3s predator_prey
+at_once 1.5s quadrotor rover
+at_once 1.5s predator_prey

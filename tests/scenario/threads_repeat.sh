@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Fourteen threads and their children do the same in each run under fixed accounting, every reading
-# of the clock included, on one core and on four.
+# of the clock included, on one core and on four. A third argument is for how many ms, instead of 200.
 # Topics: threads, determinism, cores.
+ms=("${@:3}")
 many() {
-  "$tcsim" exec --cores "$1" --accounting fixed -- "$build/bin/conformance_many_threads" fixed
+  "$tcsim" exec --cores "$1" --accounting fixed -- "$build/bin/conformance_many_threads" fixed "${ms[@]}"
 }
 for cores in 1 4; do
   first=$(many "$cores")

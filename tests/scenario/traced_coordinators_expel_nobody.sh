@@ -12,7 +12,8 @@ for cpus in 1 auto; do
   "$tcsim" run "$build/examples/predator_prey/scenario.yaml" --duration 3s --host-cpus "$cpus" --out "$out/run" \
     >"$out/said" 2>&1 &
   run=$!
-  for _ in $(seq 300); do
+  # It may have to wait for a processor first.
+  for _ in $(seq 3000); do
     coordinator=$(coordinator_of $run 2>/dev/null) && [[ -e $out/run/predator-planner.out.log ]] && break
     sleep 0.02
   done

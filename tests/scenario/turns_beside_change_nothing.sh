@@ -7,7 +7,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: scheduling, host processors, commands, sensors.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-ticks=1500
+ticks=750
 odds=(none compute raw print write none none none)
 {
   echo "duration: 2s"

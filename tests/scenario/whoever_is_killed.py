@@ -115,7 +115,7 @@ def one_round(party, folder):
         if random.random() < 0.8:  # else while it starts
             if not until(has_begun, 60):
                 return "the run did not begin"
-        time.sleep(random.random())
+        time.sleep(random.random() * 0.4)
         victim = find(party, run.pid)
         if victim is None:
             party, victim = "guardian", run.pid
