@@ -79,12 +79,15 @@ std::vector<std::string> StandstillWatch::WhatComputesUnmanaged() const {
 }
 
 void StandstillWatch::NoteStandstill(HostTime now, VirtualTime furthest) {
-  if (run_.report.switches != standstill_.dispatches || furthest != standstill_.furthest) {
+  const bool has_acted =
+      run_.report.switches != standstill_.dispatches || furthest != standstill_.furthest;
+  // Once the user has typed something, the program that reads it has yet to be dispatched.
+  if (has_acted || AwaitsTerminal()) {
     standstill_ = {run_.report.switches, furthest, now};
     return;
   }
   const HostDuration stood = now - standstill_.since;
-  if (stood < kPatience || AwaitsTerminal()) return;
+  if (stood < kPatience) return;
   has_said_standstill_ = true;
   const std::string why =
       unmanaged_.AnyRuns() || unknown_children_.AnyRuns()

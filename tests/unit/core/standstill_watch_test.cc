@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,6 @@ class StandstillWatchTest : public testing::Test {
   }
   RunOptions Telling() {
     RunOptions options;
-    options.output_directory = "somewhere";
     options.on_notice = [this](const std::string& text) { told_.push_back(text); };
     return options;
   }
@@ -67,6 +67,20 @@ TEST_F(StandstillWatchTest, SaysNothingWhileTimeGoesOnOrThreadsAreDispatched) {
   ++run_.report.switches;
   watch_.Look(HostAt(2 * kPatience), RobotTime(1));
   EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(StandstillWatchTest, TimeThatAUserTakesToTypeIsNoStandstill) {
+  AddClient("head");
+  std::optional<Wait>& wait = robot_.tasks.back()->wait;
+  wait = Wait{awaited::Descriptors{.has_terminal = true}};
+  watch_.Look(HostAt({}), kOneSecond);
+  watch_.Look(HostAt(3 * kPatience), kOneSecond);
+  // It has been typed, and the program has yet to be dispatched.
+  wait.reset();
+  watch_.Look(HostAt(3 * kPatience + HostNs(1)), kOneSecond);
+  EXPECT_TRUE(told_.empty());
+  watch_.Look(HostAt(4 * kPatience), kOneSecond);
+  EXPECT_EQ(told_.size(), 1u);
 }
 
 TEST_F(StandstillWatchTest, WhatAClientHasLeftIsSaidOnlyOfProgramsThatRunForAsLongAsTheyTake) {
