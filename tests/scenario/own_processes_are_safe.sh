@@ -5,6 +5,7 @@ source "$source_root/tests/as_nobody.sh"
 # with a signal to all; and where somebody else stops them, the run goes on.
 # Topics: isolation, signals, containers.
 out=$(mktemp -d)
+chmod 755 "$out"
 trap 'kill $outsider 2>/dev/null || true; rm -rf "$out"' EXIT
 sleep 600 &
 outsider=$!
@@ -20,7 +21,6 @@ attacked "$tcsim" exec -- "$build/bin/attacker"
 attacked "$tcsim" exec --accounting fixed -- "$build/bin/attacker"
 if ((EUID == 0)) && prlimit --rtprio=20 true 2>/dev/null; then
   # As somebody who is not above all others, but has the priorities.
-  chmod 755 "$out"
   install_for_everybody "$build" "$out" attacker
   attacked prlimit --rtprio=20 setpriv --reuid 65534 --regid 65534 --clear-groups --bounding-set -all \
     "$out/bin/tcsim" exec -- "$out/bin/attacker"
@@ -28,15 +28,18 @@ fi
 
 # Whoever is stopped from outside: nothing hangs, and it is said where it is the coordinator.
 for victim in coordinator keeper; do
-  "$tcsim" exec -- sh -c 'i=0; while [ $i -lt 1000000 ]; do i=$((i + 1)); done' 2>"$out/warned" &
+  # Computes until it was stopped, however late that is, and then some more.
+  "$tcsim" exec -- sh -c 'while [ ! -e "$0" ]; do :; done; i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done' \
+    "$out/$victim" 2>"$out/warned" &
   run=$!
-  for _ in $(seq 100); do
+  for _ in $(seq 1000); do
     process=$(coordinator_of $run 2>/dev/null || true)
     [[ -n $process ]] && break
     sleep 0.05
   done
   [[ $victim == coordinator ]] || process=$(pgrep -P $run)
   kill -STOP "$process"
+  touch "$out/$victim"
   for _ in $(seq 1500); do kill -0 $run 2>/dev/null || break; sleep 0.02; done
   ! kill -0 $run 2>/dev/null || fail "a run whose $victim was stopped hangs"
   wait $run || fail "status $?: $(cat "$out/warned")"
