@@ -10,9 +10,16 @@ fi
 # The process that coordinates the run whose tcsim has this number: tcsim > its keeper > it.
 coordinator_of() { pgrep -P "$(pgrep -P "$1")"; }
 fail() { printf 'FAILED: %s\n' "$*" >&2; exit 1; }
-# What is in /dev/shm by now and was not when the test began: other runs' files come and go.
+# What is left in /dev/shm by now and was not there when the test began. Others' files come and go: what is left is
+# still there a second later.
 shared_at_start=$(ls /dev/shm)
-new_in_shm() { comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort); }
+new_in_shm() {
+  local now
+  now=$(comm -13 <(sort <<<"$shared_at_start") <(ls /dev/shm | sort))
+  [[ -n $now ]] || return 0
+  sleep 1
+  comm -12 <(printf "%s\n" "$now") <(ls /dev/shm | sort)
+}
 # The file of the first library of the loader's that matches; nothing where there is none. The whole list is read: who
 # stops reading ends `ldconfig` by SIGPIPE, and with it, under pipefail, the test.
 library() { ldconfig -p | awk -v pattern="$1" '$0 ~ pattern && !found { found = 1; print $NF }'; }
