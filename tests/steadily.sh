@@ -1,7 +1,7 @@
 # Sourced by tests that run programs natively, as the reference for what they do under tcs.
 #
 # steadily BUILD COMMAND...: the time of COMMAND is real time, which a loaded machine bends. Where it fails and the machine has
-# kept a thread waiting for longer than 5 ms meanwhile, the failure says nothing of COMMAND, which is run again, five times
+# kept a thread waiting for longer than 1 ms meanwhile, the failure says nothing of COMMAND, which is run again, five times
 # in all. A failure on a machine that did not stall stands.
 steadily() {
   local build=$1 status ready stall
@@ -17,7 +17,7 @@ steadily() {
     wait "$watch"
     ((status != 0)) || return 0
     echo "ended with $status; the machine kept threads waiting for $stall us at most" >&2
-    ((stall > 5000)) || return "$status"
+    ((stall > 1000)) || return "$status"
   done
   return "$status"
 }
