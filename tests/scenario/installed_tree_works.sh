@@ -25,7 +25,7 @@ END
 PATH=$prefix/bin:$PATH "$source_root/.ci/zsh_completes" --from "$prefix/share/zsh/vendor-completions" >zsh_said 'tcsim ru' \
   'tcsim run --accounting m' 'tcsim run --accounting=m' 'tcsim exec -- basena' 'tcsim check marks.ya' &
 completes=$!
-{ cmake -S "$source_root/tests/scenario/outside" -B outside -DCMAKE_PREFIX_PATH="$prefix" && cmake --build outside; } >outside_said 2>&1 &
+{ cmake -G Ninja -S "$source_root/tests/scenario/outside" -B outside -DCMAKE_PREFIX_PATH="$prefix" && cmake --build outside; } >outside_said 2>&1 &
 builds=$!
 
 # From nothing.
