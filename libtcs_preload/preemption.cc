@@ -80,4 +80,17 @@ void AllowPreemption() {
   RawSyscall(SYS_rt_sigprocmask, SIG_UNBLOCK, Arg(&own), 0, kSetSize);
 }
 
+WithoutPreemption::WithoutPreemption() {
+  static_assert(sizeof before_ == sizeof(Action));
+  if (OwnSignals() == 0) return;
+  const Action ignored{reinterpret_cast<Handler>(SIG_IGN), 0, nullptr, 0};
+  RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&ignored), Arg(&before_), kSetSize);
+}
+
+// Nothing was executed.
+WithoutPreemption::~WithoutPreemption() {
+  if (OwnSignals() == 0) return;
+  RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&before_), 0, kSetSize);
+}
+
 }  // namespace tcs::preload

@@ -19,6 +19,20 @@ namespace tcs::preload {
 // the C library has taken the signal for itself when it made its first thread.
 void AllowPreemption();
 
+// While it lives the signal does nothing to the process, not even to the program that it executes
+// meanwhile: until that has attached, it has no handler, and the signal would end it. The kernel
+// keeps what is ignored across execve.
+class WithoutPreemption {
+ public:
+  WithoutPreemption();
+  ~WithoutPreemption();
+  WithoutPreemption(const WithoutPreemption&) = delete;
+  WithoutPreemption& operator=(const WithoutPreemption&) = delete;
+
+ private:
+  unsigned long before_[4] = {};  // the action, as the kernel has it
+};
+
 // The signals that no program knows of, as the kernel's sigset_t has them.
 inline unsigned long OwnSignals() {
   const bool has_one = g_header != nullptr && g_header->preempts != 0;

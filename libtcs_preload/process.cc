@@ -15,6 +15,7 @@
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/fd_wait.h"
 #include "libtcs_preload/guest.h"
+#include "libtcs_preload/preemption.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/signal_actions.h"
@@ -137,6 +138,7 @@ TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
 
 TCS_EXPORT int execve(const char* path, char* const argv[], char* const envp[]) noexcept {
   EnvironmentCopy storage;
+  const WithoutPreemption none;
   return static_cast<int>(
       ToErrno(RawSyscall(SYS_execve, Arg(path), Arg(argv), Arg(WithShim(envp, storage)))));
 }
@@ -147,6 +149,7 @@ TCS_EXPORT int execv(const char* path, char* const argv[]) noexcept {
 
 TCS_EXPORT int execvpe(const char* file, char* const argv[], char* const envp[]) noexcept {
   EnvironmentCopy storage;
+  const WithoutPreemption none;
   return TCS_REAL(execvpe)(file, argv, WithShim(envp, storage));
 }
 
@@ -156,6 +159,7 @@ TCS_EXPORT int execvp(const char* file, char* const argv[]) noexcept {
 
 TCS_EXPORT int fexecve(int fd, char* const argv[], char* const envp[]) noexcept {
   EnvironmentCopy storage;
+  const WithoutPreemption none;
   return TCS_REAL(fexecve)(fd, argv, WithShim(envp, storage));
 }
 

@@ -9,7 +9,7 @@ plan() { "$tcsim" exec --cores "$1" "${@:3}" -- "$build/bin/ompl_planners" "$2" 
 checks() { plan "$1" parallel --accounting fixed | awk '{for (i = 2; i <= NF; ++i) if ($i == "checks,") print $(i - 1)}'; }
 one=$(checks 1)
 four=$(checks 4)
-((one > 10000 && four > 3 * one && four < 5 * one)) || fail "four planners make $four checks on four cores, and $one on one"
+((one > 10000 && four > 3 * one && four < 6 * one)) || fail "four planners make $four checks on four cores, and $one on one"
 cat >"$out/parallel.yaml" <<YAML
 duration: 60s
 robots: {r: {clients: {c: {command: ["$build/bin/ompl_planners", parallel, "0.1"]}}}}
