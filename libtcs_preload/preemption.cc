@@ -83,7 +83,8 @@ void AllowPreemption() {
 WithoutPreemption::WithoutPreemption() {
   static_assert(sizeof before_ == sizeof(Action));
   if (OwnSignals() == 0) return;
-  const Action ignored{reinterpret_cast<Handler>(SIG_IGN), 0, nullptr, 0};
+  const auto ignores = reinterpret_cast<Handler>(reinterpret_cast<std::uintptr_t>(SIG_IGN));
+  const Action ignored{ignores, 0, nullptr, 0};
   RawSyscall(SYS_rt_sigaction, shm::kPreemptionSignal, Arg(&ignored), Arg(&before_), kSetSize);
 }
 
