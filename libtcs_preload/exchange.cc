@@ -352,7 +352,8 @@ bool IsAtGate(const GuestThread& thread) {
 }
 
 void AwaitFirstDispatch(GuestThread& thread) {
-  WaitAtGate(*thread.slot, nullptr, {}, g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
+  WaitAtGate(*thread.slot, nullptr, {},
+             g_header->has_porters != 0 ? kMostAttachNs : kMostExchangeNs);
 }
 
 void AwaitDispatch(GuestThread& thread) { WaitAtGate(*thread.slot, nullptr, {}); }

@@ -45,7 +45,9 @@ void SleepUntil(std::int64_t ns) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-void SayHowLong(std::int64_t since) { printf("%.1f ms ", static_cast<double>(Now() - since) / kMs); }
+void SayHowLong(std::int64_t since) {
+  printf("%.1f ms ", static_cast<double>(Now() - since) / kMs);
+}
 
 // Above everybody on the processor of `pid`.
 bool GoThere(pid_t pid) {
