@@ -211,6 +211,9 @@ class Engine {
   void BringToGate(Task& task);
   Reactor::Found BringOthersToGates(const Task& sender, Moment moment);
   Reactor::Found AwaitSleepAtGates(Moment moment);
+  Reactor::Found AwaitThreads(Moment moment, HostDuration look_every,
+                              const std::function<bool(const Task&)>& is_awaited,
+                              const std::function<void(Task&)>& at_first);
   void ChargeUndispatched(Task& task);
   Reactor::Found EndCall(Reactor::Found found);
   Reactor::Found TakePutOff(Moment moment);

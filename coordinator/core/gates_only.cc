@@ -125,25 +125,14 @@ void Engine::BringToGate(Task& task) {
 // that compute are told to go to their gates, which restarts what they have just called, and are
 // waited for as in BringToGate.
 Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
-  Reactor::Found found;
-  if (!SendsSignal(sender)) return found;
-  std::map<const Task*, HostDuration> sent;  // and when, by their CPU clocks
-  bool awaits = true;
-  for (int look = 0; awaits && look < kMostGateLooks; ++look) {
-    awaits = false;
-    for (Task& task : run_.table.tasks()) {
-      if (&task == &sender || !MayCompute(task) || ThreadState(task.tid) != 'R') continue;
-      const HostDuration now = HostNs(HostClockOf(task));
-      if (const auto [told, is_new] = sent.try_emplace(&task, now); is_new) {
-        task.has_signal = true;
-        HostCpu::SendToGate(task.process->pid, task);
-        awaits = true;
-      } else {
-        awaits |= now <= told->second + kMostWayToGate;
-      }
-    }
-    if (awaits) found |= TakeEvents(kGateLook, moment, true);
-  }
+  if (!SendsSignal(sender)) return {};
+  const auto computes = [&sender](const Task& task) {
+    return &task != &sender && MayCompute(task) && ThreadState(task.tid) == 'R';
+  };
+  Reactor::Found found = AwaitThreads(moment, kGateLook, computes, [](Task& task) {
+    task.has_signal = true;
+    HostCpu::SendToGate(task.process->pid, task);
+  });
   found |= AwaitSleepAtGates(moment);
   for (int turn = 0; turn < kMostAtOnce && reactor_.HasMore(); ++turn) {
     found |= TakeEvents(kNoWait, moment, true);
@@ -155,17 +144,27 @@ Reactor::Found Engine::BringOthersToGates(const Task& sender, Moment moment) {
 // asleep, may run the handler at once: then no signal is there for it any more, and only the thread
 // itself can tell that its wait is over. The world must not go on past that.
 Reactor::Found Engine::AwaitSleepAtGates(Moment moment) {
+  return AwaitThreads(moment, kShortGateLook, IsAwakeAtGate, [](Task&) {});
+}
+
+// Each for no longer than its way to the gate takes, by its CPU clock; all of that happens at the
+// moment. `at_first` is done with each once.
+Reactor::Found Engine::AwaitThreads(Moment moment, HostDuration look_every,
+                                    const std::function<bool(const Task&)>& is_awaited,
+                                    const std::function<void(Task&)>& at_first) {
   Reactor::Found found;
-  std::map<const Task*, HostDuration> seen;  // and when first, by their CPU clocks
+  std::map<const Task*, HostDuration> first_seen;
   bool awaits = true;
   for (int look = 0; awaits && look < kMostGateLooks; ++look) {
     awaits = false;
     for (Task& task : run_.table.tasks()) {
-      if (!IsAwakeAtGate(task)) continue;
+      if (!is_awaited(task)) continue;
       const HostDuration now = HostNs(HostClockOf(task));
-      awaits |= now <= seen.try_emplace(&task, now).first->second + kMostWayToGate;
+      const auto [first, is_new] = first_seen.try_emplace(&task, now);
+      if (is_new) at_first(task);
+      awaits |= now <= first->second + kMostWayToGate;
     }
-    if (awaits) found |= TakeEvents(kShortGateLook, moment, true);
+    if (awaits) found |= TakeEvents(look_every, moment, true);
   }
   return found;
 }
