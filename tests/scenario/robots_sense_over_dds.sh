@@ -47,7 +47,7 @@ for run in first second; do
   "$tcsim" run "$out/s.yaml" --accounting fixed --record --out "$out/$run" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 done
 cmp "$out/first/rover-senses.out.log" "$out/second/rover-senses.out.log" || fail "a second run senses otherwise"
-python3 - "$out/first/rover-senses.out.log" "$out/first/rover-late.out.log" "$out/first" "$source_root/tests/scenario" <<'PY' || fail "the sensors do not say what is so"
+python3 -B - "$out/first/rover-senses.out.log" "$out/first/rover-late.out.log" "$out/first" "$source_root/tests/scenario" <<'PY' || fail "the sensors do not say what is so"
 import json, math, sys
 said = {}
 for line in open(sys.argv[1]):
