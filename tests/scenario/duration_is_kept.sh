@@ -35,8 +35,7 @@ held_up() {
   clients="$waiting, $computing" sync=callback lasts held_up 1.5 measured "$world"
   grep -q 'r/busy has computed for 10 s at one instant' "$out/held_up.said" || fail "$(cat "$out/held_up.said")"
 }
-held_up &
-held_up=$!
+beside held_up
 for accounting in measured fixed; do
   clients=$waiting lasts waiting 3 "$accounting"
   clients=$waiting lasts waiting 3 "$accounting" "$world"
@@ -57,4 +56,4 @@ python3 -c '
 import json, sys
 ns = json.load(open(sys.argv[1]))["virtual_ns"]
 assert 3e9 <= ns < 3.5e9, ns' "$out/run/summary.json"
-wait "$held_up"
+all_done

@@ -74,8 +74,7 @@ spinners_are_killed() {
   timeout 60 "$tcsim" run "$out/spin.yaml" --out "$out/spin" >"$out/spin.said" 2>&1 || fail "status $?: $(cat "$out/spin.said")"
   grep -q 'r/spinner was killed: after SIGTERM' "$out/spin.said" || fail "$(cat "$out/spin.said")"
 }
-spinners_are_killed &
-spins=$!
+beside spinners_are_killed
 
 said_by() { cat "$out/run/$1.out.log"; }
 check() {
@@ -134,6 +133,6 @@ done
 [[ $(cat "$out/with/r-keeper.out.log" "$out/with/r-stdio.out.log") == $'bye\nbegun\nended by 15' ]] || fail "no grace"
 [[ -z $(cat "$out/without/"*.out.log) ]] || fail "a grace of 0 is none"
 
-wait "$spins"
+all_done
 pgrep -f "$out/" && fail "something is left"
 true

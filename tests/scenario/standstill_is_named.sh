@@ -7,7 +7,6 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: failures.
 scope=${3:-}
 out=$(mktemp -d)
-cases=()
 trap 'wait; rm -rf "$out"' EXIT
 mkfifo "$out/never" "$out/late"
 
@@ -15,9 +14,9 @@ mkfifo "$out/never" "$out/late"
 unprivileged=(prlimit --rtprio=0:0 --nice=0:0)
 ((EUID != 0)) || unprivileged+=(setpriv --bounding-set=-all --inh-caps=-all)
 [[ $scope != with_rights ]] || unprivileged=()
-beside() {
-  "$@" &
-  if [[ $scope == with_rights ]]; then wait $!; else cases+=($!); fi
+goes() {
+  beside "$@"
+  [[ $scope != with_rights ]] || all_done
 }
 
 # CASE PATTERN COMMAND...: what it, or a trial of it, comes to say, once; then the command ends as its user asks.
@@ -43,16 +42,16 @@ stood='^tcsim: virtual time has stood still at [0-9.]+ s for [0-9]+ s: only inpu
 asks='; Ctrl-C ends the run$'
 
 exec 9<>"$out/never"  # so that opening it does not wait
-input=$out/never beside names input "${stood}cat waits for input at descriptor 0 \(a pipe\)$asks" \
+input=$out/never goes names input "${stood}cat waits for input at descriptor 0 \(a pipe\)$asks" \
   "$tcsim" exec -- cat
-beside names lock "${stood}python3 waits for a lock or a condition that no thread gives it$asks" \
+goes names lock "${stood}python3 waits for a lock or a condition that no thread gives it$asks" \
   "${unprivileged[@]}" "$tcsim" exec -- python3 -c 'import threading; l = threading.Lock(); l.acquire(); l.acquire()'
-beside names child "${stood}sh waits for a signal, such as that of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
+goes names child "${stood}sh waits for a signal, such as that of a child's end; [a-z]+ \(pid [0-9]+\) is stopped by a signal" \
   "${unprivileged[@]}" "$tcsim" exec -- sh -c 'sleep 5 & kill -STOP $!; wait'
-beside names left '^tcsim: sh has ended; the run goes on for the background processes that it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
+goes names left '^tcsim: sh has ended; the run goes on for the background processes that it has left: dash \(pid [0-9]+\).*; Ctrl-C' \
   "${unprivileged[@]}" "$tcsim" exec -- sh -c 'while :; do sleep 1; done & sleep 3'
 
-beside names clone '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: python3[.0-9]* \(pid' \
+goes names clone '^tcsim: virtual time has .* it waits for threads or processes that tcs does not manage: python3[.0-9]* \(pid' \
   "${unprivileged[@]}" "$tcsim" exec -- python3 -c '
 import ctypes, os, signal, time
 if ctypes.CDLL(None).syscall(56, signal.SIGCHLD, 0, 0, 0, 0) == 0:  # a bare clone
@@ -63,8 +62,8 @@ os.wait()'
 printf '%s\n' 'duration: 3600s' "robots: {r: {clients: {held: {command: [cat, '$out/late']}}}}" \
   >"$out/held.yaml"
 held="${stood}r/held is in system call [0-9]+, whose end only the kernel knows$asks"
-beside names run "$held" "${unprivileged[@]}" "$tcsim" run "$out/held.yaml" --out "$out/run"
-log=$out/trials/seed-0001/tcsim.log beside names trials "$held" \
+goes names run "$held" "${unprivileged[@]}" "$tcsim" run "$out/held.yaml" --out "$out/run"
+log=$out/trials/seed-0001/tcsim.log goes names trials "$held" \
   "${unprivileged[@]}" "$tcsim" trials "$out/held.yaml" --trials 1 --jobs 1 --out "$out/trials"
 
 # Nothing to say.
@@ -78,6 +77,6 @@ at_a_terminal() {
   (sleep 8; echo end) | script -qefc "'$tcsim' exec -- head -n 1" /dev/null >"$out/terminal" 2>&1
   ! grep -q 'stood still' "$out/terminal" || fail "at a terminal: $(cat "$out/terminal")"
 }
-beside input_comes
-beside at_a_terminal
-for one in "${cases[@]}"; do wait "$one"; done
+goes input_comes
+goes at_a_terminal
+all_done

@@ -76,8 +76,7 @@ cancelled() {
   grep -q '^tcsim: seed 1 failed: its job was lost 3 times, at last on node n[12] (CANCELLED: somebody has cancelled its job)$' \
     "$said" || fail "$(cat "$said")"
 }
-cancelled &
-beside=$!
+beside cancelled
 
 # A trial that fails by itself is not run again.
 status=0; FAILING_SEED=2 trials --trials 3 --out "$out/t" >"$out/said" 2>"$out/errors" || status=$?
@@ -111,7 +110,7 @@ trials --trials 10 --out "$out/resumed" >"$out/said" 2>&1 ||
 grep -q "^$done_before of 10 trials are done already" "$out/said" || fail "$done_before: $(cat "$out/said")"
 [[ $(stat -c %Y.%i "$out/resumed/seed-0001/summary.json") == "$first" ]] || fail "what was done was run again"
 (($(find "$out/resumed" -name summary.json | wc -l) == 10)) || fail "$(cat "$out/said")"
-wait "$beside"
+all_done
 no_jobs
 
 # A caller that is killed leaves jobs that change nothing any more once there is another call.
