@@ -23,6 +23,8 @@ constexpr VirtualDuration kLong = VirtualDuration::Milliseconds(3),
 constexpr int kMostComputes = 256;
 // Between two looks, while a thread is waited for, at what the kernel has to say, and at its state.
 constexpr std::int64_t kLookNs = 3'000, kStateLookNs = 200'000;
+// For less it is not asked how far it has come.
+constexpr VirtualDuration kWorthAsking = VirtualDuration::Microseconds(20);
 
 }  // namespace
 
@@ -135,14 +137,27 @@ void ComputingAhead::Forget(const Task& task) {
   std::erase(owing_, &task);
 }
 
-// What it is to be charged in all; less than so far where it was taken to have computed more.
+// What it is to be charged in all.
 void ComputingAhead::Charge(Task& task, VirtualDuration charged) {
   parts_.run.report.ahead_ns += parts_.run.ChargeAsDebt(task, charged - task.charged).ns();
 }
 
+// What others may have taken of its processor is not charged: the world would go past what the
+// thread does next.
 void ComputingAhead::ChargeAhead(Task& task) {
-  const std::int64_t host_ns = CpuOf(task).ComputedBy(__rdtsc());
-  Charge(task, task.ahead_from + task.metered.OnRobot(HostNs(host_ns)));
+  Charge(task, task.ahead_from + task.metered.OnRobot(HostNs(CpuOf(task).Computed())));
+}
+
+// How far it may have come, in debt.
+VirtualDuration ComputingAhead::MayOwe(Task& task) {
+  const std::int64_t host_ns = CpuOf(task).MayHaveComputedBy(__rdtsc());
+  const VirtualDuration charged = task.ahead_from + task.metered.OnRobot(HostNs(host_ns));
+  return task.debt + (charged - task.charged);
+}
+
+void ComputingAhead::AskHowFar(Task& task) {
+  CpuOf(task).HaveLooked();
+  ChargeAhead(task);
 }
 
 bool ComputingAhead::IsNextOn(const VirtualCpu& cpu) const {
@@ -165,6 +180,9 @@ void ComputingAhead::Look() {
   for (Task* task : owing_) {
     if (!task->is_ahead) continue;
     ChargeAhead(*task);
+    // Others wait for it alone.
+    const bool is_least = parts_.run.root.First() == task->cpu->leaf;
+    if (is_least && MayOwe(*task) - task->debt >= kWorthAsking) AskHowFar(*task);
     parts_.waker.Refresh(*task->process->robot);
   }
 }
@@ -197,8 +215,10 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
     const Reactor::Found found = poll_({run.latest});
     if (found.stops_running || found.wakes_others || !task.is_ahead) break;
     ChargeAhead(task);
+    const VirtualDuration to_go = horizon - task.cpu->progress;
+    if (task.debt < to_go && MayOwe(task) >= to_go) AskHowFar(task);
     // One that rests goes on as soon as it has paid.
-    if (task.cpu->progress + task.debt >= horizon || cpu.Rests()) break;
+    if (task.debt >= to_go || cpu.Rests()) break;
     const std::uint64_t now_tsc = __rdtsc();
     const bool looks = now_tsc >= looks_tsc;
     if (looks) looks_tsc = now_tsc + parts_.clock.TicksIn(kStateLookNs);

@@ -82,6 +82,8 @@ class ComputingAhead {
   void BringHome(Task& task);
   void Charge(Task& task, VirtualDuration charged);
   void ChargeAhead(Task& task);
+  VirtualDuration MayOwe(Task& task);
+  void AskHowFar(Task& task);
   void Await(Task& task, VirtualTime horizon);
   void Pay(Task& task, VirtualTime horizon);
   FurtherCpu& CpuOf(const Task& task);

@@ -1,6 +1,7 @@
 // What a thread has computed since it was sent to another processor of the host, where nobody stops
-// it. Its CPU clock is known for some instants; from one to the next the TSC carries on. So what
-// others took of that processor since the last instant counts as computed until the next one.
+// it. Its CPU clock is known for some instants. From one to the next the TSC carries on, which tells
+// when the thread may have computed something, and it is worth while to look: it need not have, for
+// others may have taken that processor since.
 //
 // The host's nanoseconds. One thread says what is known, another one may ask at the same time,
 // which waits if the first one is interrupted in the midst.
@@ -50,8 +51,10 @@ class AheadClock {
   }
   bool rests() const { return rests_.load(); }
 
-  // What it has computed by `now_ns`, as far as it can be told, but not more than `most_ns`.
-  std::int64_t ComputedBy(std::int64_t now_ns, std::int64_t most_ns) const {
+  // What it has computed for certain.
+  std::int64_t computed_ns() const { return Last().computed_ns; }
+  // What it has computed by `now_ns` unless others had the processor, but not more than `most_ns`.
+  std::int64_t MayHaveComputedBy(std::int64_t now_ns, std::int64_t most_ns) const {
     // In this order: what is known does not change while it rests, but before and after.
     const bool rests = rests_.load();
     const auto [at_ns, computed_ns] = Last();

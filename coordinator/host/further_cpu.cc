@@ -22,6 +22,7 @@ constexpr std::int64_t kLongestRestNs = 2'000'000;
 constexpr std::int64_t kLeftToOthersNs = 500'000'000;
 constexpr int kMostDoublings = 6;
 constexpr std::int64_t kWayToSleepNs = 20'000, kMostWayHomeNs = 2'000'000;
+constexpr std::int64_t kMostLookNs = 200'000;
 constexpr std::int64_t kClaimsEveryNs = 100'000'000;
 constexpr std::int64_t kForEverNs = 3'600'000'000'000;
 
@@ -85,7 +86,7 @@ void FurtherCpu::Fetch() {
     place_.store(Place::kHere);
     return;
   }
-  is_refused_.store(may_come && Computed() >= 0);
+  is_refused_.store(may_come && ReadComputed() >= 0);
   Leave();
 }
 
@@ -115,8 +116,9 @@ std::int64_t FurtherCpu::NsToGuard() {
 // The thread does not run meanwhile, so that its CPU clock is right.
 std::int64_t FurtherCpu::LeftAfterLook() {
   const std::uint64_t tsc = __rdtsc();
-  const std::int64_t computed_ns = std::max<std::int64_t>(0, Computed());
+  const std::int64_t computed_ns = std::max<std::int64_t>(0, ReadComputed());
   ahead_.Know(PassedNs(tsc), computed_ns);
+  ++looked_;
   return IsClaimedBy(tsc) ? 0 : allowed_ns_.load() - computed_ns;
 }
 
@@ -156,7 +158,7 @@ std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
 }
 
 // Since it was sent; negative: it has ended.
-std::int64_t FurtherCpu::Computed() const { return ReadThreadCpuClock(clock_.get()) - begun_ns_; }
+std::int64_t FurtherCpu::ReadComputed() const { return ReadThreadCpuClock(clock_.get()) - begun_ns_; }
 
 // --- The coordinator
 // ------------------------------------------------------------------------------
@@ -181,9 +183,19 @@ bool FurtherCpu::Send(HostThread& thread, std::uint64_t tsc, std::int64_t allowe
   return true;
 }
 
-std::int64_t FurtherCpu::ComputedBy(std::uint64_t tsc) {
-  if (HasLeft()) return std::max<std::int64_t>(0, Computed());
-  return ahead_.ComputedBy(PassedNs(tsc), allowed_ns_.load());
+std::int64_t FurtherCpu::Computed() const {
+  return HasLeft() ? std::max<std::int64_t>(0, ReadComputed()) : ahead_.computed_ns();
+}
+
+std::int64_t FurtherCpu::MayHaveComputedBy(std::uint64_t tsc) const {
+  return HasLeft() ? Computed() : ahead_.MayHaveComputedBy(PassedNs(tsc), allowed_ns_.load());
+}
+
+void FurtherCpu::HaveLooked() {
+  const std::uint32_t looked = looked_.load();
+  WakeWarden();
+  const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostLookNs);
+  while (looked_.load() == looked && !Rests() && !HasLeft() && __rdtsc() < until_tsc) _mm_pause();
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {

@@ -54,8 +54,13 @@ class FurtherCpu {
   // Whoever comes to the limit goes home at once from now on: while one rests here nobody else gets
   // the processor.
   void LetNobodyRest() { may_rest_.store(false); }
-  // What it has computed by then since it was sent (ahead_clock.h).
-  std::int64_t ComputedBy(std::uint64_t tsc);
+  // What it has computed since it was sent, as far as that is certain; and what it has computed by
+  // then if nobody took the processor from it (ahead_clock.h).
+  std::int64_t Computed() const;
+  std::int64_t MayHaveComputedBy(std::uint64_t tsc) const;
+  // Has the warden look what it has computed, and waits for that; not for long, for the kernel may
+  // hold the warden. The thread is kept from computing for some us.
+  void HaveLooked();
   // Others had the processor for long, by then, or have claimed it.
   bool IsStarvedBy(std::uint64_t tsc);
   // It has come to its limit, and computes on here as soon as it is allowed to.
@@ -95,7 +100,7 @@ class FurtherCpu {
   void Sleep(std::uint32_t wakes, std::int64_t ns);
   std::uint64_t TicksIn(std::int64_t ns) const;
   std::int64_t PassedNs(std::uint64_t tsc) const;
-  std::int64_t Computed() const;
+  std::int64_t ReadComputed() const;
   bool IsClaimedBy(std::uint64_t tsc);
 
   const int cpu_, home_;
@@ -109,6 +114,7 @@ class FurtherCpu {
 
   std::atomic<Place> place_{Place::kHome};
   std::atomic<bool> looks_{false};  // the warden, at what is known of the thread
+  std::atomic<std::uint32_t> looked_{0};
   std::atomic<std::uint32_t> wakes_{0};
   std::atomic<bool> ends_{false};
   std::atomic<std::int64_t> allowed_ns_{0};

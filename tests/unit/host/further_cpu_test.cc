@@ -61,7 +61,7 @@ TEST_F(FurtherCpuTest, AThreadGoesThereAndIsSentHomeAtItsLimit) {
   EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc())) << "one at a time";
   while (!cpu_->HasLeft()) sched_yield();
   AwaitAt(home_);
-  EXPECT_GE(cpu_->ComputedBy(__rdtsc()), 3 * kMs) << "not before";
+  EXPECT_GE(cpu_->Computed(), 3 * kMs) << "not before";
   EXPECT_TRUE(thread_.is_ahead) << "until it is taken back";
   cpu_->BringHome();
   EXPECT_FALSE(thread_.is_ahead);
@@ -110,7 +110,37 @@ TEST_F(FurtherCpuTest, WhoIsAllowedMoreGoesOn) {
   EXPECT_FALSE(cpu_->HasLeft());
   cpu_->BringHome();
   AwaitAt(home_);
-  EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
+  EXPECT_LT(cpu_->Computed(), 1'000 * kMs);
+}
+
+// Others may have the processor meanwhile: what its own clock has not counted it has not computed.
+TEST_F(FurtherCpuTest, ALookFindsWhatTheThreadHasComputed) {
+  clockid_t clock;
+  ASSERT_EQ(pthread_getcpuclockid(computing_.native_handle(), &clock), 0);
+  const auto by_own_clock = [clock] {
+    timespec t;
+    clock_gettime(clock, &t);
+    return t.tv_sec * 1'000 * kMs + t.tv_nsec;
+  };
+  ASSERT_TRUE(cpu_->Send(thread_, __rdtsc(), 60'000 * kMs));
+  AwaitAt(cpu_->cpu());
+  std::int64_t looked = -1, before = 0, after = 0;
+  for (int looks = 0; looks < 20; ++looks) {
+    const std::int64_t last = looked, last_before = before, last_after = after;
+    before = by_own_clock();
+    cpu_->HaveLooked();
+    looked = cpu_->Computed();
+    after = by_own_clock();
+    EXPECT_LE(looked, cpu_->MayHaveComputedBy(__rdtsc()));
+    if (last < 0) continue;
+    EXPECT_LE(looked - last, after - last_before);
+    // The warden may have been kept from looking.
+    if (looked > last) {
+      EXPECT_GE(looked - last, before - last_after);
+    }
+    sched_yield();
+  }
+  cpu_->BringHome();
 }
 
 // To be fetched again would cost more than to wait for what is allowed next.
@@ -128,7 +158,7 @@ TEST_F(FurtherCpuTest, WhoIsAllowedMoreWhileAtTheLimitGoesOnThere) {
     while (!cpu_->Rests() && !cpu_->HasLeft()) sched_yield();
     const bool rests = cpu_->Rests();
     cpu_->Allow(1'000 * kMs);
-    while (cpu_->ComputedBy(__rdtsc()) < 5 * kMs && !cpu_->HasLeft()) sched_yield();
+    while (cpu_->Computed() < 5 * kMs && !cpu_->HasLeft()) sched_yield();
     goes_on = rests && !cpu_->HasLeft();
     cpu_->BringHome();
     AwaitAt(home_);
@@ -176,7 +206,7 @@ TEST_F(FurtherCpuTest, AProcessorThatAnotherRunHasClaimedIsLeftToIt) {
   while (!cpu_->HasLeft()) sched_yield();
   EXPECT_TRUE(cpu_->IsStarvedBy(__rdtsc()));
   cpu_->BringHome();
-  EXPECT_LT(cpu_->ComputedBy(__rdtsc()), 1'000 * kMs);
+  EXPECT_LT(cpu_->Computed(), 1'000 * kMs);
   EXPECT_FALSE(cpu_->IsFreeAt(__rdtsc()));
 }
 
