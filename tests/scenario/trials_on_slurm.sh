@@ -28,14 +28,25 @@ at_work() {
   done
 }
 for _ in $(seq 400); do (($(results))) && break; sleep 0.05; done
-# A job that is stopped cannot hand in what it has run.
+# A job that is stopped cannot hand in what it has run; and with all that it has started it cannot run it to its end, either.
+signal_jobs() {  # SIGNAL PROCESS...: the processes, and then all that they have started
+  local signal=$1
+  shift
+  kill "-$signal" "$@" 2>/dev/null || return
+  # shellcheck disable=SC2046
+  kill "-$signal" $(with_descendants "$@") 2>/dev/null || true
+}
 jobs="" lost=""
 for _ in $(seq 400); do
   [[ -n $jobs ]] || jobs=$(jobs_of n2)
   # shellcheck disable=SC2086
-  [[ -n $jobs ]] && kill -STOP $jobs 2>/dev/null && lost=$(at_work) && [[ -n $lost ]] && break
-  # shellcheck disable=SC2086
-  [[ -n $jobs ]] && { kill -CONT $jobs 2>/dev/null || jobs=""; }
+  if [[ -n $jobs ]] && signal_jobs STOP $jobs; then
+    lost=$(at_work)
+    [[ -z $lost ]] || break
+    signal_jobs CONT $jobs || jobs=""
+  else
+    jobs=""
+  fi
   sleep 0.02
 done
 [[ -n $lost ]] || fail "n2 runs nothing: $(cat "$out/said")"
