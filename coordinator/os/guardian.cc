@@ -8,7 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <new>
 #include <string>
@@ -122,9 +121,7 @@ int RunGuarded(const std::function<int()>& coordinate, GuardLimits limits) {
   if (keeper == 0) {
     Keep(guardian, limits, g_state, [&] {
       sigprocmask(SIG_SETMASK, &before, nullptr);
-      // Not _exit: what the run printed is still to be flushed.
-      exit(coordinate());
-      return 0;
+      return coordinate();
     });
   }
   if (keeper < 0) {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -213,7 +214,13 @@ void Keep(pid_t guardian, const GuardLimits& limits, GuardedState* state,
     setpgid(0, group);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != keeper) _exit(127);
-    _exit(coordinate());
+    const int status = coordinate();
+    fflush(nullptr);  // from the terminal's foreground
+    // With the last process of a group whose parent is in another one, the kernel sends SIGHUP to
+    // all of it if one is stopped there: to the script that called tcsim, where no shell controls
+    // jobs.
+    setpgid(0, keeper);
+    exit(status);
   }
   if (coordinator < 0) {
     Say(std::string("no process can be made: ") + strerror(errno) +

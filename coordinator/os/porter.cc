@@ -114,7 +114,8 @@ UniqueFd Porter::CopyOf(int number) {
       send(socket_.get(), &request, sizeof request, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof request;
   UniqueFd copy = is_sent ? Await(serial_) : UniqueFd();
   if (copy || (is_sent && errno != ETIMEDOUT && errno != ESRCH)) return copy;
-  const int error = errno;
+  // It may have been gone before it was asked.
+  const int error = errno == EPIPE ? ESRCH : errno;
   End();
   is_lost_();
   errno = error;

@@ -84,6 +84,16 @@ TEST_F(PorterTest, OneThatWasKilledIsMissedOnce) {
   EXPECT_EQ(lost_, 1);
 }
 
+TEST_F(PorterTest, OneThatHasGoneIsMissedLikeOneThatGoes) {
+  Begin();
+  kill(child_, SIGKILL);
+  siginfo_t info;
+  waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOWAIT);
+  EXPECT_FALSE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(errno, ESRCH);
+  EXPECT_EQ(lost_, 1);
+}
+
 TEST_F(PorterTest, OneThatIsStoppedIsNotWaitedForForEver) {
   Begin();
   kill(child_, SIGSTOP);
