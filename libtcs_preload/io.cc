@@ -19,6 +19,7 @@
 #include "libtcs_preload/keys.h"
 #include "libtcs_preload/local_sockets.h"
 #include "libtcs_preload/own_receivers.h"
+#include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/receipts.h"
 #include "libtcs_preload/signal_actions.h"
@@ -331,8 +332,10 @@ TCS_EXPORT ssize_t read(int fd, void* buffer, std::size_t size) {
   auto whole = [&] { return RawSyscall(SYS_read, fd, Arg(buffer), size); };
   const iovec iov{buffer, size};
   const bool at_once = size == 0 || IsBeyondMemory(buffer, size);
-  return ReadLike(
+  const ssize_t got = ReadLike(
       fd, {}, [&] { return at_once ? whole() : ReadAtOnce(fd, &iov, 1); }, whole);
+  RepeatDraws(fd, &iov, 1, got);
+  return got;
 }
 
 TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_t room) {
@@ -341,9 +344,11 @@ TCS_EXPORT ssize_t __read_chk(int fd, void* buffer, std::size_t size, std::size_
 }
 
 TCS_EXPORT ssize_t readv(int fd, const iovec* iov, int count) {
-  return ReadLike(
+  const ssize_t got = ReadLike(
       fd, {}, [&] { return ReadAtOnce(fd, iov, count); },
       [&] { return RawSyscall(SYS_readv, fd, Arg(iov), count); });
+  RepeatDraws(fd, iov, static_cast<std::size_t>(count), got);
+  return got;
 }
 
 TCS_EXPORT ssize_t recvfrom(int fd, void* buffer, std::size_t size, int flags, sockaddr* from,

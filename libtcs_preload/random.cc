@@ -1,9 +1,13 @@
 #include "libtcs_preload/random.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/auxv.h>
+#include <sys/mman.h>
 #include <sys/random.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -39,6 +43,31 @@ void Fill(void* buffer, std::size_t size) {
   }
 }
 
+// The kernel's devices for that: /dev/random and /dev/urandom.
+bool IsRandomDevice(int fd) {
+  struct stat status;
+  return RawSyscall(SYS_fstat, fd, Arg(&status)) == 0 && S_ISCHR(status.st_mode) &&
+         (status.st_rdev == makedev(1, 8) || status.st_rdev == makedev(1, 9));
+}
+
+constexpr std::size_t kBytesOfStream = 1 << 20;
+
+// -1 if the kernel does not give the memory.
+long FileOfDraws() {
+  const long fd = RawSyscall(SYS_memfd_create, Arg("random"), MFD_CLOEXEC);
+  if (fd < 0) return fd;
+  char draws[4096];
+  for (std::size_t done = 0; done < kBytesOfStream; done += sizeof draws) {
+    Fill(draws, sizeof draws);
+    if (RawSyscall(SYS_pwrite64, fd, Arg(draws), sizeof draws, static_cast<long>(done)) !=
+        sizeof draws) {
+      RawSyscall(SYS_close, fd);
+      return -1;
+    }
+  }
+  return fd;
+}
+
 }  // namespace
 
 namespace tcs::preload {
@@ -53,6 +82,26 @@ void SeedProcess(const shm::ThreadSlot& slot) {
 }
 
 bool DrawsRepeat() { return g_seeded; }
+
+void RepeatDraws(int fd, const iovec* buffers, std::size_t count, ssize_t size) {
+  if (size <= 0 || !g_seeded || !IsRandomDevice(fd)) return;
+  auto left = static_cast<std::size_t>(size);
+  for (std::size_t i = 0; i < count && left > 0; ++i) {
+    const std::size_t n = buffers[i].iov_len < left ? buffers[i].iov_len : left;
+    Fill(buffers[i].iov_base, n);
+    left -= n;
+  }
+}
+
+FILE* RepeatDraws(FILE* stream) {
+  if (stream == nullptr || !g_seeded || !IsRandomDevice(fileno(stream))) return stream;
+  const long draws = FileOfDraws();
+  if (draws < 0) return stream;
+  const long flags = RawSyscall(SYS_fcntl, fileno(stream), F_GETFD);
+  RawSyscall(SYS_dup3, draws, fileno(stream), flags == FD_CLOEXEC ? O_CLOEXEC : 0);
+  RawSyscall(SYS_close, draws);
+  return stream;
+}
 
 long GetRandom(void* buffer, std::size_t size, unsigned flags) {
   if (Enter() == nullptr || !g_seeded) {

@@ -1,8 +1,10 @@
 // Random numbers: as many as asked for, different each time; under fixed accounting the same in
 // each run, which the scenario tests compare.
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/random.h>
+#include <sys/uio.h>
 
 #include "tests/conformance/conformance.h"
 
@@ -32,13 +34,23 @@ std::uint64_t DrawFromVdso() {
 
 int main(int argc, char** argv) {
   Begin(argc, argv);
-  std::uint64_t words[5] = {};
+  std::uint64_t words[9] = {};
   EXPECT(getrandom(&words[0], 8, 0) == 8, "getrandom: %s", strerror(errno));
   EXPECT(getentropy(&words[1], 8) == 0, "getentropy: %s", strerror(errno));
   arc4random_buf(&words[2], 8);
   words[3] = std::uint64_t{arc4random()} << 32 | arc4random();
   words[4] = DrawFromVdso();
-  for (int i = 0; i < 5; ++i) {
+  const int device = open("/dev/urandom", O_RDONLY);
+  EXPECT(read(device, &words[5], 8) == 8, "/dev/urandom: %s", strerror(errno));
+  const iovec halves[] = {{&words[6], 4}, {reinterpret_cast<char*>(&words[6]) + 4, 4}};
+  EXPECT(readv(device, halves, 2) == 8, "a list of buffers: %s", strerror(errno));
+  close(device);
+  for (const int i : {7, 8}) {
+    FILE* stream = fopen(i == 7 ? "/dev/urandom" : "/dev/random", "rb");
+    EXPECT(stream != nullptr && fread(&words[i], 8, 1, stream) == 1, "%s", strerror(errno));
+    fclose(stream);
+  }
+  for (int i = 0; i < 9; ++i) {
     for (int k = 0; k < i; ++k) EXPECT(words[i] != words[k], "draws %d and %d are equal", k, i);
   }
   for (int i = 0; i < 1000; ++i) EXPECT(arc4random_uniform(10) < 10, "beyond the bound");
