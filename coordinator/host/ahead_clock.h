@@ -1,7 +1,7 @@
 // What a thread has computed since it was sent to another processor of the host, where nobody stops
-// it. Its CPU clock is known for some instants. From one to the next the TSC carries on, which tells
-// when the thread may have computed something, and it is worth while to look: it need not have, for
-// others may have taken that processor since.
+// it. Its CPU clock is known for some instants. From one to the next the TSC carries on, which
+// tells when the thread may have computed something, and it is worth while to look: it need not
+// have, for others may have taken that processor since.
 //
 // The host's nanoseconds. One thread says what is known, another one may ask at the same time,
 // which waits if the first one is interrupted in the midst.

@@ -158,7 +158,9 @@ std::int64_t FurtherCpu::PassedNs(std::uint64_t tsc) const {
 }
 
 // Since it was sent; negative: it has ended.
-std::int64_t FurtherCpu::ReadComputed() const { return ReadThreadCpuClock(clock_.get()) - begun_ns_; }
+std::int64_t FurtherCpu::ReadComputed() const {
+  return ReadThreadCpuClock(clock_.get()) - begun_ns_;
+}
 
 // --- The coordinator
 // ------------------------------------------------------------------------------

@@ -29,7 +29,8 @@ TEST(AheadClock, FromWhatIsKnownTheTscCarriesOn) {
   clock.Know(1 * kMs, 800 * kUs);
   EXPECT_EQ(clock.MayHaveComputedBy(1 * kMs, kAll), 800 * kUs);
   EXPECT_EQ(clock.MayHaveComputedBy(1 * kMs + 50 * kUs, kAll), 850 * kUs);
-  EXPECT_EQ(clock.MayHaveComputedBy(900 * kUs, kAll), 800 * kUs) << "what is known has been computed";
+  EXPECT_EQ(clock.MayHaveComputedBy(900 * kUs, kAll), 800 * kUs)
+      << "what is known has been computed";
 }
 
 TEST(AheadClock, NobodyComputesMoreThanIsAllowed) {
