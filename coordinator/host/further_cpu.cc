@@ -193,11 +193,16 @@ std::int64_t FurtherCpu::MayHaveComputedBy(std::uint64_t tsc) const {
   return HasLeft() ? Computed() : ahead_.MayHaveComputedBy(PassedNs(tsc), allowed_ns_.load());
 }
 
-void FurtherCpu::HaveLooked() {
+bool FurtherCpu::HaveLooked() {
   const std::uint32_t looked = looked_.load();
   WakeWarden();
   const std::uint64_t until_tsc = __rdtsc() + TicksIn(kMostLookNs);
-  while (looked_.load() == looked && !Rests() && !HasLeft() && __rdtsc() < until_tsc) _mm_pause();
+  while (looked_.load() == looked) {
+    if (Rests() || HasLeft()) return true;  // then it is known
+    if (__rdtsc() >= until_tsc) return false;
+    _mm_pause();
+  }
+  return true;
 }
 
 bool FurtherCpu::IsStarvedBy(std::uint64_t tsc) {

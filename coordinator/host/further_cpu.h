@@ -59,8 +59,8 @@ class FurtherCpu {
   std::int64_t Computed() const;
   std::int64_t MayHaveComputedBy(std::uint64_t tsc) const;
   // Has the warden look what it has computed, and waits for that; not for long, for the kernel may
-  // hold the warden. The thread is kept from computing for some us.
-  void HaveLooked();
+  // hold the warden: then false. The thread is kept from computing for some us.
+  bool HaveLooked();
   // Others had the processor for long, by then, or have claimed it.
   bool IsStarvedBy(std::uint64_t tsc);
   // It has come to its limit, and computes on here as soon as it is allowed to.
