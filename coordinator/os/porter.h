@@ -34,7 +34,8 @@ class Porter {
   UniqueFd TakeClientsEnd() { return std::move(clients_end_); }
 
   // A copy of the client's descriptor; none: errno is set, EBADF if there is none of that number.
-  // Waits for the porter, which has the processor meanwhile, at most two seconds.
+  // Waits for the porter, which has the processor meanwhile, at most two seconds; a minute where
+  // others of the host keep it from running.
   UniqueFd CopyOf(int number);
 
   // Whether that process is the porter.

@@ -5,7 +5,10 @@
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
+
+#include <utility>
 
 #include "coordinator/os/host.h"
 #include "coordinator/os/open_files.h"
@@ -30,20 +33,23 @@ class PorterTest : public testing::Test {
     PassedMessage message(&answer, sizeof answer, std::span(&fd, fd < 0 ? 0 : 1));
     return sendmsg(socket, message.get(), MSG_NOSIGNAL) == sizeof answer;
   }
-  [[noreturn]] static void HandOver(int socket) {
+  // Computes for so long before it answers the first time, as one does that gets no processor.
+  [[noreturn]] static void HandOver(int socket, int first_s) {
     Answer(socket, {0, 0}, -1);
     shm::PorterRequest request;
     while (read(socket, &request, sizeof request) == sizeof request) {
+      for (const time_t until = time(nullptr) + std::exchange(first_s, 0); time(nullptr) < until;) {
+      }
       if (!Answer(socket, {0, request.serial}, request.number)) {
         Answer(socket, {EBADF, request.serial}, -1);
       }
     }
     _exit(0);
   }
-  void Begin() {
+  void Begin(int first_s = 0) {
     const UniqueFd end = porter_->TakeClientsEnd();
     child_ = fork();
-    if (child_ == 0) HandOver(end.get());
+    if (child_ == 0) HandOver(end.get(), first_s);
     while (!porter_->Is(child_)) usleep(1000);
   }
 
@@ -101,6 +107,12 @@ TEST_F(PorterTest, OneThatIsStoppedIsNotWaitedForForEver) {
   EXPECT_EQ(errno, ETIMEDOUT);
   EXPECT_EQ(lost_, 1);
   EXPECT_EQ(ThreadState(child_), 'X');
+}
+
+TEST_F(PorterTest, OneThatWouldRunIsWaitedFor) {
+  Begin(4);  // at least 3 s
+  EXPECT_TRUE(porter_->CopyOf(file_.get()));
+  EXPECT_EQ(lost_, 0);
 }
 
 TEST_F(PorterTest, ItIsGoneAndReapedOnceItWasEnded) {
