@@ -129,6 +129,9 @@ bool Engine::BlockedInKernel() {
   // This process may have waited in the kernel itself for what /proc says, and the thread gone on
   // meanwhile, to its gate or to another call. Then it has said so.
   if (state == 'S' && reactor_.HasMore()) return false;
+  // It has executed another program, has registered meanwhile and sleeps at its first gate, to
+  // which it comes without a notification.
+  if (state == 'S' && task.parked) return true;
   if (state == 'S' && CutsOff(task)) return task.process->expelled;
   if (state == 't' && debugger_.IsOf(*task.process)) return false;  // and everybody with it
   const bool stopped = state == 'T' || state == 't';                // until a signal, or its tracer

@@ -9,6 +9,7 @@ trap '[[ -z $sender ]] || kill "$sender" 2>/dev/null || true; rm -rf "$out"' EXI
 check() {  # WHAT COMMAND...
   local what=$1 status=0 run client=
   shift
+  : >"$out/said"
   timeout 30 "$@" "$build/bin/never_waiting" 300 >"$out/said" 2>"$out/warned" &
   run=$!
   for _ in $(seq 300); do

@@ -17,7 +17,8 @@
 namespace tcs {
 namespace {
 
-constexpr int kMostLooks = 200;  // a pause apart
+// A pause apart: where the terminal may swallow some of the bytes, and where all are sure to come.
+constexpr int kMostLooks = 200, kMostSureLooks = 40'000;
 constexpr long kPauseNs = 50'000;
 constexpr int kRoom = 4095;  // of the line discipline
 
@@ -63,6 +64,12 @@ void MakeRaw(int fd, int baud) {
   ioctl(fd, TCSETS2, &settings);
 }
 
+// Each byte is there to be read: none is a signal, stops the flow or ends a line.
+bool KeepsAll(const termios2& settings) {
+  return (settings.c_lflag & (ICANON | ISIG)) == 0 &&
+         (settings.c_iflag & (IXON | IGNCR | PARMRK)) == 0;
+}
+
 int Unread(int fd) {
   int bytes = 0;
   return ioctl(fd, FIONREAD, &bytes) == 0 ? bytes : 0;
@@ -86,7 +93,7 @@ std::variant<Terminal, std::string> Terminal::Open(int baud) {
 
 // A poll waits for the kernel's worker, but only where nothing is there to be read yet. Beside what
 // nobody has read the bytes are counted until they are all there; where programs read whole lines,
-// they are counted by lines.
+// they are counted by lines. On a busy host the worker may take long.
 void Terminal::Write(std::string_view bytes) const {
   termios2 settings{};
   ioctl(near_.get(), TCGETS2, &settings);
@@ -99,10 +106,11 @@ void Terminal::Write(std::string_view bytes) const {
   const bool ends_line = bytes.find('\n') != std::string_view::npos;
   const int more = by_lines ? (ends_line ? 1 : 0) : static_cast<int>(written);
   const int expected = before + more;
+  const int most_looks = KeepsAll(settings) ? kMostSureLooks : kMostLooks;
   pollfd probe{near_.get(), POLLIN, 0};
   for (int look = 0;; ++look) {
     poll(&probe, 1, 0);
-    if (Unread(near_.get()) >= expected || look == kMostLooks) return;
+    if (Unread(near_.get()) >= expected || look == most_looks) return;
     const timespec pause{0, kPauseNs};
     nanosleep(&pause, nullptr);
   }
