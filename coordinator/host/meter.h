@@ -34,7 +34,8 @@ struct MeteredThread {
   // What the thread's CPU clock said when its charge was 0, moved by what is not charged; -1: not
   // known yet.
   std::int64_t host_origin_ns = -1;
-  std::int64_t page_origin_ns = 0;                            // what its page says of that
+  std::int64_t page_origin_ns = 0;  // what its page says of that
+  std::int64_t known_cpu_ns = -1;   // what it said last (shared_cpu_meter.h)
   HostDuration longest_run = HostDuration::Milliseconds(10);  // of late
   std::uint64_t unchecked_ticks = 0;  // of TSC run since its CPU clock was last asked
   std::uint64_t checked_tsc = 0;      // what its page said of that at its dispatch

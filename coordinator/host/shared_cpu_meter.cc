@@ -16,6 +16,14 @@ Meter::Found SharedCpuMeter::Look(MeteredThread& thread, std::uint64_t tsc, Prog
   return MeasuredMeter::Look(thread, tsc, horizon, clock);
 }
 
+void SharedCpuMeter::Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
+  MeasuredMeter::Check(thread, tsc, [&] {
+    const std::int64_t now_ns = clock();
+    if (now_ns >= 0) thread.known_cpu_ns = now_ns;
+    return thread.known_cpu_ns;
+  });
+}
+
 void SharedCpuMeter::End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) {
   Check(thread, tsc, clock);
 }

@@ -3,6 +3,9 @@
 // clock from one look at the CPU clock to the next. A dispatch begins with such a look, its end is
 // one, and no context switch has to be learnt: whatever is not on the CPU clock is not charged.
 //
+// Of a thread that has died, and whose process the kernel has yet to end, no clock tells any more:
+// it has computed what its CPU clock said last.
+//
 // A thread may have computed beyond its horizon, or after it was held, for as long as nothing
 // stopped it: the timer tells nothing of what was stolen.
 #pragma once
@@ -20,6 +23,7 @@ class SharedCpuMeter final : public MeasuredMeter {
   Found Look(MeteredThread& thread, std::uint64_t tsc, ProgramTime horizon,
              const CpuClock& clock) override;
   bool HasOverslept(std::uint64_t, std::uint64_t, HostDuration) const override { return false; }
+  void Check(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
   void End(MeteredThread& thread, std::uint64_t tsc, const CpuClock& clock) override;
 };
 

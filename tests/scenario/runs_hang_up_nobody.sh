@@ -13,7 +13,7 @@ kill -9 $stopped 2>/dev/null; true'
 says() {  # WHAT IT SAYS COMMAND...
   local wanted=$1 said
   shift
-  said=$(setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1)
+  said=$(setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1 | grep -v 'tcsim: other runs')
   [[ $said == "$wanted" ]] || fail "$*: $said"
 }
 # That the kernel does so.

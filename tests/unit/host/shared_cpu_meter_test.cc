@@ -54,6 +54,16 @@ TEST_F(SharedCpuMeterTest, EachEndAsksHoweverShortTheRunWas) {
   EXPECT_EQ(ClockAt(end), kStart + 10 * kUs);
 }
 
+TEST_F(SharedCpuMeterTest, OneThatHasDiedHasComputedNoMoreThanItsClockHasSaid) {
+  host_cpu_ns_ += 10 * kUs;
+  EXPECT_EQ(meter_.Look(thread_, kBegun + kTicksPerMs, OwnTime(kHorizon), clock_),
+            Meter::Found::kGoesOn);
+  host_cpu_ns_ = -1;
+  const std::uint64_t end = kBegun + 240 * kTicksPerMs;
+  meter_.End(thread_, end, clock_);
+  EXPECT_EQ(ClockAt(end), kStart + 10 * kUs);
+}
+
 // It may have computed on.
 TEST_F(SharedCpuMeterTest, ALateTimerTellsOfNoTheft) {
   EXPECT_FALSE(meter_.HasOverslept(kBegun, kBegun + 1'000 * kTicksPerMs, HostNs(kMs)));
