@@ -98,6 +98,9 @@ class Conversation {
     std::vector<Wrench> early;
     early.swap(early_);
     for (const Wrench& wrench : early) Command(wrench);
+    // This robot may have begun to listen while a plan was followed that it has not heard, whose
+    // last wrenches come around the time of the first one that it has.
+    if (plans_.size() <= 2) early_.clear();
   }
 
   void Command(const Wrench& wrench) {
@@ -169,9 +172,11 @@ void Run(const Options& options) {
   };
   while (!is_over()) {
     if (Ticks::Clock::now() > end) {
-      throw std::runtime_error("after " + std::to_string(options.patience_s) + " s " +
-                               std::to_string(heard.requests) + " plans have been asked for and " +
-                               std::to_string(heard.plans_followed()) + " been followed");
+      throw std::runtime_error(
+          "after " + std::to_string(options.patience_s) + " s " + std::to_string(heard.requests) +
+          " plans have been asked for and " + std::to_string(heard.plans_followed()) +
+          " been followed, " + std::to_string(heard.coasting) + " commands were to coast, and " +
+          (heard.all_explained() ? "no wrench" : "wrenches") + " came of no plan");
     }
     waitset.WaitUntil(ticks.next());
     if (const auto request = requests.TakeNewest()) heard.Request(FromMessage(*request));

@@ -17,7 +17,8 @@ says() {  # WHAT IT SAYS COMMAND...
   [[ $said == "$wanted" ]] || fail "$*: $said"
 }
 # That the kernel does so.
-says $'hung up\nstatus 0' python3 -c '
+hangs_up() { setsid --wait timeout 60 bash -c "$script" script "$@" 2>&1; }
+hangs_up python3 -c '
 import os, signal
 signal.signal(signal.SIGHUP, signal.SIG_IGN)
 group = os.getpgrp()
@@ -28,7 +29,7 @@ if parent == 0:
     if child == 0: os.setpgid(0, group)
     else: os.waitpid(child, 0)
     os._exit(0)
-os.waitpid(parent, 0)'
+os.waitpid(parent, 0)' | grep -c '^hung up$' >/dev/null || fail 'the kernel hung up nobody'
 for accounting in measured fixed; do
   says $'status 3\nstill stopped' "$tcsim" exec --accounting "$accounting" -- sh -c 'sleep 1; exit 3'
 done
