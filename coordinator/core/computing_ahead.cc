@@ -148,11 +148,10 @@ void ComputingAhead::ChargeAhead(Task& task) {
   Charge(task, task.ahead_from + task.metered.OnRobot(HostNs(CpuOf(task).Computed())));
 }
 
-// How far it may have come, in debt.
-VirtualDuration ComputingAhead::MayOwe(Task& task) {
+// What it may have computed besides.
+VirtualDuration ComputingAhead::Uncertain(const Task& task) {
   const std::int64_t host_ns = CpuOf(task).MayHaveComputedBy(__rdtsc());
-  const VirtualDuration charged = task.ahead_from + task.metered.OnRobot(HostNs(host_ns));
-  return task.debt + (charged - task.charged);
+  return task.ahead_from + task.metered.OnRobot(HostNs(host_ns)) - task.charged;
 }
 
 void ComputingAhead::AskHowFar(Task& task) {
@@ -182,7 +181,7 @@ void ComputingAhead::Look() {
     ChargeAhead(*task);
     // Others wait for it alone.
     const bool is_least = parts_.run.root.First() == task->cpu->leaf;
-    if (is_least && MayOwe(*task) - task->debt >= kWorthAsking) AskHowFar(*task);
+    if (is_least && Uncertain(*task) >= kWorthAsking) AskHowFar(*task);
     parts_.waker.Refresh(*task->process->robot);
   }
 }
@@ -216,7 +215,7 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
     if (found.stops_running || found.wakes_others || !task.is_ahead) break;
     ChargeAhead(task);
     const VirtualDuration to_go = horizon - task.cpu->progress;
-    if (task.debt < to_go && MayOwe(task) >= to_go) AskHowFar(task);
+    if (task.debt < to_go && task.debt + Uncertain(task) >= to_go) AskHowFar(task);
     // One that rests goes on as soon as it has paid.
     if (task.debt >= to_go || cpu.Rests()) break;
     const std::uint64_t now_tsc = __rdtsc();

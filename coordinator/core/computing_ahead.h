@@ -82,7 +82,7 @@ class ComputingAhead {
   void BringHome(Task& task);
   void Charge(Task& task, VirtualDuration charged);
   void ChargeAhead(Task& task);
-  VirtualDuration MayOwe(Task& task);
+  VirtualDuration Uncertain(const Task& task);
   void AskHowFar(Task& task);
   void Await(Task& task, VirtualTime horizon);
   void Pay(Task& task, VirtualTime horizon);
