@@ -95,6 +95,12 @@ jobs_of() {  # NODE: what sbatch was told to run
   for step in $(steps_of "$1"); do pgrep -P "$step" || true; done
 }
 
+# Slurm takes a moment to clear away behind a job that has ended.
+no_jobs() {  # [OPTIONS of squeue]; within $tenths of a second, 100 unless told
+  for _ in $(seq "${tenths:-100}"); do [[ -z $(squeue -h "$@") ]] && return; sleep 0.1; done
+  fail "jobs are left: $(squeue)"
+}
+
 kill_node() {  # NODE: all its processes at once, as if its power were cut
   local slurmd=slurmd_of_$1
   disown "${!slurmd}"  # or bash tells of its end

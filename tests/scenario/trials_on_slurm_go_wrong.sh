@@ -18,10 +18,6 @@ refused() {  # PATTERN OPTIONS...
   [[ $(wc -l <"$out/stderr") == 1 ]] || fail "not one line: $(cat "$out/stderr")"
   grep -Eq "^tcsim: .*$pattern" "$out/stderr" || fail "$(cat "$out/stderr")"
 }
-no_jobs() {  # [OPTIONS of squeue]
-  for _ in $(seq 100); do [[ -z $(squeue -h "$@") ]] && return; sleep 0.1; done
-  fail "jobs are left: $(squeue)"
-}
 mkdir "$out/no_slurm"
 elsewhere=(env "PATH=$out/no_slurm")
 refused 'there is no sbatch in PATH; .*slurm-client' --out "$out/t"
