@@ -41,7 +41,8 @@ example=$build/examples/predator_prey/scenario.yaml
 run "$example" --duration 1.5s --out "$out/whole"
 run "$example" --stop-at 1.2s --out "$out/stopped"
 cmp -n "$(stat -c %s "$out/stopped/bodies.csv")" "$out/whole/bodies.csv" "$out/stopped/bodies.csv" ||
-  fail "a run that is to stop moves otherwise"
+  fail "a run that is to stop moves otherwise; what its threads did first: $(
+    for table in activations dispatches; do diff "$out/whole/$table.csv" "$out/stopped/$table.csv" | head -n 12 || true; done)"
 [[ $(tail -n 1 "$out/stopped/bodies.csv") == 1.200000000,* && ! -e $out/whole/snapshot.yaml ]] || fail "it stopped elsewhere"
 run "$example" --overlay "$out/stopped/snapshot.yaml" --duration 0.1s --out "$out/goes_on"
 compare "$out/stopped" 1.2 "$out/goes_on" 0 1e-15

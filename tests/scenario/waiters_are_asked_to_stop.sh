@@ -20,7 +20,7 @@ client() {  # NAME ENDED_BEFORE
 check() {  # WHAT FOLDER
   local name
   for name in none some many; do
-    [[ $(cat "$2/r-$name.out.log") == 'ended well' ]] || fail "$1: $name: $(tail -n 99 "$2"/*.log)"
+    [[ $(cat "$2/r-$name.out.log") == 'ended well' ]] || fail "$1: $name: $(tail -n 99 "$2"/*.log "$out/said")"
   done
 }
 for accounting in measured fixed; do
