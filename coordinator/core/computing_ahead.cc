@@ -188,6 +188,7 @@ void ComputingAhead::Look() {
 
 bool ComputingAhead::TakeTurn(Task& task, VirtualTime horizon) {
   if (!task.owes_ahead) return false;
+  parts_.run.turn.recorded_tsc = __rdtsc();  // what it pays takes no real time before its turn
   if (task.is_ahead) {
     Await(task, horizon);
   } else if (task.debt <= VirtualDuration()) {
@@ -208,7 +209,7 @@ void ComputingAhead::Await(Task& task, VirtualTime horizon) {
   FurtherCpu& cpu = CpuOf(task);
   run.latest = std::max(task.cpu->progress, run.root.Least());
   Beat();
-  const std::uint64_t begun_tsc = run.turn.recorded_tsc = __rdtsc();
+  const std::uint64_t begun_tsc = run.turn.recorded_tsc;
   std::uint64_t looks_tsc = begun_tsc + parts_.clock.TicksIn(kStateLookNs);
   for (;;) {
     const Reactor::Found found = poll_({run.latest});
