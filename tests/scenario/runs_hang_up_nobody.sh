@@ -5,10 +5,12 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: processes, signals.
 script='sleep 1000 & stopped=$!
 kill -STOP $stopped
+is_stopped() { [[ $(ps -o state= $stopped) == T ]]; }
+until is_stopped; do sleep 0.01; done  # which it is once it has had the processor
 trap "echo hung up" HUP
 "$@" >/dev/null
 echo "status $?"
-[[ $(ps -o state= $stopped) == T ]] && echo still stopped
+is_stopped && echo still stopped
 kill -9 $stopped 2>/dev/null; true'
 says() {  # WHAT IT SAYS COMMAND...
   local wanted=$1 said

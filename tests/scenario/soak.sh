@@ -7,6 +7,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 seconds=${3:-12}
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+ln -s "$build/bin/soak_client" "$out"  # other tests have some, too
 kinds=(periodic bursts threads births children stream datagrams signals descriptors)
 # How many descriptors and threads the coordinator has, each tenth of a virtual second.
 cat >"$out/watch.py" <<'PY'
@@ -27,7 +28,7 @@ PY
     echo "    clients:"
     for _ in $(seq 20); do
       kind=${kinds[client++ % ${#kinds[@]}]}
-      echo "      $kind$client: {command: [$build/bin/soak_client, $kind, \"$seconds\"], priority: $((client % 4))}"
+      echo "      $kind$client: {command: [$out/soak_client, $kind, \"$seconds\"], priority: $((client % 4))}"
     done
   done
   echo "  watcher: {clients: {watch: {command: [python3, watch.py, \"$seconds\"]}}}"
@@ -57,4 +58,4 @@ assert max(counts) <= middle + 400, counts
 assert max(threads) <= os.cpu_count(), threads
 PY
 [[ -z $(new_in_shm) ]] || fail "something is left in /dev/shm: $(new_in_shm)"
-! pgrep -f "$build/bin/soak_client" >/dev/null || fail "clients are left"
+! pgrep -f "$out/soak_client" >/dev/null || fail "clients are left"
