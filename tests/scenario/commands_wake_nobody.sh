@@ -104,7 +104,7 @@ fi
 for type in unix udp; do
   scenario $type "${!type}" errors "" >"$out/errors.yaml"
   "$tcsim" run "$out/errors.yaml" --out "$out/errors" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
-  address=@tcs-test-$$
+  address=@tcs-test-natively-$$  # a short one is refused otherwise: a number may have few digits
   [[ $type == unix ]] || address=127.0.0.1:27494
   "$build/bin/commander" $type "$address" errors own >"$out/native" || fail "natively: $(cat "$out/native")"
   diff "$out/native" "$out/errors/r-c.out.log" || fail "$type: other errors than natively"

@@ -17,7 +17,7 @@ mkdir -m 777 "$out/with" "$out/without" "$out/contained"
 cat >"$out/work.yaml" <<END
 duration: 60s
 robots:
-  alone: {clients: {long: {command: [$out/bin/steady_worker, long, "100"]}}}
+  alone: {clients: {long: {command: [$out/bin/steady_worker, long, "300"]}}}  # as long as both others, whatever they meet
   shared:
     clients:
       long: {command: [$out/bin/steady_worker, long, "100"]}
@@ -122,7 +122,7 @@ def ratio(those, to, share):
     for (begun, cost), end in zip(to, ends):
         meanwhile = [c for b, c in those if begun <= b + c / 2 < end]
         if meanwhile: ratios.append(sum(meanwhile) / len(meanwhile) / cost / share)
-    assert len(ratios) > 20, (rights, len(ratios))
+    assert len(ratios) > 20, (rights, len(ratios), those[0], those[-1], to[0], to[-1])
     return sorted(ratios)[len(ratios) // 2]
 for rights in ("with", "without"):
     check(summary(rights, "pieces"))
