@@ -57,10 +57,9 @@ send_each_way() {  # TYPE
     done
   done
 }
-# Beside each other.
-send_each_way unix &
+beside send_each_way unix
 send_each_way udp
-wait $!
+all_done
 cmp "$out/unix2/commands.csv" "$out/udp2/commands.csv" || fail "UNIX and UDP differ"
 
 # Each command that the kernel carries stops the program and wakes tcsim, where these have priorities.

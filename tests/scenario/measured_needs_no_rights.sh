@@ -17,11 +17,11 @@ mkdir -m 777 "$out/with" "$out/without" "$out/contained"
 cat >"$out/work.yaml" <<END
 duration: 60s
 robots:
-  alone: {clients: {long: {command: [$out/bin/steady_worker, long, "300"]}}}  # as long as both others, whatever they meet
+  alone: {clients: {long: {command: [$out/bin/steady_worker, long, "300"]}}}  # as long as both others
   shared:
     clients:
       long: {command: [$out/bin/steady_worker, long, "100"]}
-      short: {command: [$out/bin/steady_worker, short, "1000"], priority: 10}
+      short: {command: [$out/bin/steady_worker, short, "4000"], priority: 10}
 END
 
 # Computes for 0.1 ms of its own time, sleeps as long, and so on: half of a processor, of any host.
