@@ -1,5 +1,7 @@
 #include "libtcs_preload/datagram_notes.h"
 
+#include <linux/sock_diag.h>
+
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
@@ -19,15 +21,11 @@ bool IsDatagramSocket(int fd) {
          type == SOCK_DGRAM;
 }
 
-void Note(GuestThread& thread, const void* address, socklen_t size, What what,
-          std::uint32_t count) {
-  const shm::ReceiverAddress of = shm::AddressOf(address, size);
-  if (of.size == 0) return;
-  shm::DatagramNotes::Note note = shm::NoteAbout(of.bytes, of.size);
+void Add(GuestThread& thread, shm::DatagramNotes::Note note) {
   const shm::ClockPage& page = thread.slot->clock;
   note.time_ns = shm::ShownTime(page, shm::ReadClock(page));
-  note.count = count;
-  note.what = what;
+  note.activation =
+      static_cast<std::uint8_t>(thread.slot->receipts.count.load(std::memory_order_relaxed));
   shm::DatagramNotes& notes = thread.slot->datagrams;
   // A handler that comes between overwrites one.
   const std::uint32_t place = notes.count.load(std::memory_order_relaxed);
@@ -40,6 +38,24 @@ void Note(GuestThread& thread, const void* address, socklen_t size, What what,
   }
 }
 
+// Of no address that counts: of size 0.
+shm::DatagramNotes::Note NoteOf(const void* address, socklen_t size, What what) {
+  const shm::ReceiverAddress of = shm::AddressOf(address, size);
+  shm::DatagramNotes::Note note = shm::NoteAbout(of.bytes, of.size);
+  note.what = what;
+  note.count = 1;
+  return note;
+}
+
+// How many the kernel has dropped because the socket was full, and whether more wait.
+void AddMemory(int fd, shm::DatagramNotes::Note* note) {
+  std::uint32_t info[SK_MEMINFO_VARS] = {};
+  socklen_t size = sizeof info;
+  if (RawSyscall(SYS_getsockopt, fd, SOL_SOCKET, SO_MEMINFO, Arg(info), Arg(&size)) != 0) return;
+  note->drops = static_cast<std::uint16_t>(info[SK_MEMINFO_DROPS]);
+  note->is_last = info[SK_MEMINFO_RMEM_ALLOC] == 0 ? 1 : 0;
+}
+
 void NoteSend(GuestThread& thread, int fd, const void* address, socklen_t size, What what) {
   if (!IsDatagramSocket(fd)) return;
   sockaddr_storage peer;
@@ -50,7 +66,8 @@ void NoteSend(GuestThread& thread, int fd, const void* address, socklen_t size, 
   } else if (size > sizeof peer || !CanRead(address, size)) {
     return;
   }
-  Note(thread, address, size, what, 1);
+  const shm::DatagramNotes::Note note = NoteOf(address, size, what);
+  if (note.size > 0) Add(thread, note);
 }
 
 }  // namespace
@@ -59,15 +76,28 @@ void NoteDatagram(GuestThread& thread, int fd, const void* address, socklen_t si
   NoteSend(thread, fd, address, size, What::kSent);
 }
 
+void NoteSamplesTaken(GuestThread& thread, const shm::TakenSamples& samples) {
+  shm::DatagramNotes::Note note{};
+  note.what = What::kTaken;
+  note.size = sizeof samples;
+  memcpy(note.bytes, &samples, sizeof samples);
+  Add(thread, note);
+}
+
 void TakeBackDatagram(GuestThread& thread, int fd, const void* address, socklen_t size) {
   NoteSend(thread, fd, address, size, What::kTakenBack);
 }
 
-void NoteDatagramsReceived(GuestThread& thread, int fd, std::uint32_t count) {
+void NoteDatagramsReceived(GuestThread& thread, int fd, std::uint32_t count, bool is_datagram) {
   sockaddr_storage own;
   socklen_t size = sizeof own;
-  if (!IsDatagramSocket(fd) || RawSyscall(SYS_getsockname, fd, Arg(&own), Arg(&size)) != 0) return;
-  Note(thread, &own, size, What::kReceived, count);
+  if (!is_datagram && !IsDatagramSocket(fd)) return;
+  if (RawSyscall(SYS_getsockname, fd, Arg(&own), Arg(&size)) != 0) return;
+  shm::DatagramNotes::Note note = NoteOf(&own, size, What::kReceived);
+  if (note.size == 0) return;
+  note.count = static_cast<std::uint16_t>(count);
+  AddMemory(fd, &note);
+  Add(thread, note);
 }
 
 }  // namespace tcs::preload

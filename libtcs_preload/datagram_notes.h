@@ -1,4 +1,4 @@
-// What the shim notes of datagrams in runs that are recorded (shm/datagram_notes.h).
+// What the shim notes of datagrams and of DDS samples (shm/datagram_notes.h).
 // Async-signal-safe.
 #pragma once
 
@@ -8,14 +8,18 @@
 
 namespace tcs::preload {
 
-inline bool NotesDatagrams() { return g_header->notes_datagrams != 0; }
+inline bool NotesActivity() { return g_header->notes_activity != 0; }
 
 // The thread is about to send one on the socket; null: to its peer. Not of other kinds of sockets.
 void NoteDatagram(GuestThread& thread, int fd, const void* address, socklen_t size);
 // That has failed.
 void TakeBackDatagram(GuestThread& thread, int fd, const void* address, socklen_t size);
 
-// It has received so many from the socket.
-void NoteDatagramsReceived(GuestThread& thread, int fd, std::uint32_t count);
+// It has received so many from the socket, which may be of another kind unless `is_datagram`.
+void NoteDatagramsReceived(GuestThread& thread, int fd, std::uint32_t count,
+                           bool is_datagram = false);
+
+// It has taken those DDS samples.
+void NoteSamplesTaken(GuestThread& thread, const shm::TakenSamples& samples);
 
 }  // namespace tcs::preload

@@ -112,7 +112,7 @@ bool ReadDatagram(GuestThread& t, int fd, Reads reads, AtOnce at_once, ssize_t* 
     }
   }
   if (got > 0 && reads.takes) NoteReceived(t);
-  if (got >= 0 && reads.takes && NotesDatagrams()) NoteDatagramsReceived(t, fd, 1);
+  if (got >= 0 && reads.takes && NotesActivity()) NoteDatagramsReceived(t, fd, 1, true);
   *result = ToErrno(got);
   if (t.passes_on && !reads.dont_wait && !IsNonBlocking(fd)) {
     const int error = errno;
@@ -137,15 +137,15 @@ ssize_t ReadLike(int fd, Reads reads, AtOnce at_once, Call call) {
     if (any_socket) AcknowledgeAtOnce(fd);
     BeginTaking(*t, fd, any_socket);
     const long result = call();
-    if (any_socket && result >= 0 && reads.takes && NotesDatagrams()) {
-      NoteDatagramsReceived(*t, fd, 1);
-    }
     if (result > 0 && reads.takes) {
       if (any_socket) {
         NoteReceived(*t);
       } else {
         NoteReceivedFrom(*t, fd);
       }
+    }
+    if (any_socket && result >= 0 && reads.takes && NotesActivity()) {
+      NoteDatagramsReceived(*t, fd, 1);
     }
     return ToErrno(result);
   };
@@ -203,14 +203,14 @@ ssize_t WriteAll(int fd, const iovec* iov, std::size_t count, Whole whole) {
   HoldForWrite(*t);
   const bool at_once = !AreSound(iov, count) || IsNonBlocking(fd);
   Rest rest(iov, at_once ? 0 : count);
-  if (NotesDatagrams()) NoteDatagram(*t, fd, nullptr, 0);
+  if (NotesActivity()) NoteDatagram(*t, fd, nullptr, 0);
   const long result =
       rest.bytes() == 0
           ? whole()
           : TransferAll(
                 *t, fd, POLLOUT, SO_SNDTIMEO, rest,
                 [fd](const iovec* part, std::size_t n) { return WritePart(fd, part, n); }, whole);
-  if (result < 0 && NotesDatagrams()) TakeBackDatagram(*t, fd, nullptr, 0);
+  if (result < 0 && NotesActivity()) TakeBackDatagram(*t, fd, nullptr, 0);
   if (result > 0 && AnybodyWaits() && IsTerminal(fd)) {
     TellChanged(*t, tcs::shm::WaitKey::kTerminals, 0);
   }
@@ -257,7 +257,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
   if (t == nullptr) return ToErrno(whole());
   const bool was_in_call = t->in_call;
   const int receiver = HoldToSend(*t, fd, message);
-  if (NotesDatagrams()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
+  if (NotesActivity()) NoteDatagram(*t, fd, message.msg_name, message.msg_namelen);
   long posted = 0;
   ssize_t sent;
   if (*may_post && Post(*t, fd, receiver, message, flags, &posted)) {
@@ -271,7 +271,7 @@ ssize_t SendAll(GuestThread* t, int fd, const msghdr& message, int flags, bool* 
     }
     sent = SendInParts(t, fd, message, flags, whole);
   }
-  if (sent < 0 && NotesDatagrams()) {
+  if (sent < 0 && NotesActivity()) {
     const int error = errno;
     TakeBackDatagram(*t, fd, message.msg_name, message.msg_namelen);
     errno = error;
@@ -431,7 +431,7 @@ TCS_EXPORT int recvmmsg(int fd, mmsghdr* messages, unsigned count, int flags, ti
   const long result = at_once();
   if (result > 0 && Takes(flags)) {
     NoteReceived(*t);
-    if (NotesDatagrams()) NoteDatagramsReceived(*t, fd, static_cast<std::uint32_t>(result));
+    if (NotesActivity()) NoteDatagramsReceived(*t, fd, static_cast<std::uint32_t>(result));
   }
   PassOn(*t);
   return static_cast<int>(ToErrno(result));

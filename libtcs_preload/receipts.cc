@@ -9,20 +9,36 @@
 
 namespace tcs::preload {
 
-void NoteReceived(GuestThread& thread, shm::Receipts::Of of) {
+namespace {
+
+void Add(GuestThread& thread, const shm::Receipts::Entry& entry) {
   shm::Receipts& receipts = thread.slot->receipts;
-  const shm::ClockPage& page = thread.slot->clock;
-  const shm::ClockReading now = shm::ReadClock(page);
-  if (!shm::NoteReceived(receipts, now.cpu_ns)) return;
   // A handler that comes between overwrites one, which is then not counted.
   const std::uint32_t count = receipts.count.load(std::memory_order_relaxed);
   if (count >= shm::Receipts::kMost) return;
-  receipts.entries[count] = {shm::ShownTime(page, now), now.cpu_ns, of, 0, thread.slot->work};
+  receipts.entries[count] = entry;
   receipts.count.store(count + 1, std::memory_order_release);
   // Full: any stop empties it.
   if (count + 1 == shm::Receipts::kMost && thread.depth == 0) {
     Exchange(thread, Request{.kind = shm::NotificationKind::kPassOn});
   }
+}
+
+}  // namespace
+
+void NoteReceived(GuestThread& thread, shm::Receipts::Of of) {
+  const shm::ClockPage& page = thread.slot->clock;
+  const shm::ClockReading now = shm::ReadClock(page);
+  if (!shm::NoteReceived(thread.slot->receipts, now.cpu_ns)) return;
+  const std::int64_t at_ns = shm::ShownTime(page, now);
+  Add(thread, {at_ns, now.cpu_ns, at_ns, of, 0, thread.slot->work});
+}
+
+void NoteSlept(GuestThread& thread, std::int64_t from_ns, std::int64_t cpu_ns,
+               std::int64_t until_ns) {
+  if (g_header->notes_activity == 0 || until_ns == from_ns) return;
+  shm::NoteWoken(thread.slot->receipts);
+  Add(thread, {from_ns, cpu_ns, until_ns, shm::Receipts::Of::kSleep, 0, thread.slot->work});
 }
 
 void NoteReceivedFrom(GuestThread& thread, int fd) {

@@ -1,5 +1,5 @@
-// What the shim says of messages that a thread receives and sends, for its activations
-// (shm/receipts.h). Async-signal-safe.
+// What the shim says of messages that a thread receives and sends, and of its sleeps, for its
+// activations (shm/receipts.h). Async-signal-safe.
 #pragma once
 
 #include "libtcs_preload/guest.h"
@@ -12,6 +12,10 @@ void NoteReceived(GuestThread& thread, shm::Receipts::Of of = shm::Receipts::Of:
 // The same for bytes that the thread has just read from a descriptor. Descriptors by which a
 // program's own threads wake each other (eventfd, signalfd) count for nothing.
 void NoteReceivedFrom(GuestThread& thread, int fd);
+
+// It sleeps until then without asking for it; it began to, and had been charged that, before.
+void NoteSlept(GuestThread& thread, std::int64_t from_ns, std::int64_t cpu_ns,
+               std::int64_t until_ns);
 
 inline void NoteSent(GuestThread& thread) { shm::NoteSent(thread.slot->receipts); }
 

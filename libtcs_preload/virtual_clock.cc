@@ -75,7 +75,10 @@ bool SleepUntil(GuestThread& thread, const ClockReading& now, std::int64_t deadl
     const timespec turn{0, 10'000'000};
     return RawSyscall(SYS_nanosleep, Arg(&turn), 0) == 0;
   }
-  if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, now, deadline_ns)) return true;
+  if (thread.depth == 0 && MoveOwnClock(thread.slot->clock, now, deadline_ns)) {
+    NoteSlept(thread, now.time_ns, now.cpu_ns, deadline_ns);
+    return true;
+  }
   const Reply reply = Exchange(
       thread,
       Request{.kind = NotificationKind::kIdle, .deadline_ns = deadline_ns, .interruptible = true});

@@ -1,7 +1,6 @@
-// What a thread notes of the datagrams that it sends and receives, in runs that are recorded
-// (RunHeader::notes_datagrams): when, and at which address they are received. The coordinator makes
-// of it who received what from whom, for the kernel hands datagrams of one address out in the order
-// in which they were sent.
+// What a thread notes of the datagrams that it sends and receives (RunHeader::notes_activity):
+// when, and at which address they are received. The coordinator makes of it who received what from
+// whom, for the kernel hands datagrams of one address out in the order in which they were sent.
 //
 // Written by the thread, emptied by the coordinator when it has stopped, which trusts nothing in
 // it.
@@ -22,16 +21,21 @@ struct DatagramNotes {
 
   // A send is noted before it is made, for the receiver may be the next to run; and taken back
   // where it has failed.
-  enum class What : std::uint16_t { kSent = 0, kReceived = 1, kTakenBack = 2 };
+  // kTaken is of DDS samples, and has no address (SamplesOf).
+  enum class What : std::uint16_t { kSent = 0, kReceived = 1, kTakenBack = 2, kTaken = 3 };
 
   struct Note {
     std::int64_t time_ns;  // the thread's clock
     std::uint64_t hash;    // of all bytes of the address, as AddressOf has them
-    std::uint32_t count;   // of datagrams
+    std::uint16_t count;   // of datagrams
+    std::uint16_t drops;   // the socket's that received: of how many the kernel has dropped, modulo
     What what;
     std::uint16_t size;  // of what follows, which is the beginning of a long address
     unsigned char bytes[kMostBytes];
-    unsigned char padding[2];
+    // Of what is received: how many receipts (receipts.h) the thread had noted by then. The last of
+    // them began the activation that this belongs to.
+    std::uint8_t activation;
+    std::uint8_t is_last;  // 1: no more waited there, as far as the kernel says
   };
 
   std::atomic<std::uint32_t> count;
@@ -40,6 +44,20 @@ struct DatagramNotes {
 };
 static_assert(sizeof(DatagramNotes::Note) == 64);
 static_assert(sizeof(DatagramNotes) == 8 + 64 * DatagramNotes::kMost);
+
+// DDS samples that a thread has taken with one call.
+struct TakenSamples {
+  std::int64_t oldest_ns, newest_ns;  // source timestamps
+  std::int32_t reader;                // the entity that the program has named
+  std::int32_t padding;
+};
+static_assert(sizeof(TakenSamples) <= DatagramNotes::kMostBytes);
+
+inline TakenSamples SamplesOf(const DatagramNotes::Note& note) {
+  TakenSamples samples;
+  memcpy(&samples, note.bytes, sizeof samples);
+  return samples;
+}
 
 // A note about an address of so many bytes.
 inline DatagramNotes::Note NoteAbout(const unsigned char* bytes, std::size_t size) {

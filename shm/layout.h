@@ -35,7 +35,7 @@
 namespace tcs::shm {
 
 inline constexpr std::uint64_t kMagic = 0x314d4853'53435401;  // never 0
-inline constexpr std::uint32_t kVersion = 21;
+inline constexpr std::uint32_t kVersion = 22;
 inline constexpr std::uint32_t kSlotCount = 4096;  // of a process
 inline constexpr std::int64_t kNeverNs = INT64_MAX;
 // The furthest horizon a dispatch may carry, so that an adjustment fits its 48 bits: about 19
@@ -317,20 +317,20 @@ struct alignas(64) ThreadSlot {
   DatagramNotes datagrams;
   alignas(64) Postbox postbox;
 };
-static_assert(sizeof(ThreadSlot) == 5312);
-static_assert(offsetof(ThreadSlot, datagrams) == 1152);
-static_assert(offsetof(ThreadSlot, postbox) == 3264);
+static_assert(sizeof(ThreadSlot) == 5376);
+static_assert(offsetof(ThreadSlot, datagrams) == 1216);
+static_assert(offsetof(ThreadSlot, postbox) == 3328);
 static_assert(offsetof(ThreadSlot, note) == 192);
 static_assert(offsetof(ThreadSlot, gate) == 504);
 static_assert(offsetof(ThreadSlot, pid) == 528);
 static_assert(offsetof(ThreadSlot, signals) == 560);
 static_assert(offsetof(ThreadSlot, ipc_notes) == 568);
 static_assert(offsetof(ThreadSlot, receipts) == 760);
-static_assert(offsetof(ThreadSlot, work) == 1104);
-static_assert(offsetof(ThreadSlot, robot) == 1132);
-static_assert(offsetof(ThreadSlot, saying) == 1136);
-static_assert(offsetof(ThreadSlot, waits_in_call) == 1140);
-static_assert(offsetof(ThreadSlot, stopped_tsc) == 1144);
+static_assert(offsetof(ThreadSlot, work) == 1168);
+static_assert(offsetof(ThreadSlot, robot) == 1196);
+static_assert(offsetof(ThreadSlot, saying) == 1200);
+static_assert(offsetof(ThreadSlot, waits_in_call) == 1204);
+static_assert(offsetof(ThreadSlot, stopped_tsc) == 1208);
 
 // Written by the coordinator before anyone attaches; shutdown and queues_notify change later, once,
 // and key_waiters and kernel_waiters.
@@ -357,7 +357,9 @@ struct alignas(64) RunHeader {
   std::uint32_t has_porters;  // 1: each process has one (attach_protocol.h)
   // 1: each robot has abstract names of its own (a network namespace).
   std::uint32_t names_by_robot;
-  std::uint32_t notes_datagrams;  // 1: threads note the datagrams that they send and receive
+  // 1: threads note the datagrams that they send and receive, and sleeps that they need not ask
+  // for.
+  std::uint32_t notes_activity;
   // 1: threads may have turns before their order; signals to other processes are told of
   // (kSignals).
   std::uint32_t turns_beside;

@@ -7,6 +7,10 @@
 // work, so its first message begins an activation, too. Pieces that are received one after the
 // other, several of one message or all that wait in a socket, begin none.
 //
+// A sleep that needs no asking, because it ends inside the thread's horizon or was over when it
+// began, is a wait like another one: it is written down here, too, in runs whose threads note
+// that (RunHeader::notes_activity).
+//
 // The state is written by the thread, and by the coordinator while the thread is stopped. The
 // coordinator empties the list at each stop, and trusts nothing in it.
 #pragma once
@@ -23,12 +27,13 @@ struct Receipts {
   static constexpr std::int64_t kWorkNs = 1'000'000;  // charged
   static constexpr std::uint32_t kMost = 8;
 
-  enum class Of : std::uint32_t { kMessage = 0, kTimer = 1 };
+  enum class Of : std::uint32_t { kMessage = 0, kTimer = 1, kSleep = 2 };
 
   // A receipt at which an activation began.
   struct Entry {
-    std::int64_t time_ns;  // the thread's clock
-    std::int64_t cpu_ns;   // what it had been charged
+    std::int64_t time_ns;     // the thread's clock; as a sleep began
+    std::int64_t cpu_ns;      // what it had been charged
+    std::int64_t release_ns;  // when a sleep was to end; of others it is not known here
     Of of;
     std::uint32_t padding;
     WorkCounts work;  // of the thread until then, where it is counted
@@ -41,7 +46,7 @@ struct Receipts {
   std::uint32_t padding;
   Entry entries[kMost];
 };
-static_assert(sizeof(Receipts) == 24 + 40 * Receipts::kMost);
+static_assert(sizeof(Receipts) == 24 + 48 * Receipts::kMost);
 static_assert(offsetof(Receipts, entries) == 24);
 
 // Its wait is over.

@@ -10,6 +10,11 @@
 
 namespace tcs {
 
+void DdsRecords::UseAnswers(AnswerFeed& answers) {
+  samples_.emplace(run_, answers, topic_log_,
+                   [this](dds::Hub::Number number) { return who_(number).process; });
+}
+
 std::string DdsRecords::Open() {
   const std::string& directory = run_.options.output_directory;
   if (!directory.empty()) {
@@ -23,6 +28,7 @@ std::string DdsRecords::Open() {
         [this](dds::Hub::Number number) { return who_(number).process; },
         run_.header->realtime_offset_ns);
     topic_log_.TellDeliveries(&*messages_);
+    if (samples_.has_value()) topic_log_.TellDeliveries(&*samples_);
   }
   if (run_.options.record == RecordingKind::kNone) return {};
   recording_.emplace(topic_log_, ends_, run_.header->realtime_offset_ns, run_.scenario.ros,
@@ -59,7 +65,7 @@ std::string DdsRecords::Close() {
 void DdsRecords::Stop() {
   hub_.Observe(nullptr);
   topic_log_.Tell(nullptr);
-  topic_log_.TellDeliveries(nullptr);
+  topic_log_.TellNobody();
 }
 
 void DdsRecords::WarnOfDrops() const {

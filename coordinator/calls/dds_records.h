@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "coordinator/calls/message_log.h"
+#include "coordinator/calls/sample_feed.h"
 #include "coordinator/dds/hub.h"
 #include "coordinator/dds/own_endpoints.h"
 #include "coordinator/dds/topic_log.h"
@@ -27,6 +28,10 @@ class DdsRecords {
   DdsRecords(RunState& run, dds::Hub& hub, dds::OwnEndpoints& ends, WhoIs who)
       : run_(run), hub_(hub), ends_(ends), who_(who), topic_log_(std::move(who)) {}
 
+  // The book of answers is fed with samples from then on.
+  void UseAnswers(AnswerFeed& answers);
+  const SampleFeed* samples() const { return samples_ ? &*samples_ : nullptr; }
+  SampleFeed* samples() { return samples_ ? &*samples_ : nullptr; }
   // Once the run's header has its times. What an earlier run has left is removed.
   [[nodiscard]] std::string Open();
   // Endpoints may have come since the last call: a recording reads their topics. Not from within
@@ -52,6 +57,7 @@ class DdsRecords {
   WhoIs who_;
   dds::TopicLog topic_log_;
   std::optional<MessageLog> messages_;
+  std::optional<SampleFeed> samples_;
   std::optional<record::Recording> recording_;
 };
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/cli/client_table.h"
+#include "coordinator/cli/figures_json.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
@@ -84,6 +86,9 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     Print("ended before its {:.3f} s because all programs had ended\n",
           Seconds(scenario.duration.ns()));
   }
+  for (const std::string& sentence : r.verdict) Print("! {}\n", sentence);
+  Print("{}", ClientTable(r.clients));
+  Print("of the simulation itself, not of the robots:\n");
   Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns, lateness {:.3f} ms\n",
         Milliseconds(r.drift_ns), Milliseconds(scenario.drift_bound.ns()), r.staleness_ns,
         Milliseconds(r.lateness_ns));
@@ -99,18 +104,8 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   if (r.untold > 0) {
     Print(
         "the host took the processor {} in the middle of a turn, and no clock of the kernel showed "
-        "it: {:.3f} ms are not charged (they are in the column 'stolen')\n",
+        "it: {:.3f} ms are not charged (they are part of stolen_ns in summary.json)\n",
         r.untold == 1 ? "once" : fmt::format("{} times", r.untold), Milliseconds(r.untold_ns));
-  }
-  std::size_t width = 6;
-  for (const ClientReport& c : r.clients) width = std::max(width, c.name.size());
-  Print("{:<{}}  {:>10}  {:>13}  {:>10}  {:>11}  {:>8}\n", "client", width, "charged",
-        "its CPU clock", "stolen", "activations", "overruns");
-  for (const ClientReport& c : r.clients) {
-    const Usage& u = c.usage;
-    Print("{:<{}}  {:>8.3f} s  {:>11.3f} s  {:>7.3f} ms  {:>11}  {:>8}\n", c.name, width,
-          Seconds(u.charged_ns), Seconds(u.host_cpu_ns), Milliseconds(u.stolen_ns), u.activations,
-          u.overruns);
   }
   Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
   Print("to look at it: tcsim report {}\n", directory);
@@ -123,10 +118,11 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
 }
 
+using Json = nlohmann::ordered_json;
+
 std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
-  using Json = nlohmann::ordered_json;
   Json json{{"scenario", scenario.name},
             {"seed", scenario.seed},
             {"set", scenario.set},
@@ -154,6 +150,8 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"samples", r.samples},
             {"commands", r.commands},
             {"warnings", r.warnings}};
+  const bool answers = !options.output_directory.empty();
+  if (answers) json["verdict"] = r.verdict;
   if (r.pace.pace > 0 || r.pace.stood_ns > 0) {
     json["pace"] = {{"wanted", r.pace.pace},
                     {"behind_ns", r.pace.behind_ns},
@@ -181,6 +179,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
         {"ended_at_ns", c.ended_at_ns},
         {"wait_status", c.wait_status},
     });
+    if (answers) AddFigures(c.figures, json["clients"][c.name]);
     if (!options.counts_work) continue;
     json["clients"][c.name]["calls"] = c.usage.work.calls;
     json["clients"][c.name]["allocations"] = c.usage.work.allocations();

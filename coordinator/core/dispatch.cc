@@ -150,7 +150,7 @@ void Engine::TakeOutUntold(Task& task, const shm::ClockReading& before, HostDura
 // False if the thread cannot have done what it has noted: its process is ended for that.
 bool Engine::TakeNotesOf(Task& task) {
   const char* what = TakeIpcNotes(task, *memory_);
-  if (what == nullptr) what = datagrams_.TakeNotes(task);
+  if (what == nullptr) what = datagrams_.TakeNotes(task, task.cpu->progress);
   if (what != nullptr) expulsion_.Expel(*task.process, what);
   return what == nullptr;
 }
@@ -158,6 +158,10 @@ bool Engine::TakeNotesOf(Task& task) {
 void Engine::Settle(Task& task) {
   if (task.slot < 0) return;
   const char* what = slot_check_.WhatIsImpossible(task);
+  // What it has received before it is told where its activations end; no clock is past the horizon.
+  const VirtualTime furthest =
+      run_.IsCallback() ? task.cpu->progress : std::max(task.cpu->progress, run_.turn.horizon());
+  if (what == nullptr) what = datagrams_.TakeNotes(task, furthest);
   if (what == nullptr) what = posted_.Take(task);
   if (what != nullptr) {
     task.ComeTo(task.cpu->progress);

@@ -411,7 +411,7 @@ RunReport Engine::Run() {
   reporter_.Conclude(reached_end_ ? run_.end : Furthest());
   // First: what clients do at their end is no part of the run.
   const std::string& folder = run_.options.output_directory;
-  for (const std::string& error : {records_.Close(), datagrams_.Close(), dds_.records().Close(),
+  for (const std::string& error : {records_.Close(), datagram_log_.Close(), dds_.records().Close(),
                                    folder.empty() ? "" : network_.WriteCounts(folder)}) {
     if (run_.report.error.empty()) run_.report.error = error;
   }

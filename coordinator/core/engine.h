@@ -16,6 +16,7 @@
 
 #include "coordinator/calls/child_stops.h"
 #include "coordinator/calls/datagram_log.h"
+#include "coordinator/calls/datagram_queues.h"
 #include "coordinator/calls/dds_gateway.h"
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/follow_ups.h"
@@ -99,6 +100,7 @@ class Engine {
   [[nodiscard]] std::string Prepare();
   [[nodiscard]] std::string TakeCpu();
   int HomeCpu() const;
+  void OpenAnswers();
   void TellOfMissingRights() const;
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();
@@ -232,6 +234,7 @@ class Engine {
   RobotNetwork network_;
   TemporalConsistency::Leaf network_leaf_ = -1;  // -1: there is no network
   VirtualTime network_progress_;
+  AnswerFeed answers_;
   Activations activations_;
   RunRecords records_{run_, world_, activations_};
   Waker waker_{run_, activations_};
@@ -267,7 +270,8 @@ class Engine {
   DescriptorWaits descriptors_{reactor_};
   SharedEvents shared_events_{run_, waker_, reactor_};
   LocalSockets local_sockets_{run_};
-  DatagramLog datagrams_{run_};
+  DatagramLog datagram_log_;
+  DatagramQueues datagrams_{run_, answers_, datagram_log_};
   PostedDatagrams posted_{run_, world_};
   KernelObjectWaits objects_{run_, waker_, [this](Moment moment) {
                                if (WorldGoesOn()) world_.ReceiveFromTerminals(moment.at);
@@ -319,7 +323,9 @@ class Engine {
   // What users are told.
   DebuggerHold debugger_{run_};
   StandstillWatch standstill_{run_, unmanaged_, unknown_children_};
-  RunReporter reporter_{run_, {clock_, world_, usage_, launches_, dds_.records(), pacing_}};
+  RunReporter reporter_{run_,
+                        {clock_, world_, usage_, launches_, dds_.records(), pacing_, activations_,
+                         answers_, datagrams_, words_.table()}};
   StateLink state_link_;
   StateDump state_dump_{{run_, clock_, host_cpu_, world_, network_, launches_, ahead_,
                          words_.table(), objects_.queues(), dds_.hub(), unknown_children_, pacing_,

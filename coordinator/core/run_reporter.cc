@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "coordinator/answers/verdict.h"
+#include "coordinator/core/deadlocks.h"
 #include "coordinator/dds/topics_table.h"
 #include "coordinator/processes/slot_check.h"
 
@@ -61,12 +63,43 @@ void RunReporter::Conclude(VirtualTime end) {
   for (const Launches::Launch& launch : from_.launches.all()) {
     report.clients.push_back(ReportOf(launch));
   }
+  if (from_.answers.is_open()) Answer(end);
   for (const Robot& robot : run_.robots) {
     for (const Task* task : robot.tasks) {
       if (task->slot < 0) continue;
       report.staleness_ns = std::max(report.staleness_ns, SlotCheck::StalenessOf(*task));
     }
   }
+}
+
+// How well clients kept up, and what of it mattered.
+void RunReporter::Answer(VirtualTime end) {
+  for (const Robot& robot : run_.robots) {
+    for (const Task* task : robot.tasks) {
+      if (task->state != TaskState::kWaiting) from_.activations.IsCutOff(*task, end);
+    }
+  }
+  auto inputs = from_.datagrams.Conclude(end);
+  if (const SampleFeed* samples = from_.dds_records.samples()) {
+    for (const auto& [client, of_topics] : samples->Conclude())
+      inputs[client].insert(inputs[client].end(), of_topics.begin(), of_topics.end());
+  }
+  const std::vector<ClientFigures> figures = from_.answers.book().Conclude();
+  std::vector<ClientOutcome> outcomes;
+  for (const Launches::Launch& launch : from_.launches.all()) {
+    const auto who = from_.answers.WhoIs(*launch.spec);
+    ClientReport& client = run_.report.clients[outcomes.size()];
+    ClientOutcome& outcome = outcomes.emplace_back(launch.spec->name, launch.spec->priority);
+    if (!who.has_value()) continue;
+    client.figures = figures[static_cast<std::size_t>(who->client)];
+    if (const auto found = inputs.find(who->client); found != inputs.end())
+      client.figures.inputs = found->second;
+    outcome.figures = client.figures;
+  }
+  std::vector<std::string>& verdict = run_.report.verdict;
+  verdict = DeadlocksIn(run_, from_.futexes);
+  const std::vector<std::string> late = VerdictOn(outcomes, end.ns());
+  verdict.insert(verdict.end(), late.begin(), late.end());
 }
 
 // Of those that were never started, the ones that waited for another client.

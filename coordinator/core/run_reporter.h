@@ -5,11 +5,15 @@
 
 #include <cstdint>
 
+#include "coordinator/calls/datagram_queues.h"
 #include "coordinator/calls/dds_records.h"
 #include "coordinator/core/pacing.h"
 #include "coordinator/core/world.h"
 #include "coordinator/processes/launches.h"
 #include "coordinator/processes/usage_book.h"
+#include "coordinator/queues/futex_table.h"
+#include "coordinator/tasks/activations.h"
+#include "coordinator/tasks/answer_feed.h"
 #include "coordinator/tasks/coordinator.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
@@ -26,6 +30,10 @@ class RunReporter {
     const Launches& launches;
     const DdsRecords& dds_records;
     const Pacing& pacing;
+    const Activations& activations;
+    AnswerFeed& answers;
+    DatagramQueues& datagrams;
+    const FutexTable& futexes;
   };
 
   RunReporter(RunState& run, const Sources& from) : run_(run), from_(from) {}
@@ -40,6 +48,7 @@ class RunReporter {
   // Of the processor that the run has had, what was the coordinator's own.
   std::int64_t CoordinatingNs() const;
   ClientReport ReportOf(const Launches::Launch& launch) const;
+  void Answer(VirtualTime end);
   void WarnOfNeverStarted();
   void WarnOfEndsThatDidNotMeet();
 

@@ -66,8 +66,9 @@ std::string Engine::Prepare() {
     network_.MakeAt(address, make);
   };
   const bool is_recorded = run_.options.record != RecordingKind::kNone;
-  if (std::string error =
-          world_.Open(run_.scenario, dds_.ends(), make_at, is_recorded ? &datagrams_ : nullptr);
+  const bool has_results = !run_.options.output_directory.empty();
+  if (std::string error = world_.Open(run_.scenario, dds_.ends(), make_at,
+                                      has_results ? &datagrams_ : nullptr, is_recorded);
       !error.empty()) {
     return error;
   }
@@ -87,7 +88,7 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
-  if (!run_.options.output_directory.empty()) datagrams_.Open();
+  if (has_results) OpenAnswers();
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   world_.UseProcessors(helpers_cpus_);
@@ -129,6 +130,17 @@ std::string Engine::TakeCpu() {
 
 int Engine::HomeCpu() const { return share_.has_value() ? share_->cpu() : claim_.cpu; }
 
+// Who is late, and why, is kept of runs whose results are.
+void Engine::OpenAnswers() {
+  answers_.Open(run_.scenario);
+  activations_.Tell(&answers_);
+  records_.Tell(&answers_);
+  dds_.records().UseAnswers(answers_);
+  datagrams_.Tell(dds_.records().samples());
+  if (run_.options.record != RecordingKind::kNone)
+    datagram_log_.Open(run_.options.output_directory);
+}
+
 void Engine::TellOfMissingRights() const {
   if (!run_.options.on_notice) return;
   const bool may_have_levels = real_time_.error == 0;
@@ -159,6 +171,8 @@ std::string Engine::PrepareMemory() {
   registration_.ShareMemory(memfd_.get());
   auto* published = new (memory.at) shm::PublishedRun{};
   world_.NameReceivers(published->own_receivers);
+  for (std::uint32_t i = 0; i < published->own_receivers.count; ++i)
+    datagrams_.AddCommandAddress(published->own_receivers.addresses[i]);
   local_sockets_.PublishIn(published->local_sockets);
   memory_ = &published->run;
   run_.header = &memory_->header;
@@ -176,7 +190,7 @@ std::string Engine::PrepareMemory() {
   run_.header->gates_only = run_.gates_only ? 1 : 0;
   run_.header->preempts = run_.SendsToGates() ? 1 : 0;
   run_.header->has_porters = run_.has_porters ? 1 : 0;
-  run_.header->notes_datagrams = run_.options.record == RecordingKind::kNone ? 0 : 1;
+  run_.header->notes_activity = answers_.is_open() ? 1 : 0;
   run_.header->names_by_robot = run_.scenario.network.has_value() ? 1 : 0;
   return {};
 }

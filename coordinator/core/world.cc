@@ -73,7 +73,7 @@ World::World(std::function<void(const std::string&)> warn)
           }) {}
 
 std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const MakeAt& make_at,
-                        DatagramWatch* watch) {
+                        DatagramWatch* watch, bool is_recorded) {
   scenario_ = scenario;
   if (!scenario.world.has_value()) return {};
   dynamics_ = MakeDynamics(*scenario.world);
@@ -88,8 +88,8 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   for (const BodySpec& body : scenario.world->bodies) names_of_bodies.push_back(body.name);
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
-  if (watch != nullptr) {
-    channels_.TellOf(*watch, scenario_);
+  if (watch != nullptr) channels_.TellOf(*watch, scenario_);
+  if (is_recorded) {
     channels_.Record(scenario_, channel_records_.emplace(scenario_));
     for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
       auto& outlet = channels_.outlets[i];

@@ -37,7 +37,8 @@ class World {
   // Claims what the channels need of the host. Empty on success, else one sentence. The endpoints
   // are for those on DDS; they outlive this. With a `watch` RecordInto follows.
   [[nodiscard]] std::string Open(const Scenario& scenario, dds::OwnEndpoints& ends,
-                                 const MakeAt& make_at, DatagramWatch* watch = nullptr);
+                                 const MakeAt& make_at, DatagramWatch* watch = nullptr,
+                                 bool is_recorded = false);
   // Other processors that a run with its turns on `home` may use, of which other runs have none; to
   // be asked before this process is bound to one.
   static std::vector<int> ProcessorsBeside(int home, int host_cpus);

@@ -102,18 +102,19 @@ void TopicLog::NoteSample(const DdsMessage& header, std::span<const std::byte> p
 
 // Of a writer that is gone nobody knows the topic any more.
 void TopicLog::Delivered(const DdsMessage& header, std::uint32_t to, std::int64_t at_ns) {
-  if (deliveries_ == nullptr || header.kind != DdsKind::kSample ||
+  if (deliveries_.empty() || header.kind != DdsKind::kSample ||
       header.sample_kind != shm::kDdsData) {
     return;
   }
   const auto found = known_.find(GuidAt(header.subject));
   if (found == known_.end()) return;
-  deliveries_->Delivered({.topic = found->second.topic,
+  const Delivery delivery{.topic = found->second.topic,
                           .from = header.from,
                           .to = to,
                           .sent_ns = header.time_ns,
                           .source_timestamp_ns = header.source_timestamp_ns,
-                          .received_ns = at_ns});
+                          .received_ns = at_ns};
+  for (DeliveryListener* listener : deliveries_) listener->Delivered(delivery);
 }
 
 void TopicLog::Dropped(const DdsMessage& header, std::uint32_t) {

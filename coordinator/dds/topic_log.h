@@ -50,9 +50,10 @@ class TopicLog : public HubObserver {
   };
 
   explicit TopicLog(std::function<Speaker(Hub::Number)> who) : who_(std::move(who)) {}
-  // Null: nobody. It outlives this.
+  // Null: nobody. They outlive this.
   void Tell(Listener* listener) { listener_ = listener; }
-  void TellDeliveries(DeliveryListener* listener) { deliveries_ = listener; }
+  void TellDeliveries(DeliveryListener* listener) { deliveries_.push_back(listener); }
+  void TellNobody() { deliveries_.clear(); }
 
   const std::vector<TopicReport>& reports() const { return reports_; }
   // False: a program has made ever other topics, or writers and readers of ever other QoS. Of those
@@ -82,7 +83,7 @@ class TopicLog : public HubObserver {
 
   std::function<Speaker(Hub::Number)> who_;
   Listener* listener_ = nullptr;
-  DeliveryListener* deliveries_ = nullptr;
+  std::vector<DeliveryListener*> deliveries_;
   std::vector<TopicReport> reports_;
   std::map<Guid, Known> known_;  // that are there
   std::size_t ends_ = 0;         // in reports_

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "coordinator/os/host.h"
-#include "coordinator/os/trap.h"
+#include "coordinator/os/mutex_owner.h"
 
 namespace tcs {
 
@@ -24,22 +24,6 @@ std::string FirstLine(const std::string& path) {
   std::string line;
   std::getline(file, line);
   return line;
-}
-
-// As the C library begins a mutex: what waiters wait at, how often it is locked, who has it.
-struct MutexBegin {
-  std::int32_t word, count, owner;
-};
-
-// The owner of the mutex that begins at that address, if one does: a thread of the same process
-// that lives. A condition or a semaphore has something else there.
-std::optional<pid_t> OwnerOfMutex(pid_t pid, std::uint64_t address,
-                                  const std::set<pid_t>& threads) {
-  MutexBegin mutex{};
-  if (!ReadMemory(pid, address, &mutex, sizeof mutex)) return std::nullopt;
-  const bool is_locked = mutex.word == 1 || mutex.word == 2;
-  if (!is_locked || mutex.count < 0 || !threads.contains(mutex.owner)) return std::nullopt;
-  return mutex.owner;
 }
 
 }  // namespace
@@ -85,7 +69,8 @@ void AddWhatTheKernelKnows(Json* state) {
         if (futex == thread.end() || futex->contains("owner")) continue;
         // Of shared memory only the file's place is known.
         if (futex->at("process").get<pid_t>() == 0) continue;
-        const auto owner = OwnerOfMutex(pid, futex->at("address").get<std::uint64_t>(), tids);
+        const auto owner = OwnerOfMutex(pid, futex->at("address").get<std::uint64_t>(),
+                                        [&tids](pid_t tid) { return tids.contains(tid); });
         if (owner) (*futex)["owner"] = *owner;
       }
     }

@@ -18,6 +18,11 @@ std::string NumberedName(const Task& task) {
   return fmt::format("{} #{}", task.process->name, task.order);
 }
 
+bool IsByDeadline(const Scenario& scenario, const Robot& robot) {
+  return robot.number > 0 && robot.number <= scenario.robots.size() &&
+         scenario.robots[robot.number - 1].scheduler == SchedulerPolicy::kEarliestDeadlineFirst;
+}
+
 }  // namespace
 
 Task& Births::AddTask(Process& process, pid_t tid, VirtualTime at) {
@@ -58,7 +63,7 @@ Task& Births::AddClient(pid_t pid, Robot& robot, const ClientSpec& client, Virtu
   process.spec = &client;
   process.name = client.name;
   process.priority = client.priority;
-  process.deadline = client.deadline;
+  if (IsByDeadline(run_.scenario, robot)) process.deadline = client.deadline;
   process.call_cost = client.fixed_call_cost;
   process.allocation_cost = client.fixed_allocation_cost;
   process.patch_vdso = client.patch_vdso;

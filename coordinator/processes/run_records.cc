@@ -58,6 +58,9 @@ void RunRecords::Ran(const Task& task, ShownSpan shown, WorldSpan world, std::ui
   schedule_.Slice(task.row, {shown.start.ns(), shown.end.ns()}, {world.start.ns(), world.end.ns()},
                   {since_tsc, until_tsc});
   output_.LookAt(world.end.ns());
+  if (answers_ == nullptr || world.start == world.end) return;
+  if (const auto who = answers_->WhoIs(task))
+    answers_->book().Ran(*who, world.start.ns(), world.end.ns());
 }
 
 }  // namespace tcs

@@ -31,6 +31,8 @@ class RunRecords {
   RunRecords(RunState& run, World& world, Activations& activations)
       : run_(run), world_(world), activations_(activations) {}
 
+  // Is told of each turn, too. Null: nobody; it outlives this.
+  void Tell(AnswerFeed* answers) { answers_ = answers; }
   // Once the world is open; what an earlier run has left there is removed.
   [[nodiscard]] std::string Open();
   // From when real times count.
@@ -62,6 +64,7 @@ class RunRecords {
   RunState& run_;
   World& world_;
   Activations& activations_;
+  AnswerFeed* answers_ = nullptr;
   ScheduleRecords schedule_;
   OutputLog output_;
   int world_row_ = 0;

@@ -65,10 +65,6 @@ void LoadDeadline(const YamlMap::Entry& entry, const YamlMap& map, SchedulerPoli
                   ClientSpec* client) {
   const YamlValue* deadline = map.Find("deadline");
   const bool is_edf = scheduler == SchedulerPolicy::kEarliestDeadlineFirst;
-  if (deadline != nullptr && !is_edf) {
-    deadline->Fail(
-        "is for robots with `scheduler: edf`; with fixed priorities it has no effect; remove it");
-  }
   if (deadline != nullptr) {
     client->deadline = deadline->AsPositiveDuration();
   } else if (is_edf && client->client_class == ClientClass::kPeriodic) {

@@ -52,8 +52,9 @@ struct ClientSpec {
   ClientFolder folder = ClientFolder::kThere;
   std::string copied_folder;  // absolute; empty: none
   ClientClass client_class = ClientClass::kBestEffort;
-  int priority = 0;            // higher runs first on its robot
-  VirtualDuration deadline{};  // after each release, under kEarliestDeadlineFirst; 0: none
+  int priority = 0;  // higher runs first on its robot
+  // After each release; kEarliestDeadlineFirst schedules by it. 0: none, or its period.
+  VirtualDuration deadline{};
   std::map<std::string, std::string> environment;  // added to tcsim's own
   std::optional<int> body;                         // index into world.bodies
   // What one intercepted call costs under --accounting fixed.

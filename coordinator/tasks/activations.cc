@@ -24,6 +24,20 @@ ReleaseCause CauseOf(const Task& task, shm::WakeReason reason) {
   return for_child ? ReleaseCause::kChild : ReleaseCause::kInput;
 }
 
+// Of the process's periodic timers: the earliest expiry that a thread which looked then, and looks
+// again at `now_ns`, cannot have seen before.
+std::int64_t FirstExpiryAfter(const Process& process, std::int64_t looked_ns, std::int64_t now_ns) {
+  std::int64_t first_ns = now_ns;
+  for (const ProcessTimers::Armed& timer : process.timers.AllArmed()) {
+    const auto [next_ns, interval_ns] = timer.setting;
+    if (interval_ns <= 0) continue;
+    const std::int64_t into = (looked_ns - next_ns) % interval_ns;
+    const std::int64_t expiry_ns = looked_ns - into + (into < 0 ? 0 : interval_ns);
+    first_ns = std::min(first_ns, expiry_ns);
+  }
+  return first_ns;
+}
+
 }  // namespace
 
 void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at) const {
@@ -39,20 +53,66 @@ void Activations::Released(Task& task, shm::WakeReason reason, VirtualTime at) c
   activation.start_ns = -1;
   activation.charged_ns = std::max(activation.charged_ns, task.charged.ns());
   if (task.slot >= 0) shm::NoteWoken(task.slot_memory->receipts);
+  TellOfBeginning(task, activation.release_ns);
+}
+
+void Activations::TellOfBeginning(const Task& task, std::int64_t at_ns) const {
+  if (answers_ == nullptr) return;
+  if (const auto who = answers_->WhoIs(task)) answers_->book().Ready(*who, at_ns);
+}
+
+// What began with a receipt was released when that arrived, as soon as this is known.
+void Activations::FindRelease(Activation& activation, const Task& task, unsigned receipt) const {
+  if (answers_ == nullptr || has_own_clocks_) return;
+  activation.release_ns = answers_->book().ReleaseOf(task.order, receipt, activation.release_ns);
+}
+
+void Activations::TellOfEnd(const Task& task, unsigned receipt, std::int64_t end_ns,
+                            std::int64_t charged_ns) const {
+  if (answers_ == nullptr) return;
+  const auto who = answers_->WhoIs(task);
+  if (!who.has_value()) return;
+  answers_->book().Ended(*who, task.activation, receipt, end_ns,
+                         charged_ns - task.activation.charged_ns);
+}
+
+void Activations::IsCutOff(const Task& task, VirtualTime end) const {
+  Activation activation = task.activation;
+  const std::int64_t end_ns = ProgramClock::At(end, task.lead).ns();
+  if (activation.start_ns < 0) activation.start_ns = end_ns;
+  if (answers_ == nullptr || activation.release_ns >= end_ns) return;
+  const auto who = answers_->WhoIs(task);
+  if (!who.has_value()) return;
+  answers_->book().Ended(*who, activation, 0, end_ns,
+                         std::max<std::int64_t>(0, task.charged.ns() - activation.charged_ns));
 }
 
 // It did not wait, and is at its next activation all the same (shm/receipts.h).
 void Activations::Next(Task& task, ProgramTime now, VirtualDuration charged,
-                       const shm::WorkCounts& work, bool of_timer) {
+                       const shm::WorkCounts& work, const Receipt& receipt) {
   Activation& activation = task.activation;
   if (activation.start_ns < 0) activation.start_ns = activation.release_ns;
+  if (receipt.number <= 1) FindRelease(activation, task, 0);
   const std::int64_t now_ns = std::max(now.ns(), activation.start_ns);
   const std::int64_t charged_ns = std::max(charged.ns(), activation.charged_ns);
   log_.Write(task.process->name, task.is_further ? task.order : 0, activation, now_ns, charged_ns,
              work);
+  // The one that ends began with the receipt before.
+  TellOfEnd(task, receipt.number == 0 ? 0 : receipt.number - 1, now_ns, charged_ns);
   ++task.activations;
-  activation = {of_timer ? ReleaseCause::kTime : ReleaseCause::kInput, now_ns, now_ns, charged_ns,
+  const std::int64_t before_ns = activation.start_ns;
+  const bool by_message = receipt.of == shm::Receipts::Of::kMessage;
+  activation = {by_message ? ReleaseCause::kInput : ReleaseCause::kTime, now_ns, now_ns, charged_ns,
                 work};
+  if (receipt.release_ns.has_value()) {
+    activation.release_ns = *receipt.release_ns;
+    activation.start_ns = std::max(now_ns, activation.release_ns);
+  } else if (by_message) {
+    if (receipt.number > 0) FindRelease(activation, task, receipt.number);
+  } else if (answers_ != nullptr && !has_own_clocks_) {
+    activation.release_ns = FirstExpiryAfter(*task.process, before_ns, now_ns);
+  }
+  TellOfBeginning(task, activation.start_ns);
 }
 
 void Activations::TakeReceipts(Task& task, ProgramTime now) {
@@ -60,28 +120,40 @@ void Activations::TakeReceipts(Task& task, ProgramTime now) {
   const std::uint32_t count = std::min(receipts.count.load(), shm::Receipts::kMost);
   for (std::uint32_t i = 0; i < count; ++i) {
     const shm::Receipts::Entry entry = receipts.entries[i];
+    Receipt receipt{.number = i + 1, .of = entry.of};
+    if (entry.of == shm::Receipts::Of::kSleep)
+      receipt.release_ns = std::clamp<std::int64_t>(entry.release_ns, 0, now.ns());
     Next(task, std::min(OwnTime(entry.time_ns), now),
-         std::min(VirtualNs(entry.cpu_ns), task.charged), WithTrapped(task, entry.work),
-         entry.of == shm::Receipts::Of::kTimer);
+         std::min(VirtualNs(entry.cpu_ns), task.charged), WithTrapped(task, entry.work), receipt);
   }
   receipts.count.store(0);
+  if (answers_ != nullptr) answers_->book().ForgetReceipts(task.order, count);
 }
 
 void Activations::ReceivedRaw(Task& task, bool of_timer) {
   if (task.slot < 0 || !shm::NoteReceived(task.slot_memory->receipts, task.charged.ns())) return;
-  Next(task, OwnNow(task), task.charged, task.work, of_timer);
+  Next(task, OwnNow(task), task.charged, task.work,
+       {.of = of_timer ? shm::Receipts::Of::kTimer : shm::Receipts::Of::kMessage});
 }
 
-void Activations::Idles(Task& task) {
+void Activations::Idles(Task& task, bool dies) {
   const std::int64_t now = OwnNow(task).ns();
   task.process->expired = VirtualTime::Never();
-  if (task.slot < 0) return;  // it never began
+  if (task.slot < 0) {  // it never began
+    if (answers_ != nullptr) answers_->book().Dies(task.order);
+    return;
+  }
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
+  FindRelease(task.activation, task, 0);
   // What a switch takes is an estimate: one shorter than it gives back what was charged too much.
   // No activation is charged less than nothing for that; those that follow are charged less.
   const std::int64_t charged = std::max(task.charged.ns(), task.activation.charged_ns);
   log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
              std::max(now, task.activation.start_ns), charged, task.work);
+  // What a program does at its end, nobody waits for.
+  if (!dies) TellOfEnd(task, 0, std::max(now, task.activation.start_ns), charged);
+  if (answers_ != nullptr && dies) answers_->book().Dies(task.order);
+  if (answers_ != nullptr && !dies) answers_->book().Idles(task.order);
   task.activation.charged_ns = charged;
   task.activation.work = task.work;
 }

@@ -2,14 +2,17 @@
 // docs/RESULTS.md).
 //
 // An activation begins when a wait ends, and ends with the next wait. A thread that finds its next
-// datagram there already never waits: what it receives begins the next one (shm/receipts.h). Works
+// datagram there already never waits: what it receives begins the next one (shm/receipts.h), which
+// was released when the datagram arrived, as far as that is known (answers/answer_book.h). Works
 // on the fields of a task that say so, and on what the thread's slot says of receipts. For the
 // coordinator's thread only.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "coordinator/tasks/answer_feed.h"
 #include "coordinator/tasks/task.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/layout.h"
@@ -21,6 +24,8 @@ class Activations {
   // `has_own_clocks`: a program's clock may be ahead of the world's (--sync callback).
   explicit Activations(bool has_own_clocks) : has_own_clocks_(has_own_clocks) {}
 
+  // Is told of each that begins or ends. Null: nobody; it outlives this.
+  void Tell(AnswerFeed* answers) { answers_ = answers; }
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& path, bool with_work) {
     return log_.Open(path, with_work);
@@ -28,21 +33,35 @@ class Activations {
   void Flush() { log_.Flush(); }
   [[nodiscard]] std::string Close() { return log_.Close(); }
 
+  // It is there, for the first time.
+  void Starts(const Task& task) const { TellOfBeginning(task, task.activation.release_ns); }
   // The thread's wait, which it is still in, ends for that reason. What was due before its robot
   // could look at it was due then.
   void Released(Task& task, shm::WakeReason reason, VirtualTime at) const;
-  // It waits again, or has ended.
-  void Idles(Task& task);
+  // It waits again, or dies.
+  void Idles(Task& task, bool dies = false);
   // What it has received since its dispatch without having waited, up to `now` on its clock.
   void TakeReceipts(Task& task, ProgramTime now);
   // The same of a call that the kernel is to carry out, and that finds something there.
   void ReceivedRaw(Task& task, bool of_timer);
+  // The run ends in the midst of it.
+  void IsCutOff(const Task& task, VirtualTime end) const;
 
  private:
+  void FindRelease(Activation& activation, const Task& task, unsigned receipt) const;
+  void TellOfEnd(const Task& task, unsigned receipt, std::int64_t end_ns,
+                 std::int64_t charged_ns) const;
+  void TellOfBeginning(const Task& task, std::int64_t at_ns) const;
+  struct Receipt {
+    unsigned number = 0;  // since the last stop, from 1 on; 0: it has none
+    shm::Receipts::Of of = shm::Receipts::Of::kMessage;
+    std::optional<std::int64_t> release_ns{};  // if the thread has said that
+  };
   void Next(Task& task, ProgramTime now, VirtualDuration charged, const shm::WorkCounts& work,
-            bool of_timer);
+            const Receipt& receipt);
 
   const bool has_own_clocks_;
+  AnswerFeed* answers_ = nullptr;
   ActivationLog log_;
 };
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/answers/client_figures.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/usage.h"
 #include "shm/layout.h"
@@ -79,6 +80,7 @@ struct RunOptions {
 
 struct ClientReport {
   std::string name;
+  ClientFigures figures;            // of runs whose results are kept
   Usage usage;                      // of all that it has started, too
   std::int64_t started_at_ns = -1;  // -1: never
   std::int64_t ended_at_ns = -1;    // before the run did; -1: it lived to the end
@@ -105,6 +107,7 @@ struct RunReport {
   std::int64_t switches = 0, samples = 0, commands = 0;
   PaceReport pace;
   std::vector<ClientReport> clients;
+  std::vector<std::string> verdict;  // sentences, worst first
   std::vector<std::string> warnings;
 };
 

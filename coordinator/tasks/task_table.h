@@ -52,6 +52,7 @@ class TaskTable {
   // One of its children lives.
   bool HasChild(const Process& parent) const;
 
+  const Task& At(int order) const { return tasks_[static_cast<std::size_t>(order)]; }
   Task& At(int order) { return tasks_[static_cast<std::size_t>(order)]; }
   Process& ProcessAt(std::uint32_t index) { return processes_[index]; }
   std::deque<Task>& tasks() { return tasks_; }

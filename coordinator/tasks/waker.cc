@@ -16,7 +16,9 @@ void Waker::SetState(Task& task, TaskState state, bool goes_first) {
   TCS_CHECK(MayFollow(task.state, state));
   TCS_CHECK(task.wait.has_value() == (state == TaskState::kWaiting));
   const bool ends = state == TaskState::kWaiting || state == TaskState::kDead;
-  if (ends && task.state != TaskState::kWaiting) activations_.Idles(task);
+  if (ends && task.state != TaskState::kWaiting)
+    activations_.Idles(task, state == TaskState::kDead);
+  if (state == TaskState::kStarting) activations_.Starts(task);
   if (const int more = (state == TaskState::kUnseen) - (task.state == TaskState::kUnseen);
       more != 0) {
     unseen_ += more;

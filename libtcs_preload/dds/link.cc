@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 
 #include "libtcs_preload/attach.h"
+#include "libtcs_preload/datagram_notes.h"
 #include "libtcs_preload/dds/shim_link.h"
 #include "libtcs_preload/exchange.h"
 #include "libtcs_preload/guest.h"
@@ -77,8 +78,11 @@ bool Send(const iovec* parts, int count) {
   return true;
 }
 
-void Taken() {
-  if (GuestThread* t = Current(); t != nullptr) NoteReceived(*t);
+void Taken(const tcs::shm::TakenSamples& samples) {
+  GuestThread* t = Current();
+  if (t == nullptr) return;
+  NoteReceived(*t);
+  if (NotesActivity()) NoteSamplesTaken(*t, samples);
 }
 
 bool AnyIsFull() { return g_area != nullptr && g_area->full_count.load() != 0; }

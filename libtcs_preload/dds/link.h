@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shm/datagram_notes.h"
+
 namespace tcs::dds {
 
 struct Link {
@@ -41,8 +43,8 @@ struct Link {
   // send for an earlier time.
   void (*settle)();
 
-  // The calling thread has taken samples, which may be the beginning of an activation.
-  void (*taken)();
+  // The calling thread has taken these samples, which may be the beginning of an activation.
+  void (*taken)(const shm::TakenSamples& samples);
 
   // How much earlier than others of its process, on other cores, the calling thread may be at most.
   std::int64_t (*behind_ns)();

@@ -57,6 +57,23 @@ void AwaitWrites(const dds_sample_info_t* infos, dds_return_t count) {
   if (ahead > 0 && ahead <= most) dds_sleepfor(ahead);
 }
 
+template <class First, class... Others>
+dds_entity_t FirstOf(First first, Others...) {
+  return static_cast<dds_entity_t>(first);
+}
+
+void Tell(const dds_sample_info_t* infos, dds_return_t count, dds_entity_t reader) {
+  shm::TakenSamples samples{.oldest_ns = infos[0].source_timestamp,
+                            .newest_ns = infos[0].source_timestamp,
+                            .reader = reader,
+                            .padding = 0};
+  for (dds_return_t i = 1; i < count; ++i) {
+    samples.oldest_ns = std::min<std::int64_t>(samples.oldest_ns, infos[i].source_timestamp);
+    samples.newest_ns = std::max<std::int64_t>(samples.newest_ns, infos[i].source_timestamp);
+  }
+  TheLink().taken(samples);
+}
+
 template <auto RealCalls::*kCall, bool kTakes, class Function>
 struct HookedRead;
 
@@ -68,7 +85,9 @@ struct HookedRead<kCall, kTakes, Result (*)(Arguments...)> {
     if constexpr ((std::is_same_v<Arguments, dds_sample_info_t*> || ...)) {
       if (result > 0) {
         AwaitWrites(InfosOf(arguments...), static_cast<dds_return_t>(result));
-        if (kTakes && reading.outermost()) TheLink().taken();
+        if (kTakes && reading.outermost()) {
+          Tell(InfosOf(arguments...), static_cast<dds_return_t>(result), FirstOf(arguments...));
+        }
       }
     }
     return result;

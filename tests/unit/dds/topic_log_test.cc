@@ -94,7 +94,7 @@ TEST_F(TopicLogTest, ADeliveryIsToldWhenAProcessIsGivenTheSample) {
   // The end of an instance, and what comes once nobody listens.
   writer.Write(1, "a key", {reader.number()}, 500, {.stamp_ns = 500, .kind = 1});
   reader.Take(shm::DdsKind::kSample, 500);
-  log_.TellDeliveries(nullptr);
+  log_.TellNobody();
   writer.Write(1, "abcd", {reader.number()}, 600, {.stamp_ns = 600});
   reader.Take(shm::DdsKind::kSample, 600);
   EXPECT_THAT(deliveries.told, SizeIs(2));

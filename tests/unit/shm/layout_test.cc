@@ -12,16 +12,16 @@ namespace tcs::shm {
 namespace {
 
 TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
-  EXPECT_EQ(kVersion, 21u);
+  EXPECT_EQ(kVersion, 22u);
   EXPECT_EQ(sizeof(RunHeader), 128u);
-  EXPECT_EQ(sizeof(ThreadSlot), 5312u);
+  EXPECT_EQ(sizeof(ThreadSlot), 5376u);
   EXPECT_EQ(alignof(ThreadSlot), 64u);
   EXPECT_EQ(offsetof(RunHeader, accounting), 24u);
   EXPECT_EQ(offsetof(RunHeader, shutdown), 28u);
   EXPECT_EQ(offsetof(RunHeader, sync), 52u);
   EXPECT_EQ(offsetof(RunHeader, has_porters), 76u);
   EXPECT_EQ(offsetof(RunHeader, names_by_robot), 80u);
-  EXPECT_EQ(offsetof(RunHeader, notes_datagrams), 84u);
+  EXPECT_EQ(offsetof(RunHeader, notes_activity), 84u);
   EXPECT_EQ(offsetof(RunHeader, turns_beside), 88u);
   EXPECT_EQ(offsetof(ClockPage, horizon_ns), 32u);
   EXPECT_EQ(offsetof(ClockPage, waited_adjust), 72u);
@@ -35,13 +35,13 @@ TEST(Layout, ThisVersionHasTheseSizesAndPlaces) {
   EXPECT_EQ(offsetof(ThreadSlot, signals), 560u);
   EXPECT_EQ(offsetof(ThreadSlot, ipc_notes), 568u);
   EXPECT_EQ(offsetof(ThreadSlot, receipts), 760u);
-  EXPECT_EQ(offsetof(ThreadSlot, work), 1104u);
-  EXPECT_EQ(offsetof(ThreadSlot, robot), 1132u);
-  EXPECT_EQ(offsetof(ThreadSlot, saying), 1136u);
-  EXPECT_EQ(offsetof(ThreadSlot, waits_in_call), 1140u);
-  EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1144u);
-  EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1152u);
-  EXPECT_EQ(offsetof(ThreadSlot, postbox), 3264u);
+  EXPECT_EQ(offsetof(ThreadSlot, work), 1168u);
+  EXPECT_EQ(offsetof(ThreadSlot, robot), 1196u);
+  EXPECT_EQ(offsetof(ThreadSlot, saying), 1200u);
+  EXPECT_EQ(offsetof(ThreadSlot, waits_in_call), 1204u);
+  EXPECT_EQ(offsetof(ThreadSlot, stopped_tsc), 1208u);
+  EXPECT_EQ(offsetof(ThreadSlot, datagrams), 1216u);
+  EXPECT_EQ(offsetof(ThreadSlot, postbox), 3328u);
 }
 
 TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSockets) {
@@ -51,7 +51,7 @@ TEST(Layout, TheRunsMemoryIsTheHeaderTheTimesOfSystemVObjectsReceiversAndLocalSo
   EXPECT_EQ(sizeof(OwnReceivers), 16u + 1024u * 112u);
   EXPECT_EQ(offsetof(PublishedRun, local_sockets), 245904u);
   EXPECT_EQ(sizeof(LocalSockets), 2u * 8192u * 16u);
-  EXPECT_EQ(kProcessMemorySize, 4096u * 5312u);
+  EXPECT_EQ(kProcessMemorySize, 4096u * 5376u);
 }
 
 TEST(Layout, NothingInItNeedsAConstructorToHaveRun) {

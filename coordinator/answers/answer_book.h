@@ -1,0 +1,139 @@
+// How well clients kept up: fed with what happens, it says for each client how long it took from
+// what it was released by to the end of its work, which deadlines it missed, and how old its data
+// was (client_figures.h). Pure; all times are virtual nanoseconds.
+//
+// An activation is one of tasks/activations.h. Its release is when what it works on was there for
+// it: the expiry of its timer, or the arrival of the oldest datagram that it took at its beginning,
+// whether or not it was waiting by then. Activations for other causes (a start, another thread, a
+// signal) are not judged, and neither are those of threads that only help: neither a process's
+// first one, nor one that takes samples or sends commands.
+//
+// A deadline counts from the release: the client's own, or, for a client that is periodic or whose
+// commands reach an actuator, the period of the sensor that released it, or of its timer: the time
+// to the next expiry.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coordinator/answers/client_figures.h"
+#include "coordinator/trace/activation_log.h"
+#include "shm/receipts.h"
+
+namespace tcs {
+
+class AnswerBook {
+ public:
+  struct Client {
+    std::string name;
+    int robot = 0;                 // its number, of several clients the same
+    int cores = 1;                 // that the robot has
+    std::int64_t deadline_ns = 0;  // 0: the period, if it is expected to keep it
+    bool is_periodic = false;
+  };
+  // Whose thread something happens to.
+  struct Who {
+    int client = 0;        // its place in the list that Open was given
+    int thread = 0;        // another number for each of a run
+    bool is_first = true;  // of its process
+  };
+  // A datagram that a thread takes.
+  struct Taken {
+    std::int64_t arrived_ns = 0;
+    // When what it tells of was measured: the sample, or the newest that its sender had taken; -1:
+    // not known.
+    std::int64_t sampled_ns = -1;
+    std::int64_t period_ns = 0;  // of the sensor whose sample it is; 0: it is none
+    std::string_view from;       // the sensor's channel
+    // The activation that it belongs to: 0, the one that goes on; n, the one that the n-th receipt
+    // since then began (shm/receipts.h).
+    unsigned activation = 0;
+  };
+
+  void Open(std::vector<Client> clients);
+
+  void Took(const Who& who, const Taken& taken);
+  // It sends something to where actuators are driven from.
+  void Commanded(const Who& who, std::int64_t at_ns);
+  // When the newest sample that the thread can know of was measured; -1: it knows of none.
+  std::int64_t LastSampledOf(int thread) const;
+  // When the activation was released that the n-th receipt began at `at_ns`; 0: the one that goes
+  // on, if a receipt began it before the last stop.
+  std::int64_t ReleaseOf(int thread, unsigned receipt, std::int64_t at_ns) const;
+  // So many receipts have been told of: the last of them began the activation that goes on now.
+  void ForgetReceipts(int thread, unsigned receipts);
+
+  // A thread is ready from then on.
+  void Ready(const Who& who, std::int64_t at_ns);
+  // A thread of that client had a core of its robot.
+  void Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns);
+  // An activation ends, or is cut off by the run's end. It began with that receipt, or (0) with the
+  // end of a wait.
+  void Ended(const Who& who, const Activation& activation, unsigned receipt, std::int64_t end_ns,
+             std::int64_t executed_ns);
+
+  void Dies(int thread);
+  // It waits: what it takes from now on is of its next activation.
+  void Idles(int thread);
+  // At the run's end that has waited, and the thread has not come to it.
+  void NeverCameTo(const Who& who, const Taken& waiting, std::int64_t end_ns);
+
+  // The run is over. By client, as Open was given them; without inputs.
+  std::vector<ClientFigures> Conclude();
+
+ private:
+  struct Job {
+    std::int64_t release_ns = 0, response_ns = 0, delay_ns = 0, queued_ns = 0, executed_ns = 0;
+    std::map<int, std::int64_t> others_ns;  // by client
+  };
+  // What an activation was released by, if that is known.
+  struct Release {
+    std::int64_t at_ns = INT64_MAX;
+    std::int64_t period_ns = 0;
+    std::string from;
+  };
+  struct Thread {
+    int client = 0;
+    bool takes_samples = false, commands = false;
+    std::int64_t last_sampled_ns = -1;
+    std::array<Release, shm::Receipts::kMost + 1> releases;  // by receipt
+    bool is_by_receipt = false;                              // the one that goes on
+    std::int64_t ended_ns = 0;                               // its last activation
+    std::int64_t ready_ns = -1;                              // since when; -1: it is not
+    std::map<int, std::int64_t> others_ns;                   // that had a core since then
+    std::optional<Job> timed;          // to be judged once the next expiry is known
+    std::int64_t timer_period_ns = 0;  // between the last two
+  };
+  // Deadlines that were periods of that.
+  struct Source {
+    std::int64_t judged = 0;
+    // How often a period was so long, to three digits: whoever is late may leave expiries out.
+    std::map<std::int64_t, std::int64_t> periods_ns;
+  };
+  struct Kept {
+    Client client;
+    ClientFigures figures;
+    ActivationTimes judged, all;
+    bool has_begun = false;
+    std::int64_t in_a_row = 0;
+    std::map<std::string, Source> sources;
+  };
+
+  Thread& ThreadOf(const Who& who);
+  void NoteWait(Kept& kept, const Job& job) const;
+  static void HasBegun(Kept& kept);
+  static void Count(const Job& job, ActivationTimes& times);
+  void Judge(Kept& kept, const Job& job, std::int64_t period_ns, const std::string& source);
+
+  std::vector<Kept> clients_;
+  std::map<int, Thread> threads_;
+  std::map<int, std::set<int>> ready_;  // threads, by robot
+};
+
+}  // namespace tcs

@@ -1,0 +1,183 @@
+#include "coordinator/answers/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+namespace tcs {
+
+namespace {
+
+constexpr std::size_t kMostSentences = 5;
+// From that share of the late time on computing is named.
+constexpr double kNamed = 0.3;
+// Starved is who waits for that share of the run, and for that share of the time for which it was
+// ready.
+constexpr double kStarvedRun = 0.25, kStarvedTime = 0.9;
+// Of the datagrams that it was sent: so many may wait when the run ends.
+constexpr double kUnread = 0.05;
+// How many periods old data may be before it is worth a sentence.
+constexpr std::int64_t kOldPeriods = 2;
+
+struct Finding {
+  double weight = 0;  // the worst first
+  std::string sentence;
+};
+
+double Share(std::int64_t part, std::int64_t whole) {
+  return whole <= 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+std::string Of(std::int64_t part, std::int64_t whole) {
+  return part == whole ? fmt::format("all {}", whole) : fmt::format("{} of {}", part, whole);
+}
+
+std::string DeadlineText(const DeadlineFigures& deadline) {
+  const std::string time = Spoken(deadline.deadline_ns);
+  return deadline.source.empty() ? time
+                                 : fmt::format("{}, the period of {}", time, deadline.source);
+}
+
+// Relative to another client, as the robot's scheduler sees them.
+std::string_view RankOf(const ClientOutcome& other, const ClientOutcome& client) {
+  if (other.name == client.name) return "";
+  if (other.priority == client.priority) return ", of the same priority,";
+  return other.priority > client.priority ? ", of higher priority," : ", of lower priority,";
+}
+
+std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome>& all) {
+  const ClientFigures& figures = client.figures;
+  const LateTime& late = figures.late;
+  const double load =
+      figures.times.execution.Mean() / static_cast<double>(figures.deadline.deadline_ns);
+  if (figures.deadline.judged > 0 && load > 1) {
+    const std::string each = Spoken(std::llround(figures.times.execution.Mean()));
+    return figures.deadline.source.empty()
+               ? fmt::format("it computes {} each time, longer than that", each)
+               : fmt::format("it computes {} each time, {} of a core", each, Percent(load));
+  }
+  // What waited behind earlier work waited for the cause of that.
+  const std::int64_t rest = late.total_ns - late.queued_ns;
+  const std::int64_t too_much =
+      late.total_ns - figures.deadline.missed * figures.deadline.deadline_ns;
+  std::int64_t others_ns = 0;
+  for (const auto& [name, ns] : late.others_ns) others_ns += ns;
+  if (others_ns > 0 && 2 * others_ns >= std::min(too_much, rest)) {
+    const auto most = std::ranges::max_element(late.others_ns, {},
+                                               [](const auto& other) { return other.second; });
+    const auto who = std::ranges::find(all, most->first, &ClientOutcome::name);
+    return fmt::format("{}{} had the core for {} of that time", most->first,
+                       who == all.end() ? "" : RankOf(*who, client),
+                       Percent(std::min(1.0, Share(most->second, rest))));
+  }
+  if (Share(late.executed_ns, rest) >= kNamed)
+    return fmt::format("it computes up to {} at a time", Spoken(figures.times.execution.max()));
+  return "it waited for something else in the midst of its work";
+}
+
+void AddMisses(const ClientOutcome& client, const std::vector<ClientOutcome>& all,
+               std::vector<Finding>& findings) {
+  const DeadlineFigures& deadline = client.figures.deadline;
+  if (deadline.missed == 0) return;
+  std::string text =
+      fmt::format("{} missed {} of its deadlines ({}), {}the first at {:.3f} s: {}", client.name,
+                  Of(deadline.missed, deadline.judged), DeadlineText(deadline),
+                  deadline.most_in_a_row > 1 && deadline.most_in_a_row < deadline.missed
+                      ? fmt::format("up to {} in a row, ", deadline.most_in_a_row)
+                      : "",
+                  static_cast<double>(deadline.first_missed_ns) / 1e9, CauseOf(client, all));
+  findings.push_back({2 + Share(deadline.missed, deadline.judged), std::move(text)});
+}
+
+// Of a client that got next to nothing of its core for a great part of the run.
+void AddStarvation(const ClientOutcome& client, const std::vector<ClientOutcome>& all,
+                   std::int64_t end_ns, std::vector<Finding>& findings) {
+  const LongestWait& wait = client.figures.longest_wait;
+  const double of_run = Share(wait.waited_ns, end_ns);
+  if (of_run < kStarvedRun || Share(wait.waited_ns, wait.response_ns) < kStarvedTime) return;
+  const auto by = std::ranges::find(all, wait.by, &ClientOutcome::name);
+  findings.push_back(
+      {3 + of_run,
+       fmt::format("{} was starved: for {} from {:.3f} s on it was ready, and {}{} had the core",
+                   client.name, Spoken(wait.response_ns),
+                   static_cast<double>(wait.release_ns) / 1e9, wait.by,
+                   by == all.end() ? "" : RankOf(*by, client))});
+}
+
+void AddAges(const ClientOutcome& client, std::vector<Finding>& findings) {
+  const ClientFigures& figures = client.figures;
+  const std::int64_t oldest = figures.command_age.max();
+  const std::int64_t period = figures.deadline.deadline_ns;
+  if (period <= 0 || oldest <= kOldPeriods * period) return;
+  findings.push_back(
+      {1 + 1 - Share(period, oldest),
+       fmt::format("{} sent commands made of samples up to {} old (half of them of more than {})",
+                   client.name, Spoken(oldest), Spoken(figures.command_age.Quantile(0.5)))});
+}
+
+void AddLosses(const ClientOutcome& client, std::vector<Finding>& findings) {
+  for (const InputFigures& input : client.figures.inputs) {
+    const bool is_behind = input.unread > 1 && Share(input.unread, input.sent) > kUnread;
+    if (input.lost == 0 && !is_behind) continue;
+    std::vector<std::string> parts;
+    if (input.lost > 0)
+      parts.push_back(fmt::format("{} were lost because its socket was full", input.lost));
+    if (input.unread > 0) {
+      parts.push_back(fmt::format("{} still waited for it at the end, the oldest since {:.3f} s",
+                                  input.unread, static_cast<double>(input.oldest_unread_ns) / 1e9));
+    }
+    findings.push_back({1 + Share(input.lost + input.unread, input.sent),
+                        fmt::format("{} never read {} datagrams from {}: {}", client.name,
+                                    Of(input.lost + input.unread, input.sent), input.from,
+                                    fmt::join(parts, ", "))});
+  }
+}
+
+}  // namespace
+
+std::string Spoken(std::int64_t ns) {
+  constexpr std::array<std::pair<double, const char*>, 4> kUnits = {
+      {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}, {1, "ns"}}};
+  for (const auto& [size, name] : kUnits) {
+    const double value = static_cast<double>(ns) / size;
+    if (std::abs(value) < 0.9995 && size > 1) continue;
+    const int digits = std::abs(value) >= 99.95 ? 0 : std::abs(value) >= 9.995 ? 1 : 2;
+    std::string text = fmt::format("{:.{}f}", value, digits);
+    if (text.find('.') != std::string::npos) {
+      text.erase(text.find_last_not_of('0') + 1);
+      if (text.back() == '.') text.pop_back();
+    }
+    return text + " " + name;
+  }
+  return "0 s";
+}
+
+std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, std::int64_t end_ns) {
+  std::vector<Finding> findings;
+  for (const ClientOutcome& client : clients) {
+    AddStarvation(client, clients, end_ns, findings);
+    AddMisses(client, clients, findings);
+    AddAges(client, findings);
+    AddLosses(client, findings);
+  }
+  std::ranges::stable_sort(findings, std::greater<>(), &Finding::weight);
+  std::vector<std::string> sentences;
+  for (const Finding& finding : findings) {
+    if (sentences.size() + 1 == kMostSentences && findings.size() > kMostSentences) {
+      sentences.push_back(
+          fmt::format("and {} findings more, in summary.json", findings.size() - sentences.size()));
+      break;
+    }
+    sentences.push_back(finding.sentence);
+  }
+  return sentences;
+}
+
+}  // namespace tcs

@@ -1,0 +1,25 @@
+// What mattered in a run, in sentences, worst first: deadlines that were missed, and why, data that
+// was old or never read. Nothing is said of who met all its deadlines. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/answers/client_figures.h"
+
+namespace tcs {
+
+struct ClientOutcome {
+  std::string name;
+  int priority = 0;
+  ClientFigures figures;
+};
+
+// At most five; the last one says how many more there are.
+std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, std::int64_t end_ns);
+
+// "10 ms", "2.05 s", "153.5 us": three digits, or as many as are whole.
+std::string Spoken(std::int64_t ns);
+
+}  // namespace tcs

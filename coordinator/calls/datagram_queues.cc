@@ -1,0 +1,255 @@
+#include "coordinator/calls/datagram_queues.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace tcs {
+
+namespace {
+
+using shm::DatagramNotes;
+
+constexpr const char* kWrong = "datagrams that cannot be";
+// Of one address. Who lets more wait does not receive any more.
+constexpr std::size_t kMostOnTheWay = 4096;
+
+// Of an address of the internet: the host and the port.
+struct Internet {
+  in_addr host;
+  std::uint16_t port;
+};
+
+std::optional<Internet> InternetOf(const DatagramNotes::Note& note) {
+  sockaddr_in address{};
+  if (note.size > sizeof address) return std::nullopt;
+  memcpy(&address, note.bytes, note.size);
+  if (address.sin_family != AF_INET) return std::nullopt;
+  // Whoever listens on all addresses is reached by this one.
+  if (address.sin_addr.s_addr == INADDR_ANY) address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return Internet{address.sin_addr, ntohs(address.sin_port)};
+}
+
+// A part of a name that is another one in each run: ${run} of a scenario.
+bool IsRunName(std::string_view part) {
+  constexpr std::size_t kDigits = 8;
+  return part.size() == kDigits &&
+         part.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+// In words, for the label of what two programs send each other; the same in each run, so without
+// ${run} and ${loopback}.
+std::string TextOf(const DatagramNotes::Note& note) {
+  if (const auto internet = InternetOf(note)) {
+    return "UDP port " + std::to_string(internet->port);
+  }
+  std::string text(reinterpret_cast<const char*>(note.bytes), note.size);
+  text.erase(0, std::min(text.size(), offsetof(sockaddr_un, sun_path)));
+  if (text.starts_with('\0')) text[0] = '@';
+  if (const std::size_t end = text.find('/');
+      end != std::string::npos && end > 0 && IsRunName(std::string_view(text).substr(1, end - 1))) {
+    text.erase(1, end);
+  }
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c == ',' || c == '"' || c < ' '; }, '_');
+  return text;
+}
+
+DatagramNotes::Note NoteOf(const shm::ReceiverAddress& address) {
+  return shm::NoteAbout(address.bytes, address.size);
+}
+
+}  // namespace
+
+// Addresses that mean the same are one; with a network abstract names are each robot's own.
+DatagramQueues::Address DatagramQueues::AddressOf(const Robot* by,
+                                                  const DatagramNotes::Note& note) const {
+  constexpr std::uint64_t kInternet = std::uint64_t{1} << 32;  // beyond the numbers of robots
+  if (const auto internet = InternetOf(note))
+    return {kInternet, std::uint64_t{internet->host.s_addr} << 16 | internet->port};
+  const std::size_t begin = offsetof(sockaddr_un, sun_path);
+  const bool is_abstract = note.size > begin && note.bytes[begin] == 0;
+  const std::uint32_t robot =
+      is_abstract && by != nullptr && run_.scenario.network ? by->number : shm::kNoRobot;
+  return {robot, note.hash};
+}
+
+void DatagramQueues::AddCommandAddress(const shm::ReceiverAddress& address) {
+  commands_.insert(AddressOf(nullptr, NoteOf(address)));
+}
+
+InputFigures* DatagramQueues::InputOf(Queue& queue, const Sent& sent) {
+  InputFigures& input = queue.inputs[{sent.sender, sent.channel}];
+  if (input.from.empty())
+    input.from = sent.period_ns > 0 ? sent.channel : sent.sender + " over " + sent.channel;
+  return &input;
+}
+
+AnswerBook::Taken DatagramQueues::TakenOf(const Sent& sent) {
+  return {.arrived_ns = sent.at.ns(),
+          .sampled_ns = sent.sampled_ns,
+          .period_ns = sent.period_ns,
+          .from = sent.channel};
+}
+
+void DatagramQueues::Add(const Address& to, Sent sent) {
+  Queue& queue = queues_[to];
+  if (queue.waiting.size() == kMostOnTheWay) queue.waiting.pop_front();
+  sent.input = InputOf(queue, sent);
+  ++sent.input->sent;
+  queue.waiting.push_back(std::move(sent));
+}
+
+void DatagramQueues::WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
+                               VirtualTime at) {
+  const auto sensor = std::ranges::find(run_.scenario.sensors, channel, &SensorChannelSpec::name);
+  Sent sent{.at = at, .sender = "dynamics", .channel = channel};
+  if (sensor != run_.scenario.sensors.end()) {
+    sent.sampled_ns = (at - sensor->latency).ns();
+    sent.period_ns = sensor->period.ns();
+  }
+  Add(AddressOf(nullptr, NoteOf(to)), std::move(sent));
+}
+
+void DatagramQueues::WorldReceived(std::size_t channel, const CommandSent& sent) {
+  if (sent.by.id == 0) return;
+  const Task* task = run_.table.Living(static_cast<pid_t>(sent.by.id));
+  if (task == nullptr) return;
+  log_.Write(sent.at, task->process->name, sent.at, "dynamics",
+             run_.scenario.commands[channel].name);
+}
+
+// A full socket takes nothing more until it is read: lost is what was sent last before that.
+void DatagramQueues::DropLost(Queue& queue, std::uint16_t drops, VirtualTime at) {
+  const std::uint16_t lost = drops - std::exchange(queue.drops, drops);
+  const auto later =
+      std::ranges::find_if(queue.waiting, [at](const Sent& sent) { return sent.at > at; });
+  const std::ptrdiff_t there = std::distance(queue.waiting.begin(), later);
+  if (lost == 0 || lost >= there) return;  // or another socket has the address by now
+  for (auto sent = later - lost; sent != later; ++sent) ++sent->input->lost;
+  queue.waiting.erase(later - lost, later);
+}
+
+// The socket was empty then: what was sent before those that were taken met nobody who listened.
+void DatagramQueues::DropNeverThere(Queue& queue, std::uint16_t taken, VirtualTime at) {
+  const auto later =
+      std::ranges::find_if(queue.waiting, [at](const Sent& sent) { return sent.at > at; });
+  const std::ptrdiff_t there = std::distance(queue.waiting.begin(), later);
+  if (there <= taken) return;
+  const auto first = queue.waiting.begin() + (there - taken);
+  for (auto sent = queue.waiting.begin(); sent != first; ++sent) --sent->input->sent;
+  queue.waiting.erase(queue.waiting.begin(), first);
+}
+
+void DatagramQueues::TakeBack(Queue& queue, const std::string& sender) {
+  const auto last = std::find_if(queue.waiting.rbegin(), queue.waiting.rend(),
+                                 [&sender](const Sent& sent) { return sent.sender == sender; });
+  if (last == queue.waiting.rend()) return;
+  --last->input->sent;
+  queue.waiting.erase(std::next(last).base());
+}
+
+void DatagramQueues::Take(const Task& task, const DatagramNotes::Note& note, Queue& queue,
+                          VirtualTime at) {
+  DropLost(queue, note.drops, at);
+  if (note.is_last != 0 && InternetOf(note)) DropNeverThere(queue, note.count, at);
+  const auto who = answers_.WhoIs(task);
+  if (who.has_value()) {
+    queue.reader = *who;
+    queue.has_reader = true;
+  }
+  const auto waiting =
+      std::ranges::count_if(queue.waiting, [at](const Sent& sent) { return sent.at <= at; });
+  for (std::uint32_t n = 0; n < note.count && !queue.waiting.empty(); ++n) {
+    const Sent& sent = queue.waiting.front();
+    InputFigures& input = *sent.input;
+    ++input.received;
+    input.most_waiting = std::max<std::int64_t>(input.most_waiting, waiting);
+    input.age.Add((at - VirtualTime()).ns() -
+                  (sent.sampled_ns >= 0 ? sent.sampled_ns : sent.at.ns()));
+    if (who.has_value()) {
+      AnswerBook::Taken taken = TakenOf(sent);
+      taken.activation = note.activation;
+      answers_.book().Took(*who, taken);
+    }
+    log_.Write(sent.at, sent.sender, at, task.process->name, sent.channel);
+    queue.waiting.pop_front();
+  }
+}
+
+const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
+  DatagramNotes& notes = SlotOf(task).datagrams;
+  const std::uint32_t count = notes.count.load();
+  if (count == 0) return nullptr;
+  notes.count.store(0);
+  if (count > DatagramNotes::kMost) return kWrong;
+  ProgramClock& clock = task.process->clock;
+  const std::string& name = task.process->name;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const DatagramNotes::Note note = notes.notes[i];
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
+    if (note.size > DatagramNotes::kMostBytes || note.what > DatagramNotes::What::kTaken ||
+        note.count > kMostOnTheWay || note.activation > shm::Receipts::kMost) {
+      return kWrong;
+    }
+    const VirtualTime at =
+        std::clamp(clock.RobotTimeOf(OwnTime(note.time_ns)), VirtualTime(), until);
+    if (note.what == DatagramNotes::What::kTaken) {
+      if (samples_ != nullptr) samples_->Taken(task, note, at);
+      continue;
+    }
+    const Address address = AddressOf(task.process->robot, note);
+    if (note.what == DatagramNotes::What::kSent && commands_.contains(address)) {
+      if (const auto who = answers_.WhoIs(task)) answers_.book().Commanded(*who, at.ns());
+      continue;
+    }
+    // Between robots of a network packets may be lost.
+    if (run_.scenario.network && InternetOf(note)) continue;
+    if (note.what == DatagramNotes::What::kSent) {
+      Add(address, {.at = at,
+                    .sampled_ns = answers_.book().LastSampledOf(task.order),
+                    .sender = name,
+                    .channel = TextOf(note)});
+      continue;
+    }
+    const auto found = queues_.find(address);
+    if (found == queues_.end()) continue;
+    if (note.what == DatagramNotes::What::kTakenBack) {
+      TakeBack(found->second, name);
+    } else {
+      Take(task, note, found->second, at);
+    }
+  }
+  return nullptr;
+}
+
+std::map<int, std::vector<InputFigures>> DatagramQueues::Conclude(VirtualTime end) {
+  std::map<int, std::vector<InputFigures>> all;
+  for (auto& [address, queue] : queues_) {
+    if (!queue.has_reader) continue;
+    const auto unread =
+        std::ranges::count_if(queue.waiting, [end](const Sent& sent) { return sent.at <= end; });
+    for (const Sent& sent : queue.waiting) {
+      if (sent.at > end) continue;
+      InputFigures& input = *sent.input;
+      ++input.unread;
+      input.most_waiting = std::max<std::int64_t>(input.most_waiting, unread);
+      if (input.oldest_unread_ns < 0) input.oldest_unread_ns = sent.at.ns();
+    }
+    if (unread > 0 && queue.waiting.front().at < end) {
+      answers_.book().NeverCameTo(queue.reader, TakenOf(queue.waiting.front()), end.ns());
+    }
+    for (const auto& [from, input] : queue.inputs) all[queue.reader.client].push_back(input);
+  }
+  return all;
+}
+
+}  // namespace tcs

@@ -1,0 +1,86 @@
+// The UDP and UNIX datagrams that wait for clients: which are on their way to which address, who
+// has taken which of them, and which were lost because a socket was full. Datagrams of one address
+// are received in the order in which they were sent there; that is how the ends are told.
+//
+// Of each client it keeps what it was sent (answers/client_figures.h), and it tells the book of
+// answers what threads take and command, and the log of datagrams of both ends.
+//
+// What is not seen: raw calls, descriptors that somebody outside has made, multicast. For the
+// coordinator's thread only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/answers/client_figures.h"
+#include "coordinator/calls/datagram_log.h"
+#include "coordinator/calls/sample_feed.h"
+#include "coordinator/channel/datagram_watch.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/answer_feed.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+class DatagramQueues final : public DatagramWatch {
+ public:
+  // Both outlive this. With a feed that is not open nothing is kept.
+  DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& log)
+      : run_(run), answers_(answers), log_(log) {}
+
+  // Is told of DDS samples that threads take. Null: nobody; it outlives this.
+  void Tell(SampleFeed* samples) { samples_ = samples; }
+  // What is sent to that address is a command: the coordinator receives it.
+  void AddCommandAddress(const shm::ReceiverAddress& address);
+
+  void WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
+                 VirtualTime at) override;
+  void WorldReceived(std::size_t channel, const CommandSent& sent) override;
+  // What the thread, which has stopped, has noted until then. Null; or what of it cannot be, as
+  // SlotCheck has it.
+  const char* TakeNotes(const Task& task, VirtualTime until);
+
+  // The run is over: what waits was never read. By client, in the order of the scenario.
+  std::map<int, std::vector<InputFigures>> Conclude(VirtualTime end);
+
+ private:
+  struct Sent {
+    VirtualTime at;
+    std::int64_t sampled_ns = -1;  // as AnswerBook::Taken has it
+    std::int64_t period_ns = 0;
+    std::string sender, channel;
+    InputFigures* input = nullptr;  // of its queue
+  };
+  struct Queue {
+    std::deque<Sent> waiting;
+    std::uint16_t drops = 0;  // as the kernel last counted them
+    AnswerBook::Who reader;   // the last
+    bool has_reader = false;
+    std::map<std::pair<std::string, std::string>, InputFigures> inputs;  // by sender and channel
+  };
+  using Address = std::pair<std::uint64_t, std::uint64_t>;  // the kind, and whose; the rest
+
+  Address AddressOf(const Robot* by, const shm::DatagramNotes::Note& note) const;
+  void Add(const Address& to, Sent sent);
+  void Take(const Task& task, const shm::DatagramNotes::Note& note, Queue& queue, VirtualTime at);
+  static void DropLost(Queue& queue, std::uint16_t drops, VirtualTime at);
+  static void DropNeverThere(Queue& queue, std::uint16_t taken, VirtualTime at);
+  static void TakeBack(Queue& queue, const std::string& sender);
+  static InputFigures* InputOf(Queue& queue, const Sent& sent);
+  static AnswerBook::Taken TakenOf(const Sent& sent);
+
+  RunState& run_;
+  AnswerFeed& answers_;
+  DatagramLog& log_;
+  SampleFeed* samples_ = nullptr;
+  std::map<Address, Queue> queues_;
+  std::set<Address> commands_;
+};
+
+}  // namespace tcs

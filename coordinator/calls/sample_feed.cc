@@ -1,0 +1,127 @@
+#include "coordinator/calls/sample_feed.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <variant>
+
+namespace tcs {
+
+namespace {
+
+// Of one client. Whose reader lets more wait keeps only the last ones.
+constexpr std::size_t kMostWaiting = 4096;
+
+}  // namespace
+
+SampleFeed::SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& topics, NameOf name)
+    : run_(run), answers_(answers), topics_(topics), name_(std::move(name)) {}
+
+SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery) const {
+  const std::string& topic = topics_.reports()[delivery.topic].topic;
+  Sample sample{.topic = delivery.topic,
+                .source_ns = delivery.source_timestamp_ns,
+                .arrived_ns = delivery.sent_ns,
+                .from = topic};
+  if (delivery.from != 0) {
+    sample.from = name_(delivery.from) + " over " + topic;
+    return sample;
+  }
+  for (const SensorChannelSpec& sensor : run_.scenario.sensors) {
+    const auto* to = std::get_if<DdsSensorEnd>(&sensor.to);
+    if (to == nullptr || to->end.topic != topic) continue;
+    sample.sampled_ns = delivery.source_timestamp_ns - run_.header->realtime_offset_ns;
+    sample.period_ns = sensor.period.ns();
+    sample.from = sensor.name;
+  }
+  return sample;
+}
+
+void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
+  if (delivery.to == 0) return Commanded(delivery);
+  const auto who = answers_.WhoIs(name_(delivery.to));
+  if (!who.has_value()) return;
+  Receiver& receiver = receivers_[who->client];
+  if (receiver.waiting.size() == kMostWaiting) receiver.waiting.pop_front();
+  const Sample& sample = receiver.waiting.emplace_back(SampleOf(delivery));
+  InputFigures& input = receiver.inputs[sample.from];
+  input.from = sample.from;
+  ++input.sent;
+}
+
+// The thread that has sent it has the turn, or was the last of its client's that took something.
+void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {
+  const std::string& topic = topics_.reports()[delivery.topic].topic;
+  const bool is_command =
+      std::ranges::any_of(run_.scenario.commands, [&topic](const CommandChannelSpec& command) {
+        const auto* from = std::get_if<DdsCommandEnd>(&command.from);
+        return from != nullptr && from->end.topic == topic;
+      });
+  std::optional<AnswerBook::Who> who = answers_.WhoIs(name_(delivery.from));
+  if (!is_command || !who.has_value()) return;
+  const Task* runs = run_.turn.lasts() ? run_.turn.task() : nullptr;
+  if (runs != nullptr && runs->process->dds_number == delivery.from) {
+    if (const auto sender = answers_.WhoIs(*runs)) who = sender;
+  } else if (const auto found = receivers_.find(who->client);
+             found != receivers_.end() && found->second.last.has_value()) {
+    who = found->second.last;
+  }
+  answers_.book().Commanded(*who, delivery.source_timestamp_ns - run_.header->realtime_offset_ns);
+}
+
+std::optional<SampleFeed::Topic> SampleFeed::TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
+                                                     const Receiver& receiver,
+                                                     std::int64_t newest_ns) {
+  if (const auto known = readers_.find(reader); known != readers_.end()) return known->second;
+  std::optional<Topic> found;
+  for (const Sample& sample : receiver.waiting) {
+    if (sample.source_ns != newest_ns) continue;
+    if (found.has_value() && *found != sample.topic) return found;  // not certain
+    found = sample.topic;
+  }
+  if (found.has_value()) readers_[reader] = *found;
+  return found;
+}
+
+void SampleFeed::Taken(const Task& task, const shm::DatagramNotes::Note& note, VirtualTime at) {
+  const auto who = answers_.WhoIs(task);
+  if (!who.has_value()) return;
+  const shm::TakenSamples taken = shm::SamplesOf(note);
+  Receiver& receiver = receivers_[who->client];
+  receiver.last = who;
+  const auto topic = TopicOf({task.process->index, taken.reader}, receiver, taken.newest_ns);
+  if (!topic.has_value()) return;
+  const auto is_past = [&](const Sample& sample) {
+    return sample.topic == *topic && sample.source_ns <= taken.newest_ns;
+  };
+  const auto waiting = std::ranges::count_if(receiver.waiting, is_past);
+  AnswerBook::Taken all{.arrived_ns = INT64_MAX, .activation = note.activation};
+  std::string from;
+  for (const Sample& sample : receiver.waiting) {
+    if (!is_past(sample)) continue;
+    from = sample.from;
+    InputFigures& input = receiver.inputs[sample.from];
+    input.most_waiting = std::max<std::int64_t>(input.most_waiting, waiting);
+    if (sample.source_ns < taken.oldest_ns) {
+      ++input.replaced;
+      continue;
+    }
+    ++input.received;
+    input.age.Add(at.ns() - (sample.sampled_ns >= 0 ? sample.sampled_ns : sample.arrived_ns));
+    all.arrived_ns = std::min(all.arrived_ns, sample.arrived_ns);
+    all.sampled_ns = std::max(all.sampled_ns, sample.sampled_ns);
+    all.period_ns = sample.period_ns;
+  }
+  all.from = from;
+  if (all.arrived_ns != INT64_MAX) answers_.book().Took(*who, all);
+  std::erase_if(receiver.waiting, is_past);
+}
+
+std::map<int, std::vector<InputFigures>> SampleFeed::Conclude() const {
+  std::map<int, std::vector<InputFigures>> all;
+  for (const auto& [client, receiver] : receivers_) {
+    for (const auto& [from, input] : receiver.inputs) all[client].push_back(input);
+  }
+  return all;
+}
+
+}  // namespace tcs

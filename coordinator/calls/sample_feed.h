@@ -1,0 +1,68 @@
+// The DDS samples that wait for clients: which have reached which program, and which of them its
+// threads have taken. Of each client it keeps what it was sent, and it tells the book of answers
+// what threads take and command (answers/).
+//
+// What a thread takes is told by its samples' source timestamps; which topic a reader is of, by the
+// first sample that only one topic can have had. For the coordinator's thread only.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/answers/client_figures.h"
+#include "coordinator/dds/topic_log.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/answer_feed.h"
+#include "coordinator/tasks/run_state.h"
+#include "shm/datagram_notes.h"
+
+namespace tcs {
+
+class SampleFeed final : public dds::TopicLog::DeliveryListener {
+ public:
+  using NameOf = std::function<std::string(dds::Hub::Number)>;
+
+  // `name` says which client a process is of. All outlive this.
+  SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& topics, NameOf name);
+
+  void Delivered(const dds::TopicLog::Delivery& delivery) override;
+  // The thread has taken some, as it has noted, at that time.
+  void Taken(const Task& task, const shm::DatagramNotes::Note& note, VirtualTime at);
+
+  // By client, in the order of the scenario.
+  std::map<int, std::vector<InputFigures>> Conclude() const;
+
+ private:
+  using Topic = dds::TopicLog::Topic;
+  struct Sample {
+    Topic topic = 0;
+    std::int64_t source_ns = 0;  // its timestamp
+    std::int64_t arrived_ns = 0, sampled_ns = -1, period_ns = 0;
+    std::string from;  // InputFigures::from
+  };
+  struct Receiver {
+    std::deque<Sample> waiting;
+    std::map<std::string, InputFigures> inputs;
+    std::optional<AnswerBook::Who> last;  // of its threads that took something
+  };
+
+  void Commanded(const dds::TopicLog::Delivery& delivery);
+  Sample SampleOf(const dds::TopicLog::Delivery& delivery) const;
+  std::optional<Topic> TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
+                               const Receiver& receiver, std::int64_t newest_ns);
+
+  RunState& run_;
+  AnswerFeed& answers_;
+  const dds::TopicLog& topics_;
+  NameOf name_;
+  std::map<int, Receiver> receivers_;                                // by client
+  std::map<std::pair<std::uint32_t, std::int32_t>, Topic> readers_;  // by process and entity
+};
+
+}  // namespace tcs

@@ -1,0 +1,74 @@
+#include "coordinator/core/deadlocks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "coordinator/os/mutex_owner.h"
+
+namespace tcs {
+
+namespace {
+
+std::string NameOf(const Task& task) {
+  return task.is_further ? fmt::format("{} #{}", task.process->name, task.order)
+                         : task.process->name;
+}
+
+// Whose lock the thread waits for without a timeout; null: nobody's that is known.
+const Task* AwaitedBy(const Task& task, const RunState& run, const FutexTable& futexes) {
+  const auto* futex = task.Awaits<awaited::Futex>();
+  if (futex == nullptr || !task.wait->deadline.IsNever()) return nullptr;
+  if (futex->owner != awaited::kNobody) return &run.table.At(futex->owner);
+  const FutexKey* word = futexes.FirstWordOf(task.order);
+  if (word == nullptr || word->pid == 0) return nullptr;
+  const auto owner = OwnerOfMutex(task.process->pid, word->address, [&](pid_t tid) {
+    const Task* one = run.table.Living(tid);
+    return one != nullptr && one->process == task.process;
+  });
+  return owner.has_value() ? run.table.Living(*owner) : nullptr;
+}
+
+std::string SentenceOf(const std::vector<const Task*>& ring) {
+  VirtualTime since;
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    since = std::max(since, ring[i]->reached);
+    parts.push_back(fmt::format("{} waits for a lock that {} has", NameOf(*ring[i]),
+                                NameOf(*ring[(i + 1) % ring.size()])));
+  }
+  return fmt::format("{} threads are in a deadlock from {:.3f} s on: {}", ring.size(),
+                     since.seconds(), fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+std::vector<std::string> DeadlocksIn(const RunState& run, const FutexTable& futexes) {
+  std::map<const Task*, const Task*> awaits;
+  for (const Robot& robot : run.robots) {
+    for (const Task* task : robot.tasks) {
+      if (const Task* owner = AwaitedBy(*task, run, futexes)) awaits[task] = owner;
+    }
+  }
+  std::vector<std::string> sentences;
+  std::set<const Task*> seen;
+  for (const Robot& robot : run.robots) {
+    for (const Task* task : robot.tasks) {
+      std::vector<const Task*> way;
+      for (const Task* at = task; at != nullptr && !seen.contains(at);) {
+        seen.insert(at);
+        way.push_back(at);
+        const auto next = awaits.find(at);
+        if (next == awaits.end()) break;
+        at = next->second;
+        const auto ring = std::ranges::find(way, at);
+        if (ring != way.end()) sentences.push_back(SentenceOf({ring, way.end()}));
+      }
+    }
+  }
+  return sentences;
+}
+
+}  // namespace tcs

@@ -1,0 +1,25 @@
+#include "coordinator/os/mutex_owner.h"
+
+#include "coordinator/os/trap.h"
+
+namespace tcs {
+
+namespace {
+
+// As the C library begins a mutex: what waiters wait at, how often it is locked, who has it.
+struct MutexBegin {
+  std::int32_t word, count, owner;
+};
+
+}  // namespace
+
+std::optional<pid_t> OwnerOfMutex(pid_t pid, std::uint64_t address,
+                                  const std::function<bool(pid_t)>& is_thread) {
+  MutexBegin mutex{};
+  if (!ReadMemory(pid, address, &mutex, sizeof mutex)) return std::nullopt;
+  const bool is_locked = mutex.word == 1 || mutex.word == 2;
+  if (!is_locked || mutex.count < 0 || !is_thread(mutex.owner)) return std::nullopt;
+  return mutex.owner;
+}
+
+}  // namespace tcs

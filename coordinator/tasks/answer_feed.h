@@ -1,0 +1,37 @@
+// Tells the book of answers (answers/answer_book.h) of a run's threads: whose they are. A run
+// without a folder for its results keeps none.
+//
+// For the coordinator's thread only.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "coordinator/answers/answer_book.h"
+#include "coordinator/scenario/scenario.h"
+#include "coordinator/tasks/task.h"
+
+namespace tcs {
+
+class AnswerFeed {
+ public:
+  // The scenario is the one that processes' specifications belong to, and outlives this.
+  void Open(const Scenario& scenario);
+  bool is_open() const { return !clients_.empty(); }
+
+  // None of a thread that is no client's.
+  std::optional<AnswerBook::Who> WhoIs(const Task& task) const;
+  // Of a client's first thread, without a number. By its name: ROBOT/CLIENT.
+  std::optional<AnswerBook::Who> WhoIs(const std::string& client) const;
+  std::optional<AnswerBook::Who> WhoIs(const ClientSpec& client) const;
+  AnswerBook& book() { return book_; }
+  const AnswerBook& book() const { return book_; }
+
+ private:
+  AnswerBook book_;
+  std::map<const ClientSpec*, int> clients_;
+  std::map<std::string, int> names_;
+};
+
+}  // namespace tcs

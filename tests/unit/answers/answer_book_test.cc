@@ -1,0 +1,182 @@
+#include "coordinator/answers/answer_book.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace tcs {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr AnswerBook::Who kController{.client = 0, .thread = 1};
+constexpr AnswerBook::Who kPlanner{.client = 1, .thread = 2};
+
+// A controller and a planner on one core.
+class AnswerBookTest : public testing::Test {
+ protected:
+  void Open(std::int64_t deadline_ns = 0, bool is_periodic = true, int cores = 1) {
+    book_.Open({{.name = "controller",
+                 .cores = cores,
+                 .deadline_ns = deadline_ns,
+                 .is_periodic = is_periodic},
+                {.name = "planner", .cores = cores}});
+  }
+  // A sample of a sensor with a period of 10 ms.
+  static AnswerBook::Taken SampleOf(std::int64_t at_ns, unsigned activation = 0) {
+    return {.arrived_ns = at_ns,
+            .sampled_ns = at_ns,
+            .period_ns = 10 * kMs,
+            .from = "sensors",
+            .activation = activation};
+  }
+  void Ends(const AnswerBook::Who& who, ReleaseCause cause, std::int64_t release_ns,
+            std::int64_t start_ns, std::int64_t end_ns, unsigned receipt = 0) {
+    const Activation activation{.cause = cause, .release_ns = release_ns, .start_ns = start_ns};
+    book_.Ended(who, activation, receipt, end_ns, end_ns - start_ns);
+  }
+  ClientFigures Controller() { return book_.Conclude().front(); }
+
+  AnswerBook book_;
+};
+
+TEST_F(AnswerBookTest, ThePeriodOfTheSensorIsTheDeadline) {
+  Open();
+  for (const std::int64_t took : {4 * kMs, 10 * kMs, 11 * kMs, 12 * kMs, 3 * kMs}) {
+    static std::int64_t at = 0;
+    at += 100 * kMs;
+    book_.Ready(kController, at);
+    book_.Took(kController, SampleOf(at));
+    Ends(kController, ReleaseCause::kInput, at, at, at + took);
+    book_.Idles(kController.thread);
+  }
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.deadline_ns, 10 * kMs);
+  EXPECT_EQ(figures.deadline.source, "sensors");
+  EXPECT_EQ(figures.deadline.judged, 5);
+  EXPECT_EQ(figures.deadline.missed, 2);
+  EXPECT_EQ(figures.deadline.most_in_a_row, 2);
+  EXPECT_EQ(figures.deadline.first_missed_ns, 300 * kMs);
+  EXPECT_EQ(figures.times.response.max(), 12 * kMs);
+  EXPECT_EQ(figures.late.total_ns, 23 * kMs);
+  EXPECT_EQ(figures.late.executed_ns, 23 * kMs);
+}
+
+TEST_F(AnswerBookTest, WhatWaitedInTheSocketWasReleasedWhenItArrived) {
+  Open();
+  book_.Ready(kController, 0);
+  book_.Took(kController, SampleOf(0));
+  book_.Took(kController, SampleOf(10 * kMs, 1));
+  book_.Took(kController, SampleOf(20 * kMs, 2));
+  EXPECT_EQ(book_.ReleaseOf(kController.thread, 1, 15 * kMs), 10 * kMs);
+  EXPECT_EQ(book_.ReleaseOf(kController.thread, 2, 30 * kMs), 20 * kMs);
+  Ends(kController, ReleaseCause::kInput, 0, 0, 15 * kMs);
+  Ends(kController, ReleaseCause::kInput, 10 * kMs, 15 * kMs, 30 * kMs, 1);
+  book_.ForgetReceipts(kController.thread, 2);
+  // Nothing more is known of receipts; the third goes on.
+  EXPECT_EQ(book_.ReleaseOf(kController.thread, 1, 15 * kMs), 15 * kMs);
+  Ends(kController, ReleaseCause::kInput, 20 * kMs, 30 * kMs, 45 * kMs);
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.judged, 3);
+  EXPECT_EQ(figures.times.response.Quantile(0.3), 15 * kMs);
+  EXPECT_EQ(figures.times.response.Quantile(0.5), 20 * kMs);
+  EXPECT_EQ(figures.times.response.max(), 25 * kMs);
+  EXPECT_EQ(figures.times.start_delay.max(), 10 * kMs);
+  EXPECT_EQ(figures.late.queued_ns, 5 * kMs + 10 * kMs);
+  EXPECT_EQ(figures.late.total_ns, figures.late.queued_ns + figures.late.executed_ns);
+}
+
+TEST_F(AnswerBookTest, ATimersDeadlineIsItsNextExpiry) {
+  Open();
+  Ends(kController, ReleaseCause::kTime, 0, 0, 4 * kMs);
+  Ends(kController, ReleaseCause::kTime, 10 * kMs, 10 * kMs, 25 * kMs);
+  Ends(kController, ReleaseCause::kTime, 20 * kMs, 25 * kMs, 31 * kMs);
+  EXPECT_EQ(Controller().deadline.missed, 2);
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.deadline_ns, 10 * kMs);
+  EXPECT_EQ(figures.deadline.judged, 3);
+  EXPECT_EQ(figures.deadline.source, "its timer");
+}
+
+TEST_F(AnswerBookTest, TheClientsOwnDeadlineGoesFirst) {
+  Open(2 * kMs, false);
+  book_.Took(kController, SampleOf(0));
+  Ends(kController, ReleaseCause::kInput, 0, kMs, 3 * kMs);
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.deadline_ns, 2 * kMs);
+  EXPECT_EQ(figures.deadline.source, "");
+  EXPECT_EQ(figures.deadline.missed, 1);
+}
+
+TEST_F(AnswerBookTest, APlannerHasNoneUnlessItsCommandsReachAnActuator) {
+  Open(0, false);
+  book_.Took(kController, SampleOf(0));
+  Ends(kController, ReleaseCause::kInput, 0, 0, 50 * kMs);
+  EXPECT_EQ(Controller().deadline.deadline_ns, 0);
+  EXPECT_EQ(Controller().deadline.judged, 0);
+  EXPECT_EQ(Controller().times.response.max(), 50 * kMs);
+  book_.Commanded(kController, 50 * kMs);
+  EXPECT_EQ(Controller().deadline.deadline_ns, 10 * kMs);
+  EXPECT_EQ(Controller().deadline.missed, 1);
+}
+
+TEST_F(AnswerBookTest, ACommandIsAsOldAsTheNewestSampleOfItsSender) {
+  Open();
+  book_.Took(kController, SampleOf(30 * kMs));
+  book_.Took(kController, SampleOf(20 * kMs));
+  EXPECT_EQ(book_.LastSampledOf(kController.thread), 30 * kMs);
+  book_.Commanded(kController, 37 * kMs);
+  EXPECT_EQ(Controller().command_age.count(), 1);
+  EXPECT_EQ(Controller().command_age.max(), 7 * kMs);
+}
+
+TEST_F(AnswerBookTest, OthersThatHadTheCoreAreNamed) {
+  Open();
+  book_.Ready(kController, 10 * kMs);
+  book_.Took(kController, SampleOf(10 * kMs));
+  book_.Ran(kPlanner, 5 * kMs, 18 * kMs);
+  book_.Ran(kController, 18 * kMs, 20 * kMs);
+  book_.Ran(kPlanner, 20 * kMs, 22 * kMs);
+  book_.Ran(kController, 22 * kMs, 23 * kMs);
+  const Activation activation{
+      .cause = ReleaseCause::kInput, .release_ns = 10 * kMs, .start_ns = 18 * kMs};
+  book_.Ended(kController, activation, 0, 23 * kMs, 3 * kMs);
+  book_.Ran(kPlanner, 23 * kMs, 30 * kMs);
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.late.total_ns, 13 * kMs);
+  EXPECT_EQ(figures.late.executed_ns, 3 * kMs);
+  EXPECT_EQ(figures.late.others_ns.at("planner"), 10 * kMs);
+  EXPECT_EQ(figures.longest_wait.waited_ns, 10 * kMs);
+  EXPECT_EQ(figures.longest_wait.by, "planner");
+}
+
+TEST_F(AnswerBookTest, WithMoreCoresThoseBesideItKeepItFromNothing) {
+  Open(0, true, 2);
+  book_.Ready(kController, 0);
+  book_.Ran(kController, 0, kMs);
+  book_.Ran(kPlanner, 0, 20 * kMs);
+  book_.Took(kController, SampleOf(0));
+  Ends(kController, ReleaseCause::kInput, 0, 0, 20 * kMs);
+  EXPECT_TRUE(Controller().late.others_ns.empty());
+}
+
+TEST_F(AnswerBookTest, ThreadsThatOnlyHelpAreNotJudged) {
+  Open();
+  const AnswerBook::Who helper{.client = 0, .thread = 7, .is_first = false};
+  Ends(helper, ReleaseCause::kTime, 0, 0, kMs);
+  Ends(helper, ReleaseCause::kTime, 2 * kMs, 2 * kMs, 50 * kMs);
+  EXPECT_EQ(Controller().deadline.judged, 0);
+  EXPECT_EQ(Controller().times.response.count(), 0);
+}
+
+TEST_F(AnswerBookTest, WhatNobodyCameToCountsAsItStands) {
+  Open();
+  book_.NeverCameTo(kController, SampleOf(20 * kMs), 100 * kMs);
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.missed, 1);
+  EXPECT_EQ(figures.times.response.max(), 80 * kMs);
+  EXPECT_EQ(figures.times.execution.max(), 0);
+}
+
+}  // namespace
+}  // namespace tcs
