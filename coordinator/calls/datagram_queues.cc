@@ -21,6 +21,8 @@ using shm::DatagramNotes;
 constexpr const char* kWrong = "datagrams that cannot be";
 // Of one address. Who lets more wait does not receive any more.
 constexpr std::size_t kMostOnTheWay = 4096;
+// Who sends to ever other addresses is not followed beyond that.
+constexpr std::size_t kMostAddresses = 4096;
 
 // Of an address of the internet: the host and the port.
 struct Internet {
@@ -101,6 +103,7 @@ AnswerBook::Taken DatagramQueues::TakenOf(const Sent& sent) {
 }
 
 void DatagramQueues::Add(const Address& to, Sent sent) {
+  if (queues_.size() >= kMostAddresses && !queues_.contains(to)) return;
   Queue& queue = queues_[to];
   if (queue.waiting.size() == kMostOnTheWay) queue.waiting.pop_front();
   sent.input = InputOf(queue, sent);

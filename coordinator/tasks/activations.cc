@@ -63,7 +63,7 @@ void Activations::TellOfBeginning(const Task& task, std::int64_t at_ns) const {
 
 // What began with a receipt was released when that arrived, as soon as this is known.
 void Activations::FindRelease(Activation& activation, const Task& task, unsigned receipt) const {
-  if (answers_ == nullptr || has_own_clocks_) return;
+  if (answers_ == nullptr || has_own_clocks_ || activation.cause != ReleaseCause::kInput) return;
   activation.release_ns = answers_->book().ReleaseOf(task.order, receipt, activation.release_ns);
 }
 
