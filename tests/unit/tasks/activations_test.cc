@@ -120,6 +120,28 @@ TEST_F(ActivationsTest, WhatWasReceivedWithoutWaitingBeginsTheNextOne) {
                                                "planner,0,time,7000000,7000000,10000000,3000000"}));
 }
 
+// One to the next time of a loop, and one to a time that is past.
+TEST_F(ActivationsTest, ASleepThatNeedsNoAskingIsAWait) {
+  task_.activation.release_ns = task_.activation.start_ns = kMs.ns();
+  task_.charged = 9 * kMs;
+  shm::Receipts& receipts = slot_->receipts;
+  receipts.entries[0] = {.time_ns = (4 * kMs).ns(),
+                         .cpu_ns = (3 * kMs).ns(),
+                         .release_ns = (6 * kMs).ns(),
+                         .of = shm::Receipts::Of::kSleep};
+  receipts.entries[1] = {.time_ns = (9 * kMs).ns(),
+                         .cpu_ns = (6 * kMs).ns(),
+                         .release_ns = (8 * kMs).ns(),
+                         .of = shm::Receipts::Of::kSleep};
+  receipts.count = 2;
+  activations_.TakeReceipts(task_, OwnAt(12 * kMs));
+  task_.reached = At(12 * kMs);
+  activations_.Idles(task_);
+  EXPECT_EQ(Lines(), (std::vector<std::string>{"planner,0,start,1000000,1000000,4000000,3000000",
+                                               "planner,0,time,6000000,6000000,9000000,3000000",
+                                               "planner,0,time,8000000,9000000,12000000,3000000"}));
+}
+
 TEST_F(ActivationsTest, ReceiptsAreNotBelievedBeyondWhatTheThreadCanHaveHad) {
   task_.activation.release_ns = task_.activation.start_ns = kMs.ns();
   task_.charged = 2 * kMs;
