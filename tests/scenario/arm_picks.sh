@@ -15,10 +15,10 @@ pick second 9s 1 --accounting fixed
 cmp "$out/first/bodies.csv" "$out/second/bodies.csv" || fail "a second run is another one"
 pick simbody 9s 1 --accounting fixed --set dynamics.engine=simbody
 pick quick 14s 2 --set robots.arm.cpu.speed=1 --set robots.arm.cpu.cores=4
-# So slow that a plan takes some 3 s on its one core, however fast the host is. Any slower, and nothing but the controller would
+# So slow that a plan takes 2 to 3.6 s on its one core, however fast the host is. Any slower, and nothing but the controller would
 # have its turn.
 quick_ms=$(grep -o 'planned in [0-9.]*' "$out/quick/arm-planner.out.log" | sort -k 3 -n | awk '{ms[NR] = $3} END {print ms[int((NR + 1) / 2)]}')
-pick slow 22s 3 --set robots.arm.cpu.speed="$(awk "BEGIN {print 2 * $quick_ms / 3000}")" --set robots.arm.cpu.cores=1
+pick slow 22s 3 --set robots.arm.cpu.speed="$(awk "BEGIN {print 2 * $quick_ms / 3600}")" --set robots.arm.cpu.cores=1
 PYTHONDONTWRITEBYTECODE=1 python3 - "$out" "$source_root" <<'PY' || fail "$(cat "$out/said")"
 import json, re, statistics, sys
 from pathlib import Path
