@@ -48,7 +48,7 @@ void AnswerBook::Took(const Who& who, const Taken& taken) {
   thread.last_sampled_ns = std::max(thread.last_sampled_ns, taken.sampled_ns);
   if (taken.period_ns > 0) {
     thread.takes_samples = true;
-    HasBegun(clients_[static_cast<std::size_t>(who.client)]);
+    HasBegun(KeptOf(who.client));
   }
   if (taken.activation >= thread.releases.size()) return;
   Release& release = thread.releases[taken.activation];
@@ -59,10 +59,10 @@ void AnswerBook::Took(const Who& who, const Taken& taken) {
 void AnswerBook::Commanded(const Who& who, std::int64_t at_ns) {
   Thread& thread = ThreadOf(who);
   thread.commands = true;
-  HasBegun(clients_[static_cast<std::size_t>(who.client)]);
-  ClientFigures& figures = clients_[static_cast<std::size_t>(who.client)].figures;
-  figures.commands = true;
-  if (thread.last_sampled_ns >= 0) figures.command_age.Add(at_ns - thread.last_sampled_ns);
+  Kept& kept = KeptOf(who.client);
+  HasBegun(kept);
+  kept.figures.commands = true;
+  if (thread.last_sampled_ns >= 0) kept.figures.command_age.Add(at_ns - thread.last_sampled_ns);
 }
 
 std::int64_t AnswerBook::LastSampledOf(int thread) const {
@@ -91,11 +91,7 @@ void AnswerBook::Dies(int thread) {
   for (auto& [robot, ready] : ready_) ready.erase(thread);
   const auto found = threads_.find(thread);
   if (found == threads_.end()) return;
-  // What it did at last has been judged, but for an expiry.
-  if (const std::optional<Job> last = std::exchange(found->second.timed, std::nullopt)) {
-    Judge(clients_[static_cast<std::size_t>(found->second.client)], *last,
-          found->second.timer_period_ns, kTimer);
-  }
+  JudgeLast(found->second);
   threads_.erase(found);
 }
 
@@ -118,11 +114,11 @@ void AnswerBook::Ready(const Who& who, std::int64_t at_ns) {
   Thread& thread = ThreadOf(who);
   thread.ready_ns = at_ns;
   thread.others_ns.clear();
-  ready_[clients_[static_cast<std::size_t>(who.client)].client.robot].insert(who.thread);
+  ready_[KeptOf(who.client).client.robot].insert(who.thread);
 }
 
 void AnswerBook::Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns) {
-  const Client& runs = clients_[static_cast<std::size_t>(who.client)].client;
+  const Client& runs = KeptOf(who.client).client;
   std::set<int>& ready = ready_[runs.robot];
   for (const int number : ready) {
     if (number == who.thread) continue;
@@ -137,7 +133,7 @@ void AnswerBook::Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns)
 void AnswerBook::Ended(const Who& who, const Activation& activation, unsigned receipt,
                        std::int64_t end_ns, std::int64_t executed_ns) {
   Thread& thread = ThreadOf(who);
-  Kept& kept = clients_[static_cast<std::size_t>(who.client)];
+  Kept& kept = KeptOf(who.client);
   const std::int64_t start_ns = std::max(activation.start_ns, activation.release_ns);
   Job job{.release_ns = activation.release_ns,
           .response_ns = std::max(end_ns, start_ns) - activation.release_ns,
@@ -172,8 +168,7 @@ void AnswerBook::NoteWait(Kept& kept, const Job& job) const {
   if (waited_ns <= longest.waited_ns) return;
   const auto most =
       std::ranges::max_element(job.others_ns, {}, [](const auto& other) { return other.second; });
-  longest = {waited_ns, job.release_ns, job.response_ns,
-             clients_[static_cast<std::size_t>(most->first)].client.name};
+  longest = {waited_ns, job.release_ns, job.response_ns, KeptOf(most->first).client.name};
 }
 
 void AnswerBook::Count(const Job& job, ActivationTimes& times) {
@@ -209,16 +204,17 @@ void AnswerBook::Judge(Kept& kept, const Job& job, std::int64_t period_ns,
   late.total_ns += job.response_ns;
   late.queued_ns += job.queued_ns;
   late.executed_ns += job.executed_ns;
-  for (const auto& [client, ns] : job.others_ns)
-    late.others_ns[clients_[static_cast<std::size_t>(client)].client.name] += ns;
+  for (const auto& [client, ns] : job.others_ns) late.others_ns[KeptOf(client).client.name] += ns;
+}
+
+// No expiry follows: it has the time that it had before.
+void AnswerBook::JudgeLast(Thread& thread) {
+  const std::optional<Job> last = std::exchange(thread.timed, std::nullopt);
+  if (last.has_value()) Judge(KeptOf(thread.client), *last, thread.timer_period_ns, kTimer);
 }
 
 std::vector<ClientFigures> AnswerBook::Conclude() {
-  for (auto& [number, thread] : threads_) {
-    const std::optional<Job> last = std::exchange(thread.timed, std::nullopt);
-    if (!last.has_value()) continue;
-    Judge(clients_[static_cast<std::size_t>(thread.client)], *last, thread.timer_period_ns, kTimer);
-  }
+  for (auto& [number, thread] : threads_) JudgeLast(thread);
   std::vector<ClientFigures> all;
   for (const Kept& kept : clients_) {
     ClientFigures& figures = all.emplace_back(kept.figures);

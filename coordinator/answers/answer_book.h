@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -125,10 +126,13 @@ class AnswerBook {
     std::map<std::string, Source> sources;
   };
 
+  Kept& KeptOf(int client) { return clients_[static_cast<std::size_t>(client)]; }
+  const Kept& KeptOf(int client) const { return clients_[static_cast<std::size_t>(client)]; }
   Thread& ThreadOf(const Who& who);
   void NoteWait(Kept& kept, const Job& job) const;
   static void HasBegun(Kept& kept);
   static void Count(const Job& job, ActivationTimes& times);
+  void JudgeLast(Thread& thread);
   void Judge(Kept& kept, const Job& job, std::int64_t period_ns, const std::string& source);
 
   std::vector<Kept> clients_;

@@ -16,18 +16,22 @@ std::string AsField(std::string name) {
 
 }  // namespace
 
+std::set<std::string> CommandedTopics(const Scenario& scenario) {
+  std::set<std::string> topics;
+  for (const CommandChannelSpec& command : scenario.commands) {
+    if (const auto* from = std::get_if<DdsCommandEnd>(&command.from))
+      topics.insert(from->end.topic);
+  }
+  return topics;
+}
+
 MessageLog::MessageLog(std::string folder, const Scenario& scenario, const dds::TopicLog& topics,
                        NameOf name, std::int64_t realtime_offset_ns)
     : path_(std::move(folder) + "/messages.csv"),
       topics_(topics),
       name_(std::move(name)),
-      realtime_offset_ns_(realtime_offset_ns) {
-  for (const CommandChannelSpec& command : scenario.commands) {
-    if (const auto* from = std::get_if<DdsCommandEnd>(&command.from)) {
-      commanded_.insert(from->end.topic);
-    }
-  }
-}
+      realtime_offset_ns_(realtime_offset_ns),
+      commanded_(CommandedTopics(scenario)) {}
 
 // Numbers are not given to others. As the schedule calls the world.
 const std::string& MessageLog::NameOfProcess(dds::Hub::Number number) {

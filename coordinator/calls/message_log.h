@@ -16,6 +16,9 @@
 
 namespace tcs {
 
+// The DDS topics that move the world.
+std::set<std::string> CommandedTopics(const Scenario& scenario);
+
 class MessageLog final : public dds::TopicLog::DeliveryListener {
  public:
   using NameOf = std::function<std::string(dds::Hub::Number)>;
@@ -37,7 +40,7 @@ class MessageLog final : public dds::TopicLog::DeliveryListener {
   const dds::TopicLog& topics_;
   NameOf name_;
   const std::int64_t realtime_offset_ns_;
-  std::set<std::string> commanded_;  // topics that move the world
+  const std::set<std::string> commanded_;
   std::map<dds::Hub::Number, std::string> names_;
   CsvFile file_;
   std::string failure_;

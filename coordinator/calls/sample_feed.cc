@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <variant>
 
+#include "coordinator/calls/message_log.h"
+
 namespace tcs {
 
 namespace {
@@ -14,7 +16,18 @@ constexpr std::size_t kMostWaiting = 4096;
 }  // namespace
 
 SampleFeed::SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& topics, NameOf name)
-    : run_(run), answers_(answers), topics_(topics), name_(std::move(name)) {}
+    : run_(run),
+      answers_(answers),
+      topics_(topics),
+      name_(std::move(name)),
+      commanded_(CommandedTopics(run.scenario)) {}
+
+// Numbers are not given to others.
+const std::optional<AnswerBook::Who>& SampleFeed::WhoIs(dds::Hub::Number number) {
+  const auto [who, is_new] = clients_.try_emplace(number);
+  if (is_new) who->second = answers_.WhoIs(name_(number));
+  return who->second;
+}
 
 SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery) const {
   const std::string& topic = topics_.reports()[delivery.topic].topic;
@@ -38,7 +51,7 @@ SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery)
 
 void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
   if (delivery.to == 0) return Commanded(delivery);
-  const auto who = answers_.WhoIs(name_(delivery.to));
+  const auto who = WhoIs(delivery.to);
   if (!who.has_value()) return;
   Receiver& receiver = receivers_[who->client];
   if (receiver.waiting.size() == kMostWaiting) receiver.waiting.pop_front();
@@ -51,13 +64,9 @@ void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
 // The thread that has sent it has the turn, or was the last of its client's that took something.
 void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {
   const std::string& topic = topics_.reports()[delivery.topic].topic;
-  const bool is_command =
-      std::ranges::any_of(run_.scenario.commands, [&topic](const CommandChannelSpec& command) {
-        const auto* from = std::get_if<DdsCommandEnd>(&command.from);
-        return from != nullptr && from->end.topic == topic;
-      });
-  std::optional<AnswerBook::Who> who = answers_.WhoIs(name_(delivery.from));
-  if (!is_command || !who.has_value()) return;
+  if (!commanded_.contains(topic)) return;
+  std::optional<AnswerBook::Who> who = WhoIs(delivery.from);
+  if (!who.has_value()) return;
   const Task* runs = run_.turn.lasts() ? run_.turn.task() : nullptr;
   if (runs != nullptr && runs->process->dds_number == delivery.from) {
     if (const auto sender = answers_.WhoIs(*runs)) who = sender;

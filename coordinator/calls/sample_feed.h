@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +53,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
     std::optional<AnswerBook::Who> last;  // of its threads that took something
   };
 
+  const std::optional<AnswerBook::Who>& WhoIs(dds::Hub::Number number);
   void Commanded(const dds::TopicLog::Delivery& delivery);
   Sample SampleOf(const dds::TopicLog::Delivery& delivery) const;
   std::optional<Topic> TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
@@ -61,6 +63,8 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   AnswerFeed& answers_;
   const dds::TopicLog& topics_;
   NameOf name_;
+  const std::set<std::string> commanded_;
+  std::map<dds::Hub::Number, std::optional<AnswerBook::Who>> clients_;
   std::map<int, Receiver> receivers_;                                // by client
   std::map<std::pair<std::uint32_t, std::int32_t>, Topic> readers_;  // by process and entity
 };

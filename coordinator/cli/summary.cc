@@ -118,11 +118,10 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
 }
 
-using Json = nlohmann::ordered_json;
-
 std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
+  using Json = nlohmann::ordered_json;
   Json json{{"scenario", scenario.name},
             {"seed", scenario.seed},
             {"set", scenario.set},

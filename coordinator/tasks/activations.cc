@@ -152,8 +152,10 @@ void Activations::Idles(Task& task, bool dies) {
              std::max(now, task.activation.start_ns), charged, task.work);
   // What a program does at its end, nobody waits for.
   if (!dies) TellOfEnd(task, 0, std::max(now, task.activation.start_ns), charged);
-  if (answers_ != nullptr && dies) answers_->book().Dies(task.order);
-  if (answers_ != nullptr && !dies) answers_->book().Idles(task.order);
+  if (answers_ != nullptr) {
+    AnswerBook& book = answers_->book();
+    dies ? book.Dies(task.order) : book.Idles(task.order);
+  }
   task.activation.charged_ns = charged;
   task.activation.work = task.work;
 }

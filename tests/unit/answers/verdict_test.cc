@@ -18,18 +18,26 @@ ClientOutcome Controller() {
   return controller;
 }
 
+// It has missed so many deadlines of 100.
+ClientOutcome LateController(std::int64_t missed, std::int64_t in_a_row, std::int64_t first_ns,
+                             const LateTime& late) {
+  ClientOutcome controller = Controller();
+  controller.figures.deadline.missed = missed;
+  controller.figures.deadline.most_in_a_row = in_a_row;
+  controller.figures.deadline.first_missed_ns = first_ns;
+  controller.figures.late = late;
+  return controller;
+}
+
 TEST(Verdict, OfClientsThatKeptUpIsSilence) {
   EXPECT_TRUE(VerdictOn({Controller(), {.name = "r/planner"}}, 1000 * kMillisecond).empty());
 }
 
 TEST(Verdict, NamesAnOverload) {
-  ClientOutcome controller = Controller();
-  controller.figures.deadline.missed = 100;
-  controller.figures.deadline.most_in_a_row = 100;
-  controller.figures.deadline.first_missed_ns = 20 * kMillisecond;
-  controller.figures.late = {.total_ns = 9000 * kMillisecond,
-                             .queued_ns = 7500 * kMillisecond,
-                             .executed_ns = 1500 * kMillisecond};
+  ClientOutcome controller = LateController(100, 100, 20 * kMillisecond,
+                                            {.total_ns = 9000 * kMillisecond,
+                                             .queued_ns = 7500 * kMillisecond,
+                                             .executed_ns = 1500 * kMillisecond});
   for (int i = 0; i < 100; ++i) controller.figures.times.execution.Add(15'100'000);
   EXPECT_EQ(
       VerdictOn({controller}, 1000 * kMillisecond),
@@ -39,14 +47,12 @@ TEST(Verdict, NamesAnOverload) {
 }
 
 TEST(Verdict, NamesWhoHadTheCore) {
-  ClientOutcome controller = Controller();
-  controller.figures.deadline.missed = 3;
-  controller.figures.deadline.most_in_a_row = 2;
-  controller.figures.deadline.first_missed_ns = 500 * kMillisecond;
-  controller.figures.late = {.total_ns = 120 * kMillisecond,
-                             .queued_ns = 20 * kMillisecond,
-                             .executed_ns = 3 * kMillisecond};
-  controller.figures.late.others_ns["r/planner"] = 97 * kMillisecond;
+  const ClientOutcome controller =
+      LateController(3, 2, 500 * kMillisecond,
+                     {.total_ns = 120 * kMillisecond,
+                      .queued_ns = 20 * kMillisecond,
+                      .executed_ns = 3 * kMillisecond,
+                      .others_ns = {{"r/planner", 97 * kMillisecond}}});
   const std::string start =
       "r/controller missed 3 of 100 of its deadlines (10 ms, the period of sensors), up to 2 in a "
       "row, the first at 0.500 s: r/planner";
