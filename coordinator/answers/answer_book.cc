@@ -27,20 +27,36 @@ void AnswerBook::Open(std::vector<Client> clients) {
   for (Client& client : clients) clients_.push_back({.client = std::move(client)});
 }
 
+void AnswerBook::Tell(std::function<void(const Response&)> on_response) {
+  on_response_ = std::move(on_response);
+}
+
 // What it did before its first sample, or command, was its start.
-void AnswerBook::HasBegun(Kept& kept) {
+void AnswerBook::HasBegun(int client) {
+  Kept& kept = KeptOf(client);
   if (std::exchange(kept.has_begun, true)) return;
   kept.judged = kept.all = {};
   kept.in_a_row = 0;
   kept.sources.clear();
   kept.figures.deadline = {};
   kept.figures.late = {};
+  for (auto& [number, thread] : threads_) {
+    if (thread.client != client) continue;
+    kept.figures.after_ns = std::max(kept.figures.after_ns, thread.ended_ns);
+    thread.timed.reset();
+  }
 }
 
 AnswerBook::Thread& AnswerBook::ThreadOf(const Who& who) {
   Thread& thread = threads_[who.thread];
   thread.client = who.client;
+  thread.is_first = who.is_first;
   return thread;
+}
+
+CoreWaits::Of AnswerBook::OnCores(const Who& who) const {
+  const Client& client = KeptOf(who.client).client;
+  return {who.thread, who.client, client.robot};
 }
 
 void AnswerBook::Took(const Who& who, const Taken& taken) {
@@ -48,7 +64,7 @@ void AnswerBook::Took(const Who& who, const Taken& taken) {
   thread.last_sampled_ns = std::max(thread.last_sampled_ns, taken.sampled_ns);
   if (taken.period_ns > 0) {
     thread.takes_samples = true;
-    HasBegun(KeptOf(who.client));
+    HasBegun(who.client);
   }
   if (taken.activation >= thread.releases.size()) return;
   Release& release = thread.releases[taken.activation];
@@ -59,8 +75,8 @@ void AnswerBook::Took(const Who& who, const Taken& taken) {
 void AnswerBook::Commanded(const Who& who, std::int64_t at_ns) {
   Thread& thread = ThreadOf(who);
   thread.commands = true;
+  HasBegun(who.client);
   Kept& kept = KeptOf(who.client);
-  HasBegun(kept);
   kept.figures.commands = true;
   if (thread.last_sampled_ns >= 0) kept.figures.command_age.Add(at_ns - thread.last_sampled_ns);
 }
@@ -88,7 +104,7 @@ void AnswerBook::ForgetReceipts(int thread, unsigned receipts) {
 }
 
 void AnswerBook::Dies(int thread) {
-  for (auto& [robot, ready] : ready_) ready.erase(thread);
+  cores_.Stop(thread);
   const auto found = threads_.find(thread);
   if (found == threads_.end()) return;
   JudgeLast(found->second);
@@ -104,6 +120,7 @@ void AnswerBook::Idles(int thread) {
 
 void AnswerBook::NeverCameTo(const Who& who, const Taken& waiting, std::int64_t end_ns) {
   Thread& thread = ThreadOf(who);
+  EndPaused(thread, end_ns);
   thread.releases.front() = {waiting.arrived_ns, waiting.period_ns, std::string(waiting.from)};
   Activation activation{
       .cause = ReleaseCause::kInput, .release_ns = waiting.arrived_ns, .start_ns = end_ns};
@@ -111,110 +128,178 @@ void AnswerBook::NeverCameTo(const Who& who, const Taken& waiting, std::int64_t 
 }
 
 void AnswerBook::Ready(const Who& who, std::int64_t at_ns) {
-  Thread& thread = ThreadOf(who);
-  thread.ready_ns = at_ns;
-  thread.others_ns.clear();
-  ready_[KeptOf(who.client).client.robot].insert(who.thread);
+  cores_.Ready(OnCores(who), at_ns);
 }
 
 void AnswerBook::Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns) {
-  const Client& runs = KeptOf(who.client).client;
-  std::set<int>& ready = ready_[runs.robot];
-  for (const int number : ready) {
-    if (number == who.thread) continue;
-    Thread& waits = threads_[number];
-    const std::int64_t overlap_ns = end_ns - std::max(start_ns, waits.ready_ns);
-    if (overlap_ns > 0) waits.others_ns[who.client] += overlap_ns / runs.cores;
+  cores_.Ran(OnCores(who), start_ns, end_ns);
+}
+
+void AnswerBook::AddPause(const Pause& pause, std::int64_t ns, TimeParts& parts) {
+  std::int64_t& part =
+      pause.what == Pause::For::kLock ? parts.locks_ns[pause.client] : parts.room_ns;
+  part += std::max<std::int64_t>(0, ns);
+}
+
+// Who is charged less than it has run, as it was charged too much before, has computed all the same.
+void AnswerBook::AddCores(const CoreWaits::Times& times, std::int64_t charged_ns,
+                          Response& response) {
+  response.charged_ns += charged_ns;
+  TimeParts& parts = response.parts;
+  parts.executed_ns += charged_ns;
+  for (const auto& [client, ns] : CoreWaits::Shares(times.others_ns, response.RestNs()))
+    parts.cores_ns[client] += ns;
+  parts.executed_ns +=
+      std::clamp<std::int64_t>(times.own_ns - charged_ns, std::min<std::int64_t>(0, response.RestNs()),
+                               std::max<std::int64_t>(0, response.RestNs()));
+}
+
+// The activation, or, of one that has paused, that together with what came before.
+Response AnswerBook::UntilNow(Thread& thread, const Who& who, const Activation& activation,
+                              std::int64_t end_ns, std::int64_t executed_ns) {
+  const std::int64_t ready_ns = cores_.ReadySince(who.thread);
+  const CoreWaits::Times on_cores = cores_.Stop(who.thread);
+  const std::int64_t start_ns = std::max(activation.start_ns, activation.release_ns);
+  if (thread.begun.has_value()) {
+    Response response = std::move(thread.begun->response);
+    const std::int64_t on_ns = ready_ns < 0 ? start_ns : std::min(ready_ns, end_ns);
+    AddPause(thread.begun->pause, on_ns - response.end_ns, response.parts);
+    response.end_ns = std::max(response.end_ns, end_ns);
+    AddCores(on_cores, executed_ns, response);
+    return response;
   }
-  // With more cores than one, others that run beside it keep it from nothing.
-  if (runs.cores > 1) ready.erase(who.thread);
+  // What was there while the thread was still at something earlier has waited for that.
+  const std::int64_t free_ns =
+      std::clamp(thread.ended_ns, activation.release_ns, std::max(activation.release_ns, start_ns));
+  Response response{.client = who.client,
+                    .thread = who.is_first ? 0 : who.thread,
+                    .cause = activation.cause,
+                    .release_ns = activation.release_ns,
+                    .start_ns = start_ns,
+                    .end_ns = std::max(end_ns, start_ns)};
+  response.parts = {.queued_ns = free_ns - activation.release_ns,
+                    .away_ns = (ready_ns < 0 ? start_ns : std::clamp(ready_ns, free_ns, start_ns)) - free_ns};
+  AddCores(on_cores, executed_ns, response);
+  return response;
+}
+
+void AnswerBook::Pauses(const Who& who, const Activation& activation, unsigned receipt,
+                        std::int64_t at_ns, std::int64_t executed_ns, const Pause& pause) {
+  Thread& thread = ThreadOf(who);
+  const Release release =
+      thread.begun.has_value()
+          ? thread.begun->release
+          : thread.releases[std::min<std::size_t>(receipt, shm::Receipts::kMost)];
+  thread.begun = {UntilNow(thread, who, activation, at_ns, executed_ns), release, pause};
 }
 
 void AnswerBook::Ended(const Who& who, const Activation& activation, unsigned receipt,
                        std::int64_t end_ns, std::int64_t executed_ns) {
   Thread& thread = ThreadOf(who);
-  Kept& kept = KeptOf(who.client);
-  const std::int64_t start_ns = std::max(activation.start_ns, activation.release_ns);
-  Job job{.release_ns = activation.release_ns,
-          .response_ns = std::max(end_ns, start_ns) - activation.release_ns,
-          .delay_ns = start_ns - activation.release_ns,
-          // What was there while the thread was still at something earlier has waited for that.
-          .queued_ns = std::max<std::int64_t>(
-              0, std::min(thread.ended_ns, start_ns) - activation.release_ns),
-          .executed_ns = executed_ns,
-          .others_ns = std::exchange(thread.others_ns, {})};
-  thread.ready_ns = -1;
-  ready_[kept.client.robot].erase(who.thread);
-  thread.ended_ns = std::max(end_ns, start_ns);
-  NoteWait(kept, job);
-  if (!IsJudged(activation.cause)) return;
-  if (!who.is_first && !thread.takes_samples && !thread.commands) return;
-  if (activation.cause == ReleaseCause::kInput) {
-    const Release& release = thread.releases[std::min<std::size_t>(receipt, shm::Receipts::kMost)];
-    Judge(kept, job, release.period_ns, release.from);
-    return;
-  }
-  const std::int64_t release_ns = job.release_ns;
-  const std::optional<Job> before = std::exchange(thread.timed, std::move(job));
-  if (!before.has_value()) return;
-  thread.timer_period_ns = release_ns - before->release_ns;
-  Judge(kept, *before, thread.timer_period_ns, kTimer);
+  const Release release =
+      thread.begun.has_value()
+          ? thread.begun->release
+          : thread.releases[std::min<std::size_t>(receipt, shm::Receipts::kMost)];
+  Response response = UntilNow(thread, who, activation, end_ns, executed_ns);
+  thread.begun.reset();
+  EndOf(thread, std::move(response), release);
 }
 
-void AnswerBook::NoteWait(Kept& kept, const Job& job) const {
+void AnswerBook::EndOf(Thread& thread, Response response, const Release& release) {
+  Kept& kept = KeptOf(thread.client);
+  thread.ended_ns = response.end_ns;
+  NoteWait(kept, response);
+  if (!IsJudged(response.cause)) return;
+  if (!thread.is_first && !thread.takes_samples && !thread.commands) return;
+  if (response.cause == ReleaseCause::kInput) {
+    Judge(kept, std::move(response), release.period_ns, release.from);
+    return;
+  }
+  const std::int64_t release_ns = response.release_ns;
+  std::optional<Response> before = std::exchange(thread.timed, std::move(response));
+  if (!before.has_value()) return;
+  thread.timer_period_ns = release_ns - before->release_ns;
+  Judge(kept, std::move(*before), thread.timer_period_ns, kTimer);
+}
+
+void AnswerBook::NoteWait(Kept& kept, const Response& response) const {
+  const std::map<int, std::int64_t>& cores_ns = response.parts.cores_ns;
   std::int64_t waited_ns = 0;
-  for (const auto& [client, ns] : job.others_ns) waited_ns += ns;
+  for (const auto& [client, ns] : cores_ns) waited_ns += ns;
   LongestWait& longest = kept.figures.longest_wait;
   if (waited_ns <= longest.waited_ns) return;
   const auto most =
-      std::ranges::max_element(job.others_ns, {}, [](const auto& other) { return other.second; });
-  longest = {waited_ns, job.release_ns, job.response_ns, KeptOf(most->first).client.name};
+      std::ranges::max_element(cores_ns, {}, [](const auto& other) { return other.second; });
+  longest = {waited_ns, response.release_ns, response.TookNs(), KeptOf(most->first).client.name};
 }
 
-void AnswerBook::Count(const Job& job, ActivationTimes& times) {
-  times.response.Add(job.response_ns);
-  times.start_delay.Add(job.delay_ns);
-  times.execution.Add(job.executed_ns);
+void AnswerBook::Count(const Response& response, ActivationTimes& times) {
+  times.response.Add(response.TookNs());
+  times.start_delay.Add(response.start_ns - response.release_ns);
+  times.execution.Add(response.charged_ns);
 }
 
-void AnswerBook::Judge(Kept& kept, const Job& job, std::int64_t period_ns,
+void AnswerBook::Add(const std::map<int, std::int64_t>& part,
+                     std::map<std::string, std::int64_t>& to) const {
+  for (const auto& [client, ns] : part) to[client < 0 ? "" : KeptOf(client).client.name] += ns;
+}
+
+void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns,
                        const std::string& source) {
   const bool has_own = kept.client.deadline_ns > 0;
-  const std::int64_t deadline_ns = has_own ? kept.client.deadline_ns : period_ns;
-  Count(job, kept.all);
-  if (deadline_ns <= 0) return;
-  Count(job, kept.judged);
+  response.deadline_ns = has_own ? kept.client.deadline_ns : std::max<std::int64_t>(0, period_ns);
+  if (on_response_) on_response_(response);
+  Count(response, kept.all);
+  if (response.deadline_ns == 0) return;
+  Count(response, kept.judged);
   DeadlineFigures& figures = kept.figures.deadline;
   ++figures.judged;
   if (!has_own) {
     Source& of = kept.sources[source];
     ++of.judged;
-    const std::int64_t period = ToThreeDigits(deadline_ns);
+    const std::int64_t period = ToThreeDigits(response.deadline_ns);
     if (of.periods_ns.size() < kMostPeriods || of.periods_ns.contains(period))
       ++of.periods_ns[period];
   }
-  if (job.response_ns <= deadline_ns) {
+  if (response.TookNs() <= response.deadline_ns) {
     kept.in_a_row = 0;
     return;
   }
   ++figures.missed;
   figures.most_in_a_row = std::max(figures.most_in_a_row, ++kept.in_a_row);
-  if (figures.first_missed_ns < 0) figures.first_missed_ns = job.release_ns;
+  if (figures.first_missed_ns < 0) figures.first_missed_ns = response.release_ns;
   LateTime& late = kept.figures.late;
-  late.total_ns += job.response_ns;
-  late.queued_ns += job.queued_ns;
-  late.executed_ns += job.executed_ns;
-  for (const auto& [client, ns] : job.others_ns) late.others_ns[KeptOf(client).client.name] += ns;
+  const TimeParts& parts = response.parts;
+  late.total_ns += response.TookNs();
+  late.queued_ns += parts.queued_ns;
+  late.away_ns += parts.away_ns;
+  late.executed_ns += parts.executed_ns;
+  late.room_ns += parts.room_ns;
+  Add(parts.cores_ns, late.others_ns);
+  Add(parts.locks_ns, late.locks_ns);
 }
 
 // No expiry follows: it has the time that it had before.
 void AnswerBook::JudgeLast(Thread& thread) {
-  const std::optional<Job> last = std::exchange(thread.timed, std::nullopt);
-  if (last.has_value()) Judge(KeptOf(thread.client), *last, thread.timer_period_ns, kTimer);
+  std::optional<Response> last = std::exchange(thread.timed, std::nullopt);
+  if (last.has_value())
+    Judge(KeptOf(thread.client), std::move(*last), thread.timer_period_ns, kTimer);
 }
 
-std::vector<ClientFigures> AnswerBook::Conclude() {
-  for (auto& [number, thread] : threads_) JudgeLast(thread);
+// It waits in the midst of its work when the run ends.
+void AnswerBook::EndPaused(Thread& thread, std::int64_t end_ns) {
+  std::optional<Begun> begun = std::exchange(thread.begun, std::nullopt);
+  if (!begun.has_value()) return;
+  AddPause(begun->pause, end_ns - begun->response.end_ns, begun->response.parts);
+  begun->response.end_ns = std::max(end_ns, begun->response.end_ns);
+  EndOf(thread, std::move(begun->response), begun->release);
+}
+
+std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
+  for (auto& [number, thread] : threads_) {
+    EndPaused(thread, end_ns);
+    JudgeLast(thread);
+  }
   std::vector<ClientFigures> all;
   for (const Kept& kept : clients_) {
     ClientFigures& figures = all.emplace_back(kept.figures);

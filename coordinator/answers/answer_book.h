@@ -2,7 +2,8 @@
 // what it was released by to the end of its work, which deadlines it missed, and how old its data
 // was (client_figures.h). Pure; all times are virtual nanoseconds.
 //
-// An activation is one of tasks/activations.h. Its release is when what it works on was there for
+// An activation is one of tasks/activations.h, but for waits in its midst (Pause), which do not end
+// it here. Its release is when what it works on was there for
 // it: the expiry of its timer, or the arrival of the oldest datagram that it took at its beginning,
 // whether or not it was waiting by then. Activations for other causes (a start, another thread, a
 // signal) are not judged, and neither are those of threads that only help: neither a process's
@@ -16,14 +17,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "coordinator/answers/client_figures.h"
+#include "coordinator/answers/core_waits.h"
+#include "coordinator/answers/response.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/receipts.h"
 
@@ -34,7 +37,6 @@ class AnswerBook {
   struct Client {
     std::string name;
     int robot = 0;                 // its number, of several clients the same
-    int cores = 1;                 // that the robot has
     std::int64_t deadline_ns = 0;  // 0: the period, if it is expected to keep it
     bool is_periodic = false;
   };
@@ -57,7 +59,16 @@ class AnswerBook {
     unsigned activation = 0;
   };
 
+  // What a thread waits for in the midst of its work.
+  struct Pause {
+    enum class For { kLock, kRoom };  // the lock of another thread; that others take what was sent
+    For what = For::kLock;
+    int client = -1;  // whose thread has the lock; -1: not known
+  };
+
   void Open(std::vector<Client> clients);
+  // Is told of each activation by time or input once its deadline is known. Null: nobody.
+  void Tell(std::function<void(const Response&)> on_response);
 
   void Took(const Who& who, const Taken& taken);
   // It sends something to where actuators are driven from.
@@ -74,6 +85,10 @@ class AnswerBook {
   void Ready(const Who& who, std::int64_t at_ns);
   // A thread of that client had a core of its robot.
   void Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns);
+  // An activation goes on once what it waits for is there, and the thread is ready. What follows is
+  // told as another activation, by a thread.
+  void Pauses(const Who& who, const Activation& activation, unsigned receipt, std::int64_t at_ns,
+              std::int64_t executed_ns, const Pause& pause);
   // An activation ends, or is cut off by the run's end. It began with that receipt, or (0) with the
   // end of a wait.
   void Ended(const Who& who, const Activation& activation, unsigned receipt, std::int64_t end_ns,
@@ -85,30 +100,31 @@ class AnswerBook {
   // At the run's end that has waited, and the thread has not come to it.
   void NeverCameTo(const Who& who, const Taken& waiting, std::int64_t end_ns);
 
-  // The run is over. By client, as Open was given them; without inputs.
-  std::vector<ClientFigures> Conclude();
+  // The run is over, then. By client, as Open was given them; without inputs.
+  std::vector<ClientFigures> Conclude(std::int64_t end_ns);
 
  private:
-  struct Job {
-    std::int64_t release_ns = 0, response_ns = 0, delay_ns = 0, queued_ns = 0, executed_ns = 0;
-    std::map<int, std::int64_t> others_ns;  // by client
-  };
   // What an activation was released by, if that is known.
   struct Release {
     std::int64_t at_ns = INT64_MAX;
     std::int64_t period_ns = 0;
     std::string from;
   };
+  // An activation that pauses, or has gone on since.
+  struct Begun {
+    Response response;  // until the pause
+    Release release;
+    Pause pause;
+  };
   struct Thread {
     int client = 0;
-    bool takes_samples = false, commands = false;
+    bool is_first = true, takes_samples = false, commands = false;
     std::int64_t last_sampled_ns = -1;
     std::array<Release, shm::Receipts::kMost + 1> releases;  // by receipt
     bool is_by_receipt = false;                              // the one that goes on
     std::int64_t ended_ns = 0;                               // its last activation
-    std::int64_t ready_ns = -1;                              // since when; -1: it is not
-    std::map<int, std::int64_t> others_ns;                   // that had a core since then
-    std::optional<Job> timed;          // to be judged once the next expiry is known
+    std::optional<Begun> begun;
+    std::optional<Response> timed;     // to be judged once the next expiry is known
     std::int64_t timer_period_ns = 0;  // between the last two
   };
   // Deadlines that were periods of that.
@@ -128,16 +144,25 @@ class AnswerBook {
 
   Kept& KeptOf(int client) { return clients_[static_cast<std::size_t>(client)]; }
   const Kept& KeptOf(int client) const { return clients_[static_cast<std::size_t>(client)]; }
+  CoreWaits::Of OnCores(const Who& who) const;
   Thread& ThreadOf(const Who& who);
-  void NoteWait(Kept& kept, const Job& job) const;
-  static void HasBegun(Kept& kept);
-  static void Count(const Job& job, ActivationTimes& times);
+  Response UntilNow(Thread& thread, const Who& who, const Activation& activation,
+                    std::int64_t end_ns, std::int64_t executed_ns);
+  static void AddCores(const CoreWaits::Times& times, std::int64_t charged_ns, Response& response);
+  static void AddPause(const Pause& pause, std::int64_t ns, TimeParts& parts);
+  void Add(const std::map<int, std::int64_t>& part, std::map<std::string, std::int64_t>& to) const;
+  void NoteWait(Kept& kept, const Response& response) const;
+  void HasBegun(int client);
+  static void Count(const Response& response, ActivationTimes& times);
+  void EndOf(Thread& thread, Response response, const Release& release);
+  void EndPaused(Thread& thread, std::int64_t end_ns);
   void JudgeLast(Thread& thread);
-  void Judge(Kept& kept, const Job& job, std::int64_t period_ns, const std::string& source);
+  void Judge(Kept& kept, Response response, std::int64_t period_ns, const std::string& source);
 
   std::vector<Kept> clients_;
   std::map<int, Thread> threads_;
-  std::map<int, std::set<int>> ready_;  // threads, by robot
+  CoreWaits cores_;
+  std::function<void(const Response&)> on_response_;
 };
 
 }  // namespace tcs

@@ -25,6 +25,9 @@ struct LateTime {
   std::int64_t queued_ns = 0;                     // the client was still at what had come earlier
   std::int64_t executed_ns = 0;                   // its own thread computed
   std::map<std::string, std::int64_t> others_ns;  // it was ready, and that client had the core
+  std::map<std::string, std::int64_t> locks_ns;   // for a lock that the client's thread had
+  std::int64_t away_ns = 0;                       // it slept, or waited for something else
+  std::int64_t room_ns = 0;                       // for others to take what it had sent
 };
 
 // The activation in which it was ready for longest while others had its cores.
@@ -54,6 +57,9 @@ struct ActivationTimes {
 };
 
 struct ClientFigures {
+  // Activations count that ended after that: what came before the first sample, or command, was its
+  // start.
+  std::int64_t after_ns = -1;
   ActivationTimes times;  // of those that a deadline was for; of all, if there is none
   DeadlineFigures deadline;
   LateTime late;

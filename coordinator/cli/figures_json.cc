@@ -31,6 +31,7 @@ void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
   client["response_ns"] = JsonOf(figures.times.response);
   client["start_delay_ns"] = JsonOf(figures.times.start_delay);
   client["execution_ns"] = JsonOf(figures.times.execution);
+  client["counted_after_ns"] = figures.after_ns;
   client["deadline"] = nullptr;
   if (deadline.deadline_ns > 0) {
     client["deadline"] = {{"deadline_ns", deadline.deadline_ns},
@@ -42,7 +43,10 @@ void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
     client["late"] = {{"total_ns", figures.late.total_ns},
                       {"queued_ns", figures.late.queued_ns},
                       {"executed_ns", figures.late.executed_ns},
-                      {"others_ns", figures.late.others_ns}};
+                      {"others_ns", figures.late.others_ns},
+                      {"locks_ns", figures.late.locks_ns},
+                      {"away_ns", figures.late.away_ns},
+                      {"room_ns", figures.late.room_ns}};
   }
   client["inputs"] = Json::array();
   for (const InputFigures& input : figures.inputs) client["inputs"].push_back(JsonOf(input));

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "coordinator/os/mutex_owner.h"
+#include "coordinator/core/locks.h"
 
 namespace tcs {
 
@@ -19,16 +19,8 @@ std::string NameOf(const Task& task) {
 
 // Whose lock the thread waits for without a timeout; null: nobody's that is known.
 const Task* AwaitedBy(const Task& task, const RunState& run, const FutexTable& futexes) {
-  const auto* futex = task.Awaits<awaited::Futex>();
-  if (futex == nullptr || !task.wait->deadline.IsNever()) return nullptr;
-  if (futex->owner != awaited::kNobody) return &run.table.At(futex->owner);
-  const FutexKey* word = futexes.FirstWordOf(task.order);
-  if (word == nullptr || word->pid == 0) return nullptr;
-  const auto owner = OwnerOfMutex(task.process->pid, word->address, [&](pid_t tid) {
-    const Task* one = run.table.Living(tid);
-    return one != nullptr && one->process == task.process;
-  });
-  return owner.has_value() ? run.table.Living(*owner) : nullptr;
+  const bool waits = task.wait.has_value() && task.wait->deadline.IsNever();
+  return waits ? OwnerOfAwaitedLock(task, run, futexes) : nullptr;
 }
 
 std::string SentenceOf(const std::vector<const Task*>& ring) {

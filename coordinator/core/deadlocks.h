@@ -1,5 +1,4 @@
-// Threads that wait for each other's locks, for ever, as far as locks say who has them: mutexes of
-// the C library's, and those that lend priority. Not semaphores, conditions, or a language's own.
+// Threads that wait for each other's locks, for ever, as far as locks say who has them (locks.h).
 //
 // For the coordinator's thread only. Reads the memory of programs.
 #pragma once

@@ -100,7 +100,7 @@ class Engine {
   [[nodiscard]] std::string Prepare();
   [[nodiscard]] std::string TakeCpu();
   int HomeCpu() const;
-  void OpenAnswers();
+  [[nodiscard]] std::string OpenAnswers();
   void TellOfMissingRights() const;
   [[nodiscard]] std::string PrepareMemory();
   [[nodiscard]] std::string PrepareSignals();

@@ -84,7 +84,7 @@ void RunReporter::Answer(VirtualTime end) {
     for (const auto& [client, of_topics] : samples->Conclude())
       inputs[client].insert(inputs[client].end(), of_topics.begin(), of_topics.end());
   }
-  const std::vector<ClientFigures> figures = from_.answers.book().Conclude();
+  const std::vector<ClientFigures> figures = from_.answers.book().Conclude(end.ns());
   std::vector<ClientOutcome> outcomes;
   for (const Launches::Launch& launch : from_.launches.all()) {
     const auto who = from_.answers.WhoIs(*launch.spec);

@@ -19,6 +19,7 @@
 
 #include "coordinator/calls/scheduling_rights.h"
 #include "coordinator/core/engine.h"
+#include "coordinator/core/locks.h"
 #include "coordinator/host/fixed_meter.h"
 #include "coordinator/host/measured_meter.h"
 #include "coordinator/host/shared_cpu_meter.h"
@@ -88,7 +89,9 @@ std::string Engine::Prepare() {
     if (!SetLevel(0, Level::kCoordinator)) return "the coordinator's priority cannot be set";
   }
   if (std::string error = records_.Open(); !error.empty()) return error;
-  if (has_results) OpenAnswers();
+  if (has_results) {
+    if (std::string error = OpenAnswers(); !error.empty()) return error;
+  }
   if (std::string error = PrepareFolders(run_.scenario, run_.options); !error.empty()) return error;
   clock_.Calibrate();
   world_.UseProcessors(helpers_cpus_);
@@ -131,14 +134,16 @@ std::string Engine::TakeCpu() {
 int Engine::HomeCpu() const { return share_.has_value() ? share_->cpu() : claim_.cpu; }
 
 // Who is late, and why, is kept of runs whose results are.
-void Engine::OpenAnswers() {
+std::string Engine::OpenAnswers() {
   answers_.Open(run_.scenario);
-  activations_.Tell(&answers_);
-  records_.Tell(&answers_);
+  activations_.Tell(&answers_, [this](const Task& task) {
+    return PauseOf(task, run_, words_.table(), answers_);
+  });
   dds_.records().UseAnswers(answers_);
   datagrams_.Tell(dds_.records().samples());
   if (run_.options.record != RecordingKind::kNone)
     datagram_log_.Open(run_.options.output_directory);
+  return records_.Follow(answers_);
 }
 
 void Engine::TellOfMissingRights() const {

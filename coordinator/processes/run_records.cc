@@ -12,6 +12,13 @@ std::string RunRecords::Open() {
   return error;
 }
 
+std::string RunRecords::Follow(AnswerFeed& answers) {
+  answers_ = &answers;
+  answers.book().Tell([this](const Response& response) { responses_.Write(response); });
+  return responses_.Open(run_.options.output_directory + "/responses.csv",
+                         answers.NamesOfClients());
+}
+
 std::string RunRecords::OpenFiles() {
   const std::string& directory = run_.options.output_directory;
   if (directory.empty()) return {};
@@ -39,13 +46,14 @@ void RunRecords::StartAt(const RunClock& clock) {
 void RunRecords::Flush() {
   schedule_.Flush();
   activations_.Flush();
+  responses_.Flush();
   world_.FlushRecords();
   output_.Flush();
 }
 
 std::string RunRecords::Close() {
   output_.LookAt(run_.latest.ns());
-  const std::string errors[] = {schedule_.Close(), activations_.Close(), world_.CloseRecords(),
+  const std::string errors[] = {schedule_.Close(), activations_.Close(), responses_.Close(), world_.CloseRecords(),
                                 output_.Close()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;

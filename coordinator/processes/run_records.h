@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "coordinator/answers/response_log.h"
 #include "coordinator/core/world.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/run_clock.h"
@@ -31,10 +32,11 @@ class RunRecords {
   RunRecords(RunState& run, World& world, Activations& activations)
       : run_(run), world_(world), activations_(activations) {}
 
-  // Is told of each turn, too. Null: nobody; it outlives this.
-  void Tell(AnswerFeed* answers) { answers_ = answers; }
   // Once the world is open; what an earlier run has left there is removed.
   [[nodiscard]] std::string Open();
+  // Then, if at all. The feed, which is open, outlives this; it is told of each turn, and what it
+  // tells of is written.
+  [[nodiscard]] std::string Follow(AnswerFeed& answers);
   // From when real times count.
   void StartAt(const RunClock& clock);
   // So that what is left of a run that is killed ends shortly before.
@@ -66,6 +68,7 @@ class RunRecords {
   Activations& activations_;
   AnswerFeed* answers_ = nullptr;
   ScheduleRecords schedule_;
+  ResponseLog responses_;
   OutputLog output_;
   int world_row_ = 0;
 };

@@ -76,6 +76,18 @@ void Activations::TellOfEnd(const Task& task, unsigned receipt, std::int64_t end
                          charged_ns - task.activation.charged_ns);
 }
 
+// False: what it waits for ends its activation.
+bool Activations::TellOfPause(const Task& task, std::int64_t at_ns, std::int64_t charged_ns) const {
+  if (answers_ == nullptr || !pause_of_) return false;
+  const auto who = answers_->WhoIs(task);
+  if (!who.has_value()) return false;
+  const auto pause = pause_of_(task);
+  if (!pause.has_value()) return false;
+  answers_->book().Pauses(*who, task.activation, 0, at_ns, charged_ns - task.activation.charged_ns,
+                          *pause);
+  return true;
+}
+
 void Activations::IsCutOff(const Task& task, VirtualTime end) const {
   Activation activation = task.activation;
   const std::int64_t end_ns = ProgramClock::At(end, task.lead).ns();
@@ -150,9 +162,11 @@ void Activations::Idles(Task& task, bool dies) {
   const std::int64_t charged = std::max(task.charged.ns(), task.activation.charged_ns);
   log_.Write(task.process->name, task.is_further ? task.order : 0, task.activation,
              std::max(now, task.activation.start_ns), charged, task.work);
+  const std::int64_t end_ns = std::max(now, task.activation.start_ns);
   // What a program does at its end, nobody waits for.
-  if (!dies) TellOfEnd(task, 0, std::max(now, task.activation.start_ns), charged);
-  if (answers_ != nullptr) {
+  const bool pauses = !dies && TellOfPause(task, end_ns, charged);
+  if (!dies && !pauses) TellOfEnd(task, 0, end_ns, charged);
+  if (answers_ != nullptr && !pauses) {
     AnswerBook& book = answers_->book();
     dies ? book.Dies(task.order) : book.Idles(task.order);
   }

@@ -9,8 +9,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "coordinator/tasks/answer_feed.h"
 #include "coordinator/tasks/task.h"
@@ -24,8 +26,13 @@ class Activations {
   // `has_own_clocks`: a program's clock may be ahead of the world's (--sync callback).
   explicit Activations(bool has_own_clocks) : has_own_clocks_(has_own_clocks) {}
 
-  // Is told of each that begins or ends. Null: nobody; it outlives this.
-  void Tell(AnswerFeed* answers) { answers_ = answers; }
+  // What a thread that begins to wait waits for in the midst of its work; none: it has done that.
+  using PauseOf = std::function<std::optional<AnswerBook::Pause>(const Task&)>;
+  // Is told of each that begins, pauses or ends. Null: nobody; it outlives this.
+  void Tell(AnswerFeed* answers, PauseOf pause_of) {
+    answers_ = answers;
+    pause_of_ = std::move(pause_of);
+  }
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& path, bool with_work) {
     return log_.Open(path, with_work);
@@ -51,6 +58,7 @@ class Activations {
   void FindRelease(Activation& activation, const Task& task, unsigned receipt) const;
   void TellOfEnd(const Task& task, unsigned receipt, std::int64_t end_ns,
                  std::int64_t charged_ns) const;
+  bool TellOfPause(const Task& task, std::int64_t at_ns, std::int64_t charged_ns) const;
   void TellOfBeginning(const Task& task, std::int64_t at_ns) const;
   struct Receipt {
     unsigned number = 0;  // since the last stop, from 1 on; 0: it has none
@@ -62,6 +70,7 @@ class Activations {
 
   const bool has_own_clocks_;
   AnswerFeed* answers_ = nullptr;
+  PauseOf pause_of_;
   ActivationLog log_;
 };
 

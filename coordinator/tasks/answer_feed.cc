@@ -13,13 +13,18 @@ void AnswerFeed::Open(const Scenario& scenario) {
       clients_[&client] = names_[client.name] = static_cast<int>(clients.size());
       clients.push_back({.name = client.name,
                          .robot = robot_number,
-                         .cores = robot.cores,
                          .deadline_ns = client.deadline.ns(),
                          .is_periodic = client.client_class == ClientClass::kPeriodic});
     }
     ++robot_number;
   }
   book_.Open(std::move(clients));
+}
+
+std::vector<std::string> AnswerFeed::NamesOfClients() const {
+  std::vector<std::string> names(names_.size());
+  for (const auto& [name, number] : names_) names[static_cast<std::size_t>(number)] = name;
+  return names;
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const ClientSpec& client) const {

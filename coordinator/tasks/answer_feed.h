@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coordinator/answers/answer_book.h"
 #include "coordinator/scenario/scenario.h"
@@ -19,6 +20,8 @@ class AnswerFeed {
   // The scenario is the one that processes' specifications belong to, and outlives this.
   void Open(const Scenario& scenario);
   bool is_open() const { return !clients_.empty(); }
+  // Clients' names, by their numbers in the book.
+  std::vector<std::string> NamesOfClients() const;
 
   // None of a thread that is no client's.
   std::optional<AnswerBook::Who> WhoIs(const Task& task) const;

@@ -1,12 +1,8 @@
 #include "coordinator/trace/activation_log.h"
 
-#include <string_view>
-
 namespace tcs {
 
-namespace {
-
-constexpr std::string_view NameOf(ReleaseCause cause) {
+std::string_view NameOf(ReleaseCause cause) {
   switch (cause) {
     case ReleaseCause::kStart:
       return "start";
@@ -23,8 +19,6 @@ constexpr std::string_view NameOf(ReleaseCause cause) {
   }
   return "";
 }
-
-}  // namespace
 
 std::string ActivationLog::Open(const std::string& path, bool with_work) {
   with_work_ = with_work;

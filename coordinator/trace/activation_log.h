@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "coordinator/trace/csv_file.h"
 #include "shm/work_counts.h"
@@ -12,6 +13,8 @@ namespace tcs {
 
 // What ended the wait before an activation; or, without one, what was received as it began.
 enum class ReleaseCause { kStart, kTime, kInput, kThread, kChild, kSignal };
+// As tables have it: "start", "time"…
+std::string_view NameOf(ReleaseCause cause);
 
 // One that has not ended yet. Times are those of the thread's own clock.
 struct Activation {

@@ -15,12 +15,10 @@ constexpr AnswerBook::Who kPlanner{.client = 1, .thread = 2};
 // A controller and a planner on one core.
 class AnswerBookTest : public testing::Test {
  protected:
-  void Open(std::int64_t deadline_ns = 0, bool is_periodic = true, int cores = 1) {
-    book_.Open({{.name = "controller",
-                 .cores = cores,
-                 .deadline_ns = deadline_ns,
-                 .is_periodic = is_periodic},
-                {.name = "planner", .cores = cores}});
+  void Open(std::int64_t deadline_ns = 0, bool is_periodic = true) {
+    book_.Open(
+        {{.name = "controller", .deadline_ns = deadline_ns, .is_periodic = is_periodic},
+         {.name = "planner"}});
   }
   // A sample of a sensor with a period of 10 ms.
   static AnswerBook::Taken SampleOf(std::int64_t at_ns, unsigned activation = 0) {
@@ -35,7 +33,7 @@ class AnswerBookTest : public testing::Test {
     const Activation activation{.cause = cause, .release_ns = release_ns, .start_ns = start_ns};
     book_.Ended(who, activation, receipt, end_ns, end_ns - start_ns);
   }
-  ClientFigures Controller() { return book_.Conclude().front(); }
+  ClientFigures Controller() { return book_.Conclude(1000 * kMs).front(); }
 
   AnswerBook book_;
 };
@@ -151,7 +149,7 @@ TEST_F(AnswerBookTest, OthersThatHadTheCoreAreNamed) {
 }
 
 TEST_F(AnswerBookTest, WithMoreCoresThoseBesideItKeepItFromNothing) {
-  Open(0, true, 2);
+  Open();
   book_.Ready(kController, 0);
   book_.Ran(kController, 0, kMs);
   book_.Ran(kPlanner, 0, 20 * kMs);

@@ -1,0 +1,67 @@
+// Which clients had the cores of their robots while threads were ready to run. Pure; all times are
+// virtual nanoseconds. Threads, clients and robots are numbers.
+//
+// With several cores, clients that run beside the thread count, too: a share of the time for which
+// it waited in all (Shares).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+
+namespace tcs {
+
+class CoreWaits {
+ public:
+  struct Of {
+    int thread = 0;
+    int client = 0;
+    int robot = 0;
+  };
+  using ByClient = std::map<int, std::int64_t>;
+
+  // The thread is ready from then on. That may be told when others have run since.
+  void Ready(const Of& who, std::int64_t at_ns);
+  // It had a core.
+  void Ran(const Of& who, std::int64_t start_ns, std::int64_t end_ns);
+  // For how long each client has had a core since a thread was ready, if there is only one; and
+  // the thread itself.
+  struct Times {
+    ByClient others_ns;
+    std::int64_t own_ns = 0;
+  };
+  // It is not ready any more.
+  Times Stop(int thread);
+  // When it became ready; -1: it is not.
+  std::int64_t ReadySince(int thread) const;
+
+  // The times together made as long as `most_ns` where they are longer.
+  static ByClient Shares(ByClient times_ns, std::int64_t most_ns);
+
+ private:
+  // So far back a thread may be said to have been ready.
+  static constexpr std::size_t kMostSlices = 64;
+
+  struct Slice {
+    int thread = 0, client = 0;
+    std::int64_t start_ns = 0, end_ns = 0;
+  };
+  struct Waiting {
+    int robot = 0;
+    std::int64_t since_ns = 0;
+    Times times;
+  };
+  struct OfRobot {
+    std::set<int> ready;       // threads
+    std::deque<Slice> slices;  // the last
+  };
+
+  static void Add(int thread, const Slice& slice, Waiting& waiting);
+
+  std::map<int, Waiting> waiting_;  // by thread
+  std::map<int, OfRobot> robots_;
+};
+
+}  // namespace tcs

@@ -1,0 +1,39 @@
+// One activation, from what released it to its end, and what that time went into. All times are
+// virtual nanoseconds; clients are numbers, in the order of AnswerBook::Open.
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "coordinator/trace/activation_log.h"
+
+namespace tcs {
+
+// The time from an activation's release to its end, in parts that do not overlap.
+struct TimeParts {
+  std::int64_t queued_ns = 0;  // its thread was still at what had come earlier
+  std::int64_t away_ns = 0;    // its thread slept, or waited for something else, before it came
+  std::int64_t executed_ns = 0;  // it had the core, or computed
+  std::map<int, std::int64_t> cores_ns;  // it was ready, and that client had the core
+  std::map<int, std::int64_t> locks_ns;  // in its midst, for a lock that the client's thread had
+  std::int64_t room_ns = 0;              // in its midst, until others had taken what was sent
+
+  std::int64_t TotalNs() const;
+};
+
+struct Response {
+  int client = 0;
+  int thread = 0;  // of the run; 0: its client's first
+  ReleaseCause cause = ReleaseCause::kTime;
+  std::int64_t release_ns = 0, start_ns = 0, end_ns = 0;
+  std::int64_t deadline_ns = 0;  // counted from the release; 0: it has none
+  std::int64_t charged_ns = 0;   // for what it computed
+  TimeParts parts;
+
+  std::int64_t TookNs() const { return end_ns - release_ns; }
+  // What is in none of the parts: changing from thread to thread, say, or what others computed on
+  // one of several cores.
+  std::int64_t RestNs() const { return TookNs() - parts.TotalNs(); }
+};
+
+}  // namespace tcs

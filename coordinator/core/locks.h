@@ -1,0 +1,24 @@
+// Whose locks threads wait for, as far as locks say who has them: mutexes of the C library's, and
+// those that lend priority. Not semaphores, conditions, or a language's own.
+//
+// For the coordinator's thread only. Reads the memory of programs.
+#pragma once
+
+#include <optional>
+
+#include "coordinator/answers/answer_book.h"
+#include "coordinator/queues/futex_table.h"
+#include "coordinator/tasks/answer_feed.h"
+#include "coordinator/tasks/run_state.h"
+
+namespace tcs {
+
+// Who has the lock that the thread waits for; null: it waits for none that says so.
+const Task* OwnerOfAwaitedLock(const Task& task, const RunState& run, const FutexTable& futexes);
+
+// What a thread that begins to wait waits for in the midst of its work: a lock, or that others take
+// what it sends. Any other wait is the end of an activation.
+std::optional<AnswerBook::Pause> PauseOf(const Task& task, const RunState& run,
+                                         const FutexTable& futexes, const AnswerFeed& answers);
+
+}  // namespace tcs
