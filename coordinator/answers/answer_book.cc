@@ -127,9 +127,7 @@ void AnswerBook::NeverCameTo(const Who& who, const Taken& waiting, std::int64_t 
   Ended(who, activation, 0, end_ns, 0);
 }
 
-void AnswerBook::Ready(const Who& who, std::int64_t at_ns) {
-  cores_.Ready(OnCores(who), at_ns);
-}
+void AnswerBook::Ready(const Who& who, std::int64_t at_ns) { cores_.Ready(OnCores(who), at_ns); }
 
 void AnswerBook::Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns) {
   cores_.Ran(OnCores(who), start_ns, end_ns);
@@ -141,7 +139,8 @@ void AnswerBook::AddPause(const Pause& pause, std::int64_t ns, TimeParts& parts)
   part += std::max<std::int64_t>(0, ns);
 }
 
-// Who is charged less than it has run, as it was charged too much before, has computed all the same.
+// Who is charged less than it has run, as it was charged too much before, has computed all the
+// same.
 void AnswerBook::AddCores(const CoreWaits::Times& times, std::int64_t charged_ns,
                           Response& response) {
   response.charged_ns += charged_ns;
@@ -149,9 +148,9 @@ void AnswerBook::AddCores(const CoreWaits::Times& times, std::int64_t charged_ns
   parts.executed_ns += charged_ns;
   for (const auto& [client, ns] : CoreWaits::Shares(times.others_ns, response.RestNs()))
     parts.cores_ns[client] += ns;
-  parts.executed_ns +=
-      std::clamp<std::int64_t>(times.own_ns - charged_ns, std::min<std::int64_t>(0, response.RestNs()),
-                               std::max<std::int64_t>(0, response.RestNs()));
+  parts.executed_ns += std::clamp<std::int64_t>(times.own_ns - charged_ns,
+                                                std::min<std::int64_t>(0, response.RestNs()),
+                                                std::max<std::int64_t>(0, response.RestNs()));
 }
 
 // The activation, or, of one that has paused, that together with what came before.
@@ -177,8 +176,9 @@ Response AnswerBook::UntilNow(Thread& thread, const Who& who, const Activation& 
                     .release_ns = activation.release_ns,
                     .start_ns = start_ns,
                     .end_ns = std::max(end_ns, start_ns)};
-  response.parts = {.queued_ns = free_ns - activation.release_ns,
-                    .away_ns = (ready_ns < 0 ? start_ns : std::clamp(ready_ns, free_ns, start_ns)) - free_ns};
+  response.parts = {
+      .queued_ns = free_ns - activation.release_ns,
+      .away_ns = (ready_ns < 0 ? start_ns : std::clamp(ready_ns, free_ns, start_ns)) - free_ns};
   AddCores(on_cores, executed_ns, response);
   return response;
 }

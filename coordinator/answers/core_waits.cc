@@ -47,9 +47,9 @@ CoreWaits::ByClient CoreWaits::Shares(ByClient times_ns, std::int64_t most_ns) {
   if (left_of_all_ns <= most_ns) return times_ns;
   // Each has its share of what is left, so that no nanosecond is lost.
   for (auto& [client, ns] : times_ns) {
-    const auto share = static_cast<std::int64_t>(static_cast<double>(most_ns) *
-                                                 static_cast<double>(ns) /
-                                                 static_cast<double>(left_of_all_ns));
+    const auto share =
+        static_cast<std::int64_t>(static_cast<double>(most_ns) * static_cast<double>(ns) /
+                                  static_cast<double>(left_of_all_ns));
     left_of_all_ns -= std::exchange(ns, left_of_all_ns == ns ? most_ns : share);
     most_ns -= ns;
   }

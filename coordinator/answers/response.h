@@ -11,8 +11,8 @@ namespace tcs {
 
 // The time from an activation's release to its end, in parts that do not overlap.
 struct TimeParts {
-  std::int64_t queued_ns = 0;  // its thread was still at what had come earlier
-  std::int64_t away_ns = 0;    // its thread slept, or waited for something else, before it came
+  std::int64_t queued_ns = 0;    // its thread was still at what had come earlier
+  std::int64_t away_ns = 0;      // its thread slept, or waited for something else, before it came
   std::int64_t executed_ns = 0;  // it had the core, or computed
   std::map<int, std::int64_t> cores_ns;  // it was ready, and that client had the core
   std::map<int, std::int64_t> locks_ns;  // in its midst, for a lock that the client's thread had

@@ -19,7 +19,4 @@ struct ClientOutcome {
 // At most five; the last one says how many more there are.
 std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, std::int64_t end_ns);
 
-// "10 ms", "2.05 s", "153.5 us": three digits, or as many as are whole.
-std::string Spoken(std::int64_t ns);
-
 }  // namespace tcs

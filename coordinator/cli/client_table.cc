@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "coordinator/answers/verdict.h"
+#include "coordinator/text/spoken.h"
 #include "coordinator/text/text_table.h"
 
 namespace tcs {

@@ -9,7 +9,7 @@ namespace tcs {
 namespace {
 
 // A command, and pairs of lines: a command line, and what it is for. An empty name is tcsim itself.
-constexpr std::array<std::pair<const char*, const char*>, 10> kExamples = {{
+constexpr std::array<std::pair<const char*, const char*>, 11> kExamples = {{
     {"",
      "tcsim new hover && cd hover && tcsim run\n"
      "a first robot: writes a scenario and a controller, and flies them\n"
@@ -51,6 +51,11 @@ constexpr std::array<std::pair<const char*, const char*>, 10> kExamples = {{
      "one page of a run, report.html\n"
      "tcsim report --figures svg slow fast\n"
      "one page of two, and each figure as a file"},
+    {"explain",
+     "tcsim explain out\n"
+     "the five activations that were most late, and what their time went into\n"
+     "tcsim explain out drone/controller --at 3.12s\n"
+     "what that client was at then"},
     {"topics", "tcsim topics --qos out\nall DDS topics of a run, with both ends of each"},
     {"dump",
      "tcsim dump\n"

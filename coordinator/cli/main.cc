@@ -291,6 +291,9 @@ int main(int argc, char** argv) {
       "--out", snapshot_arguments.out,
       "FILE: where to write it, for `tcsim run --overlay` (default: the terminal)");
 
+  tcs::ExplainArguments explain_arguments;
+  const CLI::App* explain = tcs::AddExplain(&app, &explain_arguments);
+
   tcs::FitArguments fit_arguments;
   CLI::App* fit = app.add_subcommand(
       "fit", "find the set costs with which --accounting fixed charges what a run has measured");
@@ -332,6 +335,7 @@ int main(int argc, char** argv) {
   if (generate->parsed()) return tcs::DoWithTools(generate_arguments, argv);
   if (dump->parsed()) return tcs::DoWithTools(dump_arguments, argv);
   if (doctor->parsed()) return tcs::DoWithTools(doctor_arguments, argv);
+  if (explain->parsed()) return tcs::DoWithTools(explain_arguments, argv);
   if (report->parsed()) return tcs::DoWithTools(report_arguments, argv);
   if (topics->parsed()) return tcs::DoWithTools(topics_arguments, argv);
   if (trace->parsed()) return tcs::DoWithTools(trace_arguments, argv);

@@ -13,6 +13,7 @@ namespace {
 
 int Do(const DoctorArguments& arguments) { return FlushStdout(DoctorCommand(arguments)); }
 int Do(const DumpArguments& arguments) { return FlushStdout(DumpCommand(arguments)); }
+int Do(const ExplainArguments& arguments) { return FlushStdout(ExplainCommand(arguments)); }
 int Do(const FitArguments& arguments) { return FlushStdout(FitCommand(arguments)); }
 int Do(const GenerateArguments& arguments) {
   return Generate(Describe(*arguments.app), arguments.folder);

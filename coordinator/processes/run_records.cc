@@ -53,8 +53,8 @@ void RunRecords::Flush() {
 
 std::string RunRecords::Close() {
   output_.LookAt(run_.latest.ns());
-  const std::string errors[] = {schedule_.Close(), activations_.Close(), responses_.Close(), world_.CloseRecords(),
-                                output_.Close()};
+  const std::string errors[] = {schedule_.Close(), activations_.Close(), responses_.Close(),
+                                world_.CloseRecords(), output_.Close()};
   for (const std::string& error : errors) {
     if (!error.empty()) return error;
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace tcs {
@@ -16,9 +17,8 @@ constexpr AnswerBook::Who kPlanner{.client = 1, .thread = 2};
 class AnswerBookTest : public testing::Test {
  protected:
   void Open(std::int64_t deadline_ns = 0, bool is_periodic = true) {
-    book_.Open(
-        {{.name = "controller", .deadline_ns = deadline_ns, .is_periodic = is_periodic},
-         {.name = "planner"}});
+    book_.Open({{.name = "controller", .deadline_ns = deadline_ns, .is_periodic = is_periodic},
+                {.name = "planner"}});
   }
   // A sample of a sensor with a period of 10 ms.
   static AnswerBook::Taken SampleOf(std::int64_t at_ns, unsigned activation = 0) {
@@ -174,6 +174,64 @@ TEST_F(AnswerBookTest, WhatNobodyCameToCountsAsItStands) {
   EXPECT_EQ(figures.deadline.missed, 1);
   EXPECT_EQ(figures.times.response.max(), 80 * kMs);
   EXPECT_EQ(figures.times.execution.max(), 0);
+}
+
+// It computes 2 ms, waits 5 ms for a lock of the planner's, which then has the core for 1 ms more,
+// and computes 3 ms.
+TEST_F(AnswerBookTest, AWaitForALockIsInTheMidstOfAnActivation) {
+  Open();
+  std::vector<Response> told;
+  book_.Tell([&](const Response& response) { told.push_back(response); });
+  book_.Ready(kController, 10 * kMs);
+  book_.Took(kController, SampleOf(10 * kMs));
+  book_.Ran(kController, 10 * kMs, 12 * kMs);
+  book_.Pauses(kController,
+               {.cause = ReleaseCause::kInput, .release_ns = 10 * kMs, .start_ns = 10 * kMs}, 0,
+               12 * kMs, 2 * kMs, {.what = AnswerBook::Pause::For::kLock, .client = 1});
+  book_.Ran(kPlanner, 12 * kMs, 17 * kMs);
+  book_.Ready(kController, 17 * kMs);
+  book_.Ran(kPlanner, 17 * kMs, 18 * kMs);
+  book_.Ran(kController, 18 * kMs, 21 * kMs);
+  const Activation rest{
+      .cause = ReleaseCause::kThread, .release_ns = 17 * kMs, .start_ns = 18 * kMs};
+  book_.Ended(kController, rest, 0, 21 * kMs, 3 * kMs);
+  const ClientFigures figures = Controller();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].TookNs(), 11 * kMs);
+  EXPECT_EQ(told[0].deadline_ns, 10 * kMs);
+  EXPECT_EQ(told[0].parts.executed_ns, 5 * kMs);
+  EXPECT_EQ(told[0].parts.locks_ns, (std::map<int, std::int64_t>{{1, 5 * kMs}}));
+  EXPECT_EQ(told[0].parts.cores_ns, (std::map<int, std::int64_t>{{1, kMs}}));
+  EXPECT_EQ(told[0].RestNs(), 0);
+  EXPECT_EQ(figures.deadline.missed, 1);
+  EXPECT_EQ(figures.late.locks_ns.at("planner"), 5 * kMs);
+}
+
+TEST_F(AnswerBookTest, OneThatWaitsForALockAtTheEndCountsAsItStands) {
+  Open();
+  book_.Ready(kController, 10 * kMs);
+  book_.Took(kController, SampleOf(10 * kMs));
+  book_.Pauses(kController,
+               {.cause = ReleaseCause::kInput, .release_ns = 10 * kMs, .start_ns = 10 * kMs}, 0,
+               12 * kMs, 2 * kMs, {.what = AnswerBook::Pause::For::kLock, .client = 1});
+  const ClientFigures figures = Controller();
+  EXPECT_EQ(figures.deadline.missed, 1);
+  EXPECT_EQ(figures.times.response.max(), 990 * kMs);
+  EXPECT_EQ(figures.late.locks_ns.at("planner"), 988 * kMs);
+}
+
+TEST_F(AnswerBookTest, WhatItDidNotLookAtForItSleptIsApart) {
+  Open();
+  std::vector<Response> told;
+  book_.Tell([&](const Response& response) { told.push_back(response); });
+  book_.Took(kController, SampleOf(20 * kMs));
+  book_.Ready(kController, 33 * kMs);
+  Ends(kController, ReleaseCause::kInput, 20 * kMs, 34 * kMs, 36 * kMs);
+  Controller();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].parts.away_ns, 13 * kMs);
+  EXPECT_EQ(told[0].parts.executed_ns, 2 * kMs);
+  EXPECT_EQ(told[0].RestNs(), kMs);
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+#include "coordinator/cli/explain_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/print.h"
+#include "coordinator/explain/explanation.h"
+#include "coordinator/explain/told.h"
+#include "coordinator/scenario/duration.h"
+#include "coordinator/scenario/nearest.h"
+#include "coordinator/text/spoken.h"
+
+namespace tcs {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// "of 704 activations of hover/controller, which has missed 653 of its 656 deadlines": what there
+// is to choose from.
+std::string WhatThereIs(const explain::Told& told, const std::string& client) {
+  std::int64_t all = 0, judged = 0, missed = 0;
+  for (const explain::Activation& activation : told.activations) {
+    if (!client.empty() && activation.client != client) continue;
+    ++all;
+    judged += activation.deadline_ns > 0;
+    missed += activation.LateNs() > 0;
+  }
+  const std::string of = client.empty() ? "" : " of " + client;
+  if (judged == 0)
+    return fmt::format("{} activations{}, for none of which there is a deadline", all, of);
+  return fmt::format("{} activations{}; of {} that there was a deadline for, {} missed it", all, of,
+                     judged, missed == 0 ? "none" : std::to_string(missed));
+}
+
+void PrintText(const explain::Told& told, const explain::Choice& choice,
+               const std::vector<const explain::Activation*>& chosen) {
+  Print("{}\n", WhatThereIs(told, choice.client));
+  for (const explain::Activation* activation : chosen) {
+    Print("\n{}\n", explain::SentenceOn(*activation, told.clients));
+    for (const explain::Part& part : explain::PartsOf(*activation, told.clients))
+      Print("{:>12}  {}\n", Spoken(part.ns), part.what);
+  }
+}
+
+Json SharesOf(const std::vector<explain::Share>& shares) {
+  Json json = Json::array();
+  for (const explain::Share& share : shares)
+    json.push_back({{"client", share.client}, {"ns", share.ns}});
+  return json;
+}
+
+void PrintJson(const explain::Told& told, const std::vector<const explain::Activation*>& chosen) {
+  Json all = Json::array();
+  for (const explain::Activation* one : chosen) {
+    Json json = {{"client", one->client},
+                 {"thread", one->thread},
+                 {"release_ns", one->release_ns},
+                 {"start_ns", one->start_ns},
+                 {"end_ns", one->end_ns},
+                 {"deadline_ns", one->deadline_ns > 0 ? Json(one->deadline_ns) : Json()},
+                 {"late_ns", std::max<std::int64_t>(0, one->LateNs())},
+                 {"queued_ns", one->queued_ns},
+                 {"away_ns", one->away_ns},
+                 {"executed_ns", one->executed_ns},
+                 {"cores", SharesOf(one->cores)},
+                 {"locks", SharesOf(one->locks)},
+                 {"room_ns", one->room_ns},
+                 {"rest_ns", one->rest_ns},
+                 {"sentence", explain::SentenceOn(*one, told.clients)}};
+    all.push_back(std::move(json));
+  }
+  Print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+int ExplainCommand(const ExplainArguments& arguments) {
+  explain::Choice choice{.client = arguments.client,
+                         .most = static_cast<std::size_t>(arguments.worst)};
+  if (!arguments.at.empty()) {
+    const auto at = ParseDuration(arguments.at);
+    if (const auto* error = std::get_if<LoadError>(&at)) return Fail("--at: " + error->message);
+    choice.at_ns = std::get<VirtualDuration>(at).ns();
+  }
+  const auto read = explain::ReadTold(arguments.folder);
+  if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
+  const auto& told = std::get<explain::Told>(read);
+  if (!choice.client.empty() && !told.clients.contains(choice.client)) {
+    std::vector<std::string> known;
+    for (const auto& [name, client] : told.clients) known.push_back(name);
+    return Fail("the run in " + arguments.folder + " has no client '" + choice.client + "'; " +
+                Suggest(choice.client, known, "clients"));
+  }
+  const auto chosen = explain::Choose(told, choice);
+  arguments.as_json ? PrintJson(told, chosen) : PrintText(told, choice, chosen);
+  return kSucceeded;
+}
+
+}  // namespace tcs

@@ -1,0 +1,37 @@
+// Why an activation took as long as it did, in words. Pure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/explain/told.h"
+
+namespace tcs::explain {
+
+struct Part {
+  std::int64_t ns = 0;
+  std::string what;  // "drone/planner, of higher priority, had the core"
+};
+
+// All that took time, together the whole of it.
+std::vector<Part> PartsOf(const Activation& activation,
+                          const std::map<std::string, Client>& clients);
+
+// "at 3.120 s drone/controller answered 41 ms late: …", or how long it took, if it was not late.
+std::string SentenceOn(const Activation& activation, const std::map<std::string, Client>& clients);
+
+struct Choice {
+  std::string client;                 // empty: all
+  std::optional<std::int64_t> at_ns;  // those that were going on then
+  std::size_t most = 5;
+};
+
+// Those that were most late, or, where none was, that took longest; the worst first, and those at a
+// moment in the order of their releases.
+std::vector<const Activation*> Choose(const Told& told, const Choice& choice);
+
+}  // namespace tcs::explain

@@ -1,0 +1,99 @@
+#include "coordinator/explain/told.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "coordinator/report/csv.h"
+
+namespace tcs::explain {
+
+namespace {
+
+using nlohmann::json;
+
+// "core:CLIENT=NS lock:CLIENT=NS"
+bool TakeShares(std::string_view whose, Activation* activation) {
+  while (!whose.empty()) {
+    const std::size_t end = std::min(whose.find(' '), whose.size());
+    const std::string_view share = whose.substr(0, end);
+    whose.remove_prefix(std::min(end + 1, whose.size()));
+    const std::size_t colon = share.find(':'), equals = share.rfind('=');
+    if (colon == std::string_view::npos || equals == std::string_view::npos || equals < colon)
+      return false;
+    const std::optional<std::int64_t> ns = report::ToInteger(share.substr(equals + 1));
+    if (!ns.has_value()) return false;
+    auto& of = share.substr(0, colon) == "lock" ? activation->locks : activation->cores;
+    of.push_back({std::string(share.substr(colon + 1, equals - colon - 1)), *ns});
+  }
+  return true;
+}
+
+std::optional<Activation> ActivationOf(const report::CsvFields& fields) {
+  Activation activation{.client = std::string(fields[0])};
+  const std::array<std::int64_t*, 10> numbers = {&activation.thread,      &activation.release_ns,
+                                                 &activation.start_ns,    &activation.end_ns,
+                                                 &activation.deadline_ns, &activation.queued_ns,
+                                                 &activation.away_ns,     &activation.executed_ns,
+                                                 &activation.room_ns,     &activation.rest_ns};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::optional<std::int64_t> number = report::ToInteger(fields[i + 1]);
+    if (!number.has_value()) return std::nullopt;
+    *numbers[i] = *number;
+  }
+  if (!TakeShares(fields.back(), &activation)) return std::nullopt;
+  return activation;
+}
+
+template <class T>
+T ValueOf(const json& of, const char* key, T otherwise) {
+  const auto found = of.find(key);
+  return found != of.end() && found->is_number() ? found->get<T>() : otherwise;
+}
+
+// Of a run that was cut off there is no summary; then nothing is known of priorities.
+std::map<std::string, Client> ReadClients(const std::string& folder) {
+  std::map<std::string, Client> clients;
+  const std::optional<std::string> text = report::ReadFile(folder + "/summary.json");
+  const json summary = json::parse(text.value_or(""), nullptr, false);
+  if (!summary.is_object() || !summary.contains("clients")) return clients;
+  for (const auto& [name, of] : summary["clients"].items()) {
+    if (!of.is_object()) continue;
+    clients[name] = {.priority = ValueOf<std::int64_t>(of, "priority", 0),
+                     .has_deadline = of.contains("deadline") && of["deadline"].is_object(),
+                     .counted_after_ns = ValueOf<std::int64_t>(of, "counted_after_ns", -1)};
+  }
+  return clients;
+}
+
+}  // namespace
+
+LoadResult<Told> ReadTold(const std::string& folder) {
+  Told told{.clients = ReadClients(folder)};
+  const bool is_whole = !told.clients.empty();
+  const auto read =
+      report::ReadCsv(folder + "/responses.csv",
+                      {"client", "thread", "release_ns", "start_ns", "end_ns", "deadline_ns",
+                       "queued_ns", "away_ns", "executed_ns", "room_ns", "rest_ns", "whose"},
+                      [&](const report::CsvFields& fields) {
+                        std::optional<Activation> activation = ActivationOf(fields);
+                        if (!activation.has_value()) return false;
+                        Client& client = told.clients[activation->client];
+                        if (!is_whole && activation->deadline_ns > 0) client.has_deadline = true;
+                        if (activation->end_ns <= client.counted_after_ns) return true;
+                        // A client of which nobody expects that it keeps a period.
+                        if (!client.has_deadline) activation->deadline_ns = 0;
+                        told.activations.push_back(std::move(*activation));
+                        return true;
+                      });
+  if (const auto* error = std::get_if<LoadError>(&read)) {
+    return LoadError{error->message +
+                     "; it is in the folder of a run by `tcsim run` of this version of tcs"};
+  }
+  return told;
+}
+
+}  // namespace tcs::explain

@@ -1,0 +1,48 @@
+// What a run tells of its clients' activations: responses.csv and summary.json (docs/RESULTS.md).
+// Times are virtual nanoseconds.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coordinator/scenario/load_error.h"
+
+namespace tcs::explain {
+
+// What one client, or its thread, had of an activation's time.
+struct Share {
+  std::string client;  // empty: it is not known whose
+  std::int64_t ns = 0;
+};
+
+// One activation, and what the time from its release to its end went into.
+struct Activation {
+  std::string client;
+  std::int64_t thread = 0;  // 0: its client's first
+  std::int64_t release_ns = 0, start_ns = 0, end_ns = 0;
+  std::int64_t deadline_ns = 0;  // from the release; 0: it has none
+  std::int64_t queued_ns = 0, away_ns = 0, executed_ns = 0, room_ns = 0, rest_ns = 0;
+  std::vector<Share> cores, locks;  // who had most first
+
+  std::int64_t TookNs() const { return end_ns - release_ns; }
+  std::int64_t LateNs() const { return deadline_ns > 0 ? TookNs() - deadline_ns : 0; }
+};
+
+struct Client {
+  std::int64_t priority = 0;
+  bool has_deadline = false;
+  // What ended until then was its start.
+  std::int64_t counted_after_ns = -1;
+};
+
+struct Told {
+  std::map<std::string, Client> clients;
+  std::vector<Activation> activations;  // in the order of their ends, but for starts
+};
+
+// The sentence names what cannot be read, and how to have it.
+[[nodiscard]] LoadResult<Told> ReadTold(const std::string& folder);
+
+}  // namespace tcs::explain
