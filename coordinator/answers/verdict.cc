@@ -53,6 +53,14 @@ std::string_view RankOf(const ClientOutcome& other, const ClientOutcome& client)
   return other.priority > client.priority ? ", of higher priority," : ", of lower priority,";
 }
 
+// Who has most of a time, and how much; nobody has nothing.
+std::pair<std::string, std::int64_t> MostOf(const std::map<std::string, std::int64_t>& times_ns) {
+  const auto most =
+      std::ranges::max_element(times_ns, {}, [](const auto& one) { return one.second; });
+  if (most == times_ns.end()) return {};
+  return {most->first, most->second};
+}
+
 std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome>& all) {
   const ClientFigures& figures = client.figures;
   const LateTime& late = figures.late;
@@ -71,12 +79,20 @@ std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome
   std::int64_t others_ns = 0;
   for (const auto& [name, ns] : late.others_ns) others_ns += ns;
   if (others_ns > 0 && 2 * others_ns >= std::min(too_much, rest)) {
-    const auto most = std::ranges::max_element(late.others_ns, {},
-                                               [](const auto& other) { return other.second; });
-    const auto who = std::ranges::find(all, most->first, &ClientOutcome::name);
-    return fmt::format("{}{} had the core for {} of that time", most->first,
+    const auto [name, most_ns] = MostOf(late.others_ns);
+    const auto who = std::ranges::find(all, name, &ClientOutcome::name);
+    return fmt::format("{}{} had the core for {} of that time",
+                       name == client.name ? "another thread of its own" : name,
                        who == all.end() ? "" : RankOf(*who, client),
-                       Percent(std::min(1.0, Share(most->second, rest))));
+                       Percent(std::min(1.0, Share(most_ns, rest))));
+  }
+  if (const auto lock = MostOf(late.locks_ns);
+      lock.second > 0 && 2 * lock.second >= std::min(too_much, rest)) {
+    const std::string whose = lock.first == client.name ? "another thread of its own"
+                              : lock.first.empty()      ? "somebody unknown"
+                                                        : lock.first;
+    return fmt::format("it waited for a lock that {} had for {} of that time", whose,
+                       Percent(std::min(1.0, Share(lock.second, rest))));
   }
   if (Share(late.executed_ns, rest) >= kNamed)
     return fmt::format("it computes up to {} at a time", Spoken(figures.times.execution.max()));

@@ -48,6 +48,26 @@ void PrintText(const explain::Told& told, const explain::Choice& choice,
     Print("\n{}\n", explain::SentenceOn(*activation, told.clients));
     for (const explain::Part& part : explain::PartsOf(*activation, told.clients))
       Print("{:>12}  {}\n", Spoken(part.ns), part.what);
+    if (const explain::Activation* behind = explain::QueuedBehind(told, *activation))
+      Print("  the queue goes back to this: {}\n", explain::SentenceOn(*behind, told.clients));
+  }
+}
+
+// "r/a was between two: the one before had ended at 4.990 s, the next was released at 5.010 s".
+void PrintBetween(const explain::Told& told, const explain::Choice& choice) {
+  for (const auto& [name, client] : told.clients) {
+    if (!choice.client.empty() && name != choice.client) continue;
+    std::int64_t before_ns = -1, next_ns = INT64_MAX;
+    for (const explain::Activation& one : told.activations) {
+      if (one.client != name) continue;
+      if (one.end_ns < *choice.at_ns) before_ns = std::max(before_ns, one.end_ns);
+      if (one.release_ns > *choice.at_ns) next_ns = std::min(next_ns, one.release_ns);
+    }
+    const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
+    Print("{} had nothing to do then{}{}\n", name,
+          before_ns < 0 ? ""
+                        : fmt::format("; its last work had ended at {:.3f} s", seconds(before_ns)),
+          next_ns == INT64_MAX ? "" : fmt::format("; the next came at {:.3f} s", seconds(next_ns)));
   }
 }
 
@@ -102,6 +122,7 @@ int ExplainCommand(const ExplainArguments& arguments) {
   }
   const auto chosen = explain::Choose(told, choice);
   arguments.as_json ? PrintJson(told, chosen) : PrintText(told, choice, chosen);
+  if (chosen.empty() && choice.at_ns.has_value() && !arguments.as_json) PrintBetween(told, choice);
   return kSucceeded;
 }
 

@@ -103,7 +103,11 @@ std::vector<Part> PartsOf(const Activation& activation,
 }
 
 std::string SentenceOn(const Activation& activation, const std::map<std::string, Client>& clients) {
-  const std::vector<Cause> causes = CausesOf(activation, clients);
+  std::vector<Cause> causes = CausesOf(activation, clients);
+  // Its own work alone would have been done in time.
+  if (activation.LateNs() > 0 && activation.executed_ns <= activation.deadline_ns &&
+      causes.size() > 1)
+    std::erase_if(causes, [](const Cause& cause) { return cause.kind == Kind::kExecuted; });
   const auto most = std::ranges::max_element(causes, {}, &Cause::ns);
   const std::string why = most == causes.end() ? "" : ": " + Because(*most, activation);
   const std::string thread =
@@ -120,6 +124,18 @@ std::string SentenceOn(const Activation& activation, const std::map<std::string,
                          ? fmt::format(" of the {} that it had", Spoken(activation.deadline_ns))
                          : "",
                      why);
+}
+
+const Activation* QueuedBehind(const Told& told, const Activation& activation) {
+  if (2 * activation.queued_ns <= activation.TookNs()) return nullptr;
+  const Activation* behind = &activation;
+  for (const Activation* one = behind; one-- != told.activations.data();) {
+    if (one->client != behind->client || one->thread != behind->thread) continue;
+    if (one->end_ns < behind->release_ns) break;
+    behind = one;
+    if (behind->queued_ns == 0) break;
+  }
+  return behind == &activation ? nullptr : behind;
 }
 
 std::vector<const Activation*> Choose(const Told& told, const Choice& choice) {

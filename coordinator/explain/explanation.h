@@ -24,6 +24,11 @@ std::vector<Part> PartsOf(const Activation& activation,
 // "at 3.120 s drone/controller answered 41 ms late: …", or how long it took, if it was not late.
 std::string SentenceOn(const Activation& activation, const std::map<std::string, Client>& clients);
 
+// For one that was in the queue for most of its time: the last before it that was not in the queue
+// at all, and which the queue goes back to. Null: it was not, or that is
+// not told of. `activation` is one of those that are told of.
+const Activation* QueuedBehind(const Told& told, const Activation& activation);
+
 struct Choice {
   std::string client;                 // empty: all
   std::optional<std::int64_t> at_ns;  // those that were going on then

@@ -50,6 +50,18 @@ TEST(ExplanationTest, WhatHasNoDeadlineIsNotLate) {
             "39 ms of it");
 }
 
+TEST(ExplanationTest, AQueueGoesBackToWhatWasNotQueuedItself) {
+  Told told;
+  told.activations = {
+      {.client = "a", .release_ns = 0, .end_ns = 5},
+      {.client = "a", .release_ns = 10, .end_ns = 60, .executed_ns = 50},
+      {.client = "b", .release_ns = 10, .end_ns = 65},
+      {.client = "a", .release_ns = 20, .end_ns = 70, .queued_ns = 40, .executed_ns = 10},
+      {.client = "a", .release_ns = 30, .end_ns = 80, .queued_ns = 40, .executed_ns = 10}};
+  EXPECT_EQ(QueuedBehind(told, told.activations[4]), &told.activations[1]);
+  EXPECT_EQ(QueuedBehind(told, told.activations[1]), nullptr);
+}
+
 TEST(ExplanationTest, TheWorstAreThoseThatAreMostLate) {
   Told told{.clients = kClients};
   for (const std::int64_t took : {5, 60, 20}) {
