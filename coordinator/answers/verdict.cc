@@ -157,9 +157,28 @@ void AddLosses(const ClientOutcome& client, std::vector<Finding>& findings) {
   }
 }
 
+void AddChain(const ChainFigures& chain, std::vector<Finding>& findings) {
+  if (chain.deadline_ns == 0) return;
+  if (chain.age.count() == 0) {
+    findings.push_back({2.5, chain.name + ": no command knew of any of its samples"});
+    return;
+  }
+  if (chain.missed == 0) return;
+  const ChainCase& worst = chain.worst.front();
+  const auto most = std::ranges::max_element(worst.hops, {}, &ChainHop::ns);
+  findings.push_back(
+      {2 + Share(chain.missed, chain.age.count()),
+       fmt::format("{}: {} commands acted on samples older than {}, the first at {:.3f} s; the "
+                   "oldest was {} old, {} of it {}",
+                   chain.name, Of(chain.missed, chain.age.count()), Spoken(chain.deadline_ns),
+                   static_cast<double>(chain.first_missed_ns) / 1e9, Spoken(worst.AgeNs()),
+                   Spoken(most->ns), NameOf(*most))});
+}
+
 }  // namespace
 
-std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, std::int64_t end_ns) {
+std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients,
+                                   const std::vector<ChainFigures>& chains, std::int64_t end_ns) {
   std::vector<Finding> findings;
   for (const ClientOutcome& client : clients) {
     AddStarvation(client, clients, end_ns, findings);
@@ -167,6 +186,7 @@ std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, st
     AddAges(client, findings);
     AddLosses(client, findings);
   }
+  for (const ChainFigures& chain : chains) AddChain(chain, findings);
   std::ranges::stable_sort(findings, std::greater<>(), &Finding::weight);
   std::vector<std::string> sentences;
   for (const Finding& finding : findings) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/answers/chain_figures.h"
 #include "coordinator/answers/client_figures.h"
 
 namespace tcs {
@@ -17,6 +18,7 @@ struct ClientOutcome {
 };
 
 // At most five; the last one says how many more there are.
-std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients, std::int64_t end_ns);
+std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients,
+                                   const std::vector<ChainFigures>& chains, std::int64_t end_ns);
 
 }  // namespace tcs

@@ -84,8 +84,8 @@ DatagramQueues::Address DatagramQueues::AddressOf(const Robot* by,
   return {robot, note.hash};
 }
 
-void DatagramQueues::AddCommandAddress(const shm::ReceiverAddress& address) {
-  commands_.insert(AddressOf(nullptr, NoteOf(address)));
+void DatagramQueues::AddCommandAddress(const shm::ReceiverAddress& address, std::size_t command) {
+  commands_.emplace(AddressOf(nullptr, NoteOf(address)), command);
 }
 
 InputFigures* DatagramQueues::InputOf(Queue& queue, const Sent& sent) {
@@ -118,6 +118,8 @@ void DatagramQueues::WorldSent(const std::string& channel, const shm::ReceiverAd
   if (sensor != run_.scenario.sensors.end()) {
     sent.sampled_ns = (at - sensor->latency).ns();
     sent.period_ns = sensor->period.ns();
+    const auto number = static_cast<int>(sensor - run_.scenario.sensors.begin());
+    sent.lineage = answers_.chains().Sampled(number, sent.sampled_ns);
   }
   Add(AddressOf(nullptr, NoteOf(to)), std::move(sent));
 }
@@ -182,6 +184,7 @@ void DatagramQueues::Take(const Task& task, const DatagramNotes::Note& note, Que
       AnswerBook::Taken taken = TakenOf(sent);
       taken.activation = note.activation;
       answers_.book().Took(*who, taken);
+      answers_.chains().Took(AnswerFeed::OnChain(*who), sent.lineage, sent.at.ns(), at.ns());
     }
     log_.Write(sent.at, sent.sender, at, task.process->name, sent.channel);
     queue.waiting.pop_front();
@@ -196,6 +199,7 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
   if (count > DatagramNotes::kMost) return kWrong;
   ProgramClock& clock = task.process->clock;
   const std::string& name = task.process->name;
+  const auto who = answers_.WhoIs(task);
   for (std::uint32_t i = 0; i < count; ++i) {
     const DatagramNotes::Note note = notes.notes[i];
     std::atomic_signal_fence(std::memory_order_seq_cst);  // what is checked is not read again
@@ -210,17 +214,25 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
       continue;
     }
     const Address address = AddressOf(task.process->robot, note);
-    if (note.what == DatagramNotes::What::kSent && commands_.contains(address)) {
-      if (const auto who = answers_.WhoIs(task)) answers_.book().Commanded(*who, at.ns());
+    const auto command = commands_.find(address);
+    if (note.what == DatagramNotes::What::kSent && command != commands_.end()) {
+      if (who.has_value()) {
+        answers_.book().Commanded(*who, at.ns());
+        answers_.chains().Commanded(AnswerFeed::OnChain(*who), static_cast<int>(command->second),
+                                    at.ns());
+      }
       continue;
     }
     // Between robots of a network packets may be lost.
     if (run_.scenario.network && InternetOf(note)) continue;
     if (note.what == DatagramNotes::What::kSent) {
-      Add(address, {.at = at,
-                    .sampled_ns = answers_.book().LastSampledOf(task.order),
-                    .sender = name,
-                    .channel = TextOf(note)});
+      Add(address,
+          {.at = at,
+           .sampled_ns = answers_.book().LastSampledOf(task.order),
+           .sender = name,
+           .channel = TextOf(note),
+           .lineage = who.has_value() ? answers_.chains().Sends(AnswerFeed::OnChain(*who), at.ns())
+                                      : nullptr});
       continue;
     }
     const auto found = queues_.find(address);

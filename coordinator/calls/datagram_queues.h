@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,8 +35,9 @@ class DatagramQueues final : public DatagramWatch {
 
   // Is told of DDS samples that threads take. Null: nobody; it outlives this.
   void Tell(SampleFeed* samples) { samples_ = samples; }
-  // What is sent to that address is a command: the coordinator receives it.
-  void AddCommandAddress(const shm::ReceiverAddress& address);
+  // What is sent to that address is one of those commands, as the scenario numbers them: the
+  // coordinator receives it.
+  void AddCommandAddress(const shm::ReceiverAddress& address, std::size_t command);
 
   void WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                  VirtualTime at) override;
@@ -55,6 +55,7 @@ class DatagramQueues final : public DatagramWatch {
     std::int64_t sampled_ns = -1;  // as AnswerBook::Taken has it
     std::int64_t period_ns = 0;
     std::string sender, channel;
+    Lineage lineage{};              // what its sender knew of
     InputFigures* input = nullptr;  // of its queue
   };
   struct Queue {
@@ -80,7 +81,7 @@ class DatagramQueues final : public DatagramWatch {
   DatagramLog& log_;
   SampleFeed* samples_ = nullptr;
   std::map<Address, Queue> queues_;
-  std::set<Address> commands_;
+  std::map<Address, std::size_t> commands_;
 };
 
 }  // namespace tcs

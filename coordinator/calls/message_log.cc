@@ -14,8 +14,7 @@ std::string AsField(std::string name) {
   return name;
 }
 
-}  // namespace
-
+// The DDS topics that move the world.
 std::set<std::string> CommandedTopics(const Scenario& scenario) {
   std::set<std::string> topics;
   for (const CommandChannelSpec& command : scenario.commands) {
@@ -24,6 +23,8 @@ std::set<std::string> CommandedTopics(const Scenario& scenario) {
   }
   return topics;
 }
+
+}  // namespace
 
 MessageLog::MessageLog(std::string folder, const Scenario& scenario, const dds::TopicLog& topics,
                        NameOf name, std::int64_t realtime_offset_ns)

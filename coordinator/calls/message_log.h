@@ -16,9 +16,6 @@
 
 namespace tcs {
 
-// The DDS topics that move the world.
-std::set<std::string> CommandedTopics(const Scenario& scenario);
-
 class MessageLog final : public dds::TopicLog::DeliveryListener {
  public:
   using NameOf = std::function<std::string(dds::Hub::Number)>;

@@ -4,14 +4,21 @@
 #include <cstddef>
 #include <variant>
 
-#include "coordinator/calls/message_log.h"
-
 namespace tcs {
 
 namespace {
 
 // Of one client. Whose reader lets more wait keeps only the last ones.
 constexpr std::size_t kMostWaiting = 4096;
+
+std::map<std::string, int> CommandsByTopic(const Scenario& scenario) {
+  std::map<std::string, int> commands;
+  for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
+    if (const auto* from = std::get_if<DdsCommandEnd>(&scenario.commands[i].from))
+      commands[from->end.topic] = static_cast<int>(i);
+  }
+  return commands;
+}
 
 }  // namespace
 
@@ -20,7 +27,12 @@ SampleFeed::SampleFeed(RunState& run, AnswerFeed& answers, const dds::TopicLog& 
       answers_(answers),
       topics_(topics),
       name_(std::move(name)),
-      commanded_(CommandedTopics(run.scenario)) {}
+      commanded_(CommandsByTopic(run.scenario)) {}
+
+// On the world's clock.
+std::int64_t SampleFeed::SentAt(const dds::TopicLog::Delivery& delivery) const {
+  return delivery.source_timestamp_ns - run_.header->realtime_offset_ns;
+}
 
 // Numbers are not given to others.
 const std::optional<AnswerBook::Who>& SampleFeed::WhoIs(dds::Hub::Number number) {
@@ -29,7 +41,7 @@ const std::optional<AnswerBook::Who>& SampleFeed::WhoIs(dds::Hub::Number number)
   return who->second;
 }
 
-SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery) const {
+SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery) {
   const std::string& topic = topics_.reports()[delivery.topic].topic;
   Sample sample{.topic = delivery.topic,
                 .source_ns = delivery.source_timestamp_ns,
@@ -37,12 +49,16 @@ SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery)
                 .from = topic};
   if (delivery.from != 0) {
     sample.from = name_(delivery.from) + " over " + topic;
+    if (const auto sender = SenderOf(delivery))
+      sample.lineage = answers_.chains().Sends(AnswerFeed::OnChain(*sender), SentAt(delivery));
     return sample;
   }
-  for (const SensorChannelSpec& sensor : run_.scenario.sensors) {
+  for (std::size_t i = 0; i < run_.scenario.sensors.size(); ++i) {
+    const SensorChannelSpec& sensor = run_.scenario.sensors[i];
     const auto* to = std::get_if<DdsSensorEnd>(&sensor.to);
     if (to == nullptr || to->end.topic != topic) continue;
-    sample.sampled_ns = delivery.source_timestamp_ns - run_.header->realtime_offset_ns;
+    sample.sampled_ns = SentAt(delivery);
+    sample.lineage = answers_.chains().Sampled(static_cast<int>(i), sample.sampled_ns);
     sample.period_ns = sensor.period.ns();
     sample.from = sensor.name;
   }
@@ -62,11 +78,9 @@ void SampleFeed::Delivered(const dds::TopicLog::Delivery& delivery) {
 }
 
 // The thread that has sent it has the turn, or was the last of its client's that took something.
-void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {
-  const std::string& topic = topics_.reports()[delivery.topic].topic;
-  if (!commanded_.contains(topic)) return;
+std::optional<AnswerBook::Who> SampleFeed::SenderOf(const dds::TopicLog::Delivery& delivery) {
   std::optional<AnswerBook::Who> who = WhoIs(delivery.from);
-  if (!who.has_value()) return;
+  if (!who.has_value()) return who;
   const Task* runs = run_.turn.lasts() ? run_.turn.task() : nullptr;
   if (runs != nullptr && runs->process->dds_number == delivery.from) {
     if (const auto sender = answers_.WhoIs(*runs)) who = sender;
@@ -74,7 +88,16 @@ void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {
              found != receivers_.end() && found->second.last.has_value()) {
     who = found->second.last;
   }
-  answers_.book().Commanded(*who, delivery.source_timestamp_ns - run_.header->realtime_offset_ns);
+  return who;
+}
+
+void SampleFeed::Commanded(const dds::TopicLog::Delivery& delivery) {
+  const auto command = commanded_.find(topics_.reports()[delivery.topic].topic);
+  if (command == commanded_.end()) return;
+  const auto who = SenderOf(delivery);
+  if (!who.has_value()) return;
+  answers_.book().Commanded(*who, SentAt(delivery));
+  answers_.chains().Commanded(AnswerFeed::OnChain(*who), command->second, SentAt(delivery));
 }
 
 std::optional<SampleFeed::Topic> SampleFeed::TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
@@ -117,6 +140,7 @@ void SampleFeed::Taken(const Task& task, const shm::DatagramNotes::Note& note, V
     ++input.received;
     input.age.Add(at.ns() - (sample.sampled_ns >= 0 ? sample.sampled_ns : sample.arrived_ns));
     all.arrived_ns = std::min(all.arrived_ns, sample.arrived_ns);
+    answers_.chains().Took(AnswerFeed::OnChain(*who), sample.lineage, sample.arrived_ns, at.ns());
     all.sampled_ns = std::max(all.sampled_ns, sample.sampled_ns);
     all.period_ns = sample.period_ns;
   }

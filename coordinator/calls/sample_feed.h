@@ -11,7 +11,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +45,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
     std::int64_t source_ns = 0;  // its timestamp
     std::int64_t arrived_ns = 0, sampled_ns = -1, period_ns = 0;
     std::string from;  // InputFigures::from
+    Lineage lineage{};
   };
   struct Receiver {
     std::deque<Sample> waiting;
@@ -54,8 +54,10 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   };
 
   const std::optional<AnswerBook::Who>& WhoIs(dds::Hub::Number number);
+  std::optional<AnswerBook::Who> SenderOf(const dds::TopicLog::Delivery& delivery);
   void Commanded(const dds::TopicLog::Delivery& delivery);
-  Sample SampleOf(const dds::TopicLog::Delivery& delivery) const;
+  Sample SampleOf(const dds::TopicLog::Delivery& delivery);
+  std::int64_t SentAt(const dds::TopicLog::Delivery& delivery) const;
   std::optional<Topic> TopicOf(std::pair<std::uint32_t, std::int32_t> reader,
                                const Receiver& receiver, std::int64_t newest_ns);
 
@@ -63,7 +65,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
   AnswerFeed& answers_;
   const dds::TopicLog& topics_;
   NameOf name_;
-  const std::set<std::string> commanded_;
+  const std::map<std::string, int> commanded_;  // topics, and which command
   std::map<dds::Hub::Number, std::optional<AnswerBook::Who>> clients_;
   std::map<int, Receiver> receivers_;                                // by client
   std::map<std::pair<std::uint32_t, std::int32_t>, Topic> readers_;  // by process and entity

@@ -101,6 +101,37 @@ void PrintJson(const explain::Told& told, const std::vector<const explain::Activ
   Print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+int ExplainChain(const explain::Chain& chain, const ExplainArguments& arguments) {
+  if (!arguments.at.empty())
+    return Fail("--at: of a chain only the worst commands are known; leave it out");
+  const std::size_t most = std::min(chain.worst.size(), static_cast<std::size_t>(arguments.worst));
+  if (arguments.as_json) {
+    Json all = Json::array();
+    for (std::size_t i = 0; i < most; ++i) {
+      Json hops = Json::array();
+      for (const explain::Hop& hop : chain.worst[i].hops)
+        hops.push_back({{"of", hop.of}, {"name", hop.name}, {"ns", hop.ns}});
+      all.push_back({{"sampled_ns", chain.worst[i].sampled_ns},
+                     {"acts_ns", chain.worst[i].acts_ns},
+                     {"hops", std::move(hops)},
+                     {"sentence", explain::SentenceOn(arguments.client, chain, chain.worst[i])}});
+    }
+    Print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+    return kSucceeded;
+  }
+  Print("{} commands by {}{}\n", chain.commands, arguments.client,
+        chain.deadline_ns > 0
+            ? fmt::format("; {} acted on older samples than its deadline allows",
+                          chain.missed == 0 ? "none" : std::to_string(chain.missed))
+            : ", for which there is no deadline");
+  for (std::size_t i = 0; i < most; ++i) {
+    Print("\n{}\n", explain::SentenceOn(arguments.client, chain, chain.worst[i]));
+    for (const explain::Part& part : explain::PartsOf(chain.worst[i]))
+      Print("{:>12}  {}\n", Spoken(part.ns), part.what);
+  }
+  return kSucceeded;
+}
+
 }  // namespace
 
 int ExplainCommand(const ExplainArguments& arguments) {
@@ -114,11 +145,14 @@ int ExplainCommand(const ExplainArguments& arguments) {
   const auto read = explain::ReadTold(arguments.folder);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
   const auto& told = std::get<explain::Told>(read);
+  if (const auto chain = told.chains.find(choice.client); chain != told.chains.end())
+    return ExplainChain(chain->second, arguments);
   if (!choice.client.empty() && !told.clients.contains(choice.client)) {
     std::vector<std::string> known;
     for (const auto& [name, client] : told.clients) known.push_back(name);
-    return Fail("the run in " + arguments.folder + " has no client '" + choice.client + "'; " +
-                Suggest(choice.client, known, "clients"));
+    for (const auto& [name, chain] : told.chains) known.push_back(name);
+    return Fail("the run in " + arguments.folder + " has no client or chain '" + choice.client +
+                "'; " + Suggest(choice.client, known, "clients and chains"));
   }
   const auto chosen = explain::Choose(told, choice);
   arguments.as_json ? PrintJson(told, chosen) : PrintText(told, choice, chosen);

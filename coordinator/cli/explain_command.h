@@ -11,7 +11,7 @@ namespace tcs {
 
 struct ExplainArguments {
   std::string folder;
-  std::string client;  // empty: all
+  std::string client;  // or a chain; empty: all clients
   int worst = 5;
   std::string at;  // a time; empty: any
   bool as_json = false;

@@ -24,7 +24,45 @@ Json JsonOf(const InputFigures& input) {
           {"age_ns", JsonOf(input.age)}};
 }
 
+// "sensor", "waiting"…
+const char* KindOf(ChainHop::Of of) {
+  switch (of) {
+    case ChainHop::Of::kSensor:
+      return "sensor";
+    case ChainHop::Of::kWaiting:
+      return "waiting";
+    case ChainHop::Of::kProgram:
+      return "program";
+    case ChainHop::Of::kHeld:
+      return "held";
+    case ChainHop::Of::kWay:
+      return "way";
+    case ChainHop::Of::kActuator:
+      return "actuator";
+  }
+  return "";
+}
+
+Json JsonOf(const ChainCase& one) {
+  Json hops = Json::array();
+  for (const ChainHop& hop : one.hops)
+    hops.push_back({{"of", KindOf(hop.of)}, {"name", hop.name}, {"ns", hop.ns}});
+  return {{"sampled_ns", one.sampled_ns}, {"acts_ns", one.acts_ns}, {"hops", std::move(hops)}};
+}
+
 }  // namespace
+
+nlohmann::ordered_json ChainJson(const ChainFigures& chain) {
+  Json worst = Json::array();
+  for (const ChainCase& one : chain.worst) worst.push_back(JsonOf(one));
+  return {{"deadline_ns", chain.deadline_ns > 0 ? Json(chain.deadline_ns) : Json()},
+          {"missed", chain.missed},
+          {"first_missed_ns", chain.first_missed_ns},
+          {"age_ns", JsonOf(chain.age)},
+          {"reaction_ns", JsonOf(chain.reaction)},
+          {"through", chain.path},
+          {"worst", std::move(worst)}};
+}
 
 void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
   const DeadlineFigures& deadline = figures.deadline;

@@ -3,11 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "coordinator/answers/chain_figures.h"
 #include "coordinator/answers/client_figures.h"
 
 namespace tcs {
 
 // Adds the keys to those of the client. What is not known, or nobody expects of it, is null.
 void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client);
+
+// A chain, by its name.
+nlohmann::ordered_json ChainJson(const ChainFigures& chain);
 
 }  // namespace tcs

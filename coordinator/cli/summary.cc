@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/cli/chain_table.h"
 #include "coordinator/cli/client_table.h"
 #include "coordinator/cli/figures_json.h"
 #include "coordinator/cli/print.h"
@@ -88,6 +89,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
   for (const std::string& sentence : r.verdict) Print("! {}\n", sentence);
   Print("{}", ClientTable(r.clients));
+  Print("{}", ChainTable(r.chains));
   Print("of the simulation itself, not of the robots:\n");
   Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns, lateness {:.3f} ms\n",
         Milliseconds(r.drift_ns), Milliseconds(scenario.drift_bound.ns()), r.staleness_ns,
@@ -182,6 +184,10 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
     if (!options.counts_work) continue;
     json["clients"][c.name]["calls"] = c.usage.work.calls;
     json["clients"][c.name]["allocations"] = c.usage.work.allocations();
+  }
+  if (answers) {
+    json["chains"] = Json::object();
+    for (const ChainFigures& chain : r.chains) json["chains"][chain.name] = ChainJson(chain);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

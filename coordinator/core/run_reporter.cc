@@ -96,9 +96,10 @@ void RunReporter::Answer(VirtualTime end) {
       client.figures.inputs = found->second;
     outcome.figures = client.figures;
   }
+  run_.report.chains = from_.answers.chains().Conclude();
   std::vector<std::string>& verdict = run_.report.verdict;
   verdict = DeadlocksIn(run_, from_.futexes);
-  const std::vector<std::string> late = VerdictOn(outcomes, end.ns());
+  const std::vector<std::string> late = VerdictOn(outcomes, run_.report.chains, end.ns());
   verdict.insert(verdict.end(), late.begin(), late.end());
 }
 

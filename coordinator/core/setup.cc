@@ -176,8 +176,9 @@ std::string Engine::PrepareMemory() {
   registration_.ShareMemory(memfd_.get());
   auto* published = new (memory.at) shm::PublishedRun{};
   world_.NameReceivers(published->own_receivers);
-  for (std::uint32_t i = 0; i < published->own_receivers.count; ++i)
-    datagrams_.AddCommandAddress(published->own_receivers.addresses[i]);
+  const std::vector<std::size_t> commands = world_.CommandsOfReceivers();
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    datagrams_.AddCommandAddress(published->own_receivers.addresses[i], commands[i]);
   local_sockets_.PublishIn(published->local_sockets);
   memory_ = &published->run;
   run_.header = &memory_->header;

@@ -346,6 +346,15 @@ void World::NameReceivers(shm::OwnReceivers& receivers) {
   if (!found.empty() && !scenario_.network) receivers.network = NetworkOf(fds[found[0].inlet]);
 }
 
+std::vector<std::size_t> World::CommandsOfReceivers() const {
+  std::vector<std::size_t> commands;
+  for (const std::size_t inlet : inlet_of_receiver_) {
+    const auto of = std::ranges::find(channels_.inlet_of, channels_.inlets[inlet].get());
+    commands.push_back(static_cast<std::size_t>(of - channels_.inlet_of.begin()));
+  }
+  return commands;
+}
+
 std::string World::WhomMoves(const CommandChannelSpec& spec) const {
   if (spec.link) return spec.link->name;
   if (spec.joints) return spec.joints->group.model;

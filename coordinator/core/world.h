@@ -81,6 +81,8 @@ class World {
   std::vector<int> command_fds() const;
   // The addresses of those to which programs send datagrams, and how many there are.
   void NameReceivers(shm::OwnReceivers& receivers);
+  // Of each of them the command that comes in there, as the scenario numbers them.
+  std::vector<std::size_t> CommandsOfReceivers() const;
   std::size_t receivers() const { return inlet_of_receiver_.size(); }
   // Takes what has arrived there at `now`, from the thread that is known to have sent it; others
   // may still send for times before.

@@ -126,6 +126,37 @@ std::string SentenceOn(const Activation& activation, const std::map<std::string,
                      why);
 }
 
+namespace {
+
+std::string TextOf(const Hop& hop) {
+  if (hop.of == "sensor") return "on the way from " + hop.name + ", its latency included";
+  if (hop.of == "waiting") return "waiting until " + hop.name + " took it";
+  if (hop.of == "program") return "in " + hop.name + ", until it first sent something then";
+  if (hop.of == "held") return hop.name + " knew of nothing newer, and sent something again";
+  if (hop.of == "way") return "on the way from " + hop.name + " to the next program";
+  return "until " + hop.name + " acted, for its latency";
+}
+
+}  // namespace
+
+std::vector<Part> PartsOf(const ChainCase& one) {
+  std::vector<Part> parts;
+  for (const Hop& hop : one.hops) {
+    if (hop.ns != 0) parts.push_back({hop.ns, TextOf(hop)});
+  }
+  return parts;
+}
+
+std::string SentenceOn(const std::string& name, const Chain& chain, const ChainCase& one) {
+  const std::vector<Part> parts = PartsOf(one);
+  const auto most = std::ranges::max_element(parts, {}, &Part::ns);
+  return fmt::format(
+      "{}: what acted at {:.3f} s knew of a sample that was {} old{}{}", name,
+      static_cast<double>(one.acts_ns) / 1e9, Spoken(one.acts_ns - one.sampled_ns),
+      chain.deadline_ns > 0 ? fmt::format(", where {} are allowed", Spoken(chain.deadline_ns)) : "",
+      most == parts.end() ? "" : fmt::format("; {} of that {}", Spoken(most->ns), most->what));
+}
+
 const Activation* QueuedBehind(const Told& told, const Activation& activation) {
   if (2 * activation.queued_ns <= activation.TookNs()) return nullptr;
   const Activation* behind = &activation;

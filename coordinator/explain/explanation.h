@@ -29,6 +29,11 @@ std::string SentenceOn(const Activation& activation, const std::map<std::string,
 // not told of. `activation` is one of those that are told of.
 const Activation* QueuedBehind(const Told& told, const Activation& activation);
 
+// "at 3.120 s drive acted on a sample of lidar that was 61 ms old: …", for the chain of that name.
+std::string SentenceOn(const std::string& name, const Chain& chain, const ChainCase& one);
+// The parts of its age, which are the whole.
+std::vector<Part> PartsOf(const ChainCase& one);
+
 struct Choice {
   std::string client;                 // empty: all
   std::optional<std::int64_t> at_ns;  // those that were going on then

@@ -54,11 +54,45 @@ T ValueOf(const json& of, const char* key, T otherwise) {
   return found != of.end() && found->is_number() ? found->get<T>() : otherwise;
 }
 
-// Of a run that was cut off there is no summary; then nothing is known of priorities.
-std::map<std::string, Client> ReadClients(const std::string& folder) {
+std::string TextOf(const json& of, const char* key) {
+  const auto found = of.find(key);
+  return found != of.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// Empty where there is no such list.
+const json& ListOf(const json& of, const char* key) {
+  static const json kNone = json::array();
+  const auto found = of.find(key);
+  return found != of.end() && found->is_array() ? *found : kNone;
+}
+
+std::map<std::string, Chain> ReadChains(const json& summary) {
+  std::map<std::string, Chain> chains;
+  if (!summary.is_object() || !summary.contains("chains")) return chains;
+  for (const auto& [name, of] : summary["chains"].items()) {
+    if (!of.is_object()) continue;
+    Chain& chain = chains[name];
+    chain.deadline_ns = ValueOf<std::int64_t>(of, "deadline_ns", 0);
+    chain.missed = ValueOf<std::int64_t>(of, "missed", 0);
+    if (of.contains("age_ns") && of["age_ns"].is_object())
+      chain.commands = ValueOf<std::int64_t>(of["age_ns"], "count", 0);
+    for (const json& one : ListOf(of, "worst")) {
+      if (!one.is_object()) continue;
+      ChainCase& found = chain.worst.emplace_back();
+      found.sampled_ns = ValueOf<std::int64_t>(one, "sampled_ns", 0);
+      found.acts_ns = ValueOf<std::int64_t>(one, "acts_ns", 0);
+      for (const json& hop : ListOf(one, "hops")) {
+        if (!hop.is_object()) continue;
+        found.hops.push_back(
+            {TextOf(hop, "of"), TextOf(hop, "name"), ValueOf<std::int64_t>(hop, "ns", 0)});
+      }
+    }
+  }
+  return chains;
+}
+
+std::map<std::string, Client> ReadClients(const json& summary) {
   std::map<std::string, Client> clients;
-  const std::optional<std::string> text = report::ReadFile(folder + "/summary.json");
-  const json summary = json::parse(text.value_or(""), nullptr, false);
   if (!summary.is_object() || !summary.contains("clients")) return clients;
   for (const auto& [name, of] : summary["clients"].items()) {
     if (!of.is_object()) continue;
@@ -72,7 +106,10 @@ std::map<std::string, Client> ReadClients(const std::string& folder) {
 }  // namespace
 
 LoadResult<Told> ReadTold(const std::string& folder) {
-  Told told{.clients = ReadClients(folder)};
+  // Of a run that was cut off there is no summary; then nothing is known of priorities.
+  const json summary =
+      json::parse(report::ReadFile(folder + "/summary.json").value_or(""), nullptr, false);
+  Told told{.chains = ReadChains(summary), .clients = ReadClients(summary)};
   const bool is_whole = !told.clients.empty();
   const auto read =
       report::ReadCsv(folder + "/responses.csv",

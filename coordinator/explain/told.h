@@ -37,7 +37,27 @@ struct Client {
   std::int64_t counted_after_ns = -1;
 };
 
+// One part of a sample's way, in the order of the way.
+struct Hop {
+  std::string of;    // as summary.json says it: sensor, waiting, program, held, way or actuator
+  std::string name;  // of the channel or the client
+  std::int64_t ns = 0;
+};
+
+// A command that acted on an old sample.
+struct ChainCase {
+  std::int64_t sampled_ns = 0, acts_ns = 0;
+  std::vector<Hop> hops;
+};
+
+struct Chain {
+  std::int64_t deadline_ns = 0;  // 0: it has none
+  std::int64_t commands = 0, missed = 0;
+  std::vector<ChainCase> worst;  // the oldest first
+};
+
 struct Told {
+  std::map<std::string, Chain> chains;
   std::map<std::string, Client> clients;
   std::vector<Activation> activations;  // in the order of their ends, but for starts
 };

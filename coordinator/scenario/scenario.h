@@ -264,6 +264,14 @@ struct ClockSpec {
   VirtualDuration period = VirtualDuration::Milliseconds(10);
 };
 
+// How old a sensor's samples may be when a command that knows of them acts.
+struct ChainSpec {
+  std::string name;
+  std::size_t sensor = 0, command = 0;  // places in `sensors` and `commands`
+  std::vector<std::string> through;     // ROBOT/CLIENT; none: by whatever way
+  VirtualDuration deadline{};           // 0: none
+};
+
 struct Scenario {
   std::string name;
   std::string path;              // of the YAML file; empty for `tcsim exec`
@@ -279,6 +287,7 @@ struct Scenario {
   std::optional<NetworkSpec> network;  // none: all robots share the host's
   std::vector<SensorChannelSpec> sensors;
   std::vector<CommandChannelSpec> commands;
+  std::vector<ChainSpec> chains;
   std::optional<ClockSpec> clock;
   dds::RosRelease ros = dds::RosRelease::kIron;  // in whose form graph tools are told of nodes
   VirtualDuration csv_period =

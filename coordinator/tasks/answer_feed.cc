@@ -19,6 +19,27 @@ void AnswerFeed::Open(const Scenario& scenario) {
     ++robot_number;
   }
   book_.Open(std::move(clients));
+  OpenChains(scenario);
+}
+
+void AnswerFeed::OpenChains(const Scenario& scenario) {
+  std::vector<ChainBook::Sensor> sensors;
+  for (const SensorChannelSpec& sensor : scenario.sensors)
+    sensors.push_back({sensor.name, sensor.period.ns()});
+  std::vector<ChainBook::Command> commands;
+  for (const CommandChannelSpec& command : scenario.commands)
+    commands.push_back({command.name, command.latency.ns()});
+  std::vector<ChainBook::Chain> chains;
+  for (const ChainSpec& spec : scenario.chains) {
+    ChainBook::Chain& chain = chains.emplace_back();
+    chain = {spec.name,
+             static_cast<int>(spec.sensor),
+             static_cast<int>(spec.command),
+             {},
+             spec.deadline.ns()};
+    for (const std::string& client : spec.through) chain.through.push_back(names_.at(client));
+  }
+  chains_.Open(NamesOfClients(), std::move(sensors), std::move(commands), std::move(chains));
 }
 
 std::vector<std::string> AnswerFeed::NamesOfClients() const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/answers/answer_book.h"
+#include "coordinator/answers/chain_book.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/task.h"
 
@@ -29,10 +30,15 @@ class AnswerFeed {
   std::optional<AnswerBook::Who> WhoIs(const std::string& client) const;
   std::optional<AnswerBook::Who> WhoIs(const ClientSpec& client) const;
   AnswerBook& book() { return book_; }
+  ChainBook& chains() { return chains_; }
+  static ChainBook::Who OnChain(const AnswerBook::Who& who) { return {who.thread, who.client}; }
   const AnswerBook& book() const { return book_; }
 
  private:
+  void OpenChains(const Scenario& scenario);
+
   AnswerBook book_;
+  ChainBook chains_;
   std::map<const ClientSpec*, int> clients_;
   std::map<std::string, int> names_;
 };

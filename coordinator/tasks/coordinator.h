@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/answers/chain_figures.h"
 #include "coordinator/answers/client_figures.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/usage.h"
@@ -107,6 +108,7 @@ struct RunReport {
   std::int64_t switches = 0, samples = 0, commands = 0;
   PaceReport pace;
   std::vector<ClientReport> clients;
+  std::vector<ChainFigures> chains;
   std::vector<std::string> verdict;  // sentences, worst first
   std::vector<std::string> warnings;
 };

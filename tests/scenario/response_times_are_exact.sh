@@ -142,4 +142,4 @@ assert any(one["client"] == "overloaded/a" for one in told)
 assert all(one["release_ns"] <= 300_000_000 <= one["end_ns"] for one in told)
 PY
 "$tcsim" explain "$out/fixed" own/c >"$out/said" 2>&1 && fail "a client that there is not"
-grep -q "has no client 'own/c'" "$out/said" || fail "$(cat "$out/said")"
+grep -q "has no client or chain 'own/c'" "$out/said" || fail "$(cat "$out/said")"

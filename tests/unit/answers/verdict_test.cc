@@ -30,7 +30,7 @@ ClientOutcome LateController(std::int64_t missed, std::int64_t in_a_row, std::in
 }
 
 TEST(Verdict, OfClientsThatKeptUpIsSilence) {
-  EXPECT_TRUE(VerdictOn({Controller(), {.name = "r/planner"}}, 1000 * kMillisecond).empty());
+  EXPECT_TRUE(VerdictOn({Controller(), {.name = "r/planner"}}, {}, 1000 * kMillisecond).empty());
 }
 
 TEST(Verdict, NamesAnOverload) {
@@ -40,7 +40,7 @@ TEST(Verdict, NamesAnOverload) {
                                              .executed_ns = 1500 * kMillisecond});
   for (int i = 0; i < 100; ++i) controller.figures.times.execution.Add(15'100'000);
   EXPECT_EQ(
-      VerdictOn({controller}, 1000 * kMillisecond),
+      VerdictOn({controller}, {}, 1000 * kMillisecond),
       std::vector<std::string>{
           "r/controller missed all 100 of its deadlines (10 ms, the period of sensors), the first "
           "at 0.020 s: it computes 15.1 ms each time, 151 % of a core"});
@@ -56,12 +56,12 @@ TEST(Verdict, NamesWhoHadTheCore) {
   const std::string start =
       "r/controller missed 3 of 100 of its deadlines (10 ms, the period of sensors), up to 2 in a "
       "row, the first at 0.500 s: r/planner";
-  EXPECT_EQ(
-      VerdictOn({controller, {.name = "r/planner", .priority = 90}}, 1000 * kMillisecond).front(),
-      start + ", of higher priority, had the core for 97 % of that time");
-  EXPECT_EQ(
-      VerdictOn({controller, {.name = "r/planner", .priority = 80}}, 1000 * kMillisecond).front(),
-      start + ", of the same priority, had the core for 97 % of that time");
+  EXPECT_EQ(VerdictOn({controller, {.name = "r/planner", .priority = 90}}, {}, 1000 * kMillisecond)
+                .front(),
+            start + ", of higher priority, had the core for 97 % of that time");
+  EXPECT_EQ(VerdictOn({controller, {.name = "r/planner", .priority = 80}}, {}, 1000 * kMillisecond)
+                .front(),
+            start + ", of the same priority, had the core for 97 % of that time");
 }
 
 TEST(Verdict, NamesWhoWasStarved) {
@@ -71,7 +71,7 @@ TEST(Verdict, NamesWhoWasStarved) {
                                      .response_ns = 900 * kMillisecond,
                                      .by = "r/planner"};
   EXPECT_EQ(
-      VerdictOn({controller, {.name = "r/planner", .priority = 90}}, 1000 * kMillisecond),
+      VerdictOn({controller, {.name = "r/planner", .priority = 90}}, {}, 1000 * kMillisecond),
       std::vector<std::string>{"r/controller was starved: for 900 ms from 0.100 s on it was ready, "
                                "and r/planner, of higher priority, had the core"});
 }
@@ -83,13 +83,13 @@ TEST(Verdict, CountsWhatWasNeverRead) {
   input.sent = 1001;
   input.received = 1000;
   input.unread = 1;  // it came as the run ended
-  EXPECT_TRUE(VerdictOn({controller}, 1000 * kMillisecond).empty());
+  EXPECT_TRUE(VerdictOn({controller}, {}, 1000 * kMillisecond).empty());
   input.received = 650;
   input.lost = 200;
   input.unread = 151;
   input.oldest_unread_ns = 800 * kMillisecond;
   EXPECT_EQ(
-      VerdictOn({controller}, 1000 * kMillisecond),
+      VerdictOn({controller}, {}, 1000 * kMillisecond),
       std::vector<std::string>{
           "r/controller never read 351 of 1001 datagrams from sensors: 200 were lost because its "
           "socket was full, 151 still waited for it at the end, the oldest since 0.800 s"});
@@ -101,9 +101,26 @@ TEST(Verdict, IsFiveSentencesAtMost) {
     client.figures.deadline.missed = 1;
     client.figures.times.execution.Add(kMillisecond);
   }
-  const std::vector<std::string> verdict = VerdictOn(clients, 1000 * kMillisecond);
+  const std::vector<std::string> verdict = VerdictOn(clients, {}, 1000 * kMillisecond);
   ASSERT_EQ(verdict.size(), 5u);
   EXPECT_EQ(verdict.back(), "and 5 findings more, in summary.json");
+}
+
+TEST(Verdict, NamesAChainThatIsTooOld) {
+  ChainFigures chain{.name = "lidar->wheels", .deadline_ns = 50 * kMillisecond, .missed = 1};
+  chain.first_missed_ns = 3120 * kMillisecond;
+  chain.age.Add(83 * kMillisecond);
+  chain.age.Add(10 * kMillisecond);
+  chain.worst.push_back({0,
+                         83 * kMillisecond,
+                         {{ChainHop::Of::kSensor, "lidar", 22 * kMillisecond},
+                          {ChainHop::Of::kProgram, "r/planner", 61 * kMillisecond}}});
+  EXPECT_EQ(
+      VerdictOn({}, {chain}, 1000 * kMillisecond).front(),
+      "lidar->wheels: 1 of 2 commands acted on samples older than 50 ms, the first at 3.120 s; "
+      "the oldest was 83 ms old, 61 ms of it r/planner");
+  chain.missed = 0;
+  EXPECT_TRUE(VerdictOn({}, {chain}, 1000 * kMillisecond).empty());
 }
 
 }  // namespace

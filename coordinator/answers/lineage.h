@@ -1,0 +1,41 @@
+// What a thread, or a message on its way, can know of: of each sensor the newest sample, and the
+// way on which it came. Values that are shared and never change. Times are virtual nanoseconds.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+
+namespace tcs {
+
+// One program on the way of a sample.
+struct LineageStep {
+  int client = 0;
+  std::int64_t arrived_ns = 0;  // in its socket or reader
+  std::int64_t took_ns = 0;     // by the thread that sent it on,
+  std::int64_t first_ns = 0;    // first then,
+  std::int64_t sent_ns = 0;     // and again in this message, as it knew of nothing newer
+  std::shared_ptr<const LineageStep> before;  // null: it came from the sensor
+};
+
+struct KnownSample {
+  std::int64_t sampled_ns = 0;
+  std::shared_ptr<const LineageStep> last;  // null: nobody has sent it on yet
+  int steps = 0;                            // how many
+};
+
+// Of which chain: of a sensor's samples by whatever way, or of those that have come through so many
+// of the clients that a chain names.
+struct LineageOf {
+  int sensor = 0;
+  int chain = -1;  // -1: by whatever way
+  int stage = 0;
+  auto operator<=>(const LineageOf&) const = default;
+};
+
+using Knowledge = std::map<LineageOf, KnownSample>;
+// Of a message; null: of none.
+using Lineage = std::shared_ptr<const Knowledge>;
+
+}  // namespace tcs
