@@ -2,7 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Two threads of a client that wait for each other's mutex for ever are named at the end of the run, with the time; so
 # where mutexes lend priority. Threads that wait for a condition are not in a deadlock.
-# Topics: verdict, locks, threads.
+# Topics: verdict, threads.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat >"$out/s.yaml" <<YAML

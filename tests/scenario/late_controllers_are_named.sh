@@ -3,7 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Whoever is late is named at the end of a run, with the number and the cause: a controller that computes longer than its
 # sensor's period, one that others keep from its core, one that gets none of it. Who keeps up is not. Response times are
 # what the set costs make them, to the nanosecond.
-# Topics: deadlines, response times, verdict, scheduling.
+# Topics: verdict, scheduling.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cd "$out"

@@ -3,7 +3,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # The tutorial's controller on DDS takes each sample of its robot's odometry in time. One that computes for 15 ms on each of
 # 100 Hz does not, and the run says so: by which it was released, how old its commands are, and how many samples its reader
 # has let go. All of a late activation's time is accounted for, to the nanosecond.
-# Topics: deadlines, response times, verdict, dds.
+# Topics: verdict, dds.
 type idlc gcc >/dev/null 2>&1 || exit 77
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

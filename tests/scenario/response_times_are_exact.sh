@@ -4,7 +4,7 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # preemption, queues, blocking, priorities that are lent, deadlines, two cores. What a run says of each activation
 # equals the closed form, with set costs to the nanosecond and else within 1 %; the parts that explain gives are the
 # whole of it; and explain names the cause.
-# Topics: activations, scheduling, priorities, locks, verdict.
+# Topics: verdict, activations, scheduling, priorities.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 w() { echo "command: [$build/bin/task_set, \"${1// /\", \"}\"]"; }  # one or more tasks of a program

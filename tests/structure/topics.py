@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every scenario test has one line `# Topics: ...` at the end of its opening comment, and its topics are those of
-tests/scenario/topics.txt, each of which some test has."""
+tests/scenario/topics.txt, each of which some test has. And whatever has such a line is run."""
 import re
 import sys
 from pathlib import Path
@@ -49,6 +49,9 @@ def mistakes() -> list[str]:
                 found.append(f"{where}:{at + 1}: there is no topic {topic}; take one of {list_name}, or add it there")
             elif topics.count(topic) > 1:
                 found.append(f"{where}:{at + 1}: has {topic} more than once; remove one")
+    for path in sorted(FOLDER.glob("*.sh")):
+        if path.stem not in names and any(LINE.fullmatch(line) for line in path.read_text().splitlines()):
+            found.append(f"{path.relative_to(ROOT)}: nobody runs it; name it in tests/scenario/CMakeLists.txt")
     found += [f"{list_name}: no test is about {topic}; remove it, or name it in a test" for topic in known if topic not in used]
     return found
 
