@@ -129,7 +129,8 @@ void AnswerBook::NeverCameTo(const Who& who, const Taken& waiting, std::int64_t 
 
 void AnswerBook::Ready(const Who& who, std::int64_t at_ns) { cores_.Ready(OnCores(who), at_ns); }
 
-void AnswerBook::Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns) {
+void AnswerBook::Ran(const Who& who, int core, std::int64_t start_ns, std::int64_t end_ns) {
+  KeptOf(who.client).figures.core_ns[core] += end_ns - start_ns;
   cores_.Ran(OnCores(who), start_ns, end_ns);
 }
 

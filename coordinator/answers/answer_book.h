@@ -83,8 +83,8 @@ class AnswerBook {
 
   // A thread is ready from then on.
   void Ready(const Who& who, std::int64_t at_ns);
-  // A thread of that client had a core of its robot.
-  void Ran(const Who& who, std::int64_t start_ns, std::int64_t end_ns);
+  // A thread of that client had that core of its robot.
+  void Ran(const Who& who, int core, std::int64_t start_ns, std::int64_t end_ns);
   // An activation goes on once what it waits for is there, and the thread is ready. What follows is
   // told as another activation, by a thread.
   void Pauses(const Who& who, const Activation& activation, unsigned receipt, std::int64_t at_ns,

@@ -67,7 +67,8 @@ struct ClientFigures {
   std::vector<InputFigures> inputs;
   // How old the sample was that its sender had last taken, of each command.
   Distribution command_age;
-  bool commands = false;  // something that it sends reaches an actuator
+  std::map<int, std::int64_t> core_ns;  // for how long it had each core of its robot
+  bool commands = false;                // something that it sends reaches an actuator
 };
 
 }  // namespace tcs

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <vector>
 
 namespace tcs {
 
@@ -19,18 +20,21 @@ class Distribution {
 
   std::int64_t count() const { return count_; }
   std::int64_t max() const { return max_; }  // 0 without a value, as all that follows
+  std::int64_t min() const { return min_; }
   double Mean() const;
   // The least value that at least that share of all values do not exceed (nearest rank).
   std::int64_t Quantile(double share) const;
 
  private:
   static std::int64_t Rounded(std::int64_t value_ns);
-  void Round();
+  void Settle() const;
 
-  std::map<std::int64_t, std::int64_t> counts_;  // by value
-  std::int64_t count_ = 0, max_ = 0;
+  // What has been added lately is only noted: to find its place among all others takes longer.
+  mutable std::vector<std::int64_t> new_values_;
+  mutable std::map<std::int64_t, std::int64_t> counts_;  // by value
+  std::int64_t count_ = 0, max_ = 0, min_ = 0;
   double sum_ = 0;
-  bool is_rounded_ = false;
+  mutable bool is_rounded_ = false;
 };
 
 }  // namespace tcs

@@ -8,6 +8,7 @@ using Json = nlohmann::ordered_json;
 
 Json JsonOf(const Distribution& of) {
   return {{"count", of.count()},
+          {"min", of.min()},
           {"p50", of.Quantile(0.5)},
           {"p99", of.Quantile(0.99)},
           {"max", of.max()}};
@@ -69,6 +70,9 @@ void AddFigures(const ClientFigures& figures, nlohmann::ordered_json& client) {
   client["response_ns"] = JsonOf(figures.times.response);
   client["start_delay_ns"] = JsonOf(figures.times.start_delay);
   client["execution_ns"] = JsonOf(figures.times.execution);
+  // Of the ends, as control engineers count it.
+  const Distribution& response = figures.times.response;
+  client["jitter_ns"] = response.count() > 0 ? Json(response.max() - response.min()) : Json();
   client["counted_after_ns"] = figures.after_ns;
   client["deadline"] = nullptr;
   if (deadline.deadline_ns > 0) {

@@ -41,6 +41,25 @@ std::int64_t NotOnOurCpu(const RunReport& r) {
   return r.real_ns - (r.client_ns - r.ahead_ns) - r.awaited_ns - r.dynamics_ns - r.coordinating_ns;
 }
 
+// Of each core how long it was busy, in all and with each client; the rest of the run it was idle.
+nlohmann::ordered_json UseOfCores(const RobotSpec& robot, const RunReport& r) {
+  auto cores = nlohmann::ordered_json::array();
+  for (int core = 0; core < robot.cores; ++core) {
+    std::int64_t busy_ns = 0;
+    auto clients = nlohmann::ordered_json::object();
+    for (const ClientReport& client : r.clients) {
+      const bool is_of_robot = std::ranges::any_of(
+          robot.clients, [&](const ClientSpec& spec) { return spec.name == client.name; });
+      const auto had = client.figures.core_ns.find(core);
+      if (!is_of_robot || had == client.figures.core_ns.end()) continue;
+      busy_ns += had->second;
+      clients[client.name] = had->second;
+    }
+    cores.push_back({{"busy_ns", busy_ns}, {"clients_ns", std::move(clients)}});
+  }
+  return cores;
+}
+
 // None where there is no world.
 nlohmann::json EngineOf(const Scenario& scenario) {
   if (!scenario.world.has_value()) return {};
@@ -162,6 +181,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
   }
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
+    if (answers) json["robots"][robot.name]["use"] = UseOfCores(robot, r);
     for (const ClientSpec& client : robot.clients) {
       const bool periodic = client.client_class == ClientClass::kPeriodic;
       json["clients"][client.name] = {{"robot", robot.name},

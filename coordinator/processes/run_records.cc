@@ -68,7 +68,7 @@ void RunRecords::Ran(const Task& task, ShownSpan shown, WorldSpan world, std::ui
   output_.LookAt(world.end.ns());
   if (answers_ == nullptr || world.start == world.end) return;
   if (const auto who = answers_->WhoIs(task))
-    answers_->book().Ran(*who, world.start.ns(), world.end.ns());
+    answers_->book().Ran(*who, static_cast<int>(task.cpu->core), world.start.ns(), world.end.ns());
 }
 
 }  // namespace tcs

@@ -111,6 +111,14 @@ if not os.path.exists(out + "/no_rights"):
         assert 3_500_000 + more - slack <= blocking <= 3_500_000 + more + slack, (robot, blocking, seen)
         equal(robot, seen["end_ns"] - seen["release_ns"], a + blocking)
         assert "lock:" + client in seen["whose"], seen
+# What each core was busy with, and the spread of the responses.
+robots = json.load(open(f"{out}/{accounting}/summary.json"))["robots"]
+assert [len(robots[name]["use"]) for name in ("alone", "cores")] == [1, 2], robots
+for name in "alone", "cores", "three":
+    busy = sum(core["busy_ns"] for core in robots[name]["use"])
+    charged = sum(of["charged_ns"] for client, of in clients.items() if client.startswith(name + "/"))
+    assert abs(busy - charged) <= (0 if exact else 0.01 * charged), (name, busy, charged)
+if exact: assert clients["alone/a"]["jitter_ns"] <= 2000 < 1_000_000 < clients["three/c"]["jitter_ns"], clients["three/c"]
 # The parts are the whole.
 for client, of in rows.items():
     for row in of:

@@ -132,14 +132,14 @@ TEST_F(AnswerBookTest, OthersThatHadTheCoreAreNamed) {
   Open();
   book_.Ready(kController, 10 * kMs);
   book_.Took(kController, SampleOf(10 * kMs));
-  book_.Ran(kPlanner, 5 * kMs, 18 * kMs);
-  book_.Ran(kController, 18 * kMs, 20 * kMs);
-  book_.Ran(kPlanner, 20 * kMs, 22 * kMs);
-  book_.Ran(kController, 22 * kMs, 23 * kMs);
+  book_.Ran(kPlanner, 0, 5 * kMs, 18 * kMs);
+  book_.Ran(kController, 0, 18 * kMs, 20 * kMs);
+  book_.Ran(kPlanner, 0, 20 * kMs, 22 * kMs);
+  book_.Ran(kController, 0, 22 * kMs, 23 * kMs);
   const Activation activation{
       .cause = ReleaseCause::kInput, .release_ns = 10 * kMs, .start_ns = 18 * kMs};
   book_.Ended(kController, activation, 0, 23 * kMs, 3 * kMs);
-  book_.Ran(kPlanner, 23 * kMs, 30 * kMs);
+  book_.Ran(kPlanner, 0, 23 * kMs, 30 * kMs);
   const ClientFigures figures = Controller();
   EXPECT_EQ(figures.late.total_ns, 13 * kMs);
   EXPECT_EQ(figures.late.executed_ns, 3 * kMs);
@@ -151,8 +151,8 @@ TEST_F(AnswerBookTest, OthersThatHadTheCoreAreNamed) {
 TEST_F(AnswerBookTest, WithMoreCoresThoseBesideItKeepItFromNothing) {
   Open();
   book_.Ready(kController, 0);
-  book_.Ran(kController, 0, kMs);
-  book_.Ran(kPlanner, 0, 20 * kMs);
+  book_.Ran(kController, 0, 0, kMs);
+  book_.Ran(kPlanner, 0, 0, 20 * kMs);
   book_.Took(kController, SampleOf(0));
   Ends(kController, ReleaseCause::kInput, 0, 0, 20 * kMs);
   EXPECT_TRUE(Controller().late.others_ns.empty());
@@ -184,14 +184,14 @@ TEST_F(AnswerBookTest, AWaitForALockIsInTheMidstOfAnActivation) {
   book_.Tell([&](const Response& response) { told.push_back(response); });
   book_.Ready(kController, 10 * kMs);
   book_.Took(kController, SampleOf(10 * kMs));
-  book_.Ran(kController, 10 * kMs, 12 * kMs);
+  book_.Ran(kController, 0, 10 * kMs, 12 * kMs);
   book_.Pauses(kController,
                {.cause = ReleaseCause::kInput, .release_ns = 10 * kMs, .start_ns = 10 * kMs}, 0,
                12 * kMs, 2 * kMs, {.what = AnswerBook::Pause::For::kLock, .client = 1});
-  book_.Ran(kPlanner, 12 * kMs, 17 * kMs);
+  book_.Ran(kPlanner, 0, 12 * kMs, 17 * kMs);
   book_.Ready(kController, 17 * kMs);
-  book_.Ran(kPlanner, 17 * kMs, 18 * kMs);
-  book_.Ran(kController, 18 * kMs, 21 * kMs);
+  book_.Ran(kPlanner, 0, 17 * kMs, 18 * kMs);
+  book_.Ran(kController, 0, 18 * kMs, 21 * kMs);
   const Activation rest{
       .cause = ReleaseCause::kThread, .release_ns = 17 * kMs, .start_ns = 18 * kMs};
   book_.Ended(kController, rest, 0, 21 * kMs, 3 * kMs);
