@@ -117,7 +117,7 @@ assert [len(robots[name]["use"]) for name in ("alone", "cores")] == [1, 2], robo
 for name in "alone", "cores", "three":
     busy = sum(core["busy_ns"] for core in robots[name]["use"])
     charged = sum(of["charged_ns"] for client, of in clients.items() if client.startswith(name + "/"))
-    assert abs(busy - charged) <= (0 if exact else 0.01 * charged), (name, busy, charged)
+    assert abs(busy - charged) <= (20_000 if exact else 0.01 * charged), (name, busy, charged)  # what the end cuts off
 if exact: assert clients["alone/a"]["jitter_ns"] <= 2000 < 1_000_000 < clients["three/c"]["jitter_ns"], clients["three/c"]
 # The parts are the whole.
 for client, of in rows.items():
