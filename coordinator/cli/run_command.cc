@@ -12,6 +12,7 @@
 
 #include "coordinator/cli/check_command.h"
 #include "coordinator/cli/duration_option.h"
+#include "coordinator/cli/earlier_run.h"
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
@@ -134,6 +135,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   options.output_directory = overrides.result_directory;
   std::error_code ignored;  // that of an earlier run
   std::filesystem::remove(overrides.result_directory + "/snapshot.yaml", ignored);
+  RemoveLogsOfEarlierRun(overrides.result_directory, scenario);
   if (options.view != nullptr) {
     // Before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);

@@ -33,6 +33,8 @@ constexpr int kLooksPerStopLook = 10;
 // Somebody who only looks (IsClaimed) has it for an instant.
 constexpr int kLookers = 3;
 constexpr useconds_t kLookUs = 200;
+// Seconds after which a run that waits says again for whom.
+constexpr time_t kSayAgainAfter = 30;
 
 std::string FolderOf(int cpu) { return "/sys/devices/system/cpu/cpu" + std::to_string(cpu); }
 
@@ -140,6 +142,12 @@ bool LeavesOthersSome(int cpu) {
   return runtime >= 0 && runtime < period && server > 0;
 }
 
+time_t SecondsNow() {
+  timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec;
+}
+
 // Of those that nobody ahead waits for. None: others have them all.
 std::optional<CpuClaim> TryToClaimOneOf(const std::vector<int>& cpus,
                                         const std::vector<WaitingRun>& ahead) {
@@ -184,17 +192,24 @@ std::variant<CpuClaim, std::string> ClaimCpu(bool waits) {
       !allowed.empty() && LeavesOthersSome(allowed.back()));
   if (waits) others.Queue(cpus);
   std::optional<std::size_t> place;  // that this run has said
+  const time_t since = SecondsNow();
+  time_t said = since;
   for (int look = 1;; ++look) {
     std::vector<WaitingRun> ahead = RivalsOf(cpus, others.Ahead());
     const std::size_t runs_ahead = ahead.size();
     if (look % kLooksPerStopLook == 0) std::erase_if(ahead, IsStopped);
     if (std::optional<CpuClaim> claim = TryToClaimOneOf(cpus, ahead)) return std::move(*claim);
     if (!waits) return WhoHas(cpus) + "; wait for one of them, or run without --no-wait";
+    const time_t now = SecondsNow();
     if (!place.has_value()) {
       Say(WhoHas(cpus) + "; waiting for one of them, " + PlaceInWords(runs_ahead));
+    } else if (now - said >= kSayAgainAfter) {
+      Say(WhoHas(cpus) + "; waiting for one of them for " + std::to_string(now - since) + " s, " +
+          PlaceInWords(runs_ahead));
     } else if (*place != runs_ahead) {
       Say(std::string(kOthersHaveThem) + "; " + PlaceInWords(runs_ahead));
     }
+    if (place != runs_ahead || now - said >= kSayAgainAfter) said = now;
     place = runs_ahead;
     usleep(
         static_cast<useconds_t>(std::min<std::size_t>(kRetryUs * (runs_ahead + 1), kMostRetryUs)));

@@ -29,12 +29,12 @@ struct CpuClaim {
 void ShareClaimsOfChildren();
 
 // A CPU that no other tcsim has claimed (claim_order.h says which). Where others have all that this
-// process may claim, waits for one, and says on stderr who has them, how many runs are ahead, and
-// whenever fewer are; or, if it is not to wait, returns the first of these sentences instead. Runs
-// that wait get the CPUs in the order in which they came, but a run that is stopped meanwhile holds
-// up nobody. Claims are locks on the CPU's folder in /sys, the queue is locks on the folder above
-// (cpu_register.h): nothing is left behind. Where these cannot be opened, the CPU is taken
-// unclaimed.
+// process may claim, waits for one, and says on stderr who has them, how many runs are ahead, again
+// whenever fewer are, and each half minute; or, if it is not to wait, returns the first of these
+// sentences instead. Runs that wait get the CPUs in the order in which they came, but a run that is
+// stopped meanwhile holds up nobody. Claims are locks on the CPU's folder in /sys, the queue is
+// locks on the folder above (cpu_register.h): nothing is left behind. Where these cannot be opened,
+// the CPU is taken unclaimed.
 [[nodiscard]] std::variant<CpuClaim, std::string> ClaimCpu(bool waits);
 
 // Whether a tcsim has claimed it, also this one. False where that cannot be seen. Cheap, and does
