@@ -135,7 +135,6 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   options.output_directory = overrides.result_directory;
   std::error_code ignored;  // that of an earlier run
   std::filesystem::remove(overrides.result_directory + "/snapshot.yaml", ignored);
-  RemoveLogsOfEarlierRun(overrides.result_directory, scenario);
   if (options.view != nullptr) {
     // Before anybody knows where to ask for something else.
     options.view->Begin(arguments.pace, arguments.pauses);
@@ -164,6 +163,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     line.Clear();
     Say(notice);
   };
+  options.before_writing = [&] { RemoveLogsOfEarlierRun(overrides.result_directory, scenario); };
   const RunReport report = RunScenario(scenario, options);
   line.Clear();
   if (!report.error.empty()) return Fail(report.error);

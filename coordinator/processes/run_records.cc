@@ -22,6 +22,7 @@ std::string RunRecords::Follow(AnswerFeed& answers) {
 std::string RunRecords::OpenFiles() {
   const std::string& directory = run_.options.output_directory;
   if (directory.empty()) return {};
+  if (run_.options.before_writing) run_.options.before_writing();
   // It says that a run has ended, and that of an earlier one would say it of this one.
   std::error_code ignored;
   for (const char* file : {"/summary.json", "/unfinished.json"}) {

@@ -30,6 +30,8 @@ CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 // In the words of the kernel, which the other messages of a full disk have.
 std::string Why(sqlite3* database) {
   if (sqlite3_errcode(database) == SQLITE_FULL) return strerror(ENOSPC);
+  const int error = sqlite3_system_errno(database);
+  if (sqlite3_errcode(database) == SQLITE_IOERR && error != 0) return strerror(error);
   return sqlite3_errmsg(database);
 }
 

@@ -77,6 +77,9 @@ struct RunOptions {
   std::function<bool()> is_debugger_gone;
   // Called with what people who wait for the run are to know now, if set.
   std::function<void(const std::string&)> on_notice;
+  // Nothing keeps the run from beginning any more, and what an earlier one has written into the
+  // folder is still there; may be null.
+  std::function<void()> before_writing;
 };
 
 struct ClientReport {

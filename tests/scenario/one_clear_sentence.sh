@@ -69,6 +69,17 @@ echo kept >"$out/earlier/bodies.csv"
 refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/earlier"
 [[ $(cat "$out/earlier/"*) == kept ]] || fail "an earlier run's results were written over: $(ls "$out/earlier")"
 
+# Nor are its clients' logs removed by one that cannot; by one that can they are, and nothing else is.
+sed '/^channels/d; s/idle:/old:/' "$out/scenario.yaml" >"$out/old.yaml"
+sed 's/old:/new:/' "$out/old.yaml" >"$out/new.yaml"
+run() { timeout 60 "$tcsim" run "$1" --out "$out/logs" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
+run "$out/old.yaml"
+echo mine >"$out/logs/mine.out.log"
+refused 'port 27431 on 127.0.0.1 is taken' "$tcsim" run "$out/scenario.yaml" --out "$out/logs"
+[[ -e $out/logs/r-old.out.log ]] || fail "a run that could not begin has removed logs"
+run "$out/new.yaml"
+[[ ! -e $out/logs/r-old.out.log && -e $out/logs/r-new.err.log && -e $out/logs/mine.out.log ]] || fail "logs: $(ls "$out/logs")"
+
 # The rest needs root.
 ((EUID == 0)) || exit 0
 sed 's/27431/27432/' "$out/scenario.yaml" >"$out/small.yaml"
