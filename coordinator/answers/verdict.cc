@@ -189,15 +189,16 @@ std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients,
   for (const ChainFigures& chain : chains) AddChain(chain, findings);
   std::ranges::stable_sort(findings, std::greater<>(), &Finding::weight);
   std::vector<std::string> sentences;
-  for (const Finding& finding : findings) {
-    if (sentences.size() + 1 == kMostSentences && findings.size() > kMostSentences) {
-      sentences.push_back(
-          fmt::format("and {} findings more, in summary.json", findings.size() - sentences.size()));
-      break;
-    }
-    sentences.push_back(finding.sentence);
-  }
+  for (Finding& finding : findings) sentences.push_back(std::move(finding.sentence));
   return sentences;
+}
+
+std::vector<std::string> Shortened(std::vector<std::string> verdict) {
+  if (verdict.size() <= kMostSentences) return verdict;
+  const std::size_t more = verdict.size() - (kMostSentences - 1);
+  verdict.resize(kMostSentences - 1);
+  verdict.push_back(fmt::format("and {} findings more, in summary.json", more));
+  return verdict;
 }
 
 }  // namespace tcs

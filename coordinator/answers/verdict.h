@@ -17,8 +17,10 @@ struct ClientOutcome {
   ClientFigures figures;
 };
 
-// At most five; the last one says how many more there are.
 std::vector<std::string> VerdictOn(const std::vector<ClientOutcome>& clients,
                                    const std::vector<ChainFigures>& chains, std::int64_t end_ns);
+
+// At most five sentences; the last one says how many more there are.
+std::vector<std::string> Shortened(std::vector<std::string> verdict);
 
 }  // namespace tcs

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "coordinator/answers/unheard.h"
+
 namespace tcs {
 
 namespace {
@@ -265,6 +267,25 @@ std::map<int, std::vector<InputFigures>> DatagramQueues::Conclude(VirtualTime en
     for (const auto& [from, input] : queue.inputs) all[queue.reader.client].push_back(input);
   }
   return all;
+}
+
+std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
+  std::vector<Unheard> unheard;
+  std::vector<Heard> heard;
+  const std::vector<std::string> names = answers_.NamesOfClients();
+  for (const auto& [address, queue] : queues_) {
+    for (const auto& [from, input] : queue.inputs) {
+      const auto& [sender, channel] = from;
+      // What the world sends to nobody is warned of (World::UnheardSensors).
+      if (!answers_.WhoIs(sender).has_value()) continue;
+      if (queue.has_reader) {
+        heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], channel});
+        break;
+      }
+      if (input.sent > 0) unheard.push_back({sender, channel, input.sent});
+    }
+  }
+  return SentencesOn(unheard, heard);
 }
 
 }  // namespace tcs

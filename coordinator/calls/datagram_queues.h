@@ -48,6 +48,8 @@ class DatagramQueues final : public DatagramWatch {
 
   // The run is over: what waits was never read. By client, in the order of the scenario.
   std::map<int, std::vector<InputFigures>> Conclude(VirtualTime end);
+  // What clients sent to where nobody has received anything, in sentences.
+  std::vector<std::string> WhatNobodyHeard() const;
 
  private:
   struct Sent {

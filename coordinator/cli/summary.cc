@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/answers/verdict.h"
 #include "coordinator/cli/chain_table.h"
 #include "coordinator/cli/client_table.h"
 #include "coordinator/cli/figures_json.h"
@@ -106,7 +107,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
     Print("ended before its {:.3f} s because all programs had ended\n",
           Seconds(scenario.duration.ns()));
   }
-  for (const std::string& sentence : r.verdict) Print("! {}\n", sentence);
+  for (const std::string& sentence : Shortened(r.verdict)) Print("! {}\n", sentence);
   Print("{}", ClientTable(r.clients));
   Print("{}", ChainTable(r.chains));
   Print("of the simulation itself, not of the robots:\n");

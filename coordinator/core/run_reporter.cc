@@ -8,6 +8,7 @@
 #include "coordinator/core/deadlocks.h"
 #include "coordinator/dds/topics_table.h"
 #include "coordinator/processes/slot_check.h"
+#include "coordinator/text/spoken.h"
 
 namespace tcs {
 
@@ -101,6 +102,14 @@ void RunReporter::Answer(VirtualTime end) {
   verdict = DeadlocksIn(run_, from_.futexes);
   const std::vector<std::string> late = VerdictOn(outcomes, run_.report.chains, end.ns());
   verdict.insert(verdict.end(), late.begin(), late.end());
+  const std::vector<std::string> unheard = from_.datagrams.WhatNobodyHeard();
+  verdict.insert(verdict.end(), unheard.begin(), unheard.end());
+  if (run_.scenario.drift_bound > end - VirtualTime()) {
+    verdict.push_back(
+        fmt::format("the drift bound, {}, is longer than the run: nothing keeps programs and world "
+                    "at one time",
+                    Spoken(run_.scenario.drift_bound.ns())));
+  }
 }
 
 // Of those that were never started, the ones that waited for another client.

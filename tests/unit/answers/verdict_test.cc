@@ -101,7 +101,10 @@ TEST(Verdict, IsFiveSentencesAtMost) {
     client.figures.deadline.missed = 1;
     client.figures.times.execution.Add(kMillisecond);
   }
-  const std::vector<std::string> verdict = VerdictOn(clients, {}, 1000 * kMillisecond);
+  const std::vector<std::string> all = VerdictOn(clients, {}, 1000 * kMillisecond);
+  EXPECT_EQ(all.size(), 9u);
+  EXPECT_EQ(Shortened({all.begin(), all.begin() + 5}).back(), all[4]);
+  const std::vector<std::string> verdict = Shortened(all);
   ASSERT_EQ(verdict.size(), 5u);
   EXPECT_EQ(verdict.back(), "and 5 findings more, in summary.json");
 }
