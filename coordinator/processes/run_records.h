@@ -9,6 +9,8 @@
 #include <string>
 
 #include "coordinator/core/world.h"
+#include "coordinator/metrics/client_metrics.h"
+#include "coordinator/metrics/metric_book.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
@@ -30,6 +32,8 @@ class RunRecords {
 
   RunRecords(RunState& run, World& world, Activations& activations)
       : run_(run), world_(world), activations_(activations) {}
+  RunRecords(const RunRecords&) = delete;
+  RunRecords& operator=(const RunRecords&) = delete;
 
   // Is told of each turn, too. Null: nobody; it outlives this.
   void Tell(AnswerFeed* answers) { answers_ = answers; }
@@ -40,6 +44,9 @@ class RunRecords {
   // So that what is left of a run that is killed ends shortly before.
   void Flush();
   [[nodiscard]] std::string Close();
+  // Once no client lives any more: what they have printed to their end counts, at `end`.
+  [[nodiscard]] std::string CloseMetrics(VirtualTime end);
+  [[nodiscard]] MetricsOfRun Metrics() const { return metrics_.Figures(); }
 
   // Where a thread is drawn: Task::row.
   int AddRow(const std::string& group, const std::string& name) {
@@ -67,6 +74,8 @@ class RunRecords {
   AnswerFeed* answers_ = nullptr;
   ScheduleRecords schedule_;
   OutputLog output_;
+  MetricBook metrics_;
+  ClientMetrics client_metrics_{metrics_, [this](const std::string& text) { run_.Warn(text); }};
   int world_row_ = 0;
 };
 

@@ -91,7 +91,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   const YamlMap top =
       ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "csv_contacts", "dynamics",
-                 "bodies", "models", "robots", "network", "channels", "clock", "ros"});
+                 "bodies", "models", "robots", "network", "channels", "clock", "ros", "metrics"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -112,6 +112,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   all.Try([&] { LoadNetwork(top, &scenario); });
   all.Try([&] { LoadChannels(top, variables, &scenario); });
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
+  all.Try([&] { LoadMetrics(top, &scenario); });
   return scenario;
 }
 

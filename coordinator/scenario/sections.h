@@ -28,6 +28,9 @@ void LoadNetwork(const YamlMap& top, Scenario* scenario);
 // `channels` and `clock`. Reads the world's bodies from `scenario`.
 void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scenario);
 
+// `metrics`. Reads the world and the channels from `scenario`.
+void LoadMetrics(const YamlMap& top, Scenario* scenario);
+
 // The seed of the part with this name, made from the scenario's seed: each part has random numbers
 // of its own.
 std::uint64_t SeedOf(std::uint64_t seed, std::string_view name);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "coordinator/answers/client_figures.h"
+#include "coordinator/metrics/metric_figures.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/usage.h"
 #include "shm/layout.h"
@@ -107,6 +108,7 @@ struct RunReport {
   std::int64_t switches = 0, samples = 0, commands = 0;
   PaceReport pace;
   std::vector<ClientReport> clients;
+  MetricsOfRun metrics;              // of runs whose results are kept
   std::vector<std::string> verdict;  // sentences, worst first
   std::vector<std::string> warnings;
 };

@@ -1,0 +1,56 @@
+// What clients print of metrics (`tcs-metric NAME VALUE [TIME]`), read from their logs once it is
+// there. The logs are the clients' own and stay as they are; a program that prints takes no other
+// time for it.
+//
+// Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "coordinator/metrics/line_finder.h"
+#include "coordinator/metrics/metric_book.h"
+#include "coordinator/metrics/metric_line.h"
+#include "coordinator/os/unique_fd.h"
+
+namespace tcs {
+
+class ClientMetrics {
+ public:
+  // `warn` is told of a client's first line that is meant to tell of a metric and does not. Both
+  // outlive this.
+  ClientMetrics(MetricBook& book, std::function<void(const std::string&)> warn)
+      : book_(book), warn_(std::move(warn)) {}
+
+  void Begin(const ProgramClocks& clocks) { clocks_ = clocks; }
+  // The client's standard output goes to that file, of which there is nothing yet.
+  void Add(const std::string& client, const std::string& path);
+  // Up to that byte, its output was there at `now_ns`.
+  void Grew(const std::string& client, std::int64_t end, std::int64_t now_ns);
+  // Takes what is there of all clients, at the run's end.
+  void Finish(std::int64_t now_ns);
+
+ private:
+  struct Output {
+    std::string client, path;
+    UniqueFd fd;            // once there is something
+    std::int64_t read = 0;  // bytes
+    MetricLineFinder finder;
+    bool has_complained = false;
+    std::map<std::string, int, std::less<>> numbers;  // of its metrics
+  };
+  void Take(Output& output, std::string_view line, std::int64_t number, std::int64_t now_ns);
+  int NumberOf(Output& output, std::string_view name);
+  void Complain(Output& output, std::int64_t number, const std::string& what);
+
+  MetricBook& book_;
+  std::function<void(const std::string&)> warn_;
+  ProgramClocks clocks_;
+  std::map<std::string, Output, std::less<>> outputs_;  // by client
+};
+
+}  // namespace tcs
