@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <variant>
 
@@ -15,6 +14,7 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kReadAtOnce = 64 << 10;
+constexpr std::int64_t kMostAtOnce = 1 << 30;
 
 // None if it is no file, which a program may have put something else in the place of.
 UniqueFd OpenLog(const std::string& path) {
@@ -32,28 +32,65 @@ void ClientMetrics::Add(const std::string& client, const std::string& path) {
   output.path = path;
 }
 
+// A read takes longer than all else here, so that many small pieces are read at once.
 void ClientMetrics::Grew(const std::string& client, std::int64_t end, std::int64_t now_ns) {
   const auto found = outputs_.find(client);
   if (found == outputs_.end()) return;
   Output& output = found->second;
+  const std::int64_t known = output.ahead.empty() ? output.read : output.ahead.back().end;
+  if (output.is_left || end <= known) return;
+  if (end - known > kMostAtOnce) {
+    output.is_left = true;
+    warn_(
+        fmt::format("{} has made its standard output longer by more than {} MiB at once; what "
+                    "it prints of metrics from then on is left out",
+                    client, kMostAtOnce >> 20));
+    return;
+  }
+  if (!output.ahead.empty() && output.ahead.back().now_ns == now_ns) {
+    output.ahead.back().end = end;
+  } else {
+    output.ahead.push_back({end, now_ns});
+  }
+  if (end - output.read >= static_cast<std::int64_t>(kReadAtOnce)) Read(output);
+}
+
+void ClientMetrics::CatchUp() {
+  for (auto& [client, output] : outputs_) Read(output);
+}
+
+void ClientMetrics::Read(Output& output) {
+  const std::vector<Piece> pieces = std::exchange(output.ahead, {});
+  if (pieces.empty()) return;
   if (!output.fd) output.fd = OpenLog(output.path);
-  const auto on_line = [&](std::string_view line, std::int64_t number) {
-    Take(output, line, number, now_ns);
-  };
-  char piece[kReadAtOnce];
-  while (output.fd && output.read < end) {
-    const auto most = static_cast<std::size_t>(
-        std::min<std::int64_t>(end - output.read, static_cast<std::int64_t>(sizeof piece)));
-    const ssize_t size = pread(output.fd.get(), piece, most, output.read);
-    if (size <= 0) return;
-    output.read += size;
-    output.finder.Feed({piece, static_cast<std::size_t>(size)}, on_line);
+  if (!output.fd) return;
+  char bytes[kReadAtOnce];
+  std::int64_t begin = 0, end = 0;  // of what is in there, in the file
+  for (const Piece& piece : pieces) {
+    const auto on_line = [&](std::string_view line, std::int64_t number) {
+      Take(output, line, number, piece.now_ns);
+    };
+    while (output.read < piece.end) {
+      if (output.read >= end) {
+        const ssize_t size = pread(output.fd.get(), bytes, sizeof bytes, output.read);
+        if (size <= 0) return;
+        begin = output.read;
+        end = begin + size;
+      }
+      const std::int64_t until = std::min(end, piece.end);
+      output.finder.Feed(
+          {bytes + (output.read - begin), static_cast<std::size_t>(until - output.read)}, on_line);
+      output.read = until;
+    }
   }
 }
 
 void ClientMetrics::Finish(std::int64_t now_ns) {
   for (auto& [client, output] : outputs_) {
-    Grew(client, std::numeric_limits<std::int64_t>::max(), now_ns);
+    struct stat is {};
+    const UniqueFd log = OpenLog(output.path);
+    if (log && fstat(log.get(), &is) == 0) Grew(client, is.st_size, now_ns);
+    Read(output);
     output.finder.Finish([&, &of = output](std::string_view line, std::int64_t number) {
       Take(of, line, number, now_ns);
     });

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "coordinator/metrics/line_finder.h"
 #include "coordinator/metrics/metric_book.h"
@@ -29,20 +30,29 @@ class ClientMetrics {
   void Begin(const ProgramClocks& clocks) { clocks_ = clocks; }
   // The client's standard output goes to that file, of which there is nothing yet.
   void Add(const std::string& client, const std::string& path);
-  // Up to that byte, its output was there at `now_ns`.
+  // Up to that byte, its output was there at `now_ns`. It is read later, with what follows.
   void Grew(const std::string& client, std::int64_t end, std::int64_t now_ns);
+  // Reads what has been told of. Not of a client that has made its log longer than a program can
+  // print in a while, which would keep the run waiting.
+  void CatchUp();
   // Takes what is there of all clients, at the run's end.
   void Finish(std::int64_t now_ns);
 
  private:
+  // What was there at a time.
+  struct Piece {
+    std::int64_t end, now_ns;
+  };
   struct Output {
     std::string client, path;
-    UniqueFd fd;            // once there is something
-    std::int64_t read = 0;  // bytes
+    UniqueFd fd;               // once there is something
+    std::int64_t read = 0;     // bytes
+    std::vector<Piece> ahead;  // what is to be read, in its order
     MetricLineFinder finder;
-    bool has_complained = false;
+    bool has_complained = false, is_left = false;
     std::map<std::string, int, std::less<>> numbers;  // of its metrics
   };
+  void Read(Output& output);
   void Take(Output& output, std::string_view line, std::int64_t number, std::int64_t now_ns);
   int NumberOf(Output& output, std::string_view name);
   void Complain(Output& output, std::int64_t number, const std::string& what);

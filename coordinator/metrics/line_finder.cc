@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include <algorithm>
-
 #include "coordinator/metrics/metric_line.h"
 
 namespace tcs {
@@ -23,20 +21,6 @@ std::size_t LineEnd(std::string_view text, std::size_t from) {
   return end == nullptr ? std::string_view::npos
                         : static_cast<std::size_t>(static_cast<const char*>(end) - text.data());
 }
-
-// Where the next line that begins with the word begins, of those that begin from `from` on.
-std::size_t NextWord(std::string_view text, std::size_t from) {
-  for (std::size_t at = from;;) {
-    const void* found =
-        memmem(text.data() + at, text.size() - at, kMetricWord.data(), kMetricWord.size());
-    if (found == nullptr) return std::string_view::npos;
-    at = static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
-    if (at == from || text[at - 1] == '\n') return at;
-    ++at;
-  }
-}
-
-std::int64_t LinesIn(std::string_view text) { return std::ranges::count(text, '\n'); }
 
 }  // namespace
 
@@ -59,23 +43,12 @@ void MetricLineFinder::Feed(std::string_view piece, const OnLine& on_line) {
     is_in_other_ = false;
     at = end + 1;
   }
-  for (;;) {
-    const std::size_t word = NextWord(piece, at);
-    if (word == std::string_view::npos) break;
-    ended_ += LinesIn(piece.substr(at, word - at));
-    at = word;
-    const std::size_t end = LineEnd(piece, word);
-    if (end == std::string_view::npos) break;
+  for (std::size_t end; (end = LineEnd(piece, at)) != std::string_view::npos; at = end + 1) {
     ++ended_;
-    const std::string_view line = piece.substr(word, end - word);
+    const std::string_view line = piece.substr(at, end - at);
     if (IsMetricLine(line)) on_line(line.substr(0, kMostKept), ended_);
-    at = end + 1;
   }
-  const std::string_view rest = piece.substr(at);
-  ended_ += LinesIn(rest);
-  const std::size_t last_end = rest.rfind('\n');
-  const std::string_view begun =
-      last_end == std::string_view::npos ? rest : rest.substr(last_end + 1);
+  const std::string_view begun = piece.substr(at);
   is_in_other_ = !MayBeMetric(begun);
   if (!is_in_other_) begun_ = begun.substr(0, kMostKept);
 }

@@ -14,6 +14,8 @@ namespace tcs {
 namespace {
 
 constexpr std::size_t kMostShown = 40;
+// Programs go on for as long behind the run's end, at most.
+constexpr std::int64_t kGraceNs = 60'000'000'000;
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool IsDigitChar(char c) { return c >= '0' && c <= '9'; }
@@ -146,8 +148,9 @@ std::optional<std::int64_t> VirtualTimeOfReading(std::int64_t reading_ns, std::i
   std::optional<std::int64_t> nearest;
   for (const std::int64_t at_start_ns :
        {std::int64_t{0}, clocks.monotonic_ns, clocks.realtime_ns}) {
-    if (reading_ns < at_start_ns || reading_ns - at_start_ns > clocks.duration_ns) continue;
-    const std::int64_t at_ns = reading_ns - at_start_ns;
+    if (reading_ns < at_start_ns || reading_ns - at_start_ns > clocks.duration_ns + kGraceNs)
+      continue;
+    const std::int64_t at_ns = std::min(reading_ns - at_start_ns, clocks.duration_ns);
     if (!nearest || std::abs(at_ns - written_ns) < std::abs(*nearest - written_ns)) nearest = at_ns;
   }
   return nearest;

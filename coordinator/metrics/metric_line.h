@@ -36,7 +36,8 @@ struct ProgramClocks {
 
 // The virtual time at which a clock of a program shows `reading_ns`: CLOCK_REALTIME,
 // CLOCK_MONOTONIC, or the time since the run's start, as readings of sensors have it. Of the times
-// within the run the one that is nearest to `written_ns`; none: there is no such time.
+// within the run the one that is nearest to `written_ns`; none: there is no such time. What a
+// program reads while it ends, soon after the run, is of the run's end.
 [[nodiscard]] std::optional<std::int64_t> VirtualTimeOfReading(std::int64_t reading_ns,
                                                                std::int64_t written_ns,
                                                                const ProgramClocks& clocks);

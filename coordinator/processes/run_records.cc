@@ -1,5 +1,6 @@
 #include "coordinator/processes/run_records.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -35,7 +36,8 @@ std::string RunRecords::OpenFiles() {
   metrics_.OpenIn(directory);
   world_.Measure(metrics_);
   output_.Tell([this](const std::string& client, std::int64_t end, std::int64_t now_ns) {
-    client_metrics_.Grew(client, end, now_ns);
+    // What is printed after the run's end counts at its end.
+    client_metrics_.Grew(client, end, std::min(now_ns, run_.grace_began.ns()));
   });
   return error;
 }
@@ -53,6 +55,7 @@ void RunRecords::Flush() {
   activations_.Flush();
   world_.FlushRecords();
   output_.Flush();
+  client_metrics_.CatchUp();
   metrics_.Flush();
 }
 

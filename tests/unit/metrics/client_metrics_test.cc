@@ -34,6 +34,7 @@ class ClientMetricsTest : public ::testing::Test {
     metrics_.Grew("r/a", printed_, now_ns);
   }
   std::string Written() {
+    metrics_.CatchUp();
     EXPECT_EQ(book_.Close(), "");
     std::stringstream text;
     text << std::ifstream(folder_ + "/metrics.csv").rdbuf();
@@ -71,6 +72,7 @@ TEST_F(ClientMetricsTest, WhatIsLeftCountsAtTheEnd) {
 TEST_F(ClientMetricsTest, WhatIsNoneIsSaidOnceWithItsLine) {
   Print("first\ntcs-metric error much\ntcs-metric error\ntcs-metric error 1\n", 100);
   Print("tcs-metric error 1 5000\n", 200);
+  metrics_.CatchUp();
   EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr("r/a: "), HasSubstr("'much'"),
                                            HasSubstr("r-a.out.log:2"))));
   EXPECT_EQ(book_.Figures().at("error").count, 1);
@@ -82,10 +84,20 @@ TEST_F(ClientMetricsTest, AreNotReadFromWhatIsNoFile) {
   EXPECT_THAT(book_.Figures(), IsEmpty());
 }
 
+TEST_F(ClientMetricsTest, AreNotLookedForInWhatNobodyCanHavePrinted) {
+  Print("tcs-metric error 1\n", 100);
+  std::filesystem::resize_file(folder_ + "/r-a.out.log", std::uintmax_t{1} << 40);
+  metrics_.Grew("r/a", std::int64_t{1} << 40, 200);
+  metrics_.Finish(300);
+  EXPECT_EQ(book_.Figures().at("error").count, 1);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("1024 MiB")));
+}
+
 TEST_F(ClientMetricsTest, AreTakenOfManyValues) {
   std::string text;
   for (int i = 0; i < 100'000; ++i) text += "tcs-metric step " + std::to_string(i) + "\n";
   Print(text, 1);
+  metrics_.CatchUp();
   EXPECT_EQ(book_.Figures().at("step").count, 100'000);
   EXPECT_EQ(book_.Figures().at("step").max, 99'999);
 }

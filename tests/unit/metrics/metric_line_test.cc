@@ -90,7 +90,8 @@ TEST(MetricLineTest, ItsTimeIsThatOfAnyClockOfTheProgram) {
   EXPECT_EQ(VirtualTimeOfReading(1003 * s, 4 * s, clocks), 3 * s);
   EXPECT_EQ(VirtualTimeOfReading(1'704'067'203 * s, 4 * s, clocks), 3 * s);
   EXPECT_EQ(VirtualTimeOfReading(500 * s, 4 * s, clocks), std::nullopt);
-  EXPECT_EQ(VirtualTimeOfReading(1021 * s, 4 * s, clocks), std::nullopt);
+  EXPECT_EQ(VirtualTimeOfReading(1021 * s, 20 * s, clocks), 20 * s) << "while it ends";
+  EXPECT_EQ(VirtualTimeOfReading(1100 * s, 20 * s, clocks), std::nullopt);
   EXPECT_EQ(VirtualTimeOfReading(0, 4 * s, clocks), 0);
   // Of a long run, what is nearest to the write.
   const ProgramClocks of_hour{
