@@ -11,6 +11,7 @@
 #include "coordinator/cli/chain_table.h"
 #include "coordinator/cli/client_table.h"
 #include "coordinator/cli/figures_json.h"
+#include "coordinator/cli/metrics_text.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
@@ -110,6 +111,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   for (const std::string& sentence : Shortened(r.verdict)) Print("! {}\n", sentence);
   Print("{}", ClientTable(r.clients));
   Print("{}", ChainTable(r.chains));
+  Print("{}", MetricsTable(r.metrics));
   Print("of the simulation itself, not of the robots:\n");
   Print("drift {:.3f} ms (bound {:.3f} ms), staleness {} ns, lateness {:.3f} ms\n",
         Milliseconds(r.drift_ns), Milliseconds(scenario.drift_bound.ns()), r.staleness_ns,
@@ -173,6 +175,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"warnings", r.warnings}};
   const bool answers = !options.output_directory.empty();
   if (answers) json["verdict"] = r.verdict;
+  if (answers) json["metrics"] = MetricsJson(r.metrics);
   if (r.pace.pace > 0 || r.pace.stood_ns > 0) {
     json["pace"] = {{"wanted", r.pace.pace},
                     {"behind_ns", r.pace.behind_ns},

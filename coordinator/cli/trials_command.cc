@@ -31,6 +31,7 @@
 #include "coordinator/trials/result_folder.h"
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/slurm_launcher.h"
+#include "coordinator/trials/trial_metrics.h"
 
 namespace tcs {
 
@@ -240,6 +241,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
   const std::string& folder = arguments.out;
   std::vector<Trial> todo;
   std::vector<TrialOutcome> earlier;
+  std::vector<std::string> done;  // their folders
   for (const Trial& trial : TrialsOf(plan)) {
     const auto outcome = ReadOutcome(folder + "/" + trial.folder, trial.seed);
     if (!outcome.has_value()) {
@@ -247,6 +249,7 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
       continue;
     }
     earlier.push_back(*outcome);
+    done.push_back(trial.folder);
     groups[trial.group].done.push_back(*outcome);
   }
 
@@ -295,9 +298,13 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
 
   int failed = 0;
   for (const TrialEnd& end : report.ends) {
-    if (end.outcome.has_value()) groups[end.trial.group].done.push_back(*end.outcome);
+    if (end.outcome.has_value()) {
+      groups[end.trial.group].done.push_back(*end.outcome);
+      done.push_back(end.trial.folder);
+    }
     failed += end.outcome.has_value() ? 0 : 1;
   }
+  if (const std::string error = NoteTrialMetrics(folder, done); !error.empty()) Say(error);
   Print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
         TrialsTable(groups), arguments.out);
   std::fflush(stdout);

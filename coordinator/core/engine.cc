@@ -420,6 +420,10 @@ RunReport Engine::Run() {
     EndClients();
     Shutdown();
   }
+  // What clients print at their end is theirs to be measured by, too.
+  const std::string error = records_.CloseMetrics(RobotTime(report.virtual_ns));
+  if (report.error.empty()) report.error = error;
+  report.metrics = records_.Metrics();
   report.warnings = run_.report.warnings;
   return report;
 }

@@ -89,6 +89,11 @@ std::string World::Open(const Scenario& scenario, dds::OwnEndpoints& ends, const
   commands_.Open(scenario_.commands, std::move(names_of_bodies));
   if (std::string error = channels_.Open(scenario_, ends, make_at); !error.empty()) return error;
   if (watch != nullptr) channels_.TellOf(*watch, scenario_);
+  metrics_.Open(scenario_);
+  for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
+    auto& outlet = channels_.outlets[i];
+    outlet = metrics_.Wrap(i, std::move(outlet));
+  }
   if (is_recorded) {
     channels_.Record(scenario_, channel_records_.emplace(scenario_));
     for (std::size_t i = 0; i < channels_.outlets.size(); ++i) {
@@ -199,6 +204,12 @@ std::string World::CloseRecords() {
   return {};
 }
 
+void World::Measure(MetricBook& book) {
+  if (!present()) return;
+  metrics_.WriteInto(book, commands_.log());
+  FindNextStop();
+}
+
 void World::RecordInto(record::MessageSink& sink) {
   if (!present()) return;
   topics_.emplace(scenario_, sink);
@@ -208,7 +219,7 @@ void World::RecordInto(record::MessageSink& sink) {
 void World::FindNextStop() {
   next_output_ = sensors_.NextArrival();
   next_stop_ = std::min({csv_.is_open() ? next_csv_ : VirtualTime::Never(), sensors_.NextStop(),
-                         commands_.NextStop()});
+                         commands_.NextStop(), metrics_.NextStop()});
 }
 
 void World::WriteStates() {
@@ -267,6 +278,7 @@ bool World::Advance(VirtualTime limit) {
            [this](std::span<const int> joints, std::span<JointState> states) {
              dynamics_->ReadJoints(dynamics_->Now(), joints, states);
            }});
+  metrics_.Evaluate(*dynamics_);
   if (sent) ReceiveFromTerminals(progress_);  // what they echo
   FindNextStop();
   return sent;

@@ -23,6 +23,7 @@
 #include "coordinator/world/joint_lines.h"
 #include "coordinator/world/link_lines.h"
 #include "coordinator/world/measurement_log.h"
+#include "coordinator/world/scenario_metrics.h"
 #include "coordinator/world/sensors.h"
 #include "coordinator/world/world_topics.h"
 #include "shm/own_receivers.h"
@@ -53,6 +54,8 @@ class World {
   [[nodiscard]] std::string OpenRecords(const std::string& folder);
   void FlushRecords();
   [[nodiscard]] std::string CloseRecords();
+  // Values of the scenario's metrics are taken from now on; the book outlives this.
+  void Measure(MetricBook& book);
   // After OpenRecords: where bodies are, as often as the files are told, and what goes over
   // channels that are not on DDS, as messages. The sink outlives this.
   void RecordInto(record::MessageSink& sink);
@@ -128,6 +131,7 @@ class World {
   VirtualTime progress_, next_output_, next_stop_;
   std::optional<ChannelRecords> channel_records_;  // outlives what it has wrapped
   MeasurementLog measurements_;                    // this, too
+  ScenarioMetrics metrics_;                        // and this
   Channels channels_;
   std::vector<std::size_t> inlet_of_receiver_;
   std::vector<Inlet*> terminals_;

@@ -1,5 +1,6 @@
 #include "coordinator/processes/run_records.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -35,12 +36,25 @@ std::string RunRecords::OpenFiles() {
   }
   if (error.empty()) error = output_.Open(directory);
   for (const RobotSpec& robot : run_.scenario.robots) {
-    for (const ClientSpec& client : robot.clients) output_.Add(client.name, FileNameOf(client));
+    for (const ClientSpec& client : robot.clients) {
+      output_.Add(client.name, FileNameOf(client));
+      client_metrics_.Add(client.name, directory + "/" + FileNameOf(client) + ".out.log");
+    }
   }
+  metrics_.OpenIn(directory);
+  world_.Measure(metrics_);
+  output_.Tell([this](const std::string& client, std::int64_t end, std::int64_t now_ns) {
+    // What is printed after the run's end counts at its end.
+    client_metrics_.Grew(client, end, std::min(now_ns, run_.grace_began.ns()));
+  });
   return error;
 }
 
 void RunRecords::StartAt(const RunClock& clock) {
+  if (run_.header == nullptr) return;  // the run does not begin
+  client_metrics_.Begin({.monotonic_ns = run_.header->monotonic_offset_ns,
+                         .realtime_ns = run_.header->realtime_offset_ns,
+                         .duration_ns = run_.scenario.duration.ns()});
   schedule_.StartAt(clock.start_tsc(), clock.rate().ticks_per_ns);
 }
 
@@ -50,6 +64,8 @@ void RunRecords::Flush() {
   responses_.Flush();
   world_.FlushRecords();
   output_.Flush();
+  client_metrics_.CatchUp();
+  metrics_.Flush();
 }
 
 std::string RunRecords::Close() {
@@ -60,6 +76,12 @@ std::string RunRecords::Close() {
     if (!error.empty()) return error;
   }
   return {};
+}
+
+std::string RunRecords::CloseMetrics(VirtualTime end) {
+  // Of a run that did not begin, what is there may be an earlier one's.
+  if (run_.header != nullptr) client_metrics_.Finish(end.ns());
+  return metrics_.Close();
 }
 
 void RunRecords::Ran(const Task& task, ShownSpan shown, WorldSpan world, std::uint64_t until_tsc) {

@@ -10,6 +10,8 @@
 
 #include "coordinator/answers/response_log.h"
 #include "coordinator/core/world.h"
+#include "coordinator/metrics/client_metrics.h"
+#include "coordinator/metrics/metric_book.h"
 #include "coordinator/tasks/activations.h"
 #include "coordinator/tasks/run_clock.h"
 #include "coordinator/tasks/run_state.h"
@@ -31,6 +33,8 @@ class RunRecords {
 
   RunRecords(RunState& run, World& world, Activations& activations)
       : run_(run), world_(world), activations_(activations) {}
+  RunRecords(const RunRecords&) = delete;
+  RunRecords& operator=(const RunRecords&) = delete;
 
   // Once the world is open; what an earlier run has left there is removed.
   [[nodiscard]] std::string Open();
@@ -42,6 +46,9 @@ class RunRecords {
   // So that what is left of a run that is killed ends shortly before.
   void Flush();
   [[nodiscard]] std::string Close();
+  // Once no client lives any more: what they have printed to their end counts, at `end`.
+  [[nodiscard]] std::string CloseMetrics(VirtualTime end);
+  [[nodiscard]] MetricsOfRun Metrics() const { return metrics_.Figures(); }
 
   // Where a thread is drawn: Task::row.
   int AddRow(const std::string& group, const std::string& name) {
@@ -70,6 +77,8 @@ class RunRecords {
   ScheduleRecords schedule_;
   ResponseLog responses_;
   OutputLog output_;
+  MetricBook metrics_;
+  ClientMetrics client_metrics_{metrics_, [this](const std::string& text) { run_.Warn(text); }};
   int world_row_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/report/metric_sections.h"
 #include "coordinator/report/page_files.h"
 #include "coordinator/report/replay.h"
 #include "coordinator/report/replay_sections.h"
@@ -40,6 +41,8 @@ class Builder {
     AddFailures();
     Add(DistanceHistogram(results_, options_.marks));
     Add(DistanceOverTime(results_, options_.marks));
+    Add(MetricsOverTime(results_));
+    Add(MetricsSection(results_));
     Add(CostsSection(results_));
     Add(ResponseTimes(results_));
     Add(Lateness(results_));

@@ -91,7 +91,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   const YamlMap top =
       ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "csv_contacts", "dynamics",
-                 "bodies", "models", "robots", "network", "channels", "chains", "clock", "ros"});
+                 "bodies", "models", "robots", "network", "channels", "chains", "clock", "ros",
+                 "metrics"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -113,6 +114,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   all.Try([&] { LoadChannels(top, variables, &scenario); });
   if (!all.HasMistakes()) LoadChains(top, &scenario);
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
+  all.Try([&] { LoadMetrics(top, &scenario); });
   return scenario;
 }
 

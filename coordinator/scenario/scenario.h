@@ -18,6 +18,7 @@
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
 #include "coordinator/scenario/instruments.h"
+#include "coordinator/scenario/metric_spec.h"
 #include "coordinator/scenario/network_spec.h"
 #include "shm/virtual_time.h"
 #include "simbody_bridge/dynamics.h"
@@ -293,6 +294,8 @@ struct Scenario {
   VirtualDuration csv_period =
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
   bool csv_contacts = false;              // contact forces are written, too
+  std::vector<MetricSpec> metrics;        // what the run is to be measured by
+  std::vector<QuantitySpec> quantities;   // that they are of
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
 };

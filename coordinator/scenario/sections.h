@@ -30,6 +30,8 @@ void LoadChannels(const YamlMap& top, const Variables& variables, Scenario* scen
 
 // `chains`. Reads the robots and the channels from `scenario`.
 void LoadChains(const YamlMap& top, Scenario* scenario);
+// `metrics`. Reads the world and the channels from `scenario`.
+void LoadMetrics(const YamlMap& top, Scenario* scenario);
 
 // The seed of the part with this name, made from the scenario's seed: each part has random numbers
 // of its own.

@@ -17,7 +17,7 @@
 namespace tcs {
 namespace {
 
-std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
+std::string InQuotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 template <class Number>
 std::optional<Number> ParseWhole(std::string_view text) {
@@ -140,7 +140,7 @@ double YamlValue::AsNumber() const {
     const std::string text = Scalar("a number");
     const auto number = ParseWhole<double>(text);
     if (!number || !std::isfinite(*number)) {
-      Fail("is " + Quote(text) + "; it must be a finite number");
+      Fail("is " + InQuotes(text) + "; it must be a finite number");
     }
     return *number;
   });
@@ -169,7 +169,7 @@ std::int64_t YamlValue::AsInteger(std::int64_t least, std::int64_t most) const {
     const std::string text = Scalar("a whole number");
     const auto number = ParseWhole<std::int64_t>(text);
     if (!number || *number < least || *number > most) {
-      Fail("is " + Quote(text) + "; it must be a whole number from " + std::to_string(least) +
+      Fail("is " + InQuotes(text) + "; it must be a whole number from " + std::to_string(least) +
            " to " + std::to_string(most));
     }
     return *number;
@@ -180,7 +180,7 @@ std::uint64_t YamlValue::AsUnsigned64() const {
   return OrElse(std::uint64_t{1}, [&] {
     const std::string text = Scalar("a whole number");
     const auto number = ParseWhole<std::uint64_t>(text);
-    if (!number) Fail("is " + Quote(text) + "; it must be a whole number from 0 to 2^64 - 1");
+    if (!number) Fail("is " + InQuotes(text) + "; it must be a whole number from 0 to 2^64 - 1");
     return *number;
   });
 }
@@ -188,7 +188,8 @@ std::uint64_t YamlValue::AsUnsigned64() const {
 bool YamlValue::AsBoolean() const {
   return OrElse(false, [&] {
     const std::string text = Scalar("true or false");
-    if (text != "true" && text != "false") Fail("is " + Quote(text) + "; it must be true or false");
+    if (text != "true" && text != "false")
+      Fail("is " + InQuotes(text) + "; it must be true or false");
     return text == "true";
   });
 }
@@ -276,7 +277,7 @@ void YamlMap::AllowOnly(const std::vector<std::string>& known) const {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     place_.Try([&] {
       entry.value.At(entry.key_place)
-          .FailPlainly("unknown key " + Quote(entry.key) +
+          .FailPlainly("unknown key " + InQuotes(entry.key) +
                        (place_.name().empty() ? "" : " in " + place_.name()) + "; " +
                        Suggest(entry.key, known, "keys"));
     });
@@ -292,7 +293,7 @@ const YamlValue* YamlMap::Find(std::string_view key) const {
 
 const YamlValue& YamlMap::Require(std::string_view key, std::string_view example) const {
   if (const YamlValue* value = Find(key)) return *value;
-  place_.Fail("lacks the key " + Quote(key) + "; add it, like " + std::string(example));
+  place_.Fail("lacks the key " + InQuotes(key) + "; add it, like " + std::string(example));
 }
 
 YAML::Node ParseDocument(const std::string& file, const std::string& text) {
@@ -335,7 +336,7 @@ void CheckName(const YamlMap::Entry& entry) {
                     name.find_first_not_of(kAllowed) == std::string::npos;
   if (!fine) {
     entry.value.At(entry.key_place)
-        .FailPlainly(Quote(name) +
+        .FailPlainly(InQuotes(name) +
                      " is not a name; use up to 64 letters, digits, '_', '-' and '.'");
   }
 }

@@ -90,6 +90,7 @@ class YamlValue {
   std::vector<YamlValue> AsList(std::string_view example) const;
   bool IsMap() const { return node_.IsMap(); }
   bool IsList() const { return node_.IsSequence(); }
+  bool IsNull() const { return node_.IsNull(); }  // there is none
   YamlMap AsMap() const;
 
  private:

@@ -14,6 +14,7 @@
 
 #include "coordinator/answers/chain_figures.h"
 #include "coordinator/answers/client_figures.h"
+#include "coordinator/metrics/metric_figures.h"
 #include "coordinator/scenario/scenario.h"
 #include "coordinator/tasks/usage.h"
 #include "shm/layout.h"
@@ -112,6 +113,7 @@ struct RunReport {
   PaceReport pace;
   std::vector<ClientReport> clients;
   std::vector<ChainFigures> chains;
+  MetricsOfRun metrics;              // of runs whose results are kept
   std::vector<std::string> verdict;  // sentences, worst first
   std::vector<std::string> warnings;
 };

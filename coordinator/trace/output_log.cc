@@ -8,6 +8,12 @@
 
 namespace tcs {
 
+namespace {
+
+constexpr const char* kOutput = "out";
+
+}  // namespace
+
 std::string OutputLog::Open(const std::string& folder) {
   folder_ = folder;
   const std::string path = folder + "/output.csv";
@@ -21,7 +27,7 @@ std::string OutputLog::Open(const std::string& folder) {
 }
 
 void OutputLog::Add(const std::string& client, const std::string& file) {
-  for (const char* name : {"out", "err"}) {
+  for (const char* name : {kOutput, "err"}) {
     const auto [at, added] = streams_.insert({file + "." + name + ".log", {client, name}});
     if (added) of_client_[client].push_back(&*at);
   }
@@ -74,7 +80,9 @@ void OutputLog::Grew(Streams::value_type& grown, std::int64_t now_ns) {
   struct stat is {};
   if (stat((folder_ + "/" + file).c_str(), &is) != 0) return;
   const std::int64_t before = std::exchange(stream.bytes, is.st_size);
-  if (stream.bytes > before) csv_.Line(now_ns, stream.client, stream.name, before, stream.bytes);
+  if (stream.bytes <= before) return;
+  csv_.Line(now_ns, stream.client, stream.name, before, stream.bytes);
+  if (grown_output_ && stream.name == kOutput) grown_output_(stream.client, stream.bytes, now_ns);
 }
 
 }  // namespace tcs

@@ -9,8 +9,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/os/unique_fd.h"
@@ -25,6 +27,11 @@ class OutputLog {
   [[nodiscard]] std::string Open(const std::string& folder);
   // The client's files are called FILE.out.log and FILE.err.log.
   void Add(const std::string& client, const std::string& file);
+  // `grown` is told of each piece of a client's standard output that has been noted: up to which
+  // byte of the file.
+  using Grown =
+      std::function<void(const std::string& client, std::int64_t end, std::int64_t now_ns)>;
+  void Tell(Grown grown) { grown_output_ = std::move(grown); }
   // Notes what has been written since the last time.
   void LookAt(std::int64_t now_ns);
   // What the client writes from now on was written by the time of the next look after it is let go.
@@ -49,6 +56,7 @@ class OutputLog {
   Streams streams_;                                                     // by file
   std::map<std::string, std::vector<Streams::value_type*>> of_client_;  // its streams
   std::vector<Streams::value_type*> grown_;                             // while they were held
+  Grown grown_output_;
   CsvFile csv_;
 };
 

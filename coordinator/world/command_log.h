@@ -1,8 +1,10 @@
 // The commands of a run, as they were given to the physics: commands.csv, a line for each quantity.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "coordinator/trace/csv_file.h"
 #include "shm/virtual_time.h"
@@ -17,18 +19,26 @@ class CommandLog {
     VirtualDuration latency;
   };
 
+  // What is written, also while there is no file.
+  using Listener =
+      std::function<void(Moment moment, std::string_view channel, std::string_view target,
+                         std::string_view quantity, double value)>;
+  void Tell(Listener listener) { listener_ = std::move(listener); }
+
   // Empty on success, else one sentence. Until then nothing is written.
   [[nodiscard]] std::string Open(const std::string& path);
   void Write(Moment moment, std::string_view channel, std::string_view target,
              std::string_view quantity, double value) {
     file_.Line(moment.sent.ns(), (moment.sent + moment.latency).ns(), channel, target, quantity,
                value);
+    if (listener_) listener_(moment, channel, target, quantity, value);
   }
   void Flush() { file_.Flush(); }
   [[nodiscard]] std::string Close() { return file_.Close(); }
 
  private:
   CsvFile file_;
+  Listener listener_;
 };
 
 }  // namespace tcs

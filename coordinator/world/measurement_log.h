@@ -2,11 +2,8 @@
 // sample, with its components. Not what is of hundreds of numbers: scans, clouds, images.
 #pragma once
 
-#include <array>
-#include <initializer_list>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "coordinator/channel/channel.h"
@@ -31,16 +28,6 @@ class MeasurementLog {
 
  private:
   class LoggedOutlet;
-  struct Of {
-    VirtualTime at;
-    const std::string& channel;
-    std::string_view name;  // of the body, the joint or the frame
-  };
-  void Line(const Of& of, std::string_view quantity, std::initializer_list<double> values);
-  template <std::size_t n>
-  void Line(const Of& of, std::string_view quantity, const std::array<double, n>& values);
-  void WriteBody(const Of& of, const std::vector<SensorField>& fields, const BodyReading& body);
-  void WriteMeasured(VirtualTime at, const std::string& channel, const Measurement& measured);
 
   CsvFile file_;
 };

@@ -1,0 +1,66 @@
+// What clients print of metrics (`tcs-metric NAME VALUE [TIME]`), read from their logs once it is
+// there. The logs are the clients' own and stay as they are; a program that prints takes no other
+// time for it.
+//
+// Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "coordinator/metrics/line_finder.h"
+#include "coordinator/metrics/metric_book.h"
+#include "coordinator/metrics/metric_line.h"
+#include "coordinator/os/unique_fd.h"
+
+namespace tcs {
+
+class ClientMetrics {
+ public:
+  // `warn` is told of a client's first line that is meant to tell of a metric and does not. Both
+  // outlive this.
+  ClientMetrics(MetricBook& book, std::function<void(const std::string&)> warn)
+      : book_(book), warn_(std::move(warn)) {}
+
+  void Begin(const ProgramClocks& clocks) { clocks_ = clocks; }
+  // The client's standard output goes to that file, of which there is nothing yet.
+  void Add(const std::string& client, const std::string& path);
+  // Up to that byte, its output was there at `now_ns`. It is read later, with what follows.
+  void Grew(const std::string& client, std::int64_t end, std::int64_t now_ns);
+  // Reads what has been told of. Not of a client that has made its log longer than a program can
+  // print in a while, which would keep the run waiting.
+  void CatchUp();
+  // Takes what is there of all clients, at the run's end.
+  void Finish(std::int64_t now_ns);
+
+ private:
+  // What was there at a time.
+  struct Piece {
+    std::int64_t end, now_ns;
+  };
+  struct Output {
+    std::string client, path;
+    UniqueFd fd;               // once there is something
+    std::int64_t read = 0;     // bytes
+    std::vector<Piece> ahead;  // what is to be read, in its order
+    MetricLineFinder finder;
+    bool has_complained = false, is_left = false;
+    std::map<std::string, int, std::less<>> numbers;  // of its metrics
+  };
+  void Read(Output& output);
+  void Take(Output& output, std::string_view line, std::int64_t number, std::int64_t now_ns);
+  int NumberOf(Output& output, std::string_view name);
+  void Complain(Output& output, std::int64_t number, const std::string& what);
+
+  MetricBook& book_;
+  std::function<void(const std::string&)> warn_;
+  ProgramClocks clocks_;
+  std::map<std::string, Output, std::less<>> outputs_;  // by client
+};
+
+}  // namespace tcs
