@@ -26,17 +26,23 @@ def gap(rover, walker):
     return math.hypot(max(0, abs(ahead) - HALF_LENGTH_M), max(0, abs(aside) - HALF_WIDTH_M)) - WALKER_M
 
 
-def collisions_per_minute(folder):
-    """Who touches collides once, until they are apart again."""
+def collisions(folder):
+    """Where the rover and a walker begin to touch: (time, x, y) of the rover. Who touches collides once, until they are
+    apart again."""
     rover = sweep.track(folder, "rover/base_link")
-    count = 0
+    found = []
     for name in WALKERS:
         touching = False
         for at, walker in zip(rover, sweep.track(folder, name)):
             distance = gap(at, walker)
-            count += not touching and distance < TOUCH_M
+            if not touching and distance < TOUCH_M:
+                found.append((at["time_s"], at["x_m"], at["y_m"]))
             touching = distance < TOUCH_M or (touching and distance < APART_M)
-    return 60 * count / rover[-1]["time_s"]
+    return found
+
+
+def collisions_per_minute(folder):
+    return 60 * len(collisions(folder)) / sweep.track(folder, "rover/base_link")[-1]["time_s"]
 
 
 def main():

@@ -11,9 +11,10 @@ ln -s "$build" "$work/build/release"
 cp -r "$source_root/examples" "$work/examples"
 ln -s "$source_root/coordinator" "$work/coordinator"
 
-sed -n 's/^    \$ //p' "$source_root/docs/TUTORIAL.md" >"$work/commands"
-(($(wc -l <"$work/commands") > 15)) || fail "the tutorial has lost its commands"
-(cd "$work" && bash -ex ./commands) >"$work/said" 2>&1 || fail "$(tail -n 20 "$work/said")"
+export build PATH=$build/bin:$PATH
+python3 -B "$source_root/tests/scenario/documented_commands.py" "$source_root" "$work" docs/TUTORIAL.md >"$work/said" 2>&1 ||
+  fail "$(tail -n 20 "$work/said")"
+(($(grep -c '^docs/TUTORIAL.md:' "$work/said") > 15)) || fail "the tutorial has lost its commands"
 # Those of the slow computer, which the tutorial tells of.
 (($(grep -c 'warning:' "$work/said") == 2)) || fail "not two warnings: $(grep 'warning:' "$work/said")"
 
