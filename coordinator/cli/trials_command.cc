@@ -29,6 +29,7 @@
 #include "coordinator/trials/local_launcher.h"
 #include "coordinator/trials/record.h"
 #include "coordinator/trials/result_folder.h"
+#include "coordinator/trials/results.h"
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/slurm_launcher.h"
 
@@ -52,7 +53,7 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
         TakeDuration("drift", arguments.options.drift, &overrides.drift)}) {
     if (!error.empty()) return error;
   }
-  for (std::size_t group = 0; group < GroupLabels(plan).size(); ++group) {
+  for (std::size_t group = 0; group < GroupCount(plan); ++group) {
     overrides.set = SettingsOf(plan, group);
     overrides.result_directory = AbsolutePathOf(arguments.out);
     auto loaded = LoadScenario(arguments.scenario, overrides);
@@ -80,8 +81,8 @@ std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
   plan->options = arguments.options;
   if (std::string error = AddOverlays(arguments, &plan->options); !error.empty()) return error;
   plan->trials = arguments.trials;
-  if (!arguments.vary.empty()) {
-    if (std::string error = ParseVary(arguments.vary, &plan->vary.emplace()); !error.empty()) {
+  for (const std::string& text : arguments.vary) {
+    if (std::string error = ParseVary(text, &plan->vary.emplace_back()); !error.empty()) {
       return error;
     }
   }
@@ -205,7 +206,7 @@ std::string WhoHasProcessors() {
 // "seed 3", "seed 3 with drift=1ms"
 std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
   const std::string seed = fmt::format("seed {}", trial.seed);
-  return plan.vary.has_value() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
+  return !plan.vary.empty() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
 }
 
 // "seed 3 failed: its last words (where the log is)"
@@ -298,6 +299,8 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
     if (end.outcome.has_value()) groups[end.trial.group].done.push_back(*end.outcome);
     failed += end.outcome.has_value() ? 0 : 1;
   }
+  const std::string unwritten = WriteResults(folder, plan);
+  if (!unwritten.empty()) Say(unwritten);
   Print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
         TrialsTable(groups), arguments.out);
   std::fflush(stdout);

@@ -19,7 +19,7 @@ TrialsRecord SomeRecord() {
   record.plan.first_seed = ~std::uint64_t{0} - 9;
   record.plan.trials = 10;
   record.plan.options = {"callback", "fixed", "20s", "2ms", {"a=1"}};
-  record.plan.vary = {"csv_period", {"1ms", "10ms"}};
+  record.plan.vary = {Vary{"csv_period", {"1ms", "10ms"}}};
   record.scenario_hash = "0123456789abcdef";
   record.programs = {{"/home/me/planner", "11"}};
   return record;
@@ -34,9 +34,9 @@ TEST(TrialsRecordTest, ComesBackAsItWasWritten) {
 
 TEST(TrialsRecordTest, OneWithoutVaryComesBack) {
   TrialsRecord record = SomeRecord();
-  record.plan.vary.reset();
+  record.plan.vary.clear();
   EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": null"));
-  EXPECT_FALSE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.has_value());
+  EXPECT_TRUE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.empty());
 }
 
 TEST(TrialsRecordTest, OtherTextIsNone) {
@@ -49,7 +49,7 @@ TEST(TrialsRecordTest, MoreTrialsValuesAndANameBelongTogether) {
   TrialsRecord now = SomeRecord();
   now.plan.trials = 20;
   now.plan.name = "tcs";
-  now.plan.vary->values.push_back("100ms");
+  now.plan.vary[0].values.push_back("100ms");
   EXPECT_EQ(WhatDiffers(SomeRecord(), now), "");
 }
 
@@ -68,7 +68,7 @@ TEST(TrialsRecordTest, WhateverDeterminesAnOutcomeIsNamedWhenItDiffers) {
   EXPECT_EQ(differs([](auto* r) { r->plan.options.drift.clear(); }), "was made with --drift 2ms");
   EXPECT_EQ(differs([](auto* r) { r->plan.options.set.push_back("b=2"); }),
             "was made with --set a=1, not a=1 b=2");
-  EXPECT_EQ(differs([](auto* r) { r->plan.vary->key = "drift"; }),
+  EXPECT_EQ(differs([](auto* r) { r->plan.vary[0].key = "drift"; }),
             "was made with --vary csv_period, not drift");
   EXPECT_THAT(differs([](auto* r) { r->plan.first_seed = 1; }), HasSubstr("--first-seed"));
   EXPECT_THAT(differs([](auto* r) { r->scenario_hash = "0"; }), HasSubstr("before it was changed"));
