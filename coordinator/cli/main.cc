@@ -255,6 +255,15 @@ int main(int argc, char** argv) {
       ->expected(1)
       ->take_all()
       ->check(CLI::NonNegativeNumber);
+  report
+      ->add_option("--measure", report_arguments.measures,
+                   "NAME: a figure of trials with varied values, such as controller.misses or "
+                   "controller.response_p99, shown against a varied key; repeatable (default: "
+                   "missed deadlines)")
+      ->allow_extra_args(false);
+  report->add_option("--against", report_arguments.against,
+                     "KEY: the varied key of these figures, such as cpu.speed (default: the "
+                     "processor's speed, or the key with the most values)");
   report->add_option("--title", report_arguments.title,
                      "TITLE: the title of the page (default: the scenario's name)");
 

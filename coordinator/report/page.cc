@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/report/measure_sections.h"
 #include "coordinator/report/page_files.h"
 #include "coordinator/report/replay.h"
 #include "coordinator/report/replay_sections.h"
@@ -33,7 +34,11 @@ class Builder {
   }
 
   Page Build() {
-    // What happened first, then why.
+    // What trials were varied for; then what happened, then why.
+    for (const MeasureParts& parts : MeasureSections(results_, options_.wish)) {
+      AddFigure(parts.figure, parts.table);
+      page_.text += (page_.text.empty() ? "" : "\n") + parts.text;
+    }
     AddReplays();
     AddTimelines();
     if (!results_.systems.empty()) AddFirst(SystemsSection(results_, options_.marks));
@@ -137,6 +142,9 @@ class Builder {
     for (const System& system : results_.systems) add(system);
     for (const Sweep& sweep : results_.sweeps) {
       for (const SweepValue& value : sweep.values) add(value.system);
+    }
+    for (const Grid& grid : results_.grids) {
+      for (const GridCell& cell : grid.cells) add(cell.system);
     }
     for (const std::string& warning : results_.warnings) {
       items += fmt::format("<li>{}</li>\n", Escaped(warning));

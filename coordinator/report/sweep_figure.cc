@@ -19,7 +19,7 @@ constexpr double kSweepLeft = 44, kSweepRight = 32, kSweepTop = 26, kSweepHeight
 // Dots of one value lie beside each other.
 constexpr double kBetweenDots = 2.5;
 
-struct Ends {
+struct SweepEnds {
   double low = 1e300, high = -1e300;
   void Take(double value) {
     low = std::min(low, value);
@@ -82,7 +82,7 @@ bool IsGeometric(std::vector<double> values) {
 }
 
 Drawing DrawSweep(const SweepPlot& plot, int width) {
-  Ends across, up;
+  SweepEnds across, up;
   up.Take(0);
   std::vector<double> values;
   for (const double mark : plot.marks) up.Take(mark);
