@@ -312,6 +312,9 @@ int main(int argc, char** argv) {
   tcs::DumpArguments dump_arguments;
   const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
 
+  tcs::CompareArguments compare_arguments;
+  const CLI::App* compare = tcs::AddCompare(&app, &compare_arguments);
+
   tcs::DoctorArguments doctor_arguments;
   CLI::App* doctor = app.add_subcommand(
       "doctor", "check what this machine allows, and say how to mend what it does not");
@@ -340,6 +343,7 @@ int main(int argc, char** argv) {
   if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
   if (generate->parsed()) return tcs::DoWithTools(generate_arguments, argv);
   if (dump->parsed()) return tcs::DoWithTools(dump_arguments, argv);
+  if (compare->parsed()) return tcs::DoWithTools(compare_arguments, argv);
   if (doctor->parsed()) return tcs::DoWithTools(doctor_arguments, argv);
   if (report->parsed()) return tcs::DoWithTools(report_arguments, argv);
   if (topics->parsed()) return tcs::DoWithTools(topics_arguments, argv);
