@@ -260,9 +260,24 @@ class Judgement {
                      NamedFew(missing)));
   }
 
+  // Of runs with set costs whatever differs is real, if their seeds do not.
+  void WarnOfSeeds() {
+    const auto seed_of = [](const Side& side) {
+      return side.cells.begin()->second.samples.begin()->second.seeds.front();
+    };
+    const std::uint64_t a = seed_of(a_), b = seed_of(b_);
+    if (a == b) return;
+    Warn(
+        fmt::format("{} has the seed {}, and {} has {}: with set costs runs of one seed repeat, and "
+                    "whatever differs is real, but nobody can tell what another seed does; compare "
+                    "runs of one seed, or sets of trials (tcsim trials)",
+                    a_.folder, a, b_.folder, b));
+  }
+
   // What may be worse, and is not called so.
   void WarnOfEvidence() {
     const bool are_runs = a_.is_run && b_.is_run;
+    if (are_runs && are_fixed_) WarnOfSeeds();
     if (are_runs && !are_fixed_) {
       Warn(
           "from one run of each nobody can tell how much runs differ by chance; response times, "
@@ -278,6 +293,7 @@ class Judgement {
     const double limit =
         (1 - options_.confidence) / static_cast<double>(std::max<std::size_t>(1, tested_));
     if (tested_ == 0 || LeastRankSumProbability(fewest, fewest) < limit) return;
+    comparison_.is_blind = true;
     std::size_t enough = fewest;
     while (enough < kMostTrialsAdvised && LeastRankSumProbability(enough, enough) >= limit)
       ++enough;

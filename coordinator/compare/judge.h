@@ -53,6 +53,7 @@ struct Finding {
 struct Comparison {
   std::vector<Finding> findings;  // by outcome, the greatest differences first
   std::vector<std::string> warnings;
+  bool is_blind = false;  // there are too few trials to tell anything from chance
 
   [[nodiscard]] std::size_t Count(Outcome outcome) const;
   // Worse, or changed.

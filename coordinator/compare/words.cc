@@ -158,6 +158,17 @@ std::string TableOf(const Comparison& comparison) {
   return table.Text();
 }
 
+// No all-clear where nobody can tell.
+std::string NothingSaid(const Comparison& comparison) {
+  if (comparison.is_blind) return "nothing can be told from chance: there are too few trials\n";
+  const std::size_t unjudged = comparison.Count(Outcome::kUnjudged);
+  if (unjudged == 0) return "nothing became worse in B\n";
+  return fmt::format(
+      "nothing is known to have become worse in B, but {} beyond the tolerance, and one run of each "
+      "does not tell whether by chance\n",
+      unjudged == 1 ? "one figure differs" : fmt::format("{} figures differ", unjudged));
+}
+
 WordsJson JsonOf(const Side& side) {
   WordsJson cells = WordsJson::array();
   for (const auto& [label, cell] : side.cells) {
@@ -196,7 +207,7 @@ std::string CompareText(const Side& a, const Side& b, const Comparison& comparis
     if (counts && ++said <= kMostSentences) text += Sentence(finding);
   }
   if (said > kMostSentences) text += fmt::format("! and {} more\n", said - kMostSentences);
-  if (said == 0) text += "nothing became worse in B\n";
+  if (said == 0) text += NothingSaid(comparison);
   if (const std::string table = TableOf(comparison); !table.empty()) text += "\n" + table;
   text += fmt::format(
       "\n{} compared: {} worse, {} changed, {} better, {} within {:g} %, {} not told from chance, "
