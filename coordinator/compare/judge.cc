@@ -267,11 +267,11 @@ class Judgement {
     };
     const std::uint64_t a = seed_of(a_), b = seed_of(b_);
     if (a == b) return;
-    Warn(
-        fmt::format("{} has the seed {}, and {} has {}: with set costs runs of one seed repeat, and "
-                    "whatever differs is real, but nobody can tell what another seed does; compare "
-                    "runs of one seed, or sets of trials (tcsim trials)",
-                    a_.folder, a, b_.folder, b));
+    Warn(fmt::format(
+        "{} has the seed {}, and {} has {}: with set costs runs of one seed repeat, and "
+        "whatever differs is real, but nobody can tell what another seed does; compare "
+        "runs of one seed, or sets of trials (tcsim trials)",
+        a_.folder, a, b_.folder, b));
   }
 
   // What may be worse, and is not called so.

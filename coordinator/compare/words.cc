@@ -164,7 +164,8 @@ std::string NothingSaid(const Comparison& comparison) {
   const std::size_t unjudged = comparison.Count(Outcome::kUnjudged);
   if (unjudged == 0) return "nothing became worse in B\n";
   return fmt::format(
-      "nothing is known to have become worse in B, but {} beyond the tolerance, and one run of each "
+      "nothing is known to have become worse in B, but {} beyond the tolerance, and one run of "
+      "each "
       "does not tell whether by chance\n",
       unjudged == 1 ? "one figure differs" : fmt::format("{} figures differ", unjudged));
 }

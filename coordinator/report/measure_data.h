@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/measures/measure.h"
@@ -40,15 +41,17 @@ struct MeasurePlotData {
   MeasureUnit unit = MeasureUnit::kNumber;
   bool is_numeric = true;  // else values are places, in their order
   std::string curves_are;  // what the names of curves are values of: a key; empty
+  // All values that were tried, also where no trial has the measure: what is missing is to be seen.
+  std::vector<std::pair<double, std::string>> tried;
   std::vector<MeasurePanel> panels;
   std::size_t left_out = 0;        // panels beyond what can be shown
   std::size_t without_value = 0;   // trials that do not have the measure
   std::optional<double> deadline;  // of response times, if all trials had the same
 };
 
-// One for each measure wished for, or chosen: shares of missed deadlines of those who missed any,
-// else response times; against the key wished for, or else each sweep's, and of a grid the
-// processor's speed or the key with the most values. Empty where nothing was varied.
+// One for each measure wished for, or chosen: shares of missed deadlines of those who missed most,
+// else the greatest response times; against the key wished for, or else each sweep's, and of a grid
+// the processor's speed or the key with the most values. Empty where nothing was varied.
 [[nodiscard]] std::vector<MeasurePlotData> MeasurePlots(const Results& results,
                                                         const MeasureWish& wish);
 

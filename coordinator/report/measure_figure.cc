@@ -83,6 +83,7 @@ std::string MarkAt(double x, double y, int series) {
 class MeasureDrawing {
  public:
   MeasureDrawing(const MeasurePlotData& data, int width) : data_(data), width_(width) {
+    for (const auto& [at, label] : data.tried) ats_.push_back(at);
     for (const MeasurePanel& panel : data.panels) {
       for (const MeasureCurve& curve : panel.curves) TakeEnds(curve);
     }
@@ -124,8 +125,6 @@ class MeasureDrawing {
       const MeasureSpread spread = MeasureSpreadOf(point.values);
       low_ = std::min(low_, spread.low);
       high_ = std::max(high_, spread.high);
-      ats_.push_back(point.at);
-      labels_.emplace_back(point.at, point.label);
     }
   }
 
@@ -239,7 +238,7 @@ class MeasureDrawing {
   // A tick at each value that was tried, and its label where it fits.
   void DrawValues(const Frame& frame, const Axis& x) {
     svg_.Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
-    std::vector<std::pair<double, std::string>> labels = labels_;
+    std::vector<std::pair<double, std::string>> labels = data_.tried;
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     double free_from = -1e9;
@@ -256,7 +255,6 @@ class MeasureDrawing {
   const int width_;
   double low_ = 1e300, high_ = -1e300, left_ = 30;
   std::vector<double> ats_;
-  std::vector<std::pair<double, std::string>> labels_;
   MeasureScale scale_;
   std::size_t columns_ = 1;
   Axis y_;

@@ -34,11 +34,7 @@ class Builder {
   }
 
   Page Build() {
-    // What trials were varied for; then what happened, then why.
-    for (const MeasureParts& parts : MeasureSections(results_, options_.wish)) {
-      AddFigure(parts.figure, parts.table);
-      page_.text += (page_.text.empty() ? "" : "\n") + parts.text;
-    }
+    // What happened first, then why.
     AddReplays();
     AddTimelines();
     if (!results_.systems.empty()) AddFirst(SystemsSection(results_, options_.marks));
@@ -49,6 +45,7 @@ class Builder {
     Add(ResponseTimes(results_));
     Add(Lateness(results_));
     Add(ClientsSection(results_));
+    AddMeasures();
     for (const std::string& key : VariedKeys(results_)) {
       Add(SweepFigure(results_, key, options_.marks));
       AddFirst(SweepSection(results_, key, options_.marks));
@@ -84,6 +81,13 @@ class Builder {
         InlineSvg(figure, figure.wide, "wide"), InlineSvg(figure, figure.narrow, "narrow"), more,
         figures_, Escaped(figure.note));
     page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
+  }
+
+  void AddMeasures() {
+    for (const MeasureParts& parts : MeasureSections(results_, options_.wish)) {
+      AddFigure(parts.figure, parts.table);
+      page_.text += (page_.text.empty() ? "" : "\n") + parts.text;
+    }
   }
 
   void AddReplays() {

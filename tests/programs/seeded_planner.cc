@@ -1,6 +1,6 @@
-// A planner whose work is as long as its seed says: from 0.1 s of its robot's time on it is released
-// every 20 ms, reads a clock so many times, and waits for its next release. Under set costs that is
-// what it computes.
+// A planner whose work is as long as its seed says: from 0.1 s of its robot's time on it is
+// released every 20 ms, reads a clock so many times, and waits for its next release. Under set
+// costs that is what it computes.
 //
 //   seeded_planner SEED READS SPREAD  READS, times 1 - SPREAD … 1 + SPREAD percent
 #include <stdlib.h>

@@ -47,6 +47,19 @@ TEST(TrialsPlanTest, EachValueHasAllSeedsAndTheValuesTakeTurns) {
   EXPECT_EQ(TrialsOf(plan)[3].group, 1u);
 }
 
+TEST(TrialsPlanTest, AGridHasEachValueOfOneKeyWithEachOfTheOthers) {
+  TrialsPlan plan = ThreeTrials();
+  plan.trials = 1;
+  plan.options.set = {"a=1"};
+  plan.vary = {Vary{"drift", {"1ms", "2ms"}}, Vary{"x/y", {"../b", "c"}}};
+  EXPECT_THAT(FoldersOf(plan), ElementsAre("1ms,_._b/seed-0001", "1ms,c/seed-0001",
+                                           "2ms,_._b/seed-0001", "2ms,c/seed-0001"));
+  EXPECT_THAT(GroupLabels(plan), ElementsAre("drift=1ms x/y=../b", "drift=1ms x/y=c",
+                                             "drift=2ms x/y=../b", "drift=2ms x/y=c"));
+  EXPECT_THAT(SettingsOf(plan, 2), ElementsAre("a=1", "drift=2ms", "x/y=../b"));
+  EXPECT_EQ(GroupCount(plan), 4u);
+}
+
 TEST(TrialsPlanTest, AValueIsAFolderInsideTheResults) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 1;
@@ -107,6 +120,17 @@ TEST(TrialsVary, AnOptionThatWouldOutdoTheValuesIsNamed) {
   EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --duration set the same"));
   plan.vary[0].key = "seed";
   EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --set set the same"));
+}
+
+TEST(TrialsVary, KeysThatOutdoEachOtherAreNamed) {
+  TrialsPlan plan = ThreeTrials();
+  plan.vary = {Vary{"robots.a.cpu", {"1"}}, Vary{"robots.a.cpu.speed", {"1"}}};
+  EXPECT_THAT(WhatHidesValues(plan),
+              HasSubstr("--vary robots.a.cpu.speed and --vary robots.a.cpu set the same"));
+  plan.vary[1].key = "robots.a.cpus";
+  EXPECT_EQ(WhatHidesValues(plan), "");
+  plan.vary[1].key = "robots.a.cpu";
+  EXPECT_THAT(WhatHidesValues(plan), HasSubstr("set the same thing"));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "coordinator/trials/results.h"
+
 namespace tcs {
 namespace {
 
@@ -37,6 +39,32 @@ TEST(TrialsRecordTest, OneWithoutVaryComesBack) {
   record.plan.vary.clear();
   EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": null"));
   EXPECT_TRUE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.empty());
+}
+
+TEST(TrialsRecordTest, AGridComesBackAndOneKeyIsWrittenAsEver) {
+  TrialsRecord record = SomeRecord();
+  EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": {\n    \"key\": \"csv_period\""));
+  record.plan.vary.push_back({"drift", {"1ms"}});
+  EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": [\n"));
+  const auto read = std::get<TrialsRecord>(RecordFromJson(ToJson(record)));
+  ASSERT_EQ(read.plan.vary.size(), 2u);
+  EXPECT_EQ(read.plan.vary[1].key, "drift");
+  EXPECT_EQ(WhatDiffers(SomeRecord(), record),
+            "was made with --vary csv_period, not csv_period drift");
+}
+
+TEST(TrialsRecordTest, ResultsStandBesideTheRecordAndAreReplaced) {
+  TrialsRecord record = SomeRecord();
+  const TrialResult result{TrialsOf(record.plan).front(),
+                           {{"r/p.misses", {3, MeasureUnit::kCount, WorseWhen::kMore, false}},
+                            {"r/p.missed", {0.5, MeasureUnit::kShare, WorseWhen::kMore, true}}}};
+  const std::string once = WithResults(ToJson(record), record.plan, {result});
+  EXPECT_THAT(
+      once, HasSubstr("\"values\":[\"1ms\"],\"measures\":{\"r/p.missed\":0.5,\"r/p.misses\":3}}"));
+  EXPECT_EQ(WithResults(once, record.plan, {result}), once);
+  EXPECT_EQ(ToJson(std::get<TrialsRecord>(RecordFromJson(once))), ToJson(record));
+  EXPECT_THAT(WithResults(once, record.plan, {}), HasSubstr("\"results\": []\n}\n"));
+  EXPECT_EQ(WithResults("no record", record.plan, {result}), "no record");
 }
 
 TEST(TrialsRecordTest, OtherTextIsNone) {
