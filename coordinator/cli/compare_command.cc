@@ -17,13 +17,13 @@ namespace tcs {
 
 namespace {
 
-// "5%", "5 %" or "0.05"; none if it is neither.
+// "5%", "5 %" or "0.05"; none if it is neither. "5" may be meant as either.
 std::optional<double> ShareOf(std::string text) {
   const bool is_percent = !text.empty() && text.back() == '%';
   if (is_percent) text.pop_back();
   while (!text.empty() && text.back() == ' ') text.pop_back();
   const auto number = report::ToReal(text);
-  if (!number || *number < 0) return {};
+  if (!number || *number < 0 || (!is_percent && *number >= 1)) return {};
   return is_percent ? *number / 100 : *number;
 }
 

@@ -62,7 +62,9 @@ compared 2 before nowhere
 says "there is no folder 'nowhere'"
 compared 2 before .
 says 'is no result folder'
-compared 2 before same --tolerance much
-says "'much' is no share; write it like 5% or 0.05"
+for share in much 5; do
+  compared 2 before same --tolerance $share
+  says "'$share' is no share; write it like 5% or 0.05"
+done
 compared 2 before same --measure planner.mised
 says "did you mean 'r/planner.missed'?"
