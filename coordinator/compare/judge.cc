@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "coordinator/compare/correction.h"
+#include "coordinator/compare/figure_names.h"
 #include "coordinator/compare/rank_sum.h"
+#include "coordinator/compare/side_warnings.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/text.h"
 
@@ -20,27 +22,7 @@ namespace tcs::compare {
 namespace {
 
 constexpr std::size_t kFewestParts = 8;
-constexpr std::size_t kMostNamed = 4;
 constexpr std::size_t kMostTrialsAdvised = 1000;
-
-// "lap_time" means all of its figures, "lap_time.last" one of them, "response_p50" that of all
-// clients; a robot's name may be left out.
-bool Means(const std::string& wanted, const std::string& figure) {
-  if (figure.ends_with("." + wanted)) return true;
-  for (std::size_t from = 0;;) {
-    const std::string_view rest = std::string_view(figure).substr(from);
-    if (rest == wanted) return true;
-    if (rest.starts_with(wanted) && rest[wanted.size()] == '.') return true;
-    const std::size_t next = figure.find('/', from);
-    if (next == std::string::npos) return false;
-    from = next + 1;
-  }
-}
-
-bool IsAmong(const std::string& figure, const std::vector<std::string>& wanted) {
-  return std::any_of(wanted.begin(), wanted.end(),
-                     [&](const std::string& name) { return Means(name, figure); });
-}
 
 std::vector<std::string> FiguresOf(const Side& side) {
   std::set<std::string> names;
@@ -48,13 +30,6 @@ std::vector<std::string> FiguresOf(const Side& side) {
     for (const auto& [name, sample] : cell.samples) names.insert(name);
   }
   return {names.begin(), names.end()};
-}
-
-std::string NamedFew(const std::vector<std::string>& names) {
-  std::vector<std::string> few(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                  names.size(), kMostNamed)));
-  if (few.size() < names.size()) few.push_back(fmt::format("{} more", names.size() - few.size()));
-  return report::Listed(few);
 }
 
 bool IsCounted(MeasureUnit unit) {
@@ -82,7 +57,8 @@ class Judgement {
       const auto other = b_.cells.find(label);
       if (other != b_.cells.end()) Compare(label, cell, other->second);
     }
-    WarnOfSides();
+    comparison_.warnings =
+        WarningsOf(a_, b_, {only_a_.begin(), only_a_.end()}, {only_b_.begin(), only_b_.end()});
     Correct();
     for (Pending& pending : pending_) {
       pending.finding.outcome = OutcomeOf(pending);
@@ -215,51 +191,6 @@ class Judgement {
 
   void Warn(std::string sentence) { comparison_.warnings.push_back(std::move(sentence)); }
 
-  void WarnOfSides() {
-    for (const Side* side : {&a_, &b_}) {
-      for (const std::string& warning : side->warnings) Warn(warning);
-    }
-    if (a_.scenario != b_.scenario) {
-      Warn(fmt::format(
-          "{} is of the scenario '{}', and {} of '{}': what differs may be the scenario", a_.folder,
-          a_.scenario, b_.folder, b_.scenario));
-    }
-    const auto differs = [&](const char* what, const std::string& a, const std::string& b) {
-      if (a != b) {
-        Warn(fmt::format("{} was made with {} {}, and {} with {}: that alone may be what differs",
-                         a_.folder, what, a, b_.folder, b));
-      }
-    };
-    differs("--accounting", a_.accounting, b_.accounting);
-    differs("--sync", a_.sync, b_.sync);
-    if (a_.duration_ns != b_.duration_ns && a_.keys.empty()) {
-      Warn(fmt::format(
-          "{} lasted {} of virtual time, and {} {}: counts of the longer one are greater",
-          a_.folder, report::Seconds(static_cast<double>(a_.duration_ns) * 1e-9), b_.folder,
-          report::Seconds(static_cast<double>(b_.duration_ns) * 1e-9)));
-    }
-    WarnOfOneSided(a_.folder, {only_a_.begin(), only_a_.end()});
-    WarnOfOneSided(b_.folder, {only_b_.begin(), only_b_.end()});
-    WarnOfCells(a_, b_);
-    WarnOfCells(b_, a_);
-  }
-
-  void WarnOfOneSided(const std::string& folder, const std::vector<std::string>& names) {
-    if (names.empty()) return;
-    Warn(fmt::format("only {} has {}, which {} not compared", folder, NamedFew(names),
-                     names.size() == 1 ? "is" : "are"));
-  }
-
-  void WarnOfCells(const Side& of, const Side& other) {
-    std::vector<std::string> missing;
-    for (const auto& [label, cell] : of.cells) {
-      if (!other.cells.contains(label)) missing.push_back(label);
-    }
-    if (missing.empty()) return;
-    Warn(fmt::format("only {} has trials with {}, which are not compared", of.folder,
-                     NamedFew(missing)));
-  }
-
   // Of runs with set costs whatever differs is real, if their seeds do not.
   void WarnOfSeeds() {
     const auto seed_of = [](const Side& side) {
@@ -363,7 +294,7 @@ std::string WhyNotComparable(const Side& a, const Side& b, const JudgeOptions& o
   for (const auto* names : {&options.measures, &options.more_is_better, &options.less_is_better}) {
     for (const std::string& name : *names) {
       if (std::any_of(figures.begin(), figures.end(),
-                      [&](const std::string& figure) { return Means(name, figure); })) {
+                      [&](const std::string& figure) { return NameMeans(name, figure); })) {
         continue;
       }
       return FindName(name, FiguresOf(a), "measure").why_not;

@@ -54,9 +54,10 @@ void AddValue(const std::string& name, const Measure& kind, std::uint64_t seed, 
 }
 
 // Takes a summary's figures into the cell.
-Ending TakeSummary(const std::string& text, std::uint64_t seed, Side* side, Cell* cell) {
-  const SideJson summary = SideJson::parse(text, nullptr, false);
+Ending TakeSummary(const std::string& text, Side* side, Cell* cell) {
   try {
+    const SideJson summary = SideJson::parse(text);
+    const auto seed = summary.at("seed").get<std::uint64_t>();
     const Ending ending = EndingOf(summary);
     if (ending == Ending::kInterrupted) return ending;
     const bool has_failed = ending == Ending::kFailed;
@@ -105,9 +106,7 @@ LoadResult<Side> ReadOneRun(const std::string& folder) {
   side.folder = folder;
   side.is_run = true;
   Cell& cell = side.cells[""];
-  const SideJson summary = SideJson::parse(ReadText(folder + "/summary.json"), nullptr, false);
-  const std::uint64_t seed = summary.is_object() ? summary.value("seed", std::uint64_t{0}) : 0;
-  switch (TakeSummary(ReadText(folder + "/summary.json"), seed, &side, &cell)) {
+  switch (TakeSummary(ReadText(folder + "/summary.json"), &side, &cell)) {
     case Ending::kInterrupted:
       return LoadError{folder +
                        " was interrupted: its figures are of a part of the run; make it again"};
@@ -132,9 +131,22 @@ std::string LabelOf(const TrialsPlan& plan, std::size_t group) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
+// More than anybody can have made are a damaged number.
+bool IsPlausible(const TrialsPlan& plan) {
+  constexpr std::size_t kMost = 10'000'000;
+  if (plan.trials < 1) return false;
+  auto all = static_cast<std::size_t>(plan.trials);
+  for (const Vary& vary : plan.vary) {
+    if (all > kMost || vary.values.size() > kMost) return false;
+    all *= vary.values.size();
+  }
+  return all <= kMost;
+}
+
 LoadResult<Side> ReadTrials(const std::string& folder) {
   auto read = RecordFromJson(ReadText(folder + "/trials.json"));
-  if (std::holds_alternative<std::string>(read)) {
+  if (std::holds_alternative<std::string>(read) ||
+      !IsPlausible(std::get<TrialsRecord>(read).plan)) {
     return LoadError{folder + "/trials.json is damaged; make the trials again"};
   }
   const TrialsPlan& plan = std::get<TrialsRecord>(read).plan;
@@ -145,8 +157,8 @@ LoadResult<Side> ReadTrials(const std::string& folder) {
   std::size_t missing = 0, all = 0;
   for (const Trial& trial : TrialsOf(plan)) {
     Cell& cell = side.cells[plan.vary.empty() ? "" : LabelOf(plan, trial.group)];
-    const Ending ending = TakeSummary(ReadText(folder + "/" + trial.folder + "/summary.json"),
-                                      trial.seed, &side, &cell);
+    const Ending ending =
+        TakeSummary(ReadText(folder + "/" + trial.folder + "/summary.json"), &side, &cell);
     ++all;
     if (ending == Ending::kNone || ending == Ending::kInterrupted) ++missing;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/report/measure_words.h"
 #include "coordinator/report/text.h"
 #include "coordinator/text/text_table.h"
 
@@ -24,7 +25,7 @@ std::string NameOf(const Finding& finding) {
 
 std::string SignedText(double value, MeasureUnit unit) {
   const std::string sign = value < 0 ? "-" : value > 0 ? "+" : "";
-  return sign + FigureText(std::abs(value), unit);
+  return sign + report::MeasureText(std::abs(value), unit);
 }
 
 std::string RelativeText(const Finding& finding) {
@@ -117,8 +118,8 @@ std::string WhyReal(const Finding& finding) {
 std::string Sentence(const Finding& finding) {
   const bool worse = finding.outcome == Outcome::kWorse;
   return fmt::format("! {}: {} is {}, was {}: {} ({}); {}\n", worse ? "worse" : "changed",
-                     NameOf(finding), FigureText(finding.after, finding.unit),
-                     FigureText(finding.before, finding.unit), RelativeText(finding),
+                     NameOf(finding), report::MeasureText(finding.after, finding.unit),
+                     report::MeasureText(finding.before, finding.unit), RelativeText(finding),
                      IntervalText(finding), WhyReal(finding));
 }
 
@@ -150,8 +151,9 @@ std::string TableOf(const Comparison& comparison) {
   for (const Finding& finding : comparison.findings) {
     if (!IsShown(finding) || ++rows > kMostRows) continue;
     table.Row({std::string(WordOf(finding.outcome)), NameOf(finding),
-               FigureText(finding.before, finding.unit), FigureText(finding.after, finding.unit),
-               RelativeText(finding), IntervalText(finding), ChanceText(finding)});
+               report::MeasureText(finding.before, finding.unit),
+               report::MeasureText(finding.after, finding.unit), RelativeText(finding),
+               IntervalText(finding), ChanceText(finding)});
   }
   if (rows == 0) return {};
   if (rows > kMostRows) table.Note(fmt::format("and {} more: --json has all", rows - kMostRows));
@@ -183,19 +185,6 @@ WordsJson JsonOf(const Side& side) {
 }
 
 }  // namespace
-
-std::string FigureText(double value, MeasureUnit unit) {
-  switch (unit) {
-    case MeasureUnit::kSeconds:
-      return value < 0 ? "-" + report::Seconds(-value) : report::Seconds(value);
-    case MeasureUnit::kShare:
-      return report::Percent(value);
-    case MeasureUnit::kCount:
-    case MeasureUnit::kNumber:
-      break;
-  }
-  return fmt::format("{:.4g}", value);
-}
 
 std::string CompareText(const Side& a, const Side& b, const Comparison& comparison,
                         const JudgeOptions& options) {

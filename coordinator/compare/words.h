@@ -16,7 +16,4 @@ namespace tcs::compare {
 [[nodiscard]] std::string CompareJson(const Side& a, const Side& b, const Comparison& comparison,
                                       const JudgeOptions& options);
 
-// "12.5 ms", "3.1 %", "17".
-[[nodiscard]] std::string FigureText(double value, MeasureUnit unit);
-
 }  // namespace tcs::compare

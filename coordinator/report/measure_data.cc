@@ -4,14 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "coordinator/report/csv.h"
 #include "coordinator/report/style.h"
-#include "coordinator/scenario/duration.h"
+#include "coordinator/report/varied.h"
 
 namespace tcs::report {
 
@@ -19,88 +17,6 @@ namespace {
 
 constexpr std::size_t kMostChosen = 3;   // figures without a wish
 constexpr std::size_t kMostPanels = 12;  // of one figure
-
-std::optional<double> AsNumber(const std::string& text) {
-  if (const auto number = ToReal(text)) return number;
-  const auto duration = ParseDuration(text);
-  if (const auto* parsed = std::get_if<VirtualDuration>(&duration)) return parsed->seconds();
-  return {};
-}
-
-// A sweep or a grid, as one thing.
-struct Varied {
-  std::string name;
-  std::vector<std::string> keys;
-  struct Cell {
-    std::vector<std::string> values;
-    const System* system = nullptr;
-  };
-  std::vector<Cell> cells;
-
-  // Its place among the keys; none if it is not among them.
-  [[nodiscard]] std::optional<std::size_t> PlaceOf(const std::string& key) const {
-    const auto found = std::find(keys.begin(), keys.end(), key);
-    if (found == keys.end()) return {};
-    return static_cast<std::size_t>(found - keys.begin());
-  }
-  // The values of a key, in the order of the cells.
-  [[nodiscard]] std::vector<std::string> ValuesOf(std::size_t key) const {
-    std::vector<std::string> values;
-    for (const Cell& cell : cells) {
-      if (std::find(values.begin(), values.end(), cell.values[key]) == values.end()) {
-        values.push_back(cell.values[key]);
-      }
-    }
-    return values;
-  }
-};
-
-// Values that are numbers in their order as such; others as they came.
-bool ComesBefore(const Varied::Cell& a, const Varied::Cell& b) {
-  for (std::size_t i = 0; i < a.values.size(); ++i) {
-    const auto x = AsNumber(a.values[i]), y = AsNumber(b.values[i]);
-    if (x && y && *x != *y) return *x < *y;
-  }
-  return false;
-}
-
-std::vector<Varied> AllVaried(const Results& results) {
-  std::vector<Varied> all;
-  for (const Sweep& sweep : results.sweeps) {
-    Varied varied{sweep.name, {sweep.key}, {}};
-    for (const SweepValue& value : sweep.values) {
-      varied.cells.push_back({{value.text}, &value.system});
-    }
-    all.push_back(std::move(varied));
-  }
-  for (const Grid& grid : results.grids) {
-    Varied varied{grid.name, grid.keys, {}};
-    for (const GridCell& cell : grid.cells) varied.cells.push_back({cell.values, &cell.system});
-    std::stable_sort(varied.cells.begin(), varied.cells.end(), ComesBefore);
-    all.push_back(std::move(varied));
-  }
-  return all;
-}
-
-bool IsSpeed(const std::string& key) { return key.ends_with(".speed"); }
-
-// Of which a plot says most.
-std::string TellingKey(const Varied& varied) {
-  std::size_t most = 0;
-  std::string telling = varied.keys.front();
-  for (std::size_t i = 0; i < varied.keys.size(); ++i) {
-    if (IsSpeed(varied.keys[i])) return varied.keys[i];
-    const std::vector<std::string> values = varied.ValuesOf(i);
-    const bool are_numbers =
-        std::all_of(values.begin(), values.end(),
-                    [](const std::string& value) { return AsNumber(value).has_value(); });
-    if (are_numbers && values.size() > most) {
-      most = values.size();
-      telling = varied.keys[i];
-    }
-  }
-  return telling;
-}
 
 template <class Take>
 void ForEachRun(const std::vector<Varied>& all, const Take& take) {
@@ -117,12 +33,6 @@ std::vector<std::string> MeasureNames(const std::vector<Varied>& all) {
     for (const auto& [name, measure] : run.measures) names.insert(name);
   });
   return {names.begin(), names.end()};
-}
-
-std::vector<std::string> KeysOf(const std::vector<Varied>& all) {
-  std::set<std::string> keys;
-  for (const Varied& varied : all) keys.insert(varied.keys.begin(), varied.keys.end());
-  return {keys.begin(), keys.end()};
 }
 
 // Those whose values are the greatest in sum, of all that end so.
@@ -161,7 +71,7 @@ std::vector<std::string> ChosenMeasures(const std::vector<Varied>& all) {
 std::vector<std::string> ChosenKeys(const std::vector<Varied>& all) {
   std::vector<std::string> keys;
   for (const Varied& varied : all) {
-    const std::string key = TellingKey(varied);
+    const std::string key = varied.TellingKey();
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
   return keys;
@@ -215,7 +125,7 @@ class PlotMaker {
       }
     }
     data_.is_numeric = std::all_of(places_.begin(), places_.end(), [](const std::string& value) {
-      return AsNumber(value).has_value();
+      return ValueAsNumber(value).has_value();
     });
   }
 
@@ -250,7 +160,7 @@ class PlotMaker {
   }
 
   double AtOf(const std::string& value) const {
-    if (data_.is_numeric) return *AsNumber(value);
+    if (data_.is_numeric) return *ValueAsNumber(value);
     return static_cast<double>(std::find(places_.begin(), places_.end(), value) - places_.begin());
   }
 
@@ -292,34 +202,6 @@ class PlotMaker {
   std::optional<double> deadline_;
   bool has_one_deadline_ = true;
 };
-
-// What stands behind the last dot, in words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords = {{
-    {"missed", "missed deadlines"},
-    {"misses", "missed deadlines"},
-    {"misses_in_a_row", "deadlines missed in a row"},
-    {"response", "response time"},
-    {"start_delay", "start delay"},
-    {"execution", "execution time"},
-    {"command_age", "age of commands"},
-    {"age", "age"},
-    {"lost", "lost samples"},
-    {"replaced", "replaced samples"},
-    {"unread", "unread samples"},
-    {"backlog", "greatest backlog"},
-}};
-
-std::string WordOf(std::string_view figure) {
-  for (const auto& [name, words] : kWords) {
-    if (figure == name) return std::string(words);
-    for (const std::string_view quantile : {"_p50", "_p99", "_max"}) {
-      if (figure == std::string(name) + std::string(quantile)) {
-        return fmt::format("{} ({})", words, quantile.substr(1));
-      }
-    }
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -363,33 +245,6 @@ std::string WhyNoMeasure(const Results& results, const MeasureWish& wish) {
     if (!found.why_not.empty()) return "--measure: " + found.why_not;
   }
   return {};
-}
-
-std::vector<std::string> ShortKeys(const std::vector<std::string>& keys) {
-  const auto end_of = [](const std::string& key, int parts) {
-    std::size_t from = key.size();
-    for (int i = 0; i < parts && from != std::string::npos && from != 0; ++i) {
-      from = key.rfind('.', from - 1);
-    }
-    return from == std::string::npos || from == 0 ? key : key.substr(from + 1);
-  };
-  std::vector<std::string> ends;
-  for (const std::string& key : keys) {
-    int parts = 2;
-    const auto is_shared = [&](const std::string& other) {
-      return other != key && end_of(other, parts) == end_of(key, parts);
-    };
-    while (std::any_of(keys.begin(), keys.end(), is_shared)) ++parts;
-    ends.push_back(end_of(key, parts));
-  }
-  return ends;
-}
-
-std::string MeasureWords(const std::string& measure) {
-  const std::size_t dot = measure.rfind('.');
-  if (dot == std::string::npos) return measure;
-  const std::string words = WordOf(std::string_view(measure).substr(dot + 1));
-  return words.empty() ? measure : fmt::format("{} of {}", words, measure.substr(0, dot));
 }
 
 }  // namespace tcs::report

@@ -58,10 +58,4 @@ struct MeasurePlotData {
 // Why a wish cannot be met; empty if it can.
 [[nodiscard]] std::string WhyNoMeasure(const Results& results, const MeasureWish& wish);
 
-// The ends of keys that tell them apart, of two parts at least: "cpu.speed".
-[[nodiscard]] std::vector<std::string> ShortKeys(const std::vector<std::string>& keys);
-
-// "missed deadlines of r/planner", and so on: a measure in words.
-[[nodiscard]] std::string MeasureWords(const std::string& measure);
-
 }  // namespace tcs::report

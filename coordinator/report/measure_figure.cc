@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/report/measure_words.h"
 #include "coordinator/report/plot.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/style.h"

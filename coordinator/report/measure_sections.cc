@@ -7,27 +7,16 @@
 #include <string>
 
 #include "coordinator/report/measure_figure.h"
+#include "coordinator/report/measure_words.h"
 #include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
+#include "coordinator/report/varied.h"
 
 namespace tcs::report {
 
 namespace {
 
 constexpr std::size_t kMostSaid = 2;  // curves that the sentence tells of one by one
-
-std::string ValueText(double value, MeasureUnit unit) {
-  switch (unit) {
-    case MeasureUnit::kShare:
-      return Percent(value);
-    case MeasureUnit::kSeconds:
-      return value < 0 ? "-" + Seconds(-value) : Seconds(value);
-    case MeasureUnit::kCount:
-    case MeasureUnit::kNumber:
-      break;
-  }
-  return fmt::format("{:.4g}", value);
-}
 
 double MedianOf(const MeasurePoint& point) { return MeasureSpreadOf(point.values).median; }
 
@@ -65,9 +54,9 @@ std::string AboutCurve(const MeasurePlotData& data, const MeasurePanel& panel,
                        const MeasureCurve& curve) {
   const std::string of = CurveName(data, panel, curve);
   const MeasurePoint &first = curve.points.front(), &last = curve.points.back();
-  std::string text = fmt::format("{} at {}", ValueText(MedianOf(first), data.unit), first.label);
+  std::string text = fmt::format("{} at {}", MeasureText(MedianOf(first), data.unit), first.label);
   if (curve.points.size() > 1) {
-    text += fmt::format(", {} at {}", ValueText(MedianOf(last), data.unit), last.label);
+    text += fmt::format(", {} at {}", MeasureText(MedianOf(last), data.unit), last.label);
   }
   const bool is_miss = data.measure.ends_with(".missed") || data.measure.ends_with(".misses");
   const std::string free = is_miss ? FreeFrom(curve) : "";
@@ -96,8 +85,8 @@ std::string AboutMany(const MeasurePlotData& data, std::size_t curves) {
   }
   return fmt::format("Median over the trials, for {}: from {} ({}) to {} ({}).",
                      Count(static_cast<std::int64_t>(curves), "combination"),
-                     ValueText(least.value, data.unit), least.where,
-                     ValueText(most.value, data.unit), most.where);
+                     MeasureText(least.value, data.unit), least.where,
+                     MeasureText(most.value, data.unit), most.where);
 }
 
 std::string AboutPlot(const MeasurePlotData& data) {
@@ -130,7 +119,7 @@ Table TableOf(const MeasurePlotData& data) {
         const MeasureSpread spread = MeasureSpreadOf(point.values);
         cells.push_back(fmt::format("{}", point.values.size()));
         for (const double value : {spread.low, spread.median, spread.high}) {
-          cells.push_back(ValueText(value, data.unit));
+          cells.push_back(MeasureText(value, data.unit));
         }
         table.Row(std::move(cells));
       }

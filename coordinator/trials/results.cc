@@ -1,5 +1,6 @@
 #include "coordinator/trials/results.h"
 
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,7 @@ ResultJson LineOf(const TrialsPlan& plan, const TrialResult& result) {
   line["measures"] = ResultJson::object();
   for (const auto& [name, measure] : result.measures) {
     // Counts look like counts.
-    if (measure.unit == MeasureUnit::kCount) {
+    if (measure.unit == MeasureUnit::kCount && std::abs(measure.value) < 1e15) {
       line["measures"][name] = static_cast<std::int64_t>(measure.value);
     } else {
       line["measures"][name] = measure.value;

@@ -2,7 +2,7 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Three keys of three values each: a folder for each combination, all figures in trials.json, the same call goes on, and the
 # page shows missed deadlines against any of the keys, also on a telephone.
-# Topics: trials, report, deadlines.
+# Topics: trials, report.
 command -v chromium >/dev/null || fail "chromium is not installed (cmake/packages.txt)"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT

@@ -133,6 +133,10 @@ TEST_F(ReadSideTest, WhatIsNoResultIsNamed) {
   EXPECT_THAT(Error("broken"), HasSubstr("is damaged"));
   Write("bad/trials.json", "{}");
   EXPECT_THAT(Error("bad"), HasSubstr("trials.json is damaged"));
+  Write("typed/summary.json", R"({"seed": "one", "interrupted": false, "clients": [3]})");
+  EXPECT_THAT(Error("typed"), HasSubstr("is damaged"));
+  WriteTrials("huge", R"([{"key": "a", "values": ["1", "2"]}])", 2'000'000'000);
+  EXPECT_THAT(Error("huge"), HasSubstr("trials.json is damaged"));
   WriteTrials("empty", "null", 2);
   EXPECT_THAT(Error("empty"), HasSubstr("no trial that went to its end"));
 }

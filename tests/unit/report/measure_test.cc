@@ -3,7 +3,9 @@
 #include "coordinator/report/measure_data.h"
 #include "coordinator/report/measure_figure.h"
 #include "coordinator/report/measure_sections.h"
+#include "coordinator/report/measure_words.h"
 #include "coordinator/report/read_results.h"
+#include "coordinator/report/varied.h"
 #include "tests/unit/report/result_folder.h"
 
 namespace tcs::report {
