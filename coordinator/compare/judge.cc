@@ -58,7 +58,7 @@ class Judgement {
       if (other != b_.cells.end()) Compare(label, cell, other->second);
     }
     comparison_.warnings =
-        WarningsOf(a_, b_, {only_a_.begin(), only_a_.end()}, {only_b_.begin(), only_b_.end()});
+        WarningsOf(a_, b_, {only_b_.begin(), only_b_.end()}, {rarer_.begin(), rarer_.end()});
     Correct();
     for (Pending& pending : pending_) {
       pending.finding.outcome = OutcomeOf(pending);
@@ -88,14 +88,22 @@ class Judgement {
       if (!IsWanted(name, sample.kind)) continue;
       const auto other = b.samples.find(name);
       if (other == b.samples.end()) {
-        only_a_.insert(name);
+        comparison_.gone.push_back(label.empty() ? name : name + " at " + label);
         continue;
       }
+      // Those that never got so far would look well.
+      if (ShareOf(b, other->second) < ShareOf(a, sample)) rarer_.insert(name);
       Compare(label, name, a, b, sample, other->second);
     }
     for (const auto& [name, sample] : b.samples) {
       if (IsWanted(name, sample.kind) && !a.samples.contains(name)) only_b_.insert(name);
     }
+  }
+
+  // The trials that have it.
+  static double ShareOf(const Cell& cell, const Sample& sample) {
+    return static_cast<double>(sample.values.size()) /
+           static_cast<double>(std::max<std::size_t>(1, cell.trials));
   }
 
   bool IsWanted(const std::string& name, const Measure& kind) const {
@@ -215,15 +223,14 @@ class Judgement {
           "execution times and misses are judged by how they vary within the runs, the others not "
           "at all: compare sets of trials (tcsim trials)");
     }
-    std::size_t fewest = kMostTrialsAdvised;
+    std::size_t fewest = 0;  // of the figure that most trials have
     for (const Pending& pending : pending_) {
-      if (pending.finding.evidence == Evidence::kTrials) {
-        fewest = std::min({fewest, pending.a, pending.b});
-      }
+      if (pending.finding.evidence != Evidence::kTrials) continue;
+      fewest = std::max(fewest, std::min(pending.a, pending.b));
     }
     const double limit =
         (1 - options_.confidence) / static_cast<double>(std::max<std::size_t>(1, tested_));
-    if (tested_ == 0 || LeastRankSumProbability(fewest, fewest) < limit) return;
+    if (fewest == 0 || LeastRankSumProbability(fewest, fewest) < limit) return;
     comparison_.is_blind = true;
     std::size_t enough = fewest;
     while (enough < kMostTrialsAdvised && LeastRankSumProbability(enough, enough) >= limit)
@@ -240,7 +247,7 @@ class Judgement {
   const JudgeOptions& options_;
   const bool are_fixed_;
   std::vector<Pending> pending_;
-  std::set<std::string> only_a_, only_b_;
+  std::set<std::string> only_b_, rarer_;
   std::size_t tested_ = 0;
   Comparison comparison_;
 };
@@ -258,7 +265,9 @@ std::size_t Comparison::Count(Outcome outcome) const {
                     [&](const Finding& finding) { return finding.outcome == outcome; }));
 }
 
-bool Comparison::IsWorse() const { return Count(Outcome::kWorse) + Count(Outcome::kChanged) > 0; }
+bool Comparison::IsWorse() const {
+  return Count(Outcome::kWorse) + Count(Outcome::kChanged) + gone.size() > 0;
+}
 
 Comparison Judge(const Side& a, const Side& b, const JudgeOptions& options) {
   return Judgement(a, b, options).Take();

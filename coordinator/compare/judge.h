@@ -54,9 +54,11 @@ struct Comparison {
   std::vector<Finding> findings;  // by outcome, the greatest differences first
   std::vector<std::string> warnings;
   bool is_blind = false;  // there are too few trials to tell anything from chance
+  // Figures of a that b does not have anywhere, "FIGURE at VALUES": a client that starved has none.
+  std::vector<std::string> gone;
 
   [[nodiscard]] std::size_t Count(Outcome outcome) const;
-  // Worse, or changed.
+  // Worse, changed or gone.
   [[nodiscard]] bool IsWorse() const;
 };
 

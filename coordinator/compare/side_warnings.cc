@@ -54,6 +54,14 @@ class SideWarnings {
                     names.size() == 1 ? "is" : "are"));
   }
 
+  void OfRarer(const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    Add(fmt::format(
+        "fewer trials of {} than of {} have {}, as where a client never got so far; only "
+        "those that have are compared",
+        b_.folder, a_.folder, NamedFew(names)));
+  }
+
   void OfCells(const Side& of, const Side& other) {
     std::vector<std::string> missing;
     for (const auto& [label, cell] : of.cells) {
@@ -83,12 +91,12 @@ class SideWarnings {
 }  // namespace
 
 std::vector<std::string> WarningsOf(const Side& a, const Side& b,
-                                    const std::vector<std::string>& only_a,
-                                    const std::vector<std::string>& only_b) {
+                                    const std::vector<std::string>& only_b,
+                                    const std::vector<std::string>& rarer) {
   SideWarnings warnings(a, b);
   warnings.OfSides();
-  warnings.OfFigures(a.folder, only_a);
   warnings.OfFigures(b.folder, only_b);
+  warnings.OfRarer(rarer);
   warnings.OfCells(a, b);
   warnings.OfCells(b, a);
   return warnings.Take();

@@ -8,9 +8,10 @@
 
 namespace tcs::compare {
 
-// Those of the sides themselves among them; `only_a` and `only_b` are figures that only one has.
+// Those of the sides themselves among them. `only_b` are figures that only b has, `rarer` those
+// that a smaller share of its trials has.
 [[nodiscard]] std::vector<std::string> WarningsOf(const Side& a, const Side& b,
-                                                  const std::vector<std::string>& only_a,
-                                                  const std::vector<std::string>& only_b);
+                                                  const std::vector<std::string>& only_b,
+                                                  const std::vector<std::string>& rarer);
 
 }  // namespace tcs::compare

@@ -160,6 +160,15 @@ std::string TableOf(const Comparison& comparison) {
   return table.Text();
 }
 
+std::string AboutGone(const std::vector<std::string>& gone) {
+  const std::size_t shown = std::min(gone.size(), kMostSentences);
+  std::vector<std::string> names(gone.begin(), gone.begin() + static_cast<std::ptrdiff_t>(shown));
+  if (shown < gone.size()) names.push_back(fmt::format("{} more", gone.size() - shown));
+  return fmt::format(
+      "! gone: B has no {}: it is called otherwise, or the client never got so far\n",
+      report::Listed(names));
+}
+
 // No all-clear where nobody can tell.
 std::string NothingSaid(const Comparison& comparison) {
   if (comparison.is_blind) return "nothing can be told from chance: there are too few trials\n";
@@ -197,7 +206,8 @@ std::string CompareText(const Side& a, const Side& b, const Comparison& comparis
     if (counts && ++said <= kMostSentences) text += Sentence(finding);
   }
   if (said > kMostSentences) text += fmt::format("! and {} more\n", said - kMostSentences);
-  if (said == 0) text += NothingSaid(comparison);
+  if (!comparison.gone.empty()) text += AboutGone(comparison.gone);
+  if (said == 0 && comparison.gone.empty()) text += NothingSaid(comparison);
   if (const std::string table = TableOf(comparison); !table.empty()) text += "\n" + table;
   text += fmt::format(
       "\n{} compared: {} worse, {} changed, {} better, {} within {:g} %, {} not told from chance, "
@@ -218,6 +228,7 @@ std::string CompareJson(const Side& a, const Side& b, const Comparison& comparis
                  {"confidence", options.confidence},
                  {"worse", comparison.IsWorse()},
                  {"warnings", comparison.warnings},
+                 {"gone", comparison.gone},
                  {"figures", WordsJson::array()}};
   for (const Finding& finding : comparison.findings) {
     const auto optional = [](const std::optional<double>& value) {

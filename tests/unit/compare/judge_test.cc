@@ -224,16 +224,34 @@ TEST_F(JudgeTest, OnlyWhatIsWantedIsCompared) {
   EXPECT_EQ(Compare().findings.front().figure, "r/q.response_p50");
 }
 
+// A client that starves has no response times: that is no all-clear.
+TEST_F(JudgeTest, AFigureThatIsGoneIsWorse) {
+  Both("r/p.response_p50", kTime, Drawn(1, 1), Drawn(2, 1));
+  a_.cells[""].samples["r/c.response_p50"] = Take(kTime, Drawn(3, 1));
+  const Comparison comparison = Compare();
+  EXPECT_THAT(comparison.gone, ::testing::ElementsAre("r/c.response_p50"));
+  EXPECT_TRUE(comparison.IsWorse());
+}
+
+TEST_F(JudgeTest, AFigureThatFewerTrialsHaveIsWarnedOf) {
+  Both("r/p.response_p50", kTime, Drawn(1, 1), Drawn(2, 1, 20));
+  Both("r/q.response_p50", kTime, Drawn(3, 1), Drawn(4, 1));
+  const Comparison comparison = Compare();
+  EXPECT_FALSE(comparison.is_blind);
+  EXPECT_THAT(comparison.warnings,
+              Contains(HasSubstr("fewer trials of b than of a have r/p.response_p50")));
+}
+
 TEST_F(JudgeTest, UnlikeSidesAreWarnedOf) {
   Both("r/p.response_p50", kTime, {1}, {1});
   b_.scenario = "other";
   b_.sync = "callback";
-  a_.cells[""].samples["old.last"] = Take(kOwn, {1});
+  b_.cells[""].samples["new.last"] = Take(kOwn, {1});
   const Comparison comparison = Compare();
   EXPECT_THAT(comparison.warnings,
               Contains(HasSubstr("a is of the scenario 's', and b of 'other'")));
   EXPECT_THAT(comparison.warnings, Contains(HasSubstr("--sync consistent, and b with callback")));
-  EXPECT_THAT(comparison.warnings, Contains(HasSubstr("only a has old.last")));
+  EXPECT_THAT(comparison.warnings, Contains(HasSubstr("only b has new.last")));
 }
 
 }  // namespace

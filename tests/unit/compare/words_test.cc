@@ -49,6 +49,18 @@ TEST(CompareWords, SayThatNothingDid) {
               HasSubstr("nothing became worse in B"));
 }
 
+TEST(CompareWords, GiveNoAllClearWhereNobodyCanTell) {
+  Comparison none = OneWorse();
+  none.findings.erase(none.findings.begin());
+  none.is_blind = true;
+  EXPECT_THAT(CompareText(Named("a"), Named("b"), none, {}),
+              HasSubstr("nothing can be told from chance: there are too few trials"));
+  none.gone = {"r/c.missed"};
+  const std::string text = CompareText(Named("a"), Named("b"), none, {});
+  EXPECT_THAT(text, HasSubstr("! gone: B has no r/c.missed"));
+  EXPECT_THAT(text, Not(HasSubstr("nothing")));
+}
+
 TEST(CompareWords, ForProgramsAreAllFigures) {
   const auto json = nlohmann::json::parse(CompareJson(Named("a"), Named("b"), OneWorse(), {}));
   EXPECT_EQ(json["worse"], true);
