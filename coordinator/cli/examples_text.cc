@@ -9,7 +9,7 @@ namespace tcs {
 namespace {
 
 // A command, and pairs of lines: a command line, and what it is for. An empty name is tcsim itself.
-constexpr std::array<std::pair<const char*, const char*>, 11> kExamples = {{
+constexpr std::array<std::pair<const char*, const char*>, 12> kExamples = {{
     {"",
      "tcsim new hover && cd hover && tcsim run\n"
      "a first robot: writes a scenario and a controller, and flies them\n"
@@ -39,6 +39,9 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kExamples = {{
      "a hundred seeds, several at once; called again it goes on where it ended\n"
      "tcsim trials --trials 10 --vary robots.drone.cpu.speed=0.5,1,2 scenario.yaml\n"
      "ten seeds for each of three processors\n"
+     "tcsim trials --trials 5 --vary robots.drone.cpu.speed=0.5,1 --vary "
+     "robots.drone.cpu.cores=1,2\n"
+     "five seeds for each speed with each number of cores\n"
      "tcsim trials --trials 200 --out /shared/t --launcher slurm --slurm-option=--partition=short\n"
      "on a cluster's nodes, which all see /shared"},
     {"exec",
@@ -50,7 +53,14 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kExamples = {{
      "tcsim report out\n"
      "one page of a run, report.html\n"
      "tcsim report --figures svg slow fast\n"
-     "one page of two, and each figure as a file"},
+     "one page of two, and each figure as a file\n"
+     "tcsim report --measure controller.misses --against cpu.speed trials\n"
+     "missed deadlines against the processor's speed, of trials that vary it"},
+    {"compare",
+     "tcsim compare before after\n"
+     "what became worse between two sets of trials; exit status 3 if something did\n"
+     "tcsim compare --tolerance 10% --measure planner before after\n"
+     "only the planner's figures, of which each may be a tenth worse"},
     {"explain",
      "tcsim explain out\n"
      "the five activations that were most late, and what their time went into\n"

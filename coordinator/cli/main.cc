@@ -255,6 +255,15 @@ int main(int argc, char** argv) {
       ->expected(1)
       ->take_all()
       ->check(CLI::NonNegativeNumber);
+  report
+      ->add_option("--measure", report_arguments.measures,
+                   "NAME: a figure of trials with varied values, such as controller.misses or "
+                   "controller.response_p99, shown against a varied key; repeatable (default: "
+                   "missed deadlines)")
+      ->allow_extra_args(false);
+  report->add_option("--against", report_arguments.against,
+                     "KEY: the varied key of these figures, such as cpu.speed (default: the "
+                     "processor's speed, or the key with the most values)");
   report->add_option("--title", report_arguments.title,
                      "TITLE: the title of the page (default: the scenario's name)");
 
@@ -306,6 +315,9 @@ int main(int argc, char** argv) {
   tcs::DumpArguments dump_arguments;
   const CLI::App* dump = tcs::AddDump(&app, &dump_arguments);
 
+  tcs::CompareArguments compare_arguments;
+  const CLI::App* compare = tcs::AddCompare(&app, &compare_arguments);
+
   tcs::DoctorArguments doctor_arguments;
   CLI::App* doctor = app.add_subcommand(
       "doctor", "check what this machine allows, and say how to mend what it does not");
@@ -334,6 +346,7 @@ int main(int argc, char** argv) {
   if (show->parsed()) return tcs::ViewCommand(viewed, view_where);
   if (generate->parsed()) return tcs::DoWithTools(generate_arguments, argv);
   if (dump->parsed()) return tcs::DoWithTools(dump_arguments, argv);
+  if (compare->parsed()) return tcs::DoWithTools(compare_arguments, argv);
   if (doctor->parsed()) return tcs::DoWithTools(doctor_arguments, argv);
   if (explain->parsed()) return tcs::DoWithTools(explain_arguments, argv);
   if (report->parsed()) return tcs::DoWithTools(report_arguments, argv);

@@ -23,8 +23,10 @@ int ReportCommand(const ReportArguments& arguments) {
   }
   const auto read = report::ReadResults(arguments.folders, bodies);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
-  const report::Page page =
-      report::MakePage(std::get<report::Results>(read), {arguments.title, arguments.marks});
+  const auto& results = std::get<report::Results>(read);
+  const report::MeasureWish wish{arguments.measures, arguments.against};
+  if (const std::string why = WhyNoMeasure(results, wish); !why.empty()) return Fail(why);
+  const report::Page page = report::MakePage(results, {arguments.title, arguments.marks, wish});
   for (const std::string& warning : page.warnings) {
     Say("warning: " + warning);
   }

@@ -10,6 +10,8 @@ struct ReportArguments {
   std::vector<std::string> folders;
   std::string out = "report.html", figures, bodies, title;
   std::vector<double> marks;
+  std::vector<std::string> measures;
+  std::string against;
 };
 
 // The exit status.

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "coordinator/cli/compare_command.h"
 #include "coordinator/cli/doctor_command.h"
 #include "coordinator/cli/dump_command.h"
 #include "coordinator/cli/explain_command.h"
@@ -35,9 +36,9 @@ struct SlurmJobArguments {
 };
 
 using ToolArguments =
-    std::variant<DoctorArguments, DumpArguments, ExplainArguments, FitArguments, GenerateArguments,
-                 ReportArguments, SlurmJobArguments, SnapshotArguments, TopicsArguments,
-                 TraceArguments, TrialsArguments>;
+    std::variant<CompareArguments, DoctorArguments, DumpArguments, ExplainArguments, FitArguments,
+                 GenerateArguments, ReportArguments, SlurmJobArguments, SnapshotArguments,
+                 TopicsArguments, TraceArguments, TrialsArguments>;
 
 // Does the command, whose words are `argv`, and returns the exit status. In tcsim it becomes
 // tcsim-tools, and returns only if that cannot be started (tools_elsewhere.cc); there it is done

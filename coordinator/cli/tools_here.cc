@@ -11,6 +11,7 @@ namespace tcs {
 
 namespace {
 
+int Do(const CompareArguments& arguments) { return FlushStdout(CompareCommand(arguments)); }
 int Do(const DoctorArguments& arguments) { return FlushStdout(DoctorCommand(arguments)); }
 int Do(const DumpArguments& arguments) { return FlushStdout(DumpCommand(arguments)); }
 int Do(const ExplainArguments& arguments) { return FlushStdout(ExplainCommand(arguments)); }

@@ -29,9 +29,9 @@
 #include "coordinator/trials/local_launcher.h"
 #include "coordinator/trials/record.h"
 #include "coordinator/trials/result_folder.h"
+#include "coordinator/trials/results.h"
 #include "coordinator/trials/slurm/array_jobs.h"
 #include "coordinator/trials/slurm/slurm_launcher.h"
-#include "coordinator/trials/trial_metrics.h"
 
 namespace tcs {
 
@@ -53,7 +53,7 @@ std::string LoadGroups(const TrialsArguments& arguments, const TrialsPlan& plan,
         TakeDuration("drift", arguments.options.drift, &overrides.drift)}) {
     if (!error.empty()) return error;
   }
-  for (std::size_t group = 0; group < GroupLabels(plan).size(); ++group) {
+  for (std::size_t group = 0; group < GroupCount(plan); ++group) {
     overrides.set = SettingsOf(plan, group);
     overrides.result_directory = AbsolutePathOf(arguments.out);
     auto loaded = LoadScenario(arguments.scenario, overrides);
@@ -81,8 +81,8 @@ std::string MakePlan(const TrialsArguments& arguments, TrialsPlan* plan,
   plan->options = arguments.options;
   if (std::string error = AddOverlays(arguments, &plan->options); !error.empty()) return error;
   plan->trials = arguments.trials;
-  if (!arguments.vary.empty()) {
-    if (std::string error = ParseVary(arguments.vary, &plan->vary.emplace()); !error.empty()) {
+  for (const std::string& text : arguments.vary) {
+    if (std::string error = ParseVary(text, &plan->vary.emplace_back()); !error.empty()) {
       return error;
     }
   }
@@ -206,7 +206,7 @@ std::string WhoHasProcessors() {
 // "seed 3", "seed 3 with drift=1ms"
 std::string NameOf(const TrialsPlan& plan, const Trial& trial) {
   const std::string seed = fmt::format("seed {}", trial.seed);
-  return plan.vary.has_value() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
+  return !plan.vary.empty() ? seed + " with " + GroupLabels(plan)[trial.group] : seed;
 }
 
 // "seed 3 failed: its last words (where the log is)"
@@ -241,7 +241,6 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
   const std::string& folder = arguments.out;
   std::vector<Trial> todo;
   std::vector<TrialOutcome> earlier;
-  std::vector<std::string> done;  // their folders
   for (const Trial& trial : TrialsOf(plan)) {
     const auto outcome = ReadOutcome(folder + "/" + trial.folder, trial.seed);
     if (!outcome.has_value()) {
@@ -249,7 +248,6 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
       continue;
     }
     earlier.push_back(*outcome);
-    done.push_back(trial.folder);
     groups[trial.group].done.push_back(*outcome);
   }
 
@@ -300,11 +298,11 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
   for (const TrialEnd& end : report.ends) {
     if (end.outcome.has_value()) {
       groups[end.trial.group].done.push_back(*end.outcome);
-      done.push_back(end.trial.folder);
     }
     failed += end.outcome.has_value() ? 0 : 1;
   }
-  if (const std::string error = NoteTrialMetrics(folder, done); !error.empty()) Say(error);
+  const std::string unwritten = WriteResults(folder, plan);
+  if (!unwritten.empty()) Say(unwritten);
   Print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
         TrialsTable(groups), arguments.out);
   std::fflush(stdout);

@@ -37,9 +37,11 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
       ->add_option("--slurm-option", arguments->slurm_options,
                    "OPTION: of sbatch, such as --slurm-option=--partition=short; repeatable")
       ->allow_extra_args(false);
-  trials->add_option(
-      "--vary", arguments->vary,
-      "KEY=V1,V2,...: run all trials for each of these values of a key of the scenario");
+  trials
+      ->add_option("--vary", arguments->vary,
+                   "KEY=V1,V2,...: run all trials for each of these values of a key of the "
+                   "scenario; repeatable: each value of one key with each of the others")
+      ->allow_extra_args(false);
   trials->add_option("--name", arguments->name, "the name of the trials in a report");
   trials->add_flag("--no-wait", arguments->no_wait,
                    "if other runs have all processors, fail at once and name those runs");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coordinator/report/measure_sections.h"
 #include "coordinator/report/metric_sections.h"
 #include "coordinator/report/page_files.h"
 #include "coordinator/report/replay.h"
@@ -47,6 +48,7 @@ class Builder {
     Add(ResponseTimes(results_));
     Add(Lateness(results_));
     Add(ClientsSection(results_));
+    AddMeasures();
     for (const std::string& key : VariedKeys(results_)) {
       Add(SweepFigure(results_, key, options_.marks));
       AddFirst(SweepSection(results_, key, options_.marks));
@@ -82,6 +84,13 @@ class Builder {
         InlineSvg(figure, figure.wide, "wide"), InlineSvg(figure, figure.narrow, "narrow"), more,
         figures_, Escaped(figure.note));
     page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
+  }
+
+  void AddMeasures() {
+    for (const MeasureParts& parts : MeasureSections(results_, options_.wish)) {
+      AddFigure(parts.figure, parts.table);
+      page_.text += (page_.text.empty() ? "" : "\n") + parts.text;
+    }
   }
 
   void AddReplays() {
@@ -140,6 +149,9 @@ class Builder {
     for (const System& system : results_.systems) add(system);
     for (const Sweep& sweep : results_.sweeps) {
       for (const SweepValue& value : sweep.values) add(value.system);
+    }
+    for (const Grid& grid : results_.grids) {
+      for (const GridCell& cell : grid.cells) add(cell.system);
     }
     for (const std::string& warning : results_.warnings) {
       items += fmt::format("<li>{}</li>\n", Escaped(warning));

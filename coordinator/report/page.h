@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/report/measure_data.h"
 #include "coordinator/report/results.h"
 #include "coordinator/scenario/load_error.h"
 
@@ -12,6 +13,7 @@ namespace tcs::report {
 struct PageOptions {
   std::string title;          // empty: the scenario's name
   std::vector<double> marks;  // distances that figures mark, in metres
+  MeasureWish wish;           // measures against varied keys
 };
 
 struct Page {

@@ -22,8 +22,11 @@ namespace fs = std::filesystem;
 struct Plan {
   std::string name;
   std::int64_t first_seed = 1, trials = 0;
-  std::string key;  // empty: no sweep
-  std::vector<std::string> values;
+  struct Key {
+    std::string name;
+    std::vector<std::string> values;
+  };
+  std::vector<Key> keys;  // none: no sweep; several: a grid
 };
 
 // Throws nothing, whatever stands in the way.
@@ -36,6 +39,32 @@ std::string TextOf(const UnorderedJson& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+// Throws where it is none.
+Plan::Key KeyOf(const UnorderedJson& vary) {
+  Plan::Key key{vary.at("key").get<std::string>(), {}};
+  for (const UnorderedJson& value : vary.at("values")) key.values.push_back(TextOf(value));
+  return key;
+}
+
+// Each value of one key with each of the others, the last key's changing first; none if they are
+// too many to be meant.
+std::vector<std::vector<std::string>> CombinationsOf(const std::vector<Plan::Key>& keys) {
+  constexpr std::size_t kMost = 100'000;
+  std::vector<std::vector<std::string>> all(1);
+  for (const Plan::Key& key : keys) {
+    if (all.size() * key.values.size() > kMost) return {};
+    std::vector<std::vector<std::string>> longer;
+    for (const std::vector<std::string>& before : all) {
+      for (const std::string& value : key.values) {
+        longer.push_back(before);
+        longer.back().push_back(value);
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
 LoadResult<Plan> ReadPlan(const std::string& folder) {
   const std::string path = folder + "/trials.json";
   const std::optional<std::string> text = ReadFile(path);
@@ -46,10 +75,10 @@ LoadResult<Plan> ReadPlan(const std::string& folder) {
     plan.name = json.value("name", "");
     json.at("first_seed").get_to(plan.first_seed);
     json.at("trials").get_to(plan.trials);
-    if (json.contains("vary") && json.at("vary").is_object()) {
-      json.at("vary").at("key").get_to(plan.key);
-      for (const UnorderedJson& value : json.at("vary").at("values"))
-        plan.values.push_back(TextOf(value));
+    const UnorderedJson vary = json.value("vary", UnorderedJson());
+    if (vary.is_object()) plan.keys.push_back(KeyOf(vary));
+    if (vary.is_array()) {
+      for (const UnorderedJson& one : vary) plan.keys.push_back(KeyOf(one));
     }
     return plan;
   } catch (const UnorderedJson::exception&) {
@@ -132,14 +161,15 @@ class ResultsReader {
     }
     const Plan& plan = std::get<Plan>(read);
     const std::string name = plan.name.empty() ? FolderName(folder) : plan.name;
-    if (plan.key.empty()) {
+    if (plan.keys.size() > 1) return AddGrid(folder, name, plan);
+    if (plan.keys.empty()) {
       System system{name, {}, {}};
       std::string error = AddSeeds(folder, plan, &system);
       if (error.empty()) Keep(folder, std::move(system));
       return error;
     }
-    Sweep sweep{name, plan.key, {}};
-    for (const std::string& value : plan.values) {
+    Sweep sweep{name, plan.keys[0].name, {}};
+    for (const std::string& value : plan.keys[0].values) {
       SweepValue point{value, NumberOf(value), {name + " at " + value, {}, {}}};
       if (std::string error = AddSeeds(folder + "/" + FolderOf(value), plan, &point.system);
           !error.empty()) {
@@ -155,6 +185,34 @@ class ResultsReader {
       }
     }
     if (!sweep.values.empty()) results_.sweeps.push_back(std::move(sweep));
+    return {};
+  }
+
+  std::string AddGrid(const std::string& folder, const std::string& name, const Plan& plan) {
+    Grid grid{name, {}, {}};
+    for (const Plan::Key& key : plan.keys) grid.keys.push_back(key.name);
+    std::vector<std::string> empty;
+    for (std::vector<std::string>& values : CombinationsOf(plan.keys)) {
+      std::string place, label;
+      for (const std::string& value : values) {
+        place += (place.empty() ? "" : ",") + FolderOf(value);
+        label += (label.empty() ? "" : ", ") + value;
+      }
+      GridCell cell{std::move(values), {name + " at " + label, {}, {}}};
+      reads_figures_only_ = true;
+      std::string error = AddSeeds(folder + "/" + place, plan, &cell.system);
+      reads_figures_only_ = false;
+      if (!error.empty()) return error;
+      if (cell.system.runs.empty()) empty.push_back(label);
+      grid.cells.push_back(std::move(cell));
+    }
+    const bool has_runs = empty.size() < grid.cells.size();
+    if (!empty.empty()) {
+      results_.warnings.push_back(fmt::format(
+          "{} has no trial that went to its end at {} of {} combinations of values, such as {}",
+          folder, empty.size(), grid.cells.size(), empty.front()));
+    }
+    if (has_runs) results_.grids.push_back(std::move(grid));
     return {};
   }
 
@@ -176,7 +234,8 @@ class ResultsReader {
       system->failed.push_back({name, LastWords(folder)});
       return {};
     }
-    auto read = ReadRun(folder, bodies_, ends, &results_.warnings);
+    auto read = reads_figures_only_ ? ReadRunFigures(folder, &results_.warnings)
+                                    : ReadRun(folder, bodies_, ends, &results_.warnings);
     if (const auto* error = std::get_if<LoadError>(&read)) {
       // A wrong name is the caller's mistake, not the run's.
       if (error->message.starts_with("there is no body")) return error->message;
@@ -226,6 +285,7 @@ class ResultsReader {
   }
 
   const std::vector<std::string> bodies_;
+  bool reads_figures_only_ = false;  // of a grid: its tables would be too many
   Results results_;
   std::string first_folder_;
 };
@@ -274,7 +334,7 @@ LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
     if (std::string error = reader.Add(folder); !error.empty()) return LoadError{error};
   }
   Results results = reader.Take();
-  if (results.systems.empty() && results.sweeps.empty()) {
+  if (results.systems.empty() && results.sweeps.empty() && results.grids.empty()) {
     return LoadError{results.warnings.empty() ? "there is nothing to report"
                                               : results.warnings.front()};
   }

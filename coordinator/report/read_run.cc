@@ -45,6 +45,7 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
   try {
     const UnorderedJson json = UnorderedJson::parse(*text);
     if (json.at("interrupted").get<bool>()) return LoadError{folder + " was interrupted"};
+    run.measures = MeasuresFromSummary(*text).value_or(Measures());
     run.scenario = json.at("scenario").get<std::string>();
     // Runs of earlier versions did not say.
     run.sync = json.value("sync", "");
@@ -181,7 +182,33 @@ void WarnOfLines(const std::string& path, std::int64_t lines, std::vector<std::s
       fmt::format("{} has {} that cannot be used; left out", path, Count(lines, "line")));
 }
 
+// Runs of earlier versions have none.
+std::optional<LoadError> ReadActivations(const std::string& folder, Run* run,
+                                         std::vector<std::string>* warnings) {
+  if (const std::string path = folder + "/activations.csv"; IsFile(path)) {
+    ActivationBuilder activations(run);
+    const auto read = ReadCsv(
+        path, {"client", "thread", "cause", "release_ns", "start_ns", "end_ns", "charged_ns"},
+        [&](const CsvFields& fields) { return activations.Take(fields); });
+    if (const auto* error = std::get_if<LoadError>(&read)) return *error;
+    WarnOfLines(path, std::get<std::int64_t>(read), warnings);
+  }
+  return {};
+}
+
 }  // namespace
+
+LoadResult<Run> ReadRunFigures(const std::string& folder, std::vector<std::string>* warnings) {
+  return FromSummary(folder, Ends::kWhole, warnings);
+}
+
+LoadResult<Run> ReadRunTimes(const std::string& folder, std::vector<std::string>* warnings) {
+  LoadResult<Run> result = FromSummary(folder, Ends::kAny, warnings);
+  Run* run = std::get_if<Run>(&result);
+  if (run == nullptr) return result;
+  if (auto error = ReadActivations(folder, run, warnings)) return *error;
+  return result;
+}
 
 LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string>& bodies,
                         Ends ends, std::vector<std::string>* warnings) {
@@ -189,7 +216,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
   Run* run = std::get_if<Run>(&result);
   if (run == nullptr) return result;
 
-  // Without dynamics there are no bodies; runs of earlier versions have no activations.
+  // Without dynamics there are no bodies.
   if (const std::string path = folder + "/bodies.csv"; IsFile(path)) {
     TrackBuilder track(run, bodies);
     const auto read = ReadCsv(path, {"time_s", "body", "x_m", "y_m", "z_m"},
@@ -202,14 +229,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
     return LoadError{fmt::format("there is no body '{}' in {}; it has {}", body, folder,
                                  run->bodies.empty() ? "none" : Listed(run->bodies))};
   }
-  if (const std::string path = folder + "/activations.csv"; IsFile(path)) {
-    ActivationBuilder activations(run);
-    const auto read = ReadCsv(
-        path, {"client", "thread", "cause", "release_ns", "start_ns", "end_ns", "charged_ns"},
-        [&](const CsvFields& fields) { return activations.Take(fields); });
-    if (const auto* error = std::get_if<LoadError>(&read)) return *error;
-    WarnOfLines(path, std::get<std::int64_t>(read), warnings);
-  }
+  if (auto error = ReadActivations(folder, run, warnings)) return *error;
   return result;
 }
 

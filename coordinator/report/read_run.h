@@ -20,4 +20,12 @@ enum class Ends { kWhole, kAny };
                                       const std::vector<std::string>& bodies, Ends ends,
                                       std::vector<std::string>* warnings);
 
+// What its summary says, without its tables: for many runs.
+[[nodiscard]] LoadResult<Run> ReadRunFigures(const std::string& folder,
+                                             std::vector<std::string>* warnings);
+
+// That, and the times of its activations.
+[[nodiscard]] LoadResult<Run> ReadRunTimes(const std::string& folder,
+                                           std::vector<std::string>* warnings);
+
 }  // namespace tcs::report

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/measures/measure.h"
+
 namespace tcs::report {
 
 // Of a client's activations, in one run.
@@ -38,6 +40,7 @@ struct Run {
   std::int64_t coordinating_ns = 0, clients_ns = 0, dynamics_ns = 0;
   double overhead = 0;  // share of the real time
   std::map<std::string, Client> clients;
+  Measures measures;
   Track track;
   std::string apart[2];  // the bodies that the track is of; empty without
 };
@@ -66,11 +69,25 @@ struct Sweep {
   std::vector<SweepValue> values;
 };
 
+// One combination of the values of several keys.
+struct GridCell {
+  std::vector<std::string> values;  // one for each key
+  System system;
+};
+
+// The same system over several keys at once. Of its runs only the figures are read.
+struct Grid {
+  std::string name;
+  std::vector<std::string> keys;
+  std::vector<GridCell> cells;
+};
+
 struct Results {
   std::string scenario;
   std::string bodies[2];  // whose distance is meant; empty without
   std::vector<System> systems;
   std::vector<Sweep> sweeps;
+  std::vector<Grid> grids;
   std::vector<std::string> warnings;  // one sentence each
 };
 

@@ -1,9 +1,11 @@
 #include "coordinator/trials/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace tcs {
 
@@ -31,16 +33,52 @@ std::vector<std::string> Split(const std::string& text) {
   return parts;
 }
 
+// "drift=1ms", for each key.
+std::vector<std::string> ValueSettings(const TrialsPlan& plan, std::size_t group) {
+  std::vector<std::string> settings = ValuesOf(plan, group);
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    settings[i] = plan.vary[i].key + "=" + settings[i];
+  }
+  return settings;
+}
+
+// Setting the one sets the other, too: it is the same key, or above it.
+bool Covers(const std::string& key, const std::string& other) {
+  return other == key || other.starts_with(key + ".");
+}
+
 }  // namespace
+
+std::size_t GroupCount(const TrialsPlan& plan) {
+  std::size_t groups = 1;
+  for (const Vary& vary : plan.vary) groups *= vary.values.size();
+  return groups;
+}
+
+std::vector<std::string> ValuesOf(const TrialsPlan& plan, std::size_t group) {
+  std::vector<std::string> values(plan.vary.size());
+  for (std::size_t i = plan.vary.size(); i-- > 0;) {
+    const std::vector<std::string>& all = plan.vary[i].values;
+    values[i] = all[group % all.size()];
+    group /= all.size();
+  }
+  return values;
+}
+
+std::string GroupFolder(const std::vector<std::string>& values) {
+  std::string folder;
+  for (const std::string& value : values) folder += (folder.empty() ? "" : ",") + FolderOf(value);
+  return folder;
+}
 
 std::vector<Trial> TrialsOf(const TrialsPlan& plan) {
   std::vector<Trial> trials;
-  const std::size_t groups = plan.vary.has_value() ? plan.vary->values.size() : 1;
+  const std::size_t groups = GroupCount(plan);
   for (int i = 0; i < plan.trials; ++i) {
     const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
     for (std::size_t group = 0; group < groups; ++group) {
       std::string folder = fmt::format("seed-{:04}", seed);
-      if (plan.vary.has_value()) folder = FolderOf(plan.vary->values[group]) + "/" + folder;
+      if (!plan.vary.empty()) folder = GroupFolder(ValuesOf(plan, group)) + "/" + folder;
       trials.push_back({seed, group, folder});
     }
   }
@@ -48,15 +86,17 @@ std::vector<Trial> TrialsOf(const TrialsPlan& plan) {
 }
 
 std::vector<std::string> GroupLabels(const TrialsPlan& plan) {
-  if (!plan.vary.has_value()) return {plan.name};
+  if (plan.vary.empty()) return {plan.name};
   std::vector<std::string> labels;
-  for (const std::string& value : plan.vary->values) labels.push_back(plan.vary->key + "=" + value);
+  for (std::size_t group = 0; group < GroupCount(plan); ++group) {
+    labels.push_back(fmt::format("{}", fmt::join(ValueSettings(plan, group), " ")));
+  }
   return labels;
 }
 
 std::vector<std::string> SettingsOf(const TrialsPlan& plan, std::size_t group) {
   std::vector<std::string> settings = plan.options.set;
-  if (plan.vary.has_value()) settings.push_back(GroupLabels(plan)[group]);
+  for (std::string& setting : ValueSettings(plan, group)) settings.push_back(std::move(setting));
   return settings;
 }
 
@@ -97,19 +137,25 @@ std::string ParseVary(const std::string& text, Vary* vary) {
 }
 
 std::string WhatHidesValues(const TrialsPlan& plan) {
-  if (!plan.vary.has_value()) return {};
-  const std::string& key = plan.vary->key;
-  const auto is_key = [&key](const std::string& setting) {
-    return setting.compare(0, key.size() + 1, key + "=") == 0;
-  };
-  const auto& set = plan.options.set;
-  std::string option;
-  if (key == "duration" && !plan.options.duration.empty()) option = "--duration";
-  if (key == "drift" && !plan.options.drift.empty()) option = "--drift";
-  if (std::any_of(set.begin(), set.end(), is_key)) option = "--set";
-  return option.empty() ? ""
-                        : fmt::format("--vary {} and {} set the same thing; leave one of them out",
-                                      key, option);
+  for (std::size_t i = 0; i < plan.vary.size(); ++i) {
+    const std::string& key = plan.vary[i].key;
+    const auto is_key = [&key](const std::string& setting) {
+      return setting.compare(0, key.size() + 1, key + "=") == 0;
+    };
+    const auto& set = plan.options.set;
+    std::string option;
+    if (key == "duration" && !plan.options.duration.empty()) option = "--duration";
+    if (key == "drift" && !plan.options.drift.empty()) option = "--drift";
+    if (std::any_of(set.begin(), set.end(), is_key)) option = "--set";
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string& before = plan.vary[j].key;
+      if (Covers(key, before) || Covers(before, key)) option = "--vary " + before;
+    }
+    if (!option.empty()) {
+      return fmt::format("--vary {} and {} set the same thing; leave one of them out", key, option);
+    }
+  }
+  return {};
 }
 
 }  // namespace tcs

@@ -21,6 +21,18 @@ std::string Differs(const std::string& option, const std::string& before, const 
   return fmt::format("was made with {} {}{}", option, before, now.empty() ? "" : ", not " + now);
 }
 
+Json JsonOf(const Vary& vary) { return {{"key", vary.key}, {"values", vary.values}}; }
+
+Vary VaryOf(const Json& json) {
+  return {json.at("key").get<std::string>(), json.at("values").get<std::vector<std::string>>()};
+}
+
+std::string KeysOf(const TrialsPlan& plan) {
+  std::string keys;
+  for (const Vary& vary : plan.vary) keys += (keys.empty() ? "" : " ") + vary.key;
+  return keys;
+}
+
 }  // namespace
 
 // FNV-1a. Not against those who forge: against those who forget.
@@ -52,8 +64,10 @@ std::string ToJson(const TrialsRecord& record) {
               {"set", plan.options.set}}},
             {"vary", nullptr},
             {"fingerprint", {{"scenario", record.scenario_hash}, {"programs", record.programs}}}};
-  if (plan.vary.has_value()) {
-    json["vary"] = {{"key", plan.vary->key}, {"values", plan.vary->values}};
+  if (plan.vary.size() == 1) json["vary"] = JsonOf(plan.vary.front());
+  if (plan.vary.size() > 1) {
+    json["vary"] = Json::array();
+    for (const Vary& vary : plan.vary) json["vary"].push_back(JsonOf(vary));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -73,9 +87,10 @@ std::variant<TrialsRecord, std::string> RecordFromJson(const std::string& text) 
     options.at("duration").get_to(plan.options.duration);
     options.at("drift").get_to(plan.options.drift);
     options.at("set").get_to(plan.options.set);
-    if (const Json& vary = json.at("vary"); !vary.is_null()) {
-      plan.vary = {vary.at("key").get<std::string>(),
-                   vary.at("values").get<std::vector<std::string>>()};
+    if (const Json& vary = json.at("vary"); vary.is_array()) {
+      for (const Json& one : vary) plan.vary.push_back(VaryOf(one));
+    } else if (!vary.is_null()) {
+      plan.vary.push_back(VaryOf(vary));
     }
     json.at("fingerprint").at("scenario").get_to(record.scenario_hash);
     json.at("fingerprint").at("programs").get_to(record.programs);
@@ -92,7 +107,6 @@ std::string WhatDiffers(const TrialsRecord& before, const TrialsRecord& now) {
   if (before.scenario_hash != now.scenario_hash) {
     return "has trials of " + plan.scenario + " as it was before it was changed";
   }
-  const auto key = [](const TrialsPlan& p) { return p.vary.has_value() ? p.vary->key : ""; };
   const auto set = [](const TrialsPlan& p) {
     return fmt::format("{}", fmt::join(p.options.set, " "));
   };
@@ -101,7 +115,8 @@ std::string WhatDiffers(const TrialsRecord& before, const TrialsRecord& now) {
         Differs("--accounting", old_plan.options.accounting, plan.options.accounting),
         Differs("--duration", old_plan.options.duration, plan.options.duration),
         Differs("--drift", old_plan.options.drift, plan.options.drift),
-        Differs("--set", set(old_plan), set(plan)), Differs("--vary", key(old_plan), key(plan)),
+        Differs("--set", set(old_plan), set(plan)),
+        Differs("--vary", KeysOf(old_plan), KeysOf(plan)),
         Differs("--first-seed", std::to_string(old_plan.first_seed),
                 std::to_string(plan.first_seed))}) {
     if (!difference.empty()) return difference;

@@ -152,10 +152,12 @@ grep -q '>below</th><td>scenario</td>' page.html || fail "the page has no table 
 said trials fall.yaml --duration 0.5s --trials 2 --jobs 1 --accounting fixed --out trials
 python3 - <<'PY' || fail "trials.json lacks the metrics"
 import json
-metrics = json.load(open("trials/trials.json"))["metrics"]
-assert list(metrics) == ["seed-0001", "seed-0002"], list(metrics)
-for trial in metrics:
-    assert metrics[trial] == json.load(open(f"trials/{trial}/summary.json"))["metrics"] != {}, trial
+results = json.load(open("trials/trials.json"))["results"]
+assert [result["folder"] for result in results] == ["seed-0001", "seed-0002"], results
+for result in results:
+    metrics = json.load(open(f"trials/{result['folder']}/summary.json"))["metrics"]
+    for name, metric in metrics.items():
+        assert metric["last"] is None or result["measures"][name + ".last"] == metric["last"], (name, result)
 PY
 said trials fall.yaml --duration 0.5s --trials 2 --jobs 1 --accounting fixed --out trials
 

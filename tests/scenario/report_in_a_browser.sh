@@ -123,7 +123,7 @@ for page in whole, part:
     assert page["unnamed"] == 0
     ids = [figure["id"] for figure in page["figures"]]
     assert ids == ["paths", "motion", "timeline", "distances", "distance-over-time", "response-times",
-                   "lateness", "sweep-duration"], ids
+                   "lateness", "measure-prey-controller.response_p99-duration", "sweep-duration"], ids
     assert all(figure["pictures"] == 1 for figure in page["figures"]), page["figures"]
 assert whole["view"].startswith("0.000 s to ") and "of real time" in whole["view"], whole["view"]
 assert part["view"].startswith("0.400 s to 0.500 s of virtual time"), part["view"]

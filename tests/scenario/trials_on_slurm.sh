@@ -2,13 +2,13 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/slurm_world.sh"
 source "$(dirname -- "${BASH_SOURCE[0]}")/trials_world.sh"
-# A sweep over a cluster of four nodes, one of which is killed in the middle of a trial: each trial has one result, the
+# A grid over a cluster of four nodes, one of which is killed in the middle of a trial: each trial has one result, the
 # lost one is named and run again, and all results are those of the same sweep on this machine, to the byte.
 # TCS_SLURM_TRIALS: how many trials. With the argument `unaided` nobody tells Slurm that the node is dead.
 # Topics: trials, slurm, determinism.
 trap 'end_slurm; pkill -9 -f "$mark|$out"; rm -rf "$out"' EXIT
 many=$((${TCS_SLURM_TRIALS:-16} / 2))
-trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=1s,1100ms)
+trials=("$tcsim" trials "$out/scenario.yaml" --accounting fixed --trials "$many" --vary duration=1s,1100ms --vary csv_period=10ms)
 start_slurm 4
 timeout 400 "${trials[@]}" --out "$out/local" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
 
@@ -61,18 +61,18 @@ echo "$((2 * many)) trials in $SECONDS s; $((SECONDS - killed_at)) of them since
 
 # Trial I has the seed 1 + I / 2, and the first value or the second one in turn.
 value=(1s 1100ms)
-named="seed $((1 + lost / 2)) with duration=${value[lost % 2]}"
+named="seed $((1 + lost / 2)) with duration=${value[lost % 2]} csv_period=10ms"
 grep -q "^tcsim: $named was lost on node n2 (.*); it is run again" "$out/said" || fail "$named: $(cat "$out/said")"
 # Where a busy machine makes another node seem dead, its trials are lost as well, and treated alike.
-grep 'was lost' "$out/said" | grep -Evq "^tcsim: seed [0-9]+ with duration=[0-9]+m?s was lost on node n[1-4] \(" &&
+grep 'was lost' "$out/said" | grep -Evq "^tcsim: seed [0-9]+ with duration=[0-9]+m?s csv_period=10ms was lost on node n[1-4] \(" &&
   fail "$(cat "$out/said")"
 (($(results) == 2 * many)) || fail "$(results) results"
 [[ ! -e $out/there/slurm ]] || fail "the jobs' folder is still there: $(find "$out/there/slurm")"
 for duration in "${value[@]}"; do
-  grep -Eq "^duration=$duration +$many of $many" "$out/said" || fail "$(cat "$out/said")"
+  grep -Eq "^duration=$duration csv_period=10ms +$many of $many" "$out/said" || fail "$(cat "$out/said")"
   for seed in $(seq "$many"); do
-    (($(grep -c "^seed $seed with duration=$duration: done" "$out/said") == 1)) || fail "seed $seed: $(cat "$out/said")"
-    printf -v folder '%s/seed-%04d' "$duration" "$seed"
+    (($(grep -c "^seed $seed with duration=$duration csv_period=10ms: done" "$out/said") == 1)) || fail "seed $seed: $(cat "$out/said")"
+    printf -v folder '%s,10ms/seed-%04d' "$duration" "$seed"
     same "$out/there/$folder" "$out/local/$folder"
     # As of a run in that folder: nothing tells of the one that it was written in.
     grep -rIl "$out/there/slurm" "$out/there/$folder" && fail "a path that is no more"
@@ -81,7 +81,7 @@ done
 nodes() { cat "$out"/there/*/*/job.json | grep -o '"node": "n[1-4]"'; }
 nodes | sort | uniq -c
 (($(nodes | sort -u | wc -l) >= 3)) || fail "not all nodes were used"
-printf -v folder '%s/seed-%04d' "${value[lost % 2]}" $((1 + lost / 2))
+printf -v folder '%s,10ms/seed-%04d' "${value[lost % 2]}" $((1 + lost / 2))
 grep -q '"node": "n2"' "$out/there/$folder/job.json" && fail "the dead node has handed in the trial that it lost"
 # One of a dead node's takes longer to go.
 tenths=300 no_jobs

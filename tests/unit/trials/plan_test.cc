@@ -40,17 +40,30 @@ TEST(TrialsPlanTest, TheLargestSeedsFitIntoAName) {
 TEST(TrialsPlanTest, EachValueHasAllSeedsAndTheValuesTakeTurns) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 2;
-  plan.vary = {"drift", {"1ms", "2ms"}};
+  plan.vary = {Vary{"drift", {"1ms", "2ms"}}};
   EXPECT_THAT(FoldersOf(plan),
               ElementsAre("1ms/seed-0001", "2ms/seed-0001", "1ms/seed-0002", "2ms/seed-0002"));
   EXPECT_THAT(GroupLabels(plan), ElementsAre("drift=1ms", "drift=2ms"));
   EXPECT_EQ(TrialsOf(plan)[3].group, 1u);
 }
 
+TEST(TrialsPlanTest, AGridHasEachValueOfOneKeyWithEachOfTheOthers) {
+  TrialsPlan plan = ThreeTrials();
+  plan.trials = 1;
+  plan.options.set = {"a=1"};
+  plan.vary = {Vary{"drift", {"1ms", "2ms"}}, Vary{"x/y", {"../b", "c"}}};
+  EXPECT_THAT(FoldersOf(plan), ElementsAre("1ms,_._b/seed-0001", "1ms,c/seed-0001",
+                                           "2ms,_._b/seed-0001", "2ms,c/seed-0001"));
+  EXPECT_THAT(GroupLabels(plan), ElementsAre("drift=1ms x/y=../b", "drift=1ms x/y=c",
+                                             "drift=2ms x/y=../b", "drift=2ms x/y=c"));
+  EXPECT_THAT(SettingsOf(plan, 2), ElementsAre("a=1", "drift=2ms", "x/y=../b"));
+  EXPECT_EQ(GroupCount(plan), 4u);
+}
+
 TEST(TrialsPlanTest, AValueIsAFolderInsideTheResults) {
   TrialsPlan plan = ThreeTrials();
   plan.trials = 1;
-  plan.vary = {"key", {"../../etc", ".", "a b", "-1e3"}};
+  plan.vary = {Vary{"key", {"../../etc", ".", "a b", "-1e3"}}};
   EXPECT_THAT(FoldersOf(plan),
               ElementsAre("_._.._etc/seed-0001", "_/seed-0001", "a b/seed-0001", "-1e3/seed-0001"));
 }
@@ -66,7 +79,7 @@ TEST(TrialsPlanTest, ARunIsToldWhatTheTrialsWere) {
 
 TEST(TrialsPlanTest, ARunIsToldItsValue) {
   TrialsPlan plan = ThreeTrials();
-  plan.vary = {"robots.predator.cpu.speed", {"0.25", "8"}};
+  plan.vary = {Vary{"robots.predator.cpu.speed", {"0.25", "8"}}};
   const std::vector<std::string> words = RunArgumentsOf(plan, TrialsOf(plan)[1]);
   EXPECT_EQ(words.back(), "robots.predator.cpu.speed=8");
   EXPECT_EQ(words[words.size() - 2], "--set");
@@ -99,14 +112,25 @@ TEST(TrialsVary, TwoValuesDoNotShareAFolder) {
 TEST(TrialsVary, AnOptionThatWouldOutdoTheValuesIsNamed) {
   TrialsPlan plan = ThreeTrials();
   plan.options = {"consistent", "measured", "20s", "", {"seed=3", "drifting=1"}};
-  plan.vary = {"drift", {"1ms"}};
+  plan.vary = {Vary{"drift", {"1ms"}}};
   EXPECT_EQ(WhatHidesValues(plan), "");
   plan.options.drift = "2ms";
   EXPECT_THAT(WhatHidesValues(plan), HasSubstr("--vary drift and --drift set the same"));
-  plan.vary->key = "duration";
+  plan.vary[0].key = "duration";
   EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --duration set the same"));
-  plan.vary->key = "seed";
+  plan.vary[0].key = "seed";
   EXPECT_THAT(WhatHidesValues(plan), HasSubstr("and --set set the same"));
+}
+
+TEST(TrialsVary, KeysThatOutdoEachOtherAreNamed) {
+  TrialsPlan plan = ThreeTrials();
+  plan.vary = {Vary{"robots.a.cpu", {"1"}}, Vary{"robots.a.cpu.speed", {"1"}}};
+  EXPECT_THAT(WhatHidesValues(plan),
+              HasSubstr("--vary robots.a.cpu.speed and --vary robots.a.cpu set the same"));
+  plan.vary[1].key = "robots.a.cpus";
+  EXPECT_EQ(WhatHidesValues(plan), "");
+  plan.vary[1].key = "robots.a.cpu";
+  EXPECT_THAT(WhatHidesValues(plan), HasSubstr("set the same thing"));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "coordinator/trials/results.h"
+
 namespace tcs {
 namespace {
 
@@ -19,7 +21,7 @@ TrialsRecord SomeRecord() {
   record.plan.first_seed = ~std::uint64_t{0} - 9;
   record.plan.trials = 10;
   record.plan.options = {"callback", "fixed", "20s", "2ms", {"a=1"}};
-  record.plan.vary = {"csv_period", {"1ms", "10ms"}};
+  record.plan.vary = {Vary{"csv_period", {"1ms", "10ms"}}};
   record.scenario_hash = "0123456789abcdef";
   record.programs = {{"/home/me/planner", "11"}};
   return record;
@@ -34,9 +36,35 @@ TEST(TrialsRecordTest, ComesBackAsItWasWritten) {
 
 TEST(TrialsRecordTest, OneWithoutVaryComesBack) {
   TrialsRecord record = SomeRecord();
-  record.plan.vary.reset();
+  record.plan.vary.clear();
   EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": null"));
-  EXPECT_FALSE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.has_value());
+  EXPECT_TRUE(std::get<TrialsRecord>(RecordFromJson(ToJson(record))).plan.vary.empty());
+}
+
+TEST(TrialsRecordTest, AGridComesBackAndOneKeyIsWrittenAsEver) {
+  TrialsRecord record = SomeRecord();
+  EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": {\n    \"key\": \"csv_period\""));
+  record.plan.vary.push_back({"drift", {"1ms"}});
+  EXPECT_THAT(ToJson(record), HasSubstr("\"vary\": [\n"));
+  const auto read = std::get<TrialsRecord>(RecordFromJson(ToJson(record)));
+  ASSERT_EQ(read.plan.vary.size(), 2u);
+  EXPECT_EQ(read.plan.vary[1].key, "drift");
+  EXPECT_EQ(WhatDiffers(SomeRecord(), record),
+            "was made with --vary csv_period, not csv_period drift");
+}
+
+TEST(TrialsRecordTest, ResultsStandBesideTheRecordAndAreReplaced) {
+  TrialsRecord record = SomeRecord();
+  const TrialResult result{TrialsOf(record.plan).front(),
+                           {{"r/p.misses", {3, MeasureUnit::kCount, WorseWhen::kMore, false}},
+                            {"r/p.missed", {0.5, MeasureUnit::kShare, WorseWhen::kMore, true}}}};
+  const std::string once = WithResults(ToJson(record), record.plan, {result});
+  EXPECT_THAT(
+      once, HasSubstr("\"values\":[\"1ms\"],\"measures\":{\"r/p.missed\":0.5,\"r/p.misses\":3}}"));
+  EXPECT_EQ(WithResults(once, record.plan, {result}), once);
+  EXPECT_EQ(ToJson(std::get<TrialsRecord>(RecordFromJson(once))), ToJson(record));
+  EXPECT_THAT(WithResults(once, record.plan, {}), HasSubstr("\"results\": []\n}\n"));
+  EXPECT_EQ(WithResults("no record", record.plan, {result}), "no record");
 }
 
 TEST(TrialsRecordTest, OtherTextIsNone) {
@@ -49,7 +77,7 @@ TEST(TrialsRecordTest, MoreTrialsValuesAndANameBelongTogether) {
   TrialsRecord now = SomeRecord();
   now.plan.trials = 20;
   now.plan.name = "tcs";
-  now.plan.vary->values.push_back("100ms");
+  now.plan.vary[0].values.push_back("100ms");
   EXPECT_EQ(WhatDiffers(SomeRecord(), now), "");
 }
 
@@ -68,7 +96,7 @@ TEST(TrialsRecordTest, WhateverDeterminesAnOutcomeIsNamedWhenItDiffers) {
   EXPECT_EQ(differs([](auto* r) { r->plan.options.drift.clear(); }), "was made with --drift 2ms");
   EXPECT_EQ(differs([](auto* r) { r->plan.options.set.push_back("b=2"); }),
             "was made with --set a=1, not a=1 b=2");
-  EXPECT_EQ(differs([](auto* r) { r->plan.vary->key = "drift"; }),
+  EXPECT_EQ(differs([](auto* r) { r->plan.vary[0].key = "drift"; }),
             "was made with --vary csv_period, not drift");
   EXPECT_THAT(differs([](auto* r) { r->plan.first_seed = 1; }), HasSubstr("--first-seed"));
   EXPECT_THAT(differs([](auto* r) { r->scenario_hash = "0"; }), HasSubstr("before it was changed"));

@@ -1,0 +1,27 @@
+// What trials came to, in trials.json: after a call has ended, one line for each trial that is
+// done.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coordinator/measures/measure.h"
+#include "coordinator/trials/plan.h"
+
+namespace tcs {
+
+struct TrialResult {
+  Trial trial;
+  Measures measures;
+};
+
+// The text of a trials.json (record.h) with the results of `plan`'s trials instead of any that it
+// has; as it was, if it is none.
+[[nodiscard]] std::string WithResults(const std::string& record, const TrialsPlan& plan,
+                                      const std::vector<TrialResult>& results);
+
+// Reads the summaries of the trials that are done in the folder, and writes their figures into its
+// trials.json. Empty on success, else the sentence.
+[[nodiscard]] std::string WriteResults(const std::string& folder, const TrialsPlan& plan);
+
+}  // namespace tcs
