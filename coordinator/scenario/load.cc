@@ -112,7 +112,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   all.Try([&] { LoadRobots(top, variables, &scenario); });
   all.Try([&] { LoadNetwork(top, &scenario); });
   all.Try([&] { LoadChannels(top, variables, &scenario); });
-  if (!all.HasMistakes()) LoadChains(top, &scenario);
+  all.Try([&] { LoadChains(top, &scenario); });
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   all.Try([&] { LoadMetrics(top, &scenario); });
   return scenario;

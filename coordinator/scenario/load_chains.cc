@@ -21,8 +21,9 @@ std::size_t FindChannel(const YamlValue& value, const std::string& name, const C
   for (const auto& channel : channels) known.push_back(channel.name);
   const auto found = std::ranges::find(known, name);
   if (found == known.end()) {
-    value.Fail("begins or ends at '" + name + "', which is no channel of " + what + "; " +
-               (known.empty() ? std::string("there is none") : Suggest(name, known, what)));
+    value.FailAbout(
+        name, "begins or ends at '" + name + "', which is no channel of " + what + "; " +
+                  (known.empty() ? std::string("there is none") : Suggest(name, known, what)));
   }
   return static_cast<std::size_t>(found - known.begin());
 }

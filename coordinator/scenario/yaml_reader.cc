@@ -108,6 +108,12 @@ void YamlValue::Fail(std::string_view sentence) const {
   FailPlainly(Described() + " " + std::string(sentence));
 }
 
+void YamlValue::FailAbout(std::string_view part, std::string_view sentence) const {
+  const Mistakes* mistakes = reading_->mistakes;
+  if (mistakes != nullptr && mistakes->IsOfMissing(part)) throw ScenarioMistake{};
+  Fail(sentence);
+}
+
 void YamlValue::FailPlainly(std::string_view sentence) const {
   const Mistakes* mistakes = reading_->mistakes;
   if (mistakes != nullptr && node_.IsScalar() && mistakes->IsOfMissing(node_.Scalar())) {

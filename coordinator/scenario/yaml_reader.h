@@ -47,6 +47,9 @@ class YamlValue {
 
   // Throws "PLACE: NAME SENTENCE".
   [[noreturn]] void Fail(std::string_view sentence) const;
+  // The same about a part of the scenario that this names; nothing is held against one that is left
+  // out for its own mistake.
+  [[noreturn]] void FailAbout(std::string_view part, std::string_view sentence) const;
   // Throws "PLACE: SENTENCE".
   [[noreturn]] void FailPlainly(std::string_view sentence) const;
   // Where all mistakes are asked for, the mistakes that `read` throws are noted, and what it has

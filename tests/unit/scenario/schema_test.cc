@@ -53,6 +53,7 @@ robots:
       c: {command: [./controller], working_directory: {fresh: true, QQ}, QQ}
 network: {links: [{between: [r, r], QQ}], QQ}
 clock: {qos: {QQ}, QQ}
+chains: {e: {from: x, to: push, QQ}}
 metrics: {m: {max: b.z, QQ}}
 channels:
   x: {type: udp_json, sensors: {bodies: [b], to: "127.0.0.1:47001", noise: {QQ}, bias: {QQ}, QQ}, QQ}
