@@ -19,6 +19,8 @@ std::int64_t ToThreeDigits(std::int64_t ns) {
 }
 
 constexpr std::size_t kMostPeriods = 256;
+// The shortest period is a timer's that is so often that this times as many are all.
+constexpr std::int64_t kOftenEnough = 4;
 constexpr const char* kTimer = "its timer";
 
 }  // namespace
@@ -296,6 +298,16 @@ void AnswerBook::EndPaused(Thread& thread, std::int64_t end_ns) {
   EndOf(thread, std::move(begun->response), begun->release);
 }
 
+// Whoever is late leaves expiries out, and finds twice the period, or more, as often as once.
+std::int64_t AnswerBook::PeriodOf(const Source& source) {
+  for (const auto& [period_ns, count] : source.periods_ns) {
+    if (kOftenEnough * count >= source.judged) return period_ns;
+  }
+  return std::ranges::max_element(source.periods_ns, {},
+                                  [](const auto& period) { return period.second; })
+      ->first;
+}
+
 std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
   for (auto& [number, thread] : threads_) {
     EndPaused(thread, end_ns);
@@ -313,10 +325,7 @@ std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
       const auto most = std::ranges::max_element(
           kept.sources, {}, [](const auto& source) { return source.second.judged; });
       figures.deadline.source = most->first;
-      figures.deadline.deadline_ns =
-          std::ranges::max_element(most->second.periods_ns, {}, [](const auto& period) {
-            return period.second;
-          })->first;
+      figures.deadline.deadline_ns = PeriodOf(most->second);
     }
     figures.times = figures.deadline.judged > 0 ? kept.judged : kept.all;
   }

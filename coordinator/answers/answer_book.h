@@ -156,6 +156,7 @@ class AnswerBook {
   static void Count(const Response& response, ActivationTimes& times);
   void EndOf(Thread& thread, Response response, const Release& release);
   void EndPaused(Thread& thread, std::int64_t end_ns);
+  static std::int64_t PeriodOf(const Source& source);
   void JudgeLast(Thread& thread);
   void Judge(Kept& kept, Response response, std::int64_t period_ns, const std::string& source);
 

@@ -17,6 +17,7 @@
 #include "coordinator/os/host.h"
 #include "coordinator/world/csv_row.h"
 #include "coordinator/world/scene_text.h"
+#include "shm/check.h"
 #include "shm/layout.h"
 
 namespace tcs {
@@ -361,7 +362,10 @@ void World::NameReceivers(shm::OwnReceivers& receivers) {
 std::vector<std::size_t> World::CommandsOfReceivers() const {
   std::vector<std::size_t> commands;
   for (const std::size_t inlet : inlet_of_receiver_) {
-    const auto of = std::ranges::find(channels_.inlet_of, channels_.inlets[inlet].get());
+    // In a recording inlets are wrapped: it is the descriptor that they have in common.
+    const auto of =
+        std::ranges::find(channels_.inlet_of, channels_.inlets[inlet]->fd(), &Inlet::fd);
+    TCS_CHECK(of != channels_.inlet_of.end());
     commands.push_back(static_cast<std::size_t>(of - channels_.inlet_of.begin()));
   }
   return commands;

@@ -59,7 +59,7 @@ chains:
 YAML
 }
 run() {  # NAME
-  timeout 60 "$tcsim" run "$1.yaml" --accounting "$2" --out "$1" >"$1.said" 2>&1 || fail "$(cat "$1.said")"
+  timeout 60 "$tcsim" run "$1.yaml" --accounting "$2" --record mcap --out "$1" >"$1.said" 2>&1 || fail "$(cat "$1.said")"
 }
 scenario 0.02 250ms >well.yaml
 scenario 0.15 250ms >slow.yaml

@@ -15,7 +15,7 @@ python3 - <<'PY' || fail "$(cat run/summary.json)"
 import json
 summary = json.load(open("run/summary.json"))
 assert (summary["sync"], summary["accounting"], summary["engine"]) == ("consistent", "fixed", None)
-assert summary["robots"] == {"r": {"cores": 1, "speed": 0.5}}
+assert (summary["robots"]["r"]["cores"], summary["robots"]["r"]["speed"]) == (1, 0.5)
 client = summary["clients"]["r/idle"]
 assert (client["class"], client["priority"], client["robot"]) == ("periodic", 7, "r")
 PY

@@ -96,6 +96,18 @@ TEST_F(AnswerBookTest, ATimersDeadlineIsItsNextExpiry) {
   EXPECT_EQ(figures.deadline.source, "its timer");
 }
 
+// 15 ms of computing: of each second expiry it learns with the next one.
+TEST_F(AnswerBookTest, ATimersPeriodIsTheShortestOfThoseThatAreFrequent) {
+  Open();
+  std::int64_t end = 0;
+  for (const std::int64_t release : {0, 10, 30, 40, 60, 80, 90, 110, 130}) {
+    end = std::max(end, release * kMs);
+    Ends(kController, ReleaseCause::kTime, release * kMs, end, end + 15 * kMs);
+    end += 15 * kMs;
+  }
+  EXPECT_EQ(Controller().deadline.deadline_ns, 10 * kMs);
+}
+
 TEST_F(AnswerBookTest, TheClientsOwnDeadlineGoesFirst) {
   Open(2 * kMs, false);
   book_.Took(kController, SampleOf(0));
