@@ -69,7 +69,7 @@ std::string CauseOf(const ClientOutcome& client, const std::vector<ClientOutcome
   if (figures.deadline.judged > 0 && load > 1) {
     const std::string each = Spoken(std::llround(figures.times.execution.Mean()));
     return figures.deadline.source.empty()
-               ? fmt::format("it computes {} each time, longer than that", each)
+               ? fmt::format("it computes {} each time, longer than its deadline", each)
                : fmt::format("it computes {} each time, {} of a core", each, Percent(load));
   }
   // What waited behind earlier work waited for the cause of that.

@@ -73,6 +73,12 @@ DatagramNotes::Note NoteOf(const shm::ReceiverAddress& address) {
 
 }  // namespace
 
+DatagramQueues::DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& log)
+    : run_(run), answers_(answers), log_(log) {
+  for (std::size_t i = 0; i < run.scenario.sensors.size(); ++i)
+    sensors_[run.scenario.sensors[i].name] = i;
+}
+
 // Addresses that mean the same are one; with a network abstract names are each robot's own.
 DatagramQueues::Address DatagramQueues::AddressOf(const Robot* by,
                                                   const DatagramNotes::Note& note) const {
@@ -115,13 +121,12 @@ void DatagramQueues::Add(const Address& to, Sent sent) {
 
 void DatagramQueues::WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                                VirtualTime at) {
-  const auto sensor = std::ranges::find(run_.scenario.sensors, channel, &SensorChannelSpec::name);
   Sent sent{.at = at, .sender = "dynamics", .channel = channel};
-  if (sensor != run_.scenario.sensors.end()) {
-    sent.sampled_ns = (at - sensor->latency).ns();
-    sent.period_ns = sensor->period.ns();
-    const auto number = static_cast<int>(sensor - run_.scenario.sensors.begin());
-    sent.lineage = answers_.chains().Sampled(number, sent.sampled_ns);
+  if (const auto found = sensors_.find(channel); found != sensors_.end()) {
+    const SensorChannelSpec& sensor = run_.scenario.sensors[found->second];
+    sent.sampled_ns = (at - sensor.latency).ns();
+    sent.period_ns = sensor.period.ns();
+    sent.lineage = answers_.chains().Sampled(static_cast<int>(found->second), sent.sampled_ns);
   }
   Add(AddressOf(nullptr, NoteOf(to)), std::move(sent));
 }

@@ -30,8 +30,7 @@ namespace tcs {
 class DatagramQueues final : public DatagramWatch {
  public:
   // Both outlive this. With a feed that is not open nothing is kept.
-  DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& log)
-      : run_(run), answers_(answers), log_(log) {}
+  DatagramQueues(RunState& run, AnswerFeed& answers, DatagramLog& log);
 
   // Is told of DDS samples that threads take. Null: nobody; it outlives this.
   void Tell(SampleFeed* samples) { samples_ = samples; }
@@ -82,6 +81,7 @@ class DatagramQueues final : public DatagramWatch {
   AnswerFeed& answers_;
   DatagramLog& log_;
   SampleFeed* samples_ = nullptr;
+  std::map<std::string, std::size_t> sensors_;  // places in the scenario
   std::map<Address, Queue> queues_;
   std::map<Address, std::size_t> commands_;
 };

@@ -77,7 +77,7 @@ says 'hover/controller was starved: for [12]\.\?[0-9]* s from 0\.[0-9]* s on it 
 
 # A deadline of its own, by fixed priorities, too.
 said --set robots.hover.clients.controller.deadline=1us --duration 1s --accounting fixed --out "$out/own"
-says 'hover/controller missed all [0-9]* of its deadlines (1 us).*: it computes [0-9.]* us each time, longer than that'
+says 'hover/controller missed all [0-9]* of its deadlines (1 us).*: it computes [0-9.]* us each time, longer than its deadline'
 
 # Loops of 100 Hz, by sleeping until the next time and by a timer's descriptor, that compute for 4 ms and for 15 ms.
 cat >loop.py <<'PY'
