@@ -134,6 +134,8 @@ class Engine {
 
   // Holding the run back (keep_pace.cc).
   bool KeepPace();
+  void LendProcessor();
+  bool HasProcessor();
   VirtualTime NextAct() const;
   HostTime RunningTime() const;
   void FlushForWatchers();
@@ -333,6 +335,9 @@ class Engine {
 
   // The host's CPU on which all of the run takes turns: one of the two.
   CpuClaim claim_;
+  std::optional<LentCpu> lent_;  // while the run is paused
+  bool asks_for_processor_ = false;
+  HostTime standing_since_;  // while it stands
   std::optional<CpuShare> share_;
   std::vector<int> helpers_cpus_;      // others, for the world
   std::vector<Task*> ready_awaiters_;  // whose descriptors have become ready just now

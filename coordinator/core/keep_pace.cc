@@ -15,6 +15,8 @@ constexpr HostDuration kWorthFlushing = HostDuration::Milliseconds(2),
                        kFlushEvery = HostDuration::Milliseconds(100);
 // How often threads that the kernel holds are looked at.
 constexpr HostDuration kUnseenLook = HostDuration::Milliseconds(1);
+// A run that stands for so long is paused, and not stepped.
+constexpr HostDuration kPaused = HostDuration::Milliseconds(2000);
 
 }  // namespace
 
@@ -35,6 +37,28 @@ void Engine::FlushForWatchers() {
   next_flush_ = now + kFlushEvery;
 }
 
+// Others may have the processor of a run that is paused. What this one does meanwhile, for those
+// who watch it, is next to nothing.
+void Engine::LendProcessor() {
+  if (lent_.has_value() || run_.gates_only || RunClock::Now() - standing_since_ < kPaused) return;
+  lent_.emplace(claim_);
+}
+
+bool Engine::HasProcessor() {
+  if (!lent_.has_value()) return true;
+  const bool is_first = !std::exchange(asks_for_processor_, true);
+  if (lent_->TakeBack()) {
+    lent_.reset();
+    asks_for_processor_ = false;
+    return true;
+  }
+  if (is_first && run_.options.on_notice) {
+    run_.options.on_notice(lent_->WhoHasIt() +
+                           "; the run was paused, and goes on when it has its processor again");
+  }
+  return false;
+}
+
 // Until the run may act; false if it is to end instead. What comes from outside meanwhile happens
 // at the time that the wall clock stands for. Of the programs nobody runs, so nothing else happens.
 bool Engine::KeepPace() {
@@ -43,8 +67,14 @@ bool Engine::KeepPace() {
   for (bool has_drained = false;;) {
     const VirtualTime next = NextAct();
     if (next.IsNever()) return true;  // only from outside
-    const HostDuration wait = pacing_.ToWait(next);
-    if (wait == HostDuration()) return true;
+    HostDuration wait = pacing_.ToWait(next);
+    if (!pacing_.pacer().stands() || standing_since_ == HostTime())
+      standing_since_ = RunClock::Now();
+    LendProcessor();
+    if (wait == HostDuration()) {
+      if (HasProcessor()) return true;
+      wait = Pacing::kLook;
+    }
     if (!std::exchange(has_drained, true)) {
       // What is there already came before.
       PollEvents(kNoWait, {run_.latest});

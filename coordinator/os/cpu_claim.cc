@@ -18,7 +18,6 @@
 
 #include "coordinator/os/claim_order.h"
 #include "coordinator/os/cpu_places.h"
-#include "coordinator/os/cpu_register.h"
 #include "coordinator/os/host.h"
 #include "coordinator/os/say.h"
 
@@ -183,6 +182,29 @@ int LastAllowedCpu() {
   const std::vector<int> cpus = AllowedCpus();
   return cpus.empty() ? 0 : cpus.front();
 }
+
+LentCpu::LentCpu(const CpuClaim& claim) : claim_(claim) {
+  if (claim.fd) flock(claim.fd.get(), LOCK_UN);
+}
+
+bool LentCpu::TakeBack() {
+  if (!claim_.fd) return true;
+  const auto is_for_others = [this] {
+    return others_ != nullptr && IsAwaited(claim_.cpu, RivalsOf({claim_.cpu}, others_->Ahead()));
+  };
+  // All processes that have inherited the descriptor hold it again.
+  if (!is_for_others() && flock(claim_.fd.get(), LOCK_EX | LOCK_NB) == 0) {
+    others_.reset();
+    return true;
+  }
+  if (others_ == nullptr) {
+    others_ = std::make_unique<CpuRegister>();
+    others_->Queue({claim_.cpu});
+  }
+  return false;
+}
+
+std::string LentCpu::WhoHasIt() const { return WhoHas({claim_.cpu}); }
 
 std::variant<CpuClaim, std::string> ClaimCpu(bool waits) {
   CpuRegister others;

@@ -3,10 +3,12 @@
 // none (cpu_share.h).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include "coordinator/os/cpu_register.h"
 #include "coordinator/os/unique_fd.h"
 
 namespace tcs {
@@ -36,6 +38,22 @@ void ShareClaimsOfChildren();
 // locks on the folder above (cpu_register.h): nothing is left behind. Where these cannot be opened,
 // the CPU is taken unclaimed.
 [[nodiscard]] std::variant<CpuClaim, std::string> ClaimCpu(bool waits);
+
+// A claim that was given up for a while, as of a run that is paused: others may have the CPU until
+// it is taken back. The claim outlives this.
+class LentCpu {
+ public:
+  explicit LentCpu(const CpuClaim& claim);
+  // Whether this process has the CPU again; it waits for it from the first time on that somebody
+  // else has it, in the order in which runs came. To be asked again and again.
+  [[nodiscard]] bool TakeBack();
+  // Who has it, in words.
+  std::string WhoHasIt() const;
+
+ private:
+  const CpuClaim& claim_;
+  std::unique_ptr<CpuRegister> others_;  // once it waits
+};
 
 // Whether a tcsim has claimed it, also this one. False where that cannot be seen. Cheap, and does
 // not sleep: /proc/locks, which says more, is read by stopping everybody's locks.
