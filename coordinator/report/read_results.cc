@@ -135,7 +135,8 @@ class ResultsReader {
                          folder);
     }
     if (IsThere(folder + "/trials.json")) return AddTrials(folder);
-    if (IsThere(folder + "/summary.json") || IsThere(folder + "/trace.json")) {
+    if (IsThere(folder + "/summary.json") || IsThere(folder + "/trace.json") ||
+        IsThere(folder + "/unfinished.json") || IsThere(folder + "/dispatches.csv")) {
       System system{FolderName(folder), {}, {}};
       std::string mistake = AddRun(folder, FolderName(folder), Ends::kAny, &system);
       if (mistake.empty()) Keep(folder, std::move(system));
@@ -229,8 +230,9 @@ class ResultsReader {
 
   std::string AddRun(const std::string& folder, const std::string& name, Ends ends,
                      System* system) {
-    const bool was_noted = ends == Ends::kAny && IsThere(folder + "/unfinished.json");
-    if (!IsThere(folder + "/summary.json") && !was_noted) {
+    const bool has_part = ends == Ends::kAny && (IsThere(folder + "/unfinished.json") ||
+                                                 IsThere(folder + "/dispatches.csv"));
+    if (!IsThere(folder + "/summary.json") && !has_part) {
       system->failed.push_back({name, LastWords(folder)});
       return {};
     }
@@ -249,7 +251,8 @@ class ResultsReader {
       results_.scenario = run.scenario;
       first_folder_ = folder;
     }
-    if (run.scenario != results_.scenario) {
+    // Without a summary nobody knows.
+    if (run.has_summary && run.scenario != results_.scenario) {
       return fmt::format(
           "{} is of scenario '{}', but {} is of '{}'; a report compares runs of one scenario: make "
           "one for each",
