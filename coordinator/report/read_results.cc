@@ -125,7 +125,8 @@ std::optional<double> NumberOf(const std::string& value) {
 
 class ResultsReader {
  public:
-  explicit ResultsReader(const std::vector<std::string>& bodies) : bodies_(bodies) {}
+  ResultsReader(const std::vector<std::string>& bodies, Distance distance)
+      : bodies_(bodies), distance_(distance) {}
 
   // One sentence, or empty.
   std::string Add(const std::string& folder) {
@@ -237,7 +238,7 @@ class ResultsReader {
       return {};
     }
     auto read = reads_figures_only_ ? ReadRunFigures(folder, &results_.warnings)
-                                    : ReadRun(folder, bodies_, ends, &results_.warnings);
+                                    : ReadRun(folder, bodies_, ends, &results_.warnings, distance_);
     if (const auto* error = std::get_if<LoadError>(&read)) {
       // A wrong name is the caller's mistake, not the run's.
       if (error->message.starts_with("there is no body")) return error->message;
@@ -288,6 +289,7 @@ class ResultsReader {
   }
 
   const std::vector<std::string> bodies_;
+  const Distance distance_;
   bool reads_figures_only_ = false;  // of a grid: its tables would be too many
   Results results_;
   std::string first_folder_;
@@ -331,8 +333,8 @@ std::vector<std::string> Failures(const System& system) {
 }
 
 LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
-                                const std::vector<std::string>& bodies) {
-  ResultsReader reader(bodies);
+                                const std::vector<std::string>& bodies, Distance distance) {
+  ResultsReader reader(bodies, distance);
   for (const std::string& folder : folders) {
     if (std::string error = reader.Add(folder); !error.empty()) return LoadError{error};
   }

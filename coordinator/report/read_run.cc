@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/explain/told.h"
 #include "coordinator/report/csv.h"
 #include "coordinator/report/read_answers.h"
 #include "coordinator/report/text.h"
@@ -240,6 +241,19 @@ std::optional<LoadError> ReadActivations(const std::string& folder, Run* run,
   return {};
 }
 
+// Runs of earlier versions have none; without a summary nobody knows which of them count.
+void TakeResponses(const std::string& folder, Run* run) {
+  if (!run->has_answers || !IsFile(folder + "/responses.csv")) return;
+  const auto read = explain::ReadTold(folder);
+  const auto* told = std::get_if<explain::Told>(&read);
+  if (told == nullptr) return;
+  for (const explain::Activation& one : told->activations) {
+    const auto client = run->clients.find(one.client);
+    if (client == run->clients.end()) continue;
+    client->second.responses_s.push_back(static_cast<double>(one.TookNs()) * 1e-9);
+  }
+}
+
 }  // namespace
 
 LoadResult<Run> ReadRunFigures(const std::string& folder, std::vector<std::string>* warnings) {
@@ -255,13 +269,14 @@ LoadResult<Run> ReadRunTimes(const std::string& folder, std::vector<std::string>
 }
 
 LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string>& bodies,
-                        Ends ends, std::vector<std::string>* warnings) {
+                        Ends ends, std::vector<std::string>* warnings, Distance distance) {
   LoadResult<Run> result = FromSummary(folder, ends, warnings);
   Run* run = std::get_if<Run>(&result);
   if (run == nullptr) return result;
 
   // Without dynamics there are no bodies.
-  if (const std::string path = folder + "/bodies.csv"; IsFile(path)) {
+  if (const std::string path = folder + "/bodies.csv";
+      distance == Distance::kRead && IsFile(path)) {
     TrackBuilder track(run, bodies);
     const auto read = ReadCsv(path, {"time_s", "body", "x_m", "y_m", "z_m"},
                               [&](const CsvFields& fields) { return track.Take(fields); });
@@ -273,7 +288,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
     return LoadError{fmt::format("there is no body '{}' in {}; it has {}", body, folder,
                                  run->bodies.empty() ? "none" : Listed(run->bodies))};
   }
-  if (auto error = ReadActivations(folder, run, warnings)) return *error;
+  TakeResponses(folder, run);
   return result;
 }
 

@@ -46,7 +46,8 @@ struct Client {
   std::int64_t activations = 0, overruns = 0;
   std::optional<ClientDeadline> deadline;
   Quantiles response, data_age;
-  ActivationTimes times;
+  std::vector<double> responses_s;  // of all activations that count
+  ActivationTimes times;            // where they were asked for
 };
 
 // The distance between the two bodies.
