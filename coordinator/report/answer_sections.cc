@@ -148,8 +148,8 @@ std::string VerdictHtml(const Results& results) {
 
 std::optional<Section> InTimeSection(const Results& results) {
   std::vector<Column> columns = FirstColumns(results, "client");
-  columns.insert(columns.end(), {{"deadline", false},
-                                 {"missed"},
+  columns.insert(columns.end(), {{"missed"},
+                                 {"deadline", false},
                                  {"response, 99 %"},
                                  {"longest"},
                                  {"data age, 99 %"},
@@ -182,7 +182,7 @@ std::optional<Section> InTimeSection(const Results& results) {
     const auto time = [](std::int64_t count, std::int64_t ns) {
       return count > 0 ? Milliseconds(ns) : "–";
     };
-    cells.insert(cells.end(), {DeadlineText(all), MissedText(all), time(all.count, all.p99_ns),
+    cells.insert(cells.end(), {MissedText(all), DeadlineText(all), time(all.count, all.p99_ns),
                                time(all.count, all.max_ns), time(all.age_count, all.age_p99_ns),
                                time(all.age_count, all.age_max_ns)});
     table.Row(std::move(cells));
@@ -191,14 +191,15 @@ std::optional<Section> InTimeSection(const Results& results) {
   }
   return Section{"Who was in time",
                  judged == 0 ? "No activation had a deadline."
-                             : fmt::format("{} of {} deadlines were missed.",
-                                           late == 0 ? "None" : Grouped(late), Grouped(judged)),
+                             : fmt::format("{} of {} deadlines {} missed.",
+                                           late == 0 ? "None" : Grouped(late), Grouped(judged),
+                                           late > 1 ? "were" : "was"),
                  table.Html(), table.Text()};
 }
 
 std::optional<Section> ChainsSection(const Results& results) {
   std::vector<Column> columns = FirstColumns(results, "chain");
-  columns.insert(columns.end(), {{"deadline", false}, {"missed"}, {"age, 99 %"}, {"oldest"}});
+  columns.insert(columns.end(), {{"missed"}, {"deadline", false}, {"age, 99 %"}, {"oldest"}});
   Table table(CaptionOf(results,
                         "From a sensor's sample, over all programs between, to what acted on it: "
                         "how old the sample was then."),
@@ -223,7 +224,7 @@ std::optional<Section> ChainsSection(const Results& results) {
         WithSystem(results, key.first, results.systems[key.second]);
     const bool any = all.age_count > 0;
     cells.insert(cells.end(),
-                 {DeadlineText(all), MissedText(all), any ? Milliseconds(all.age_p99_ns) : "–",
+                 {MissedText(all), DeadlineText(all), any ? Milliseconds(all.age_p99_ns) : "–",
                   any ? Milliseconds(all.age_max_ns) : "–"});
     table.Row(std::move(cells));
   }

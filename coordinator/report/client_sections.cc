@@ -62,8 +62,8 @@ std::optional<Figure> ResponseTimes(const Results& results) {
       has_deadline |= row.deadline_s > 0;
       if (row.values_s.empty()) continue;
       if (missed > 0) {
-        late.push_back(fmt::format("{} for {} of {}{}", name, Grouped(missed), Grouped(judged),
-                                   InSystem(results, system)));
+        late.push_back(fmt::format("{} for {} of {}{}", name, Grouped(missed),
+                                   Count(judged, "activation"), InSystem(results, system)));
       }
       group.rows.push_back(std::move(row));
     }
@@ -73,7 +73,7 @@ std::optional<Figure> ResponseTimes(const Results& results) {
   }
   if (groups.empty()) return {};
   std::string sentence = late.empty() ? "Nobody took longer than its deadline allows."
-                                      : fmt::format("Longer than its deadline took {}.", Listed(late));
+                                      : fmt::format("Longer than the deadline: {}.", Listed(late));
   if (none.size() == groups.size()) sentence = "No client has a deadline.";
   return MakeFigure("response-times", "Response times against deadlines", sentence,
                     "From when the cause was there to the end of the work, in virtual time, of all "

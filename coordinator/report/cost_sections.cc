@@ -40,6 +40,9 @@ std::string Shares(const Timeline& timeline) {
   const std::int64_t whole = timeline.virtual_end;
   std::vector<std::size_t> rows(timeline.rows.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
+  // The dynamics take all of virtual time.
+  std::erase_if(rows, [&](std::size_t row) { return timeline.rows[row] == kDynamicsRow; });
+  const std::size_t all = rows.size();
   const bool are_many = rows.size() > kMostShares;
   if (are_many) {
     std::stable_sort(rows.begin(), rows.end(),
@@ -52,7 +55,7 @@ std::string Shares(const Timeline& timeline) {
         whole > 0 ? static_cast<double>(ran[row]) / static_cast<double>(whole) : 0.0;
     shares.push_back(fmt::format("{} {}", timeline.rows[row], Percent(share)));
   }
-  if (are_many) shares.push_back(fmt::format("{} others less", timeline.rows.size() - rows.size()));
+  if (are_many) shares.push_back(fmt::format("{} others less", all - rows.size()));
   return Listed(shares);
 }
 

@@ -18,8 +18,8 @@ constexpr std::size_t kWorst = 5;
 std::string LinkTo(std::int64_t from_ns, std::int64_t to_ns) {
   const double from = static_cast<double>(from_ns) * 1e-9, to = static_cast<double>(to_ns) * 1e-9;
   const double around = std::max((to - from) / 2, 1e-4);
-  return fmt::format("<a href=\"#t={:.6f}-{:.6f}\">show it in the timeline</a>",
-                     std::max(0.0, from - around), to + around);
+  return fmt::format("<a href=\"#t={:.6f}-{:.6f}\">Show {:.3f} s in the timeline</a>",
+                     std::max(0.0, from - around), to + around, from);
 }
 
 std::string Bars(const std::vector<explain::Part>& parts) {
@@ -40,11 +40,17 @@ std::string Item(const std::string& sentence, const std::string& more, const std
   return fmt::format("<li><p>{}. {}</p>\n{}</li>\n", Escaped(sentence), more, parts);
 }
 
-std::string ActivationItem(const explain::Told& told, const explain::Activation& one) {
+// Of one of `all`.
+std::string ActivationItem(const explain::Told& told,
+                           const std::vector<const explain::Activation*>& all,
+                           const explain::Activation& one) {
   std::string behind;
   if (const explain::Activation* first = explain::QueuedBehind(told, one)) {
-    behind = fmt::format("<p class=\"behind\">The queue goes back to this: {}.</p>\n",
-                         Escaped(explain::SentenceOn(*first, told.clients)));
+    const auto listed = std::ranges::find(all, first);
+    behind = fmt::format("<p class=\"behind\">The queue goes back to {}.</p>\n",
+                         listed != all.end()
+                             ? fmt::format("number {} of these", listed - all.begin() + 1)
+                             : "this: " + Escaped(explain::SentenceOn(*first, told.clients)));
   }
   return Item(explain::SentenceOn(one, told.clients), LinkTo(one.release_ns, one.end_ns),
               Bars(explain::PartsOf(one, told.clients)) + behind);
@@ -52,14 +58,14 @@ std::string ActivationItem(const explain::Told& told, const explain::Activation&
 
 std::string ItemsOf(const explain::Told& told) {
   std::string items;
-  for (const explain::Activation* one : explain::Choose(told, {.client = "", .at_ns = {}, .most = kWorst})) {
-    if (one->LateNs() > 0) items += ActivationItem(told, *one);
-  }
+  auto worst = explain::Choose(told, {.client = "", .at_ns = {}, .most = kWorst});
+  std::erase_if(worst, [](const explain::Activation* one) { return one->LateNs() <= 0; });
+  for (const explain::Activation* one : worst) items += ActivationItem(told, worst, *one);
   for (const auto& [name, chain] : told.chains) {
     if (chain.missed == 0 || chain.worst.empty()) continue;
-    const explain::ChainCase& worst = chain.worst.front();
-    items += Item(explain::SentenceOn(name, chain, worst),
-                  LinkTo(worst.sampled_ns, worst.acts_ns), Bars(explain::PartsOf(worst)));
+    const explain::ChainCase& oldest = chain.worst.front();
+    items += Item(explain::SentenceOn(name, chain, oldest),
+                  LinkTo(oldest.sampled_ns, oldest.acts_ns), Bars(explain::PartsOf(oldest)));
   }
   return items;
 }

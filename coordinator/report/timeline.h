@@ -45,6 +45,9 @@ struct Timeline {
 extern const std::vector<std::string_view> kDispatchColumns;
 inline constexpr std::size_t kDispatchColumnsWithoutReal = 3;
 
+// The row that is no client's.
+inline constexpr std::string_view kDynamicsRow = "dynamics";
+
 // Makes a timeline of the lines of dispatches.csv, one after the other; rows in the order in which
 // they come.
 class TimelineBuilder {

@@ -64,6 +64,7 @@ class Picture {
     y_ += kTimelineTitle;
     svg_.Text(8, y_ - 8, Svg::Anchor::kStart, timeline.name, "name");
     for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
+      if (timeline.rows[row] == kDynamicsRow) continue;  // all of virtual time is theirs
       Label(timeline.rows[row]);
       DrawRow(timeline, static_cast<int>(row));
       y_ += kTimelineRow + kTimelineBetween;

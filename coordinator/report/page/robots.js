@@ -329,7 +329,7 @@
       }));
       return group;
     }));
-    tcs.settleToolbar(bar);
+    if (tcs.settleToolbar) tcs.settleToolbar(bar);
   }
   function show(from, to) {
     const length = Math.min(tcs.run.end, Math.max(1e-4, to - from)), middle = (from + to) / 2;

@@ -36,4 +36,5 @@
   });
   fit();
   addEventListener('resize', fit);
+  addEventListener('load', () => document.querySelectorAll('[role=toolbar]').forEach(tcs.settleToolbar));
 })();

@@ -341,6 +341,11 @@
       const ran = busy(run, columns);
       slices += ran.slices;
       run.rows.forEach((name, row) => {
+        // All of virtual time is theirs.
+        if (row === run.dynamics && view.axis === 'virtual') {
+          content += '<g class="row"></g>';
+          return;
+        }
         if (narrow) y += NAME_ABOVE;
         content += `<g class="row">` + label(name, y) + `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${ROW}"/>` +
             bars(ran.share, row * columns, columns, x, y) +
