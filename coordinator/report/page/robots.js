@@ -206,7 +206,7 @@
     if (!motionLive) return;
     const {run} = tcs, width = Math.max(280, Math.floor(motionLive.clientWidth)), narrow = width < 560;
     const left = 48, columns = width - left - 12;
-    const {from, to} = view || {from: 0, to: run.end};
+    const {from, to} = view || {from: 0, to: run.end || 1e-3};  // at the start there is one moment alone
     plot = {x: left, width: columns, from, to};
     const scale = columns / (to - from);
     let y = 0, content = '', top = ABOVE;
