@@ -1,8 +1,6 @@
 #include "coordinator/cli/summary.h"
 
 #include <fmt/format.h>
-#include <string.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,7 @@
 #include "coordinator/cli/figures_json.h"
 #include "coordinator/cli/metrics_text.h"
 #include "coordinator/cli/print.h"
+#include "coordinator/core/failures.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
 #include "simbody_bridge/engines.h"
@@ -23,21 +22,6 @@ namespace {
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 double Milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
-
-// "exit status 1", "signal 11 (Segmentation fault)".
-std::string HowItEnded(int wait_status) {
-  if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
-  return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
-}
-
-// Of the client whose logs begin with `base`: what it said last, and where the rest stands.
-std::string LastWordsOf(const std::string& base) {
-  for (const char* log : {".err.log", ".out.log"}) {
-    const std::string line = LastLine(base + log);
-    if (!line.empty()) return fmt::format("\"{}\" ({}{})", line, base, log);
-  }
-  return fmt::format("it printed nothing ({}.err.log and .out.log are empty)", base);
-}
 
 std::int64_t NotOnOurCpu(const RunReport& r) {
   return r.real_ns - (r.client_ns - r.ahead_ns) - r.awaited_ns - r.dynamics_ns - r.coordinating_ns;
@@ -92,9 +76,7 @@ double OverheadPercent(const RunReport& r) {
 }
 
 bool HasFailedClient(const RunReport& report) {
-  return std::any_of(report.clients.begin(), report.clients.end(), [](const ClientReport& client) {
-    return client.ended_at_ns >= 0 && client.wait_status != 0;
-  });
+  return std::any_of(report.clients.begin(), report.clients.end(), HasFailed);
 }
 
 void PrintSummary(const Scenario& scenario, const RunReport& r, const std::string& directory) {
@@ -134,11 +116,7 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   Print("written to {}: summary.json, *.csv, trace.json (for ui.perfetto.dev), *.log\n", directory);
   Print("to look at it: tcsim report {}\n", directory);
   for (const ClientReport& c : r.clients) {
-    if (c.ended_at_ns < 0 || c.wait_status == 0) continue;
-    std::string base = c.name;
-    std::replace(base.begin(), base.end(), '/', '-');
-    Say(fmt::format("{} ended at {:.3f} s with {}: {}", c.name, Seconds(c.ended_at_ns),
-                    HowItEnded(c.wait_status), LastWordsOf(directory + "/" + base)));
+    if (HasFailed(c)) Say(FailureOf(c, directory, directory + "/"));
   }
 }
 

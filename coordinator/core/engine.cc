@@ -375,6 +375,9 @@ bool Engine::Step() {
   LookAround();
   dds_.TakeOwnMessages();
   ahead_.Look();
+  // Where everything is at the start, people see who watch a run that stands there.
+  if (pacing_.IsOn() && world_.present() && world_.NextStop() == VirtualTime() && StepWorld())
+    return true;
   if (!KeepPace() || StepWorld() || StepNetwork()) return true;
   const VirtualTime least = run_.root.Least();
   if (least >= run_.end || least.IsNever()) {

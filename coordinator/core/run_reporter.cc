@@ -6,6 +6,7 @@
 
 #include "coordinator/answers/verdict.h"
 #include "coordinator/core/deadlocks.h"
+#include "coordinator/core/failures.h"
 #include "coordinator/dds/topics_table.h"
 #include "coordinator/processes/slot_check.h"
 #include "coordinator/text/spoken.h"
@@ -99,7 +100,10 @@ void RunReporter::Answer(VirtualTime end) {
   }
   run_.report.chains = from_.answers.chains().Conclude();
   std::vector<std::string>& verdict = run_.report.verdict;
-  verdict = DeadlocksIn(run_, from_.futexes);
+  verdict =
+      FailuresIn(run_.report, run_.scenario.duration.ns(), run_.options.output_directory);
+  const std::vector<std::string> deadlocks = DeadlocksIn(run_, from_.futexes);
+  verdict.insert(verdict.end(), deadlocks.begin(), deadlocks.end());
   const std::vector<std::string> late = VerdictOn(outcomes, run_.report.chains, end.ns());
   verdict.insert(verdict.end(), late.begin(), late.end());
   const std::vector<std::string> unheard = from_.datagrams.WhatNobodyHeard();

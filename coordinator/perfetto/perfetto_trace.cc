@@ -6,6 +6,7 @@
 #include "coordinator/perfetto/event_writer.h"
 #include "coordinator/perfetto/flows.h"
 #include "coordinator/perfetto/gzip_file.h"
+#include "coordinator/perfetto/misses.h"
 #include "coordinator/perfetto/schedule.h"
 
 namespace tcs::perfetto {
@@ -26,6 +27,7 @@ std::string WriteTrace(const std::string& folder, const std::string& path) {
       if (!error.empty()) return error;
     }
     AddOutput(folder, schedule, &events);
+    AddMisses(folder, schedule, &events);
   }
   file.Append("\n]}\n");
   return file.Close();

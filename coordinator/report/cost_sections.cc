@@ -32,16 +32,17 @@ void AddPaper(Table* table) {
 
 constexpr std::size_t kMostShares = 8;
 
-// Of its real time, what each row ran; of many rows those that ran most.
+// Of its time, what each row ran; of many rows those that ran most.
 std::string Shares(const Timeline& timeline) {
   std::vector<std::int64_t> ran(timeline.rows.size());
-  for (const Slice& slice : timeline.slices) {
-    ran[static_cast<std::size_t>(slice.row)] +=
-        timeline.has_real_times ? slice.real_ran : slice.virtual_ran;
-  }
-  const std::int64_t whole = timeline.has_real_times ? timeline.real_end : timeline.virtual_end;
+  for (const Slice& slice : timeline.slices)
+    ran[static_cast<std::size_t>(slice.row)] += slice.virtual_ran;
+  const std::int64_t whole = timeline.virtual_end;
   std::vector<std::size_t> rows(timeline.rows.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
+  // The dynamics take all of virtual time.
+  std::erase_if(rows, [&](std::size_t row) { return timeline.rows[row] == kDynamicsRow; });
+  const std::size_t all = rows.size();
   const bool are_many = rows.size() > kMostShares;
   if (are_many) {
     std::stable_sort(rows.begin(), rows.end(),
@@ -54,7 +55,7 @@ std::string Shares(const Timeline& timeline) {
         whole > 0 ? static_cast<double>(ran[row]) / static_cast<double>(whole) : 0.0;
     shares.push_back(fmt::format("{} {}", timeline.rows[row], Percent(share)));
   }
-  if (are_many) shares.push_back(fmt::format("{} others less", timeline.rows.size() - rows.size()));
+  if (are_many) shares.push_back(fmt::format("{} others less", all - rows.size()));
   return Listed(shares);
 }
 
@@ -62,18 +63,25 @@ std::string Shares(const Timeline& timeline) {
 std::string AboutTimeline(const Timeline& timeline, bool is_only) {
   const std::string of = is_only ? "" : Quoted(timeline.name) + ": ";
   const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;
-  if (!timeline.has_real_times) {
-    return fmt::format("{}{} of virtual time: {}.", of, Seconds(virtual_s), Shares(timeline));
+  std::string misses;
+  if (!timeline.misses.empty()) {
+    misses = fmt::format(" {} missed.",
+                         timeline.misses.size() == 1
+                             ? std::string("One deadline was")
+                             : fmt::format("{} deadlines were",
+                                           Grouped(static_cast<std::int64_t>(timeline.misses.size()))));
   }
-  const double real_s = static_cast<double>(timeline.real_end) * 1e-6;
-  return fmt::format("{}{} of virtual time took {} of real time: {}.", of, Seconds(virtual_s),
-                     Seconds(real_s), Shares(timeline));
+  return fmt::format("{}In {} of virtual time: {}.{}", of, Seconds(virtual_s), Shares(timeline),
+                     misses);
 }
 
 }  // namespace
 
 std::optional<Section> CostsSection(const Results& results) {
-  if (results.systems.empty()) return {};
+  const bool any = std::ranges::any_of(results.systems, [](const System& system) {
+    return !system.runs.empty() && system.runs.front().has_summary;
+  });
+  if (!any) return {};
   Table table("Means over the trials; of Δ and staleness the most.", {{"system", false},
                                                                       {"virtual time"},
                                                                       {"real time"},
@@ -121,7 +129,7 @@ std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines) {
   std::string note =
       "The first trial of each system. A bar's height is the share of the time that the row ran, "
       "the "
-      "number beside it the share of the whole.";
+      "number beside it the share of the whole. A red line marks a deadline that was missed.";
   if (merged_us > 0) {
     note += fmt::format(" Slices of a row that are up to {} apart are drawn as one.",
                         Seconds(static_cast<double>(merged_us) * 1e-6, 2));

@@ -33,45 +33,44 @@ std::string BetweenBodies(const Results& results) {
 
 }  // namespace
 
-Section SystemsSection(const Results& results, const std::vector<double>& marks) {
-  std::vector<Column> columns{{"system", false}, {"trials"}, {"failed"}, {"samples"},
-                              {"mean"},          {"median"}, {"SD"}};
-  for (const double mark : marks) columns.push_back({"below " + PlainMetres(mark)});
-  columns.push_back({"Δ"});
-  columns.push_back({"overhead"});
+std::optional<Section> SystemsSection(const Results& results, const std::vector<double>& marks) {
   const bool has_bodies = !results.bodies[0].empty();
-  Table table(has_bodies
-                  ? fmt::format("The distance between {}, over all samples of all trials; Δ is "
-                                "the most of any trial.",
-                                BetweenBodies(results))
-                  : "Δ is the most of any trial.",
+  const bool has_trials = std::ranges::any_of(results.systems, [](const System& system) {
+    return system.runs.size() + system.failed.size() > 1;
+  });
+  if (results.systems.empty() || (results.systems.size() == 1 && !has_bodies && !has_trials))
+    return {};
+  std::vector<Column> columns{{"system", false}, {"trials"}, {"failed"}};
+  if (has_bodies) columns.insert(columns.end(), {{"samples"}, {"mean"}, {"median"}, {"SD"}});
+  for (const double mark : marks) {
+    if (has_bodies) columns.push_back({"below " + PlainMetres(mark)});
+  }
+  Table table(has_bodies ? fmt::format("The distance between {}, over all samples of all trials.",
+                                       BetweenBodies(results))
+                         : "Trials that failed are left out of all figures.",
               columns);
   std::vector<std::string> counts;
   for (const System& system : results.systems) {
-    const std::vector<double> distances = Distances(system);
-    const Spread spread = SpreadOf(distances);
-    const bool any = spread.count > 0;
-    const auto metres = [any](double value) { return any ? Metres(value) : "–"; };
     const auto trials = static_cast<std::int64_t>(system.runs.size());
-    std::vector<std::string> cells{system.name,
-                                   fmt::format("{}", trials),
-                                   fmt::format("{}", system.failed.size()),
-                                   Grouped(spread.count),
-                                   metres(spread.mean),
-                                   metres(spread.median),
-                                   metres(spread.deviation)};
-    for (const double mark : marks) {
-      cells.push_back(any ? Percent(ShareBelow(distances, mark)) : "–");
+    std::vector<std::string> cells{system.name, fmt::format("{}", trials),
+                                   fmt::format("{}", system.failed.size())};
+    if (has_bodies) {
+      const std::vector<double> distances = Distances(system);
+      const Spread spread = SpreadOf(distances);
+      const bool any = spread.count > 0;
+      const auto metres = [any](double value) { return any ? Metres(value) : "–"; };
+      cells.insert(cells.end(), {Grouped(spread.count), metres(spread.mean), metres(spread.median),
+                                 metres(spread.deviation)});
+      for (const double mark : marks)
+        cells.push_back(any ? Percent(ShareBelow(distances, mark)) : "–");
     }
-    cells.push_back(Seconds(MostOf(system, &Run::drift_ns)));
-    cells.push_back(Percent(OverheadOf(system)));
     table.Row(cells);
     counts.push_back(fmt::format("{} of {} ({}{})", Count(trials, "trial"), Quoted(system.name),
                                  Seconds(MeanOf(system, &Run::virtual_ns)),
                                  trials > 1 ? " each" : ""));
   }
-  return {"The systems", fmt::format("This page is made of {}.", Listed(counts)), table.Html(),
-          table.Text()};
+  return Section{"The systems", fmt::format("This page is made of {}.", Listed(counts)),
+                 table.Html(), table.Text()};
 }
 
 std::optional<Figure> DistanceHistogram(const Results& results, const std::vector<double>& marks) {

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 
+#include "coordinator/explain/told.h"
+#include "coordinator/report/answer_sections.h"
+#include "coordinator/report/csv.h"
 #include "coordinator/report/measure_sections.h"
 #include "coordinator/report/metric_sections.h"
+#include "coordinator/report/misses.h"
 #include "coordinator/report/page_files.h"
 #include "coordinator/report/replay.h"
 #include "coordinator/report/replay_sections.h"
@@ -35,41 +39,52 @@ class Builder {
   }
 
   Page Build() {
-    // What happened first, then why.
+    // The answer first, then what happened, then why; what the simulation did is nobody's robot.
+    ReadTold();
+    AddVerdict();
+    AddFirst(InTimeSection(results_), "in-time");
+    AddFirst(ChainsSection(results_), "chains");
+    AddExplained();
     AddReplays();
     AddTimelines();
-    if (!results_.systems.empty()) AddFirst(SystemsSection(results_, options_.marks));
-    AddFailures();
+    Add(ResponseTimes(results_));
+    Add(MetricsOverTime(results_));
+    Add(MetricsSection(results_), "metrics");
+    AddFirst(SystemsSection(results_, options_.marks), "systems");
     Add(DistanceHistogram(results_, options_.marks));
     Add(DistanceOverTime(results_, options_.marks));
-    Add(MetricsOverTime(results_));
-    Add(MetricsSection(results_));
-    Add(CostsSection(results_));
-    Add(ResponseTimes(results_));
-    Add(Lateness(results_));
-    Add(ClientsSection(results_));
     AddMeasures();
     for (const std::string& key : VariedKeys(results_)) {
       Add(SweepFigure(results_, key, options_.marks));
-      AddFirst(SweepSection(results_, key, options_.marks));
+      AddFirst(SweepSection(results_, key, options_.marks), "sweep-of-" + FileName(key));
     }
+    AddWarnings();
+    AddFailures();
+    AddSimulation();
     page_.html = Whole();
     return std::move(page_);
   }
 
  private:
-  void Add(const Section& section) {
-    body_ += fmt::format("<section>\n<h2>{}</h2>\n{}{}</section>\n", Escaped(section.heading),
-                         Paragraph("says", section.sentence), section.html);
+  // One part of the page, which the table of contents names.
+  void AddHtml(std::string_view id, const std::string& heading, const std::string& inner,
+               std::string_view classes = "") {
+    contents_ += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, Escaped(heading));
+    body_ += fmt::format("<section id=\"{}\"{}>\n<h2>{}</h2>\n{}</section>\n", id,
+                         classes.empty() ? "" : fmt::format(" class=\"{}\"", classes),
+                         Escaped(heading), inner);
+  }
+  void Add(const std::optional<Section>& section, std::string_view id) {
+    if (!section) return;
+    AddHtml(id, section->heading, Paragraph("says", section->sentence) + section->html);
   }
   // One that a terminal shows, too.
-  void AddFirst(const Section& section) {
-    Add(section);
-    page_.text +=
-        fmt::format("{}{}:\n{}", page_.text.empty() ? "" : "\n", section.heading, section.text);
+  void AddFirst(const std::optional<Section>& section, const std::string& id) {
+    Add(section, id);
+    if (section) AddText(section->heading, section->text);
   }
-  void Add(const std::optional<Section>& section) {
-    if (section) Add(*section);
+  void AddText(const std::string& heading, const std::string& text) {
+    page_.text += fmt::format("{}{}:\n{}", page_.text.empty() ? "" : "\n", heading, text);
   }
   void Add(const std::optional<Figure>& figure) {
     if (figure) AddFigure(*figure, "");
@@ -77,13 +92,79 @@ class Builder {
 
   void AddFigure(const Figure& figure, std::string_view more) {
     ++figures_;
-    body_ += fmt::format(
-        "<section>\n<h2>{}</h2>\n{}<figure id=\"{}\">\n{}\n{}\n{}<figcaption><b>Figure {}.</b> "
-        "{}</figcaption>\n</figure>\n</section>\n",
-        Escaped(figure.title), Paragraph("says", figure.sentence), figure.id,
-        InlineSvg(figure, figure.wide, "wide"), InlineSvg(figure, figure.narrow, "narrow"), more,
-        figures_, Escaped(figure.note));
+    AddHtml("about-" + figure.id, figure.title,
+            fmt::format("{}<figure id=\"{}\">\n{}\n{}\n{}<figcaption><b>Figure {}.</b> "
+                        "{}</figcaption>\n</figure>\n",
+                        Paragraph("says", figure.sentence), figure.id,
+                        InlineSvg(figure, figure.wide, "wide"),
+                        InlineSvg(figure, figure.narrow, "narrow"), more, figures_,
+                        Escaped(figure.note)));
     page_.svgs.emplace_back(figure.id, StandaloneSvg(figure));
+  }
+
+  // Of each system's first run.
+  void ReadTold() {
+    for (const System& system : results_.systems) {
+      ToldOf& of = told_.emplace_back(ToldOf{&system, {}});
+      const Run& run = system.runs.front();
+      if (!run.has_answers || !IsFile(run.folder + "/responses.csv")) continue;
+      auto read = explain::ReadTold(run.folder);
+      if (auto* told = std::get_if<explain::Told>(&read)) {
+        of.told = std::move(*told);
+      } else {
+        page_.warnings.push_back(std::get<LoadError>(read).message);
+      }
+    }
+  }
+
+  void AddVerdict() {
+    const std::string html = VerdictHtml(results_);
+    if (html.empty()) return;
+    AddHtml("verdict", "The verdict", html);
+    std::string lines;
+    for (const System& system : results_.systems) {
+      for (const std::string& sentence : system.runs.front().verdict)
+        lines += fmt::format("! {}\n", sentence);
+    }
+    if (!lines.empty()) AddText("The verdict", lines);
+  }
+
+  void AddExplained() {
+    const std::string html = ExplainedHtml(results_, told_);
+    if (html.empty()) return;
+    AddHtml("why", "Why the worst was late",
+            Paragraph("says",
+                      "What the time from the cause to the end of the work went into. Of any other "
+                      "activation “tcsim explain” tells the same, and so does a click on its mark "
+                      "in the timeline.") +
+                html);
+  }
+
+  // What the runs warned of while they went.
+  void AddWarnings() {
+    std::string items;
+    for (const System& system : results_.systems) {
+      for (const std::string& warning : system.runs.front().warnings)
+        items += fmt::format("<li>{}</li>\n", Escaped(warning));
+    }
+    if (!items.empty()) AddHtml("warnings", "Warnings", "<ul>\n" + items + "</ul>\n", "failures");
+  }
+
+  void AddSimulation() {
+    std::string inner;
+    for (const auto& section : {CostsSection(results_), ClientsSection(results_)}) {
+      if (!section) continue;
+      inner += fmt::format("<h3>{}</h3>\n{}{}", Escaped(section->heading),
+                           Paragraph("says", section->sentence), section->html);
+    }
+    if (inner.empty()) return;
+    AddHtml("simulation", "Of the simulation itself",
+            Paragraph("says",
+                      "These are figures of tcs, not of the robots: how well it kept them in one "
+                      "time, and what that cost on this computer. A robot whose deadlines are all "
+                      "missed can have perfect figures here.") +
+                inner,
+            "simulation");
   }
 
   void AddMeasures() {
@@ -109,10 +190,16 @@ class Builder {
     }
     has_world_ = std::any_of(replays.begin(), replays.end(),
                              [](const Replay& replay) { return !replay.time_s.empty(); });
-    body_ += WorldSection(replays);
+    if (const std::string world = WorldSection(replays); !world.empty()) {
+      contents_ += "<li><a href=\"#world\">The world</a></li>\n";
+      body_ += world;
+    }
     if (const auto paths = PathsFigure(replays)) AddFigure(*paths, kPathsLive);
     if (const auto motion = MotionFigure(replays)) AddFigure(*motion, kMotionControls);
-    body_ += SaidSection(replays);
+    if (const std::string said = SaidSection(replays); !said.empty()) {
+      contents_ += "<li><a href=\"#said\">What programs said</a></li>\n";
+      body_ += said;
+    }
   }
 
   void AddTimelines() {
@@ -120,6 +207,8 @@ class Builder {
     for (const System& system : results_.systems) {
       auto read = ReadTimeline(system.runs.front().folder, system.name);
       if (auto* timeline = std::get_if<Timeline>(&read)) {
+        const auto of = std::ranges::find(told_, &system, &ToldOf::system);
+        if (of->told.has_value()) AddMisses(*of->told, timeline);
         timelines.push_back(std::move(*timeline));
       } else {
         page_.warnings.push_back(std::get<LoadError>(read).message +
@@ -157,28 +246,35 @@ class Builder {
       items += fmt::format("<li>{}</li>\n", Escaped(warning));
     }
     if (items.empty()) return;
-    body_ += "<section class=\"failures\">\n<h2>What is missing</h2>\n<ul>\n" + items +
-             "</ul>\n</section>\n";
+    AddHtml("missing", "What is missing", "<ul>\n" + items + "</ul>\n", "failures");
   }
 
   std::string Whole() const {
-    const std::string title = options_.title.empty() ? results_.scenario : options_.title;
+    // A run without a summary does not know its scenario.
+    const std::string scenario = results_.scenario.empty() && !results_.systems.empty()
+                                     ? results_.systems.front().name
+                                     : results_.scenario;
+    const std::string title = options_.title.empty() ? scenario : options_.title;
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
         "'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-        "<title>{0}</title>\n<style>\n{1}{2}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{3}"
+        "<title>{0}</title>\n<style>\n{1}{2}</style>\n</head>\n<body class=\"has-contents\">\n"
+        "<nav class=\"contents\" aria-label=\"Contents\">\n<ol>\n{8}</ol>\n</nav>\n"
+        "<main>\n<h1>{0}</h1>\n{3}"
         "<footer>Made by tcsim report from result folders of the scenario “{4}”.</footer>\n"
         "</main>\n{5}<script>\n{6}</script>\n<script>\n{7}</script>\n</body>\n</html>\n",
-        Escaped(title), PageStyle(), kReportCss, body_, Escaped(results_.scenario),
-        has_world_ ? fmt::format("<script>\n{}</script>\n", kThreeJs) : "", kReplayDataJs, kPageJs);
+        Escaped(title), PageStyle(), kReportCss, body_, Escaped(scenario),
+        has_world_ ? fmt::format("<script>\n{}</script>\n", kThreeJs) : "", kReplayDataJs, kPageJs,
+        contents_);
   }
 
   const Results& results_;
   const PageOptions& options_;
   Page page_;
-  std::string body_;
+  std::vector<ToldOf> told_;
+  std::string contents_, body_;
   int figures_ = 0;
   bool has_world_ = false;
 };

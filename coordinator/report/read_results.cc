@@ -125,7 +125,8 @@ std::optional<double> NumberOf(const std::string& value) {
 
 class ResultsReader {
  public:
-  explicit ResultsReader(const std::vector<std::string>& bodies) : bodies_(bodies) {}
+  ResultsReader(const std::vector<std::string>& bodies, Distance distance)
+      : bodies_(bodies), distance_(distance) {}
 
   // One sentence, or empty.
   std::string Add(const std::string& folder) {
@@ -135,7 +136,8 @@ class ResultsReader {
                          folder);
     }
     if (IsThere(folder + "/trials.json")) return AddTrials(folder);
-    if (IsThere(folder + "/summary.json") || IsThere(folder + "/trace.json")) {
+    if (IsThere(folder + "/summary.json") || IsThere(folder + "/trace.json") ||
+        IsThere(folder + "/unfinished.json") || IsThere(folder + "/dispatches.csv")) {
       System system{FolderName(folder), {}, {}};
       std::string mistake = AddRun(folder, FolderName(folder), Ends::kAny, &system);
       if (mistake.empty()) Keep(folder, std::move(system));
@@ -229,13 +231,14 @@ class ResultsReader {
 
   std::string AddRun(const std::string& folder, const std::string& name, Ends ends,
                      System* system) {
-    const bool was_noted = ends == Ends::kAny && IsThere(folder + "/unfinished.json");
-    if (!IsThere(folder + "/summary.json") && !was_noted) {
+    const bool has_part = ends == Ends::kAny && (IsThere(folder + "/unfinished.json") ||
+                                                 IsThere(folder + "/dispatches.csv"));
+    if (!IsThere(folder + "/summary.json") && !has_part) {
       system->failed.push_back({name, LastWords(folder)});
       return {};
     }
     auto read = reads_figures_only_ ? ReadRunFigures(folder, &results_.warnings)
-                                    : ReadRun(folder, bodies_, ends, &results_.warnings);
+                                    : ReadRun(folder, bodies_, ends, &results_.warnings, distance_);
     if (const auto* error = std::get_if<LoadError>(&read)) {
       // A wrong name is the caller's mistake, not the run's.
       if (error->message.starts_with("there is no body")) return error->message;
@@ -249,7 +252,8 @@ class ResultsReader {
       results_.scenario = run.scenario;
       first_folder_ = folder;
     }
-    if (run.scenario != results_.scenario) {
+    // Without a summary nobody knows.
+    if (run.has_summary && run.scenario != results_.scenario) {
       return fmt::format(
           "{} is of scenario '{}', but {} is of '{}'; a report compares runs of one scenario: make "
           "one for each",
@@ -285,6 +289,7 @@ class ResultsReader {
   }
 
   const std::vector<std::string> bodies_;
+  const Distance distance_;
   bool reads_figures_only_ = false;  // of a grid: its tables would be too many
   Results results_;
   std::string first_folder_;
@@ -328,8 +333,8 @@ std::vector<std::string> Failures(const System& system) {
 }
 
 LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
-                                const std::vector<std::string>& bodies) {
-  ResultsReader reader(bodies);
+                                const std::vector<std::string>& bodies, Distance distance) {
+  ResultsReader reader(bodies, distance);
   for (const std::string& folder : folders) {
     if (std::string error = reader.Add(folder); !error.empty()) return LoadError{error};
   }

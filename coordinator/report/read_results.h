@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/report/read_run.h"
 #include "coordinator/report/results.h"
 #include "coordinator/scenario/load_error.h"
 
@@ -14,6 +15,7 @@ namespace tcs::report {
 // system; a folder without any good run is left out with a warning. One sentence if nothing is
 // left, if a folder is none of these, or if not all are of one scenario.
 [[nodiscard]] LoadResult<Results> ReadResults(const std::vector<std::string>& folders,
-                                              const std::vector<std::string>& bodies);
+                                              const std::vector<std::string>& bodies,
+                                              Distance distance = Distance::kRead);
 
 }  // namespace tcs::report

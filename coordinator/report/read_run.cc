@@ -7,7 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "coordinator/explain/told.h"
 #include "coordinator/report/csv.h"
+#include "coordinator/report/read_answers.h"
 #include "coordinator/report/text.h"
 
 namespace tcs::report {
@@ -30,6 +32,30 @@ std::optional<std::string> FailureOf(const UnorderedJson& clients) {
   return {};
 }
 
+// What a run without a summary is: no more is known of it than what its tables say.
+LoadResult<Run> WithoutSummary(const std::string& folder) {
+  Run run;
+  run.folder = folder;
+  run.is_whole = run.has_summary = false;
+  const auto take = [&run](const CsvFields& fields) {
+    const auto end_ns = ToInteger(fields[0]);
+    if (end_ns) run.virtual_ns = std::max(run.virtual_ns, *end_ns);
+    return end_ns.has_value();
+  };
+  const auto read = ReadCsv(folder + "/dispatches.csv", {"virtual_end_ns"}, take);
+  if (std::holds_alternative<LoadError>(read)) {
+    return LoadError{folder + " has neither summary.json nor dispatches.csv: the run did not end"};
+  }
+  return run;
+}
+
+// Takes the place of a verdict that nobody could give.
+std::string CutOff(const Run& run) {
+  return fmt::format(
+      "the run was cut off soon after {}: it was killed, ended by an error, or it still goes on",
+      Seconds(static_cast<double>(run.virtual_ns) * 1e-9));
+}
+
 LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
                             std::vector<std::string>* warnings) {
   std::string path = folder + "/summary.json";
@@ -39,12 +65,23 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
     path = folder + "/unfinished.json";
     text = ReadFile(path);
   }
-  if (!text) return LoadError{folder + " has no summary.json: the run did not end"};
+  if (!text && !was_cut) return LoadError{folder + " has no summary.json: the run did not end"};
+  if (!text) {
+    LoadResult<Run> without = WithoutSummary(folder);
+    if (Run* run = std::get_if<Run>(&without)) {
+      run->verdict = {CutOff(*run)};
+      warnings->push_back(folder +
+                          " has no summary.json, so that nothing is known of deadlines, response "
+                          "times, ages and costs; the page shows what the run had written");
+    }
+    return without;
+  }
   Run run;
   run.folder = folder;
   try {
     const UnorderedJson json = UnorderedJson::parse(*text);
-    if (json.at("interrupted").get<bool>()) return LoadError{folder + " was interrupted"};
+    const bool was_interrupted = json.at("interrupted").get<bool>();
+    if (was_interrupted && ends == Ends::kWhole) return LoadError{folder + " was interrupted"};
     run.measures = MeasuresFromSummary(*text).value_or(Measures());
     run.scenario = json.at("scenario").get<std::string>();
     // Runs of earlier versions did not say.
@@ -60,16 +97,8 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
     json.at("dynamics_ns").get_to(run.dynamics_ns);
     run.overhead = json.at("overhead_percent").get<double>() / 100.0;
     const UnorderedJson& clients = json.at("clients");
-    if (const auto failure = was_cut ? std::nullopt : FailureOf(clients)) {
-      return LoadError{folder + ": " + *failure};
-    }
-    if (was_cut) {
-      warnings->push_back(
-          fmt::format("{} is of a run that was cut off soon after {} (killed, ended by an error, "
-                      "or it is still "
-                      "going on); this is what it had written",
-                      folder, Seconds(static_cast<double>(run.virtual_ns) * 1e-9)));
-    }
+    const auto failure = was_cut ? std::nullopt : FailureOf(clients);
+    if (failure && ends == Ends::kWhole) return LoadError{folder + ": " + *failure};
     for (const auto& [name, entry] : clients.items()) {
       Client& client = run.clients[name];
       client.robot = entry.value("robot", "");
@@ -79,6 +108,22 @@ LoadResult<Run> FromSummary(const std::string& folder, Ends ends,
       entry.at("stolen_ns").get_to(client.stolen_ns);
       entry.at("activations").get_to(client.activations);
       entry.at("overruns").get_to(client.overruns);
+    }
+    if (!was_cut) TakeAnswers(json, &run);
+    run.is_whole = !was_cut && !was_interrupted && !failure;
+    // Runs of earlier versions have no verdict.
+    if (failure && run.verdict.empty()) run.verdict.push_back(*failure);
+    if (was_interrupted && run.verdict.empty()) {
+      run.verdict.push_back(fmt::format("the run was stopped at {}",
+                                        Seconds(static_cast<double>(run.virtual_ns) * 1e-9)));
+    }
+    if (was_cut) {
+      run.verdict = {CutOff(run)};
+      warnings->push_back(
+          fmt::format("{} is of a run that was cut off soon after {} (killed, ended by an error, "
+                      "or it is still going on); this is what it had written, and nothing is known "
+                      "of deadlines, response times and ages",
+                      folder, Seconds(static_cast<double>(run.virtual_ns) * 1e-9)));
     }
   } catch (const UnorderedJson::exception&) {
     return LoadError{path + " is damaged; make the run again"};
@@ -196,6 +241,19 @@ std::optional<LoadError> ReadActivations(const std::string& folder, Run* run,
   return {};
 }
 
+// Runs of earlier versions have none; without a summary nobody knows which of them count.
+void TakeResponses(const std::string& folder, Run* run) {
+  if (!run->has_answers || !IsFile(folder + "/responses.csv")) return;
+  const auto read = explain::ReadTold(folder);
+  const auto* told = std::get_if<explain::Told>(&read);
+  if (told == nullptr) return;
+  for (const explain::Activation& one : told->activations) {
+    const auto client = run->clients.find(one.client);
+    if (client == run->clients.end()) continue;
+    client->second.responses_s.push_back(static_cast<double>(one.TookNs()) * 1e-9);
+  }
+}
+
 }  // namespace
 
 LoadResult<Run> ReadRunFigures(const std::string& folder, std::vector<std::string>* warnings) {
@@ -211,13 +269,14 @@ LoadResult<Run> ReadRunTimes(const std::string& folder, std::vector<std::string>
 }
 
 LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string>& bodies,
-                        Ends ends, std::vector<std::string>* warnings) {
+                        Ends ends, std::vector<std::string>* warnings, Distance distance) {
   LoadResult<Run> result = FromSummary(folder, ends, warnings);
   Run* run = std::get_if<Run>(&result);
   if (run == nullptr) return result;
 
   // Without dynamics there are no bodies.
-  if (const std::string path = folder + "/bodies.csv"; IsFile(path)) {
+  if (const std::string path = folder + "/bodies.csv";
+      distance == Distance::kRead && IsFile(path)) {
     TrackBuilder track(run, bodies);
     const auto read = ReadCsv(path, {"time_s", "body", "x_m", "y_m", "z_m"},
                               [&](const CsvFields& fields) { return track.Take(fields); });
@@ -229,7 +288,7 @@ LoadResult<Run> ReadRun(const std::string& folder, const std::vector<std::string
     return LoadError{fmt::format("there is no body '{}' in {}; it has {}", body, folder,
                                  run->bodies.empty() ? "none" : Listed(run->bodies))};
   }
-  if (auto error = ReadActivations(folder, run, warnings)) return *error;
+  TakeResponses(folder, run);
   return result;
 }
 

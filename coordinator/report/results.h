@@ -12,6 +12,26 @@
 
 namespace tcs::report {
 
+// Times in virtual nanoseconds, as summary.json has them. Nothing is known of none.
+struct Quantiles {
+  std::int64_t count = 0, p50_ns = 0, p99_ns = 0, max_ns = 0;
+};
+
+// What was expected of a client, and how often it was not met.
+struct ClientDeadline {
+  std::int64_t deadline_ns = 0;
+  std::string period_of;  // a channel or "its timer"; empty: the scenario says so
+  std::int64_t judged = 0, missed = 0;
+};
+
+// From a sensor to an actuator.
+struct Chain {
+  std::string name;
+  std::int64_t deadline_ns = 0;  // 0: there is none
+  std::int64_t missed = 0;
+  Quantiles age;
+};
+
 // Of a client's activations, in one run.
 struct ActivationTimes {
   std::vector<double> lateness_s;  // from being made ready to its first processor time
@@ -24,7 +44,10 @@ struct Client {
   bool is_periodic = false;
   std::int64_t charged_ns = 0, own_clock_ns = 0, stolen_ns = 0;
   std::int64_t activations = 0, overruns = 0;
-  ActivationTimes times;
+  std::optional<ClientDeadline> deadline;
+  Quantiles response, data_age;
+  std::vector<double> responses_s;  // of all activations that count
+  ActivationTimes times;            // where they were asked for
 };
 
 // The distance between the two bodies.
@@ -32,8 +55,17 @@ struct Track {
   std::vector<double> time_s, distance_m;
 };
 
-// One run that went to its end.
+// One run.
 struct Run {
+  // Nobody stopped it, and none of its clients failed.
+  bool is_whole = true;
+  // Without it the figures below are 0, and of the clients nothing is known.
+  bool has_summary = true;
+  // Answers from runs of earlier versions are missing.
+  bool has_answers = false;
+  std::vector<std::string> verdict;  // worst first; why it is not whole before all
+  std::vector<std::string> warnings;
+  std::vector<Chain> chains;
   std::string folder, scenario, sync, accounting;
   std::vector<std::string> bodies;
   std::int64_t virtual_ns = 0, real_ns = 0, drift_ns = 0, drift_bound_ns = 0, staleness_ns = 0;
@@ -45,7 +77,7 @@ struct Run {
   std::string apart[2];  // the bodies that the track is of; empty without
 };
 
-// One that did not, and why.
+// One of which there is nothing to show, and why.
 struct FailedRun {
   std::string name, why;
 };

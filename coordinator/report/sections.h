@@ -18,7 +18,8 @@ struct Section {
 };
 
 // None where the results have nothing of the kind.
-[[nodiscard]] Section SystemsSection(const Results& results, const std::vector<double>& marks);
+[[nodiscard]] std::optional<Section> SystemsSection(const Results& results,
+                                                    const std::vector<double>& marks);
 [[nodiscard]] std::optional<Figure> DistanceHistogram(const Results& results,
                                                       const std::vector<double>& marks);
 [[nodiscard]] std::optional<Figure> DistanceOverTime(const Results& results,
@@ -26,7 +27,6 @@ struct Section {
 [[nodiscard]] std::optional<Section> CostsSection(const Results& results);
 [[nodiscard]] std::optional<Figure> TimelineFigure(const std::vector<Timeline>& timelines);
 [[nodiscard]] std::optional<Figure> ResponseTimes(const Results& results);
-[[nodiscard]] std::optional<Figure> Lateness(const Results& results);
 [[nodiscard]] std::optional<Section> ClientsSection(const Results& results);
 // One figure (where there are bodies) and one table per key that was varied.
 [[nodiscard]] std::vector<std::string> VariedKeys(const Results& results);

@@ -12,17 +12,18 @@ struct Colour {
   std::string_view name, light, dark;
 };
 
-// Okabe and Ito's palette, which people of all kinds of colour vision can tell apart, darkened or
-// lightened until each has enough contrast as a text, too.
+// Any two series differ by at least 0.11 in Oklab, also as people see them who lack one kind of cone,
+// and each has a contrast of 4.5 to the paper, so that it can be a text's colour. Found by search,
+// from the first two of Okabe and Ito's palette.
 constexpr Colour kColours[] = {
     {"paper", "#ffffff", "#14171a"}, {"ink", "#1b1f23", "#e4e7ea"},
     {"faint", "#59636e", "#9aa4ae"}, {"grid", "#e6e9ec", "#2a2f35"},
     {"panel", "#f6f7f8", "#1c2024"}, {"link", "#005a9c", "#6cb8ff"},
     {"stage", "#eef1f4", "#0e1114"}, {"force", "#c4003a", "#ff6f91"},
     {"s0", "#b84e00", "#ff9d5c"},    {"s1", "#0072b2", "#5cb8f0"},
-    {"s2", "#00795a", "#3ecfa5"},    {"s3", "#a8487f", "#e39ac4"},
-    {"s4", "#8a6d00", "#e8c547"},    {"s5", "#5b4fc7", "#b0a8ff"},
-    {"s6", "#4f5862", "#b6bec6"},
+    {"s2", "#b02dff", "#32f1c1"},    {"s3", "#630a32", "#ff1389"},
+    {"s4", "#795869", "#a16cff"},    {"s5", "#1800d1", "#ffd830"},
+    {"s6", "#3d2272", "#aa7500"},    {"s7", "#901b00", "#0591aa"},
 };
 
 // {…} is a colour.
@@ -44,6 +45,9 @@ path.halo{stroke:{paper};stroke-width:5;stroke-linejoin:round}
 path.busy{fill:{ink};fill-opacity:.75}
 rect.lane{fill:{panel}}
 path.progress{stroke:{s1};stroke-width:1.5}
+path.miss{stroke:{force};stroke-width:1.5}
+path.miss.is-chosen{stroke-width:3.5}
+path.deadline{stroke:{force};stroke-width:1.5;stroke-dasharray:5 3}
 path.cursor{stroke:{link};stroke-width:1.5}
 path.said{fill:{faint}}
 path.said.is-mark{fill:{s0}}

@@ -1,12 +1,12 @@
 // The colours of figures and page, in the light and in the dark. Series have classes: lines "s0" …
-// "s6", areas "f0" …, texts "t0" …
+// "s7", areas "f0" …, texts "t0" …
 #pragma once
 
 #include <string>
 
 namespace tcs::report {
 
-inline constexpr int kSeriesColours = 7;
+inline constexpr int kSeriesColours = 8;
 
 // The rules for figures with the colours of the light, for a picture that stands alone.
 [[nodiscard]] std::string StandaloneStyle();

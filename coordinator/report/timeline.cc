@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -150,7 +151,23 @@ nlohmann::ordered_json ToJson(const Timeline& timeline) {
     real_start = slice.real_start;
     if (merged) PutNumber(&bytes, static_cast<std::uint64_t>(slice.real_ran));
   }
+  // What parts are of is said of many.
+  auto whats = nlohmann::ordered_json::array(), misses = nlohmann::ordered_json::array();
+  std::map<std::string, std::size_t> known;
+  for (const Miss& miss : timeline.misses) {
+    auto parts = nlohmann::ordered_json::array();
+    for (const auto& [time, what] : miss.parts) {
+      const auto [found, is_new] = known.try_emplace(what, known.size());
+      if (is_new) whats.push_back(what);
+      parts.push_back(nlohmann::ordered_json::array({time, found->second}));
+    }
+    misses.push_back(nlohmann::ordered_json::array({miss.row, miss.released_us, miss.due_us,
+                                                    miss.ended_us, miss.sentence,
+                                                    std::move(parts)}));
+  }
   return {{"name", timeline.name},
+          {"misses", std::move(misses)},
+          {"whats", std::move(whats)},
           {"rows", timeline.rows},
           {"real", timeline.has_real_times},
           {"merged", merged},

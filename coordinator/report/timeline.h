@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "coordinator/report/csv.h"
@@ -22,18 +23,30 @@ struct Slice {
   std::int64_t virtual_ran = 0, real_ran = 0;
 };
 
+// A deadline that was missed; virtual microseconds.
+struct Miss {
+  int row = 0;
+  std::int64_t released_us = 0, due_us = 0, ended_us = 0;
+  std::string sentence;                                      // empty of the later of very many
+  std::vector<std::pair<std::string, std::string>> parts{};  // how long, and what with
+};
+
 struct Timeline {
   std::string name;               // the system's
   std::vector<std::string> rows;  // the dynamics, then clients
   bool has_real_times = false;
   std::vector<Slice> slices;  // in their order in real time, or in virtual time without
   std::int64_t virtual_end = 0, real_end = 0;
+  std::vector<Miss> misses{};
   std::int64_t merged_us = 0;  // slices of a row that are closer than this are one
 };
 
 // What is read of dispatches.csv. Deterministic runs have no real times.
 extern const std::vector<std::string_view> kDispatchColumns;
 inline constexpr std::size_t kDispatchColumnsWithoutReal = 3;
+
+// The row that is no client's.
+inline constexpr std::string_view kDynamicsRow = "dynamics";
 
 // Makes a timeline of the lines of dispatches.csv, one after the other; rows in the order in which
 // they come.

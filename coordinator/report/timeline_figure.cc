@@ -11,20 +11,19 @@ namespace tcs::report {
 namespace {
 
 constexpr double kTimelineTop = 6, kTimelineTitle = 24, kTimelineRow = 18, kTimelineBetween = 6,
-                 kNameAbove = 15, kProgress = 56, kTimelineBottom = 40, kTimelineRight = 60;
+                 kNameAbove = 15, kTimelineBottom = 40, kTimelineRight = 60;
 // What ran and took none of this axis's time is seen all the same.
 constexpr double kLeastShare = 0.12;
 
 // Of `columns` equal parts of 0 … `end`, the share that the row's slices fill.
-std::vector<double> Busy(const Timeline& timeline, int row, bool real, double end,
-                         std::size_t columns) {
+std::vector<double> Busy(const Timeline& timeline, int row, double end, std::size_t columns) {
   std::vector<double> busy(columns, 0.0);
   const double width = end / static_cast<double>(columns);
   for (const Slice& slice : timeline.slices) {
     if (slice.row != row) continue;
-    const auto from = static_cast<double>(real ? slice.real_start : slice.virtual_start);
-    const auto to = static_cast<double>(real ? slice.real_end : slice.virtual_end);
-    const auto ran = static_cast<double>(real ? slice.real_ran : slice.virtual_ran);
+    const auto from = static_cast<double>(slice.virtual_start);
+    const auto to = static_cast<double>(slice.virtual_end);
+    const auto ran = static_cast<double>(slice.virtual_ran);
     const double density = to > from ? ran / (to - from) : 1.0;
     const auto first = std::min(columns - 1, static_cast<std::size_t>(from / width));
     const auto last = std::min(columns - 1, static_cast<std::size_t>(to / width));
@@ -42,10 +41,9 @@ class Picture {
  public:
   Picture(const std::vector<Timeline>& timelines, int width)
       : timelines_(timelines), width_(width), narrow_(width < kWideWidth) {
-    for (const Timeline& timeline : timelines) real_ = real_ && timeline.has_real_times;
-    double names = WidthOf("virtual time [s]");
+    double names = 0;
     for (const Timeline& timeline : timelines) {
-      end_us_ = std::max(end_us_, EndOf(timeline));
+      end_us_ = std::max(end_us_, static_cast<double>(timeline.virtual_end));
       for (const std::string& row : timeline.rows) names = std::max(names, WidthOf(row));
     }
     left_ = narrow_ ? 8 : std::min(names, 200.0) + 14;
@@ -57,27 +55,20 @@ class Picture {
   Drawing Draw() {
     for (const Timeline& timeline : timelines_) DrawOne(timeline);
     DrawHorizontalAxis(&svg_, {left_, kTimelineTop, right_, y_}, x_,
-                       real_ ? "real time [s]" : "virtual time [s]");
+                       "virtual time [s]");
     return {width_, static_cast<int>(y_ + kTimelineBottom), svg_.Take()};
   }
 
  private:
-  double EndOf(const Timeline& timeline) const {
-    return static_cast<double>(real_ ? timeline.real_end : timeline.virtual_end);
-  }
-
   void DrawOne(const Timeline& timeline) {
     y_ += kTimelineTitle;
     svg_.Text(8, y_ - 8, Svg::Anchor::kStart, timeline.name, "name");
     for (std::size_t row = 0; row < timeline.rows.size(); ++row) {
+      if (timeline.rows[row] == kDynamicsRow) continue;  // all of virtual time is theirs
       Label(timeline.rows[row]);
       DrawRow(timeline, static_cast<int>(row));
       y_ += kTimelineRow + kTimelineBetween;
     }
-    if (!timeline.has_real_times) return;
-    Label(real_ ? "virtual time [s]" : "real time [s]");
-    DrawProgress(timeline);
-    y_ += kProgress + kTimelineBetween;
   }
 
   void Label(const std::string& name) {
@@ -92,7 +83,7 @@ class Picture {
   void DrawRow(const Timeline& timeline, int row) {
     svg_.Rect(left_, y_, right_ - left_, kTimelineRow, "lane");
     const auto columns = static_cast<std::size_t>(right_ - left_);
-    const std::vector<double> busy = Busy(timeline, row, real_, end_us_, columns);
+    const std::vector<double> busy = Busy(timeline, row, end_us_, columns);
     Svg::Points outline;
     for (std::size_t i = 0; i < columns; ++i) {
       const double height = y_ + kTimelineRow * (1 - busy[i]);
@@ -103,45 +94,28 @@ class Picture {
     double ran = 0;
     for (const Slice& slice : timeline.slices) {
       if (slice.row != row) continue;
-      ran += static_cast<double>(real_ ? slice.real_ran : slice.virtual_ran);
+      ran += static_cast<double>(slice.virtual_ran);
     }
-    const std::string share = Percent(ran / std::max(1.0, EndOf(timeline)));
+    const std::string share =
+        Percent(ran / std::max(1.0, static_cast<double>(timeline.virtual_end)));
     svg_.Text(right_ + 4, y_ + 13, Svg::Anchor::kStart, share, "tick");
+    DrawMisses(timeline, row);
   }
 
-  // How far the world has come in the other time.
-  void DrawProgress(const Timeline& timeline) {
-    const auto end = static_cast<double>(real_ ? timeline.virtual_end : timeline.real_end) * 1e-6;
-    Axis up = Axis::Exact(0, end, 1);
-    up.Place(y_ + kProgress, y_);
-    svg_.Rect(left_, y_, right_ - left_, kProgress, "lane");
-    const auto& rows = timeline.rows;
-    const auto dynamics = std::find(rows.begin(), rows.end(), "dynamics") - rows.begin();
-    const bool any_row = dynamics == static_cast<std::ptrdiff_t>(rows.size());
-    Svg::Points points;
-    for (const Slice& slice : timeline.slices) {
-      if (!any_row && slice.row != dynamics) continue;
-      for (const auto& [real_us, virtual_us] : {std::pair(slice.real_start, slice.virtual_start),
-                                                std::pair(slice.real_end, slice.virtual_end)}) {
-        const std::pair<double, double> point{
-            x_.Pixel(static_cast<double>(real_ ? real_us : virtual_us) * 1e-6),
-            up.Pixel(static_cast<double>(real_ ? virtual_us : real_us) * 1e-6)};
-        // One point a column is enough; the last one stays.
-        if (points.size() > 1 && point.first - points[points.size() - 2].first < 0.5) {
-          points.pop_back();
-        }
-        points.push_back(point);
-      }
+  // One mark a pixel is enough.
+  void DrawMisses(const Timeline& timeline, int row) {
+    long last = -1;
+    for (const Miss& miss : timeline.misses) {
+      const double x = x_.Pixel(static_cast<double>(miss.due_us) * 1e-6);
+      if (miss.row != row || std::lround(x) == last || x > right_) continue;
+      last = std::lround(x);
+      svg_.Line(x, y_, x, y_ + kTimelineRow, "miss");
     }
-    svg_.Polyline(points, "progress");
-    svg_.Text(right_ + 4, y_ + 10, Svg::Anchor::kStart, Significant(end), "tick");
-    svg_.Text(right_ + 4, y_ + kProgress, Svg::Anchor::kStart, "0", "tick");
   }
 
   const std::vector<Timeline>& timelines_;
   const int width_;
   const bool narrow_;
-  bool real_ = true;
   double end_us_ = 1, left_ = 0, right_ = 0, y_ = kTimelineTop;
   Axis x_;
   Svg svg_;

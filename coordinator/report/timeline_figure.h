@@ -9,8 +9,8 @@
 
 namespace tcs::report {
 
-// Of each row the share of each column's time that it ran. Over real time where all runs have it,
-// else over virtual time.
+// Of each row the share of each column's time that it ran. Over virtual time, with a mark
+// where a deadline was missed.
 [[nodiscard]] Drawing DrawTimelines(const std::vector<Timeline>& timelines, int width);
 
 }  // namespace tcs::report

@@ -185,7 +185,7 @@ Json ViewServer::Status() const {
 }
 
 std::string ViewServer::WholeReport() const {
-  const auto read = report::ReadResults({folder_}, {});
+  const auto read = report::ReadResults({folder_}, {}, report::Distance::kLeftOut);
   if (const auto* error = std::get_if<LoadError>(&read)) {
     return fmt::format("<!DOCTYPE html><meta charset=\"utf-8\"><title>tcsim</title><p>{}</p>",
                        report::Escaped(error->message));

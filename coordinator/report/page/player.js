@@ -25,7 +25,7 @@
   function showFlags() {
     let content = '', last = -1;
     for (const line of tcs.run.said) {
-      const share = line.time / tcs.run.end;
+      const share = line.time / (tcs.run.end || 1);
       if (!line.isMark && share - last < 0.004) continue;
       if (!line.isMark) last = share;
       content += `<i class="${line.isMark ? 'mark' : ''}" style="left:${(100 * share).toFixed(2)}%"></i>`;

@@ -291,7 +291,8 @@ const tcs = (() => {
     },
     // For who asks by name: where it is now.
     pose: name => poseAt(state.run, state.run.tracks.findIndex(track => track.name === name), state.time),
-    colourOf: robot => `s${robot % 7}`,
+    COLOURS: 8,
+    colourOf: robot => `s${robot % 8}`,
     // Draws when the element has another width: outside of the observer, for drawing changes heights.
     onWidth: (element, draw) => {
       let width = element.clientWidth;

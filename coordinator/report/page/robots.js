@@ -72,7 +72,7 @@
       }
     });
     for (const {robot} of markers) {
-      content += `<circle class="now f${robot % 7}" r="${run.robots.length > 8 ? 3.5 : 5}"><title>${escaped(run.robots[robot].name)}</title></circle>`;
+      content += `<circle class="now f${robot % tcs.COLOURS}" r="${run.robots.length > 8 ? 3.5 : 5}"><title>${escaped(run.robots[robot].name)}</title></circle>`;
     }
     return {content, markers};
   }
@@ -111,7 +111,11 @@
   const motion = document.getElementById('motion');
   const motionLive = motion && goLive(motion);
   const chooser = motion && motion.querySelector('select');
-  let panels = [], plot = {x: 0, width: 1, end: 1};
+  let panels = [], plot = {x: 0, width: 1, from: 0, to: 1};
+  // The part that is shown; null: all there is. Signals that nobody wants to see, as 'panel\nline'.
+  let view = null;
+  const hidden = new Set();
+  const keyOf = (panel, line) => `${panel.title}\n${line.name}`;
 
   // Roll, pitch and yaw in degrees, without jumps by a whole turn.
   function anglesOf(track) {
@@ -147,13 +151,25 @@
     return all;
   }
 
-  function pathOf(run, line, at, columns) {
-    const stride = Math.max(1, Math.floor(line.values.length / columns / 2));
+  // The numbers of a line's values between two times, and one more at each side.
+  function partOf(run, line, from, to) {
+    const after = time => {
+      let low = 0, high = line.values.length;
+      while (low < high) {
+        const middle = (low + high) >> 1;
+        if (run.time[line.first + middle] < time) low = middle + 1; else high = middle;
+      }
+      return low;
+    };
+    return [Math.max(0, after(from) - 1), Math.min(line.values.length, after(to) + 1)];
+  }
+  function pathOf(run, line, at, columns, [begin, end]) {
+    const stride = Math.max(1, Math.floor((end - begin) / columns / 2));
     let path = '';
-    for (let i = 0; i < line.values.length; i += stride) {
+    for (let i = begin; i < end; i += stride) {
       // Of the values of a column both the least and the most.
       let least = i, most = i;
-      for (let k = i + 1; k < Math.min(i + stride, line.values.length); ++k) {
+      for (let k = i + 1; k < Math.min(i + stride, end); ++k) {
         if (line.values[k] < line.values[least]) least = k;
         if (line.values[k] > line.values[most]) most = k;
       }
@@ -190,13 +206,18 @@
     if (!motionLive) return;
     const {run} = tcs, width = Math.max(280, Math.floor(motionLive.clientWidth)), narrow = width < 560;
     const left = 48, columns = width - left - 12;
-    plot = {x: left, width: columns, end: run.end};
-    const scale = columns / run.end;
+    const {from, to} = view || {from: 0, to: run.end || 1e-3};  // at the start there is one moment alone
+    plot = {x: left, width: columns, from, to};
+    const scale = columns / (to - from);
     let y = 0, content = '', top = ABOVE;
     // What is 0 all the time needs no picture.
     const isZero = panel => panel.lines.every(line => line.values.every(value => Math.abs(value) < 1e-6));
     const all = panelsOf(run, tcs.robot), zero = all.filter(isZero);
-    panels = all.filter(panel => !isZero(panel));
+    offerSignals(all.filter(panel => !isZero(panel)));
+    panels = all.filter(panel => !isZero(panel))
+        .map(panel => ({...panel, lines: panel.lines.map((line, colour) => ({...line, colour})).filter(line => !hidden.has(keyOf(panel, line)))}))
+        .filter(panel => panel.lines.length);
+    content += `<clipPath id="motion-clip"><rect x="${left}" y="0" width="${columns}" height="100000"/></clipPath>`;
     for (const panel of panels) {
       const shown = panel.lines.slice(0, MOST_LINES);
       const names = shown.map(line => line.name), withValues = !narrow && panel.lines.length <= 6;
@@ -210,44 +231,46 @@
       if (panel === panels[0]) top = y;
       let least = Infinity, most = -Infinity;
       for (const line of shown) {
-        for (const value of line.values) {
-          least = Math.min(least, value);
-          most = Math.max(most, value);
+        const [begin, end] = partOf(run, line, from, to);
+        for (let i = begin; i < end; ++i) {
+          least = Math.min(least, line.values[i]);
+          most = Math.max(most, line.values[i]);
         }
       }
+      if (most < least) [least, most] = [0, 0];
       if (most - least < 1e-6) [least, most] = [least - 0.5, most + 0.5];
       const room = (most - least) * 0.06;
       [least, most] = [least - room, most + room];
-      const at = (time, value) => [left + time * scale, y + PANEL * (1 - (value - least) / (most - least))];
+      const at = (time, value) => [left + (time - from) * scale, y + PANEL * (1 - (value - least) / (most - least))];
       content += text(left, titleAt, 'name', panel.title);
       panel.readings = [];
       content += `<rect class="lane" x="${left}" y="${y}" width="${columns}" height="${PANEL}"/>`;
       for (const [value, label] of ticks(least, most, 4)) {
-        const py = at(0, value)[1];
+        const py = at(from, value)[1];
         content += `<path class="grid" d="M${left} ${py.toFixed(1)}h${columns}"/>` + text(left - 6, py + 4, 'tick', label, 'end');
       }
-      shown.forEach((line, i) => {
-        content += `<path class="line s${i % 7}" d="${pathOf(run, line, at, columns)}"/>`;
+      shown.forEach(line => {
+        content += `<path class="line s${line.colour % tcs.COLOURS}" clip-path="url(#motion-clip)" d="${pathOf(run, line, at, columns, partOf(run, line, from, to))}"/>`;
       });
       const legend = rows.map((row, k) => `<text x="${width - 12}" y="${y - 8 - ROW * (rows.length - 1 - k)}" text-anchor="end">` +
           row.map(([name, i], place) => i < shown.length ?
-              `<tspan class="t${i % 7}" dx="${place ? 9 : 0}">${escaped(name)}</tspan><tspan class="value" dx="4"></tspan>` :
+              `<tspan class="t${shown[i].colour % tcs.COLOURS}" dx="${place ? 9 : 0}">${escaped(name)}</tspan><tspan class="value" dx="4"></tspan>` :
               `<tspan dx="${place ? 9 : 0}">${name}</tspan>`).join('') + '</text>');
       content += `<g class="legend">${legend.join('')}</g>`;
       y += PANEL;
     }
     if (panels.length === 0) {
-      motionLive.innerHTML = '<p class="nothing">It does not move, has no joints, and nothing is commanded of it.</p>';
+      motionLive.innerHTML = `<p class="nothing">${hidden.size ? 'No signal is chosen.' : 'It does not move, has no joints, and nothing is commanded of it.'}</p>`;
       return;
     }
     content += `<path class="axis" d="M${left} ${y}h${columns}"/>`;
-    for (const [value, label] of ticks(0, run.end, narrow ? 4 : 9)) {
-      const px = left + value * scale;
+    for (const [value, label] of ticks(from, to, narrow ? 4 : 9)) {
+      const px = left + (value - from) * scale;
       content += `<path class="axis" d="M${px.toFixed(1)} ${y}v4"/>` + text(px, y + 17, 'tick', label, px < left + 8 ? 'start' : 'middle');
     }
     content += text(left + columns, y + 33, 'tick', 'virtual time [s]', 'end');
     for (const line of run.said) {
-      if (line.isMark) content += `<path class="mark" d="M${(left + line.time * scale).toFixed(1)} ${top}V${y}"><title>${escaped(line.text)}</title></path>`;
+      if (line.isMark && line.time >= from && line.time <= to) content += `<path class="mark" d="M${(left + (line.time - from) * scale).toFixed(1)} ${top}V${y}"><title>${escaped(line.text)}</title></path>`;
     }
     if (zero.length) {
       content += text(left, y + 46, 'tick', `Always 0: ${zero.map(panel => panel.title.replace(/ \[.*/, '')).join(', ')}.`);
@@ -264,7 +287,9 @@
   function moveCursor() {
     const cursor = motionLive && motionLive.querySelector('.cursor');
     if (!cursor) return;
-    cursor.setAttribute('transform', `translate(${(plot.x + plot.width * Math.min(1, tcs.time / plot.end)).toFixed(1)} 0)`);
+    const share = (tcs.time - plot.from) / (plot.to - plot.from);
+    cursor.style.display = share >= -1e-9 && share <= 1 + 1e-9 ? '' : 'none';
+    cursor.setAttribute('transform', `translate(${(plot.x + plot.width * Math.min(1, Math.max(0, share))).toFixed(1)} 0)`);
     const moment = tcs.momentAt(tcs.run, tcs.time), wide = motionLive.clientWidth >= 560;
     for (const panel of panels) {
       panel.readings.forEach((reading, i) => {
@@ -277,9 +302,57 @@
   function seekTo(event) {
     const svg = motionLive.querySelector('svg');
     if (!svg) return;
-    tcs.seek((event.clientX - svg.getBoundingClientRect().left - plot.x) / plot.width * plot.end);
+    tcs.seek((event.clientX - svg.getBoundingClientRect().left - plot.x) / plot.width * (plot.to - plot.from) + plot.from);
   }
+  // A box for each signal, in groups as they are drawn.
+  let offered = '';
+  function offerSignals(all) {
+    const list = motion.querySelector('.signals');
+    const names = all.flatMap(panel => panel.lines.map(line => keyOf(panel, line))).join('\n\n');
+    if (names === offered) return;
+    offered = names;
+    list.hidden = names === '';
+    const bar = list.querySelector('[role=toolbar]');
+    bar.replaceChildren(...all.map(panel => {
+      const group = document.createElement('fieldset'), legend = document.createElement('legend');
+      legend.textContent = panel.title;
+      group.append(legend, ...panel.lines.map(line => {
+        const label = document.createElement('label'), box = document.createElement('input');
+        box.type = 'checkbox';
+        box.checked = !hidden.has(keyOf(panel, line));
+        box.addEventListener('change', () => {
+          if (box.checked) hidden.delete(keyOf(panel, line)); else hidden.add(keyOf(panel, line));
+          drawMotion();
+        });
+        label.append(box, ` ${line.name}`);
+        return label;
+      }));
+      return group;
+    }));
+    if (tcs.settleToolbar) tcs.settleToolbar(bar);
+  }
+  function show(from, to) {
+    const length = Math.min(tcs.run.end, Math.max(1e-4, to - from)), middle = (from + to) / 2;
+    from = Math.min(Math.max(0, middle - length / 2), tcs.run.end - length);
+    view = length >= tcs.run.end ? null : {from, to: from + length};
+    drawMotion();
+  }
+  // Around the moment that is shown, as far as it is in view.
+  const zoom = (factor, around = tcs.time) => {
+    const {from, to} = plot, at = Math.min(to, Math.max(from, around));
+    show(at - (at - from) * factor, at + (to - at) * factor);
+  };
+  const move = share => show(plot.from + (plot.to - plot.from) * share, plot.to + (plot.to - plot.from) * share);
+  const zooms = {in: () => zoom(0.5), out: () => zoom(2), left: () => move(-0.25), right: () => move(0.25), whole: () => show(0, tcs.run.end)};
   if (motionLive) {
+    motion.querySelectorAll('[data-zoom]').forEach(button => button.addEventListener('click', () => zooms[button.dataset.zoom]()));
+    const timeAt = event => plot.from + (event.clientX - motionLive.getBoundingClientRect().left - plot.x) / plot.width * (plot.to - plot.from);
+    // The wheel alone scrolls the page, unless the curves were clicked.
+    motionLive.addEventListener('wheel', event => {
+      if (!event.ctrlKey && document.activeElement !== motionLive) return;
+      event.preventDefault();
+      zoom(Math.pow(1.002, event.deltaY), timeAt(event));
+    }, {passive: false});
     motionLive.addEventListener('pointerdown', event => {
       if (event.button !== 0) return;
       tcs.pause();
@@ -288,6 +361,12 @@
     });
     motionLive.addEventListener('pointermove', event => { if (event.buttons & 1) seekTo(event); });
     motionLive.addEventListener('keydown', event => {
+      const how = {'+': 'in', '=': 'in', '-': 'out', '0': 'whole'}[event.key];
+      if (how && !event.ctrlKey && !event.metaKey && !event.altKey) {
+        event.preventDefault();
+        zooms[how]();
+        return;
+      }
       const by = {ArrowLeft: -1, ArrowRight: 1}[event.key];
       if (!by) return;
       event.preventDefault();
@@ -299,7 +378,7 @@
   function fillChooser() {
     if (!chooser) return;
     chooser.replaceChildren(...tcs.run.robots.map((robot, i) => new Option(robot.name, i)));
-    chooser.closest('.controls').hidden = tcs.run.robots.length < 2;
+    chooser.closest('label').hidden = tcs.run.robots.length < 2;
     chooser.value = String(tcs.robot);
   }
   if (chooser) chooser.addEventListener('change', () => tcs.chooseRobot(Number(chooser.value)));
@@ -317,6 +396,7 @@
       moveCursor();
     }
     if (what === 'run') fillChooser();
+    if (what === 'run') view = null;
     if (what === 'robot' || what === 'run') {
       if (chooser) chooser.value = String(tcs.robot);
       drawPaths();

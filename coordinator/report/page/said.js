@@ -29,6 +29,7 @@
         button.append(part);
       }
       button.type = 'button';
+      button.tabIndex = -1;  // the list is one stop
       button.addEventListener('click', () => { tcs.pause(); tcs.seek(line.time); });
       item.append(button);
       list.append(item);
@@ -63,6 +64,17 @@
   }
   // Nothing of the list has its height before somebody sees it.
   new IntersectionObserver(([seen]) => { if (seen.isIntersecting) centre(3); }).observe(list);
+  // Arrow keys go from line to line.
+  list.addEventListener('keydown', event => {
+    if (event.ctrlKey || event.metaKey || event.altKey || !items.length) return;
+    const last = items.length - 1;
+    const at = items.findIndex(({item}) => item.contains(document.activeElement));
+    const from = at < 0 ? Math.max(0, here) : at;
+    const to = {ArrowUp: from - 1, ArrowDown: at < 0 ? from : from + 1, PageUp: from - 10, PageDown: from + 10, Home: 0, End: last}[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    items[Math.min(last, Math.max(0, to))].item.firstChild.focus();
+  });
   filter.addEventListener('change', fill);
   tcs.on(what => {
     if (what === 'run') {

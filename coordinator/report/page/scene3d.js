@@ -52,7 +52,7 @@
   const colours = {};
   function readColours() {
     const style = getComputedStyle(document.documentElement);
-    for (const name of ['paper', 'ink', 'faint', 'grid', 'panel', 'force', 's0', 's1', 's2', 's3', 's4', 's5', 's6']) {
+    for (const name of ['paper', 'ink', 'faint', 'grid', 'panel', 'force', 's0', 's1', 's2', 's3', 's4', 's5', 's6', 's7']) {
       colours[name] = new THREE.Color(style.getPropertyValue(`--${name}`).trim());
     }
     colours.stage = new THREE.Color(style.getPropertyValue('--stage').trim());

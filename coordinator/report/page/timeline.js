@@ -32,12 +32,14 @@
       ran(run.real, i);
     }
     run.dynamics = run.rows.indexOf('dynamics');
+    run.misses = (run.misses || []).map(([row, released, due, ended, sentence, parts]) =>
+        ({row, released, due, ended, sentence, parts: parts.map(([time, what]) => [time, run.whats[what]])}));
     return run;
   }
 
   const runs = [...figure.querySelectorAll('script.timeline')].map(element => decode(JSON.parse(element.textContent)));
   let hasReal = runs.every(run => run.real);
-  const view = {axis: hasReal ? 'real' : 'virtual', from: 0, to: 1};
+  const view = {axis: 'virtual', from: 0, to: 1};
   const last = axis => Math.max(...runs.map(run => run[axis].last), 1);
   view.to = last(view.axis);
 
@@ -189,6 +191,67 @@
     return content;
   }
 
+  // --- Missed deadlines ----------------------------------------------------------------------------
+
+  const told = figure.querySelector('.miss-told');
+  const late = runs.flatMap(run => run.misses.map(miss => ({run, miss})));
+  let chosen = -1;
+
+  // A line where the deadline was, one for three pixels.
+  function missed(run, row, x, y, scale) {
+    let content = '', last = -9;
+    run.misses.forEach((miss, i) => {
+      if (miss.row !== row) return;
+      const due = timeOf(run, miss.due);
+      if (due < view.from || due > view.to) return;
+      const px = x + (due - view.from) * scale, isChosen = late[chosen] && late[chosen].miss === miss;
+      if (px - last < 3 && !isChosen) return;
+      last = px;
+      content += `<path class="miss${isChosen ? ' is-chosen' : ''}" data-run="${runs.indexOf(run)}" data-number="${i}" d="M${px.toFixed(1)} ${y - 2}V${y + ROW + 2}"><title>${escaped(miss.sentence || 'a missed deadline')}</title></path>`;
+    });
+    return content;
+  }
+  const timeOf = (run, time) => view.axis === 'virtual' ? time : translated(run, time, 'virtual', 'real');
+
+  // Says why, moves the world there, and brings it into view.
+  function choose(number) {
+    chosen = number;
+    const {run, miss} = late[number];
+    const line = document.createElement('p'), parts = document.createElement('ul');
+    line.textContent = miss.sentence ? `${miss.sentence}.` :
+        `${run.rows[miss.row]} missed the deadline of what came at ${(miss.released / 1e6).toFixed(6)} s. To see why: tcsim explain DIR ${run.rows[miss.row]} --at ${(miss.due / 1e6).toFixed(6)}s`;
+    parts.className = 'parts';
+    for (const [time, what] of miss.parts) {
+      const part = document.createElement('li'), length = document.createElement('span'), of = document.createElement('span');
+      length.className = 'n';
+      length.textContent = time;
+      of.textContent = what;
+      part.append(length, of);
+      parts.append(part);
+    }
+    told.replaceChildren(line, parts);
+    told.hidden = false;
+    figure.querySelector('.misses output').textContent = `${number + 1} of ${late.length}`;
+    const replay = replayOf(run);
+    if (replay) {
+      tcs.pause();
+      tcs.chooseRun(tcs.runs.indexOf(replay));
+      tcs.seek(miss.due / 1e6);
+    }
+    const from = timeOf(run, miss.released), to = timeOf(run, miss.ended), length = view.to - view.from;
+    if (from < view.from || to > view.to) show((from + to - length) / 2, (from + to + length) / 2); else draw();
+  }
+  // The next one after the one that is chosen, or else after the moment that is shown.
+  function nextMiss(by) {
+    if (chosen >= 0) return choose((chosen + by + late.length) % late.length);
+    const now = tcs.run ? tcs.time * 1e6 : 0, next = late.findIndex(({miss}) => miss.due > now);
+    choose(by > 0 ? Math.max(0, next) : (next < 0 ? late.length : Math.max(1, next)) - 1);
+  }
+  if (late.length) {
+    figure.querySelectorAll('[data-miss]').forEach(button =>
+        button.addEventListener('click', () => nextMiss(button.dataset.miss === 'forth' ? 1 : -1)));
+  }
+
   // Rows that ran since the last picture or step are lit: a controller is done in less than one.
   let lastMoment = 0;
   function showMoment() {
@@ -247,6 +310,13 @@
     tcs.chooseRun(tcs.runs.indexOf(replay));
     tcs.seek((view.axis === 'virtual' ? time : translated(run, time, 'real', 'virtual')) / 1e6);
   }
+  // A mark tells of its miss; elsewhere it is the moment that counts.
+  function press(event) {
+    const mark = pressedOn && pressedOn.closest && pressedOn.closest('path.miss');
+    if (!mark) return seekTo(event);
+    const miss = runs[mark.dataset.run].misses[mark.dataset.number];
+    choose(late.findIndex(each => each.miss === miss));
+  }
   tcs.on(showMoment);
 
   function draw() {
@@ -271,14 +341,21 @@
       const ran = busy(run, columns);
       slices += ran.slices;
       run.rows.forEach((name, row) => {
+        // All of virtual time is theirs.
+        if (row === run.dynamics && view.axis === 'virtual') {
+          content += '<g class="row"></g>';
+          return;
+        }
         if (narrow) y += NAME_ABOVE;
         content += `<g class="row">` + label(name, y) + `<rect class="lane" x="${x}" y="${y}" width="${columns}" height="${ROW}"/>` +
             bars(ran.share, row * columns, columns, x, y) +
-            text(x + columns + 4, y + 13, 'tick', percent(ran.whole[row])) + said(run, name, x, y, scale) + '</g>';
+            text(x + columns + 4, y + 13, 'tick', percent(ran.whole[row])) + said(run, name, x, y, scale) + missed(run, row, x, y, scale) + '</g>';
         y += ROW + BETWEEN;
       });
       places.push({run, top, bottom: y});
-      if (!run.real) {
+      // How one time passes in the other is the simulator's business.
+      if (view.axis === 'virtual') {
+        places[places.length - 1].bottom = y;
         content += `<path class="cursor" d="M0 ${top + TITLE - 4}V${y}"/>`;
         continue;
       }
@@ -379,6 +456,7 @@
     if (!(to > from) || (named[1] === 'real' && !hasReal)) return;
     view.axis = named[1] === 'real' ? 'real' : 'virtual';
     show(from, to);
+    return true;
   }
 
   const zoom = (factor, at = (view.from + view.to) / 2) =>
@@ -426,11 +504,13 @@
 
   const fingers = new Map();
   let pressed = null;  // where, until the finger moves
+  let pressedOn = null;
   live.addEventListener('pointerdown', event => {
     if (event.button !== 0) return;
     fingers.set(event.pointerId, event.clientX);
     live.setPointerCapture(event.pointerId);
     pressed = fingers.size === 1 ? event.clientX : null;
+    pressedOn = event.target;
   });
   live.addEventListener('pointermove', event => {
     if (!fingers.has(event.pointerId)) return;
@@ -449,16 +529,22 @@
   for (const over of ['pointerup', 'pointercancel']) {
     live.addEventListener(over, event => {
       fingers.delete(event.pointerId);
-      if (over === 'pointerup' && pressed !== null && Math.abs(event.clientX - pressed) < 4) seekTo(event);
+      if (over === 'pointerup' && pressed !== null && Math.abs(event.clientX - pressed) < 4) press(event);
       pressed = null;
     });
   }
 
   figure.classList.add('is-live');
   figure.querySelectorAll('.controls, .live, .hint').forEach(element => { element.hidden = false; });
+  figure.querySelector('.misses').hidden = late.length === 0;
+  told.hidden = true;
   axisButton.hidden = !hasReal;
   draw();
   followAddress();
-  addEventListener('hashchange', followAddress);
+  addEventListener('hashchange', () => {
+    if (!followAddress()) return;
+    figure.scrollIntoView({block: 'start'});
+    live.focus({preventScroll: true});
+  });
   tcs.onWidth(live, draw);
 })();

@@ -44,10 +44,10 @@ TEST_F(PageTest, SaysWhatItsDataSay) {
       page,
       "The share of the samples below 5\u00a0m is 100\u00a0% in “near” and 0\u00a0% in “far”."));
   EXPECT_TRUE(Has(page,
-                  "The median activation of r/planner takes 1.00\u00a0ms in “near” (700\u00a0µs of "
-                  "computing) and 1.00\u00a0ms in “far”"));
-  for (const char* name :
-       {"distances", "distance-over-time", "timeline", "response-times", "lateness"}) {
+                  "Longer than the deadline: r/controller for 1 of 2 activations in “near” and "
+                  "r/controller for 1 of 2 activations in “far”."));
+  EXPECT_TRUE(Has(page, "2 of 4 deadlines were missed."));
+  for (const char* name : {"distances", "distance-over-time", "timeline", "response-times"}) {
     EXPECT_TRUE(HasFigure(page, name)) << name;
   }
   EXPECT_TRUE(page.warnings.empty());
@@ -78,21 +78,30 @@ TEST_F(PageTest, NamesAreNoMarkup) {
 TEST_F(PageTest, NeedsNothingButItself) {
   WriteRun("one");
   const Page page = Make({"one"});
-  for (const char* outside : {"http://", "https://", "src=", "href=", "@import", "url("}) {
+  for (const char* outside : {"http://", "https://", "src=", "@import", "url("}) {
     EXPECT_FALSE(Has(page, outside)) << outside;
+  }
+  // Links are to the page itself.
+  for (std::size_t at = 0; (at = page.html.find("href=", at)) != std::string::npos; ++at) {
+    EXPECT_EQ(page.html.substr(at, 7), "href=\"#");
   }
   EXPECT_NE(page.html.find(kThreeJs), std::string::npos);
 }
 
-TEST_F(PageTest, BeginsWithWhatHappened) {
+TEST_F(PageTest, BeginsWithTheAnswerAndEndsWithTheSimulation) {
   WriteRun("one", 5, 4);
   const Page page = Make({"one"});
-  const char* const order[] = {"<h2>The world</h2>",
+  const char* const order[] = {"<h2>The verdict</h2>",
+                               "<h2>Who was in time</h2>",
+                               "<h2>Why the worst was late</h2>",
+                               "<h2>The world</h2>",
                                "<h2>Where the robots went</h2>",
                                "<h2>What a robot did over time</h2>",
                                "<h2>What programs said</h2>",
                                "<h2>Who ran when</h2>",
-                               "<h2>The systems</h2>"};
+                               "<h2>Response times against deadlines</h2>",
+                               "<h2>The systems</h2>",
+                               "<h2>Of the simulation itself</h2>"};
   std::size_t last = 0;
   for (const char* heading : order) {
     const std::size_t at = page.html.find(heading);
@@ -100,7 +109,35 @@ TEST_F(PageTest, BeginsWithWhatHappened) {
     EXPECT_GT(at, last) << heading;
     last = at;
   }
+  // Each of them is in the table of contents.
+  std::size_t sections = 0, entries = 0;
+  for (std::size_t at = 0; (at = page.html.find("<h2>", at)) != std::string::npos; ++at) ++sections;
+  for (std::size_t at = 0; (at = page.html.find("<li><a href=", at)) != std::string::npos; ++at)
+    ++entries;
+  EXPECT_EQ(sections, entries);
 }
+
+TEST_F(PageTest, SaysThatAllDeadlinesWereMetOnlyWhereThereAreSome) {
+  auto summary = Summary();
+  summary["clients"]["r/controller"]["deadline"]["missed"] = 0;
+  WriteRun("one");
+  Write("one/summary.json", summary.dump());
+  EXPECT_TRUE(Has(Make({"one"}), "All 2 deadlines were met. One client has no deadline."));
+  summary["clients"]["r/controller"]["deadline"] = nullptr;
+  Write("one/summary.json", summary.dump());
+  EXPECT_TRUE(Has(Make({"one"}), "No client has a deadline, so none could be missed."));
+  summary.erase("verdict");
+  Write("one/summary.json", summary.dump());
+  EXPECT_TRUE(Has(Make({"one"}), "There is none: the run was made by an earlier version"));
+}
+
+TEST_F(PageTest, ExplainsWhatWasLateAndMarksIt) {
+  WriteRun("one");
+  const Page page = Make({"one"});
+  EXPECT_TRUE(Has(page, "<li><p>at 0.000 s r/controller answered 4 us late, after 9 us: r/planner"));
+  EXPECT_TRUE(Has(page, "\"misses\":[[1,6,11,15,\"at 0.000 s r/controller answered 4 us late"));
+}
+
 
 TEST_F(PageTest, WithoutAWorldItSaysWhyAndDoesNotCarryThreeJs) {
   WriteRun("one");
@@ -120,7 +157,7 @@ TEST_F(PageTest, OneSampleIsEnough) {
 
 TEST_F(PageTest, ARunWithoutBodiesActivationsAndDispatchesStillHasItsCosts) {
   WriteRun("one");
-  for (const char* name : {"bodies.csv", "activations.csv", "dispatches.csv"}) {
+  for (const char* name : {"bodies.csv", "activations.csv", "dispatches.csv", "responses.csv"}) {
     std::filesystem::remove(Path("one") + "/" + name);
   }
   const Page page = Make({"one"});

@@ -7,8 +7,9 @@ namespace {
 
 class ReadResultsTest : public ResultFolderTest {
  protected:
-  Results Read(const std::vector<std::string>& names, const std::vector<std::string>& bodies = {}) {
-    auto read = ReadResults(Paths(names), bodies);
+  Results Read(const std::vector<std::string>& names, const std::vector<std::string>& bodies = {},
+               Distance distance = Distance::kRead) {
+    auto read = ReadResults(Paths(names), bodies, distance);
     const auto* error = std::get_if<LoadError>(&read);
     EXPECT_EQ(error, nullptr) << error->message;
     return error == nullptr ? std::get<Results>(read) : Results{};
@@ -62,8 +63,9 @@ TEST_F(ReadResultsTest, LinksOfOneModelAreNotMeasuredAgainstEachOther) {
 
 TEST_F(ReadResultsTest, APlannersActivationGoesOnWhileItWaitsForThreads) {
   WriteRun("one");
-  const Results results = Read({"one"});
-  const auto& run = results.systems[0].runs[0];
+  std::vector<std::string> warnings;
+  const auto read = ReadRunTimes(Path("one"), &warnings);
+  const auto& run = std::get<report::Run>(read);
   const ActivationTimes& planner = run.clients.at("r/planner").times;
   ASSERT_EQ(planner.response_s.size(), 1u) << "neither the start nor another thread's";
   EXPECT_DOUBLE_EQ(planner.lateness_s[0], 1e-6);
@@ -133,8 +135,49 @@ TEST_F(ReadResultsTest, AFolderWithoutAGoodRunIsLeftOutIfThereAreOthers) {
   EXPECT_EQ(results.systems.size(), 1u);
   ASSERT_EQ(results.warnings.size(), 5u);
   EXPECT_NE(results.warnings[0].find("damaged/summary.json is damaged"), std::string::npos);
-  EXPECT_NE(results.warnings[2].find("stopped was interrupted"), std::string::npos);
+  EXPECT_NE(results.warnings[2].find("stopped/summary.json is damaged"), std::string::npos);
   EXPECT_NE(Refused({"damaged"}).find("damaged"), std::string::npos);
+}
+
+TEST_F(ReadResultsTest, ARunThatFailedIsShownWithItsCause) {
+  WriteRun("crashed");
+  auto summary = Summary();
+  summary["clients"]["r/planner"]["wait_status"] = 11;
+  summary["clients"]["r/planner"]["ended_at_ns"] = 1'500'000'000;
+  Write("crashed/summary.json", summary.dump());
+  WriteRun("stopped");
+  summary = Summary();
+  summary["interrupted"] = true;
+  summary["verdict"] = {"SIGINT stopped the run at 2.000 s of its 9 s"};
+  Write("stopped/summary.json", summary.dump());
+  WriteRun("killed");
+  std::filesystem::remove(Path("killed/summary.json"));
+  const Results results = Read({"killed", "crashed", "stopped"});
+  ASSERT_EQ(results.systems.size(), 3u);
+  const auto first = [&](std::size_t i) { return results.systems[i].runs.at(0).verdict.at(0); };
+  EXPECT_EQ(first(0), "the run was cut off soon after 1.00\u00a0ms: it was killed, ended by an "
+                      "error, or it still goes on");
+  EXPECT_EQ(first(1), "r/planner ended at 1.50\u00a0s with signal 11");
+  EXPECT_EQ(first(2), "SIGINT stopped the run at 2.000 s of its 9 s");
+  for (const System& system : results.systems) EXPECT_FALSE(system.runs[0].is_whole);
+  ASSERT_EQ(results.warnings.size(), 1u);
+  EXPECT_NE(results.warnings[0].find("killed has no summary.json"), std::string::npos);
+  EXPECT_EQ(results.scenario, "chase");
+}
+
+TEST_F(ReadResultsTest, AnswersAreReadAndStartsDoNotCount) {
+  WriteRun("one");
+  const Results results = Read({"one"});
+  const auto& run = results.systems[0].runs[0];
+  const auto& controller = run.clients.at("r/controller");
+  ASSERT_TRUE(controller.deadline.has_value());
+  EXPECT_EQ(controller.deadline->missed, 1);
+  EXPECT_EQ(controller.deadline->period_of, "imu");
+  EXPECT_EQ(controller.response.max_ns, 9000);
+  ASSERT_EQ(controller.responses_s.size(), 2u) << "that of the start, too";
+  EXPECT_DOUBLE_EQ(controller.responses_s[1], 9e-6);
+  EXPECT_FALSE(run.clients.at("r/planner").deadline.has_value());
+  EXPECT_TRUE(Read({"one"}, {}, Distance::kLeftOut).bodies[0].empty());
 }
 
 TEST_F(ReadResultsTest, WhatIsNoResultIsRefusedWithASentence) {

@@ -35,7 +35,17 @@ class ResultFolderTest : public ::testing::Test {
         {"dynamics_ns", 800'000'000},
         {"coordinating_ns", 100'000'000},
         {"overhead_percent", 2.5},
-        {"clients", {{"r/planner", Client("best-effort")}, {"r/controller", Client("periodic")}}}};
+        {"verdict", nlohmann::json::array()},
+        {"clients", {{"r/planner", Client("best-effort")}, {"r/controller", WithDeadline()}}}};
+  }
+  // Of a controller that keeps a period of 5 us but once.
+  static nlohmann::json WithDeadline() {
+    nlohmann::json client = Client("periodic");
+    client["counted_after_ns"] = 10;
+    client["response_ns"] = {{"count", 2}, {"p50", 4000}, {"p99", 9000}, {"max", 9000}};
+    client["deadline"] = {
+        {"deadline_ns", 5000}, {"period_of", "imu"}, {"judged", 2}, {"missed", 1}};
+    return client;
   }
   static nlohmann::json Client(const char* of_class) {
     return {{"robot", "r"},     {"class", of_class}, {"charged_ns", 1'000'000'000},
@@ -69,9 +79,16 @@ class ResultFolderTest : public ::testing::Test {
           "r/planner,0,thread,600000,600000,1001000,300000\n"
           "r/planner,3,input,0,0,9,9\n"
           "r/controller,0,time,0,7000,8000,1000\n");
+    Write(folder + "/responses.csv",
+          "client,thread,cause,release_ns,start_ns,end_ns,deadline_ns,queued_ns,away_ns,"
+          "executed_ns,cores_ns,locks_ns,room_ns,rest_ns,whose\n"
+          "r/controller,0,start,0,0,10,5000,0,0,10,0,0,0,0,\n"
+          "r/controller,0,time,1000,1000,5000,5000,0,0,4000,0,0,0,0,\n"
+          "r/controller,0,time,6000,12000,15000,5000,0,0,3000,6000,0,0,0,core:r/planner=6000\n");
     Write(folder + "/dispatches.csv",
           "row,virtual_start_ns,virtual_end_ns,real_start_ns,real_end_ns\n"
-          "r/planner,0,1000000,0,1000000\ndynamics,0,1000000,1000000,1100000\n");
+          "r/planner,0,1000000,0,1000000\ndynamics,0,1000000,1000000,1100000\n"
+          "r/controller,1000000,1000000,1100000,1100000\n");
   }
   std::string Path(const std::string& name) const { return (root_ / name).string(); }
 

@@ -1,0 +1,14 @@
+// What a summary says of how well clients kept up.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "coordinator/report/results.h"
+
+namespace tcs::report {
+
+// Fills the verdict, the warnings, the chains, and of each client of `run` its deadline and times.
+// What is missing stays as it is; throws where something is not what it should be.
+void TakeAnswers(const nlohmann::json& summary, Run* run);
+
+}  // namespace tcs::report
