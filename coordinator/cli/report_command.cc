@@ -22,9 +22,9 @@ int ReportCommand(const ReportArguments& arguments) {
     }
   }
   const bool wants_distance = !bodies.empty() || !arguments.marks.empty();
-  const auto read = report::ReadResults(
-      arguments.folders, bodies,
-      wants_distance ? report::Distance::kRead : report::Distance::kLeftOut);
+  const auto read =
+      report::ReadResults(arguments.folders, bodies,
+                          wants_distance ? report::Distance::kRead : report::Distance::kLeftOut);
   if (const auto* error = std::get_if<LoadError>(&read)) return Fail(error->message);
   const auto& results = std::get<report::Results>(read);
   const report::MeasureWish wish{arguments.measures, arguments.against};

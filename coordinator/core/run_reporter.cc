@@ -100,8 +100,7 @@ void RunReporter::Answer(VirtualTime end) {
   }
   run_.report.chains = from_.answers.chains().Conclude();
   std::vector<std::string>& verdict = run_.report.verdict;
-  verdict =
-      FailuresIn(run_.report, run_.scenario.duration.ns(), run_.options.output_directory);
+  verdict = FailuresIn(run_.report, run_.scenario.duration.ns(), run_.options.output_directory);
   const std::vector<std::string> deadlocks = DeadlocksIn(run_, from_.futexes);
   verdict.insert(verdict.end(), deadlocks.begin(), deadlocks.end());
   const std::vector<std::string> late = VerdictOn(outcomes, run_.report.chains, end.ns());

@@ -52,11 +52,11 @@ std::string AllClear(const Run& run) {
       "{} met.{}",
       judged.judged == 1 ? std::string("The only deadline was")
                          : fmt::format("All {} deadlines were", Grouped(judged.judged)),
-      judged.without > 0 ? fmt::format(" {} no deadline.",
-                                       judged.without == 1
-                                           ? std::string("One client has")
-                                           : fmt::format("{} clients have", judged.without))
-                         : "");
+      judged.without > 0
+          ? fmt::format(" {} no deadline.", judged.without == 1
+                                                ? std::string("One client has")
+                                                : fmt::format("{} clients have", judged.without))
+          : "");
 }
 
 std::string SentencesOf(const Run& run) {
@@ -72,8 +72,8 @@ std::string SentencesOf(const Run& run) {
 
 // Of how many runs there is something to say.
 std::string OverRuns(const System& system) {
-  const auto worth = std::ranges::count_if(
-      system.runs, [](const Run& run) { return !run.verdict.empty(); });
+  const auto worth =
+      std::ranges::count_if(system.runs, [](const Run& run) { return !run.verdict.empty(); });
   return fmt::format("{} of {} have findings; those of the first:", worth,
                      Count(static_cast<std::int64_t>(system.runs.size()), "trial"));
 }
@@ -154,11 +154,12 @@ std::optional<Section> InTimeSection(const Results& results) {
                                  {"longest"},
                                  {"data age, 99 %"},
                                  {"oldest"}});
-  Table table(CaptionOf(results,
-                        "In virtual time. A response is from when its cause was there to the end of "
-                        "the work; the age is that of the sample that a command was made of, or "
-                        "else of what the client read."),
-              columns);
+  Table table(
+      CaptionOf(results,
+                "In virtual time. A response is from when its cause was there to the end of "
+                "the work; the age is that of the sample that a command was made of, or "
+                "else of what the client read."),
+      columns);
   std::map<std::pair<std::string, std::size_t>, InAll> clients;
   for (std::size_t i = 0; i < results.systems.size(); ++i) {
     for (const Run& run : results.systems[i].runs) {
@@ -177,8 +178,7 @@ std::optional<Section> InTimeSection(const Results& results) {
   if (clients.empty()) return {};
   std::int64_t late = 0, judged = 0;
   for (const auto& [key, all] : clients) {
-    std::vector<std::string> cells =
-        WithSystem(results, key.first, results.systems[key.second]);
+    std::vector<std::string> cells = WithSystem(results, key.first, results.systems[key.second]);
     const auto time = [](std::int64_t count, std::int64_t ns) {
       return count > 0 ? Milliseconds(ns) : "–";
     };
@@ -189,12 +189,12 @@ std::optional<Section> InTimeSection(const Results& results) {
     late += all.missed;
     judged += all.judged;
   }
-  return Section{"Who was in time",
-                 judged == 0 ? "No activation had a deadline."
-                             : fmt::format("{} of {} deadlines {} missed.",
-                                           late == 0 ? "None" : Grouped(late), Grouped(judged),
-                                           late > 1 ? "were" : "was"),
-                 table.Html(), table.Text()};
+  return Section{
+      "Who was in time",
+      judged == 0 ? "No activation had a deadline."
+                  : fmt::format("{} of {} deadlines {} missed.", late == 0 ? "None" : Grouped(late),
+                                Grouped(judged), late > 1 ? "were" : "was"),
+      table.Html(), table.Text()};
 }
 
 std::optional<Section> ChainsSection(const Results& results) {
@@ -220,8 +220,7 @@ std::optional<Section> ChainsSection(const Results& results) {
   }
   if (chains.empty()) return {};
   for (const auto& [key, all] : chains) {
-    std::vector<std::string> cells =
-        WithSystem(results, key.first, results.systems[key.second]);
+    std::vector<std::string> cells = WithSystem(results, key.first, results.systems[key.second]);
     const bool any = all.age_count > 0;
     cells.insert(cells.end(),
                  {MissedText(all), DeadlineText(all), any ? Milliseconds(all.age_p99_ns) : "–",

@@ -65,11 +65,12 @@ std::string AboutTimeline(const Timeline& timeline, bool is_only) {
   const double virtual_s = static_cast<double>(timeline.virtual_end) * 1e-6;
   std::string misses;
   if (!timeline.misses.empty()) {
-    misses = fmt::format(" {} missed.",
-                         timeline.misses.size() == 1
-                             ? std::string("One deadline was")
-                             : fmt::format("{} deadlines were",
-                                           Grouped(static_cast<std::int64_t>(timeline.misses.size()))));
+    misses =
+        fmt::format(" {} missed.",
+                    timeline.misses.size() == 1
+                        ? std::string("One deadline was")
+                        : fmt::format("{} deadlines were",
+                                      Grouped(static_cast<std::int64_t>(timeline.misses.size()))));
   }
   return fmt::format("{}In {} of virtual time: {}.{}", of, Seconds(virtual_s), Shares(timeline),
                      misses);

@@ -30,8 +30,8 @@ std::string Bars(const std::vector<explain::Part>& parts) {
     items += fmt::format(
         "<li><span class=\"n\">{}</span><span class=\"bar\" aria-hidden=\"true\"><i "
         "style=\"width:{:.1f}%\"></i></span><span>{}</span></li>\n",
-        Escaped(Spoken(part.ns)),
-        100 * static_cast<double>(part.ns) / static_cast<double>(whole), Escaped(part.what));
+        Escaped(Spoken(part.ns)), 100 * static_cast<double>(part.ns) / static_cast<double>(whole),
+        Escaped(part.what));
   }
   return "<ul class=\"parts\">\n" + items + "</ul>\n";
 }

@@ -19,7 +19,8 @@ void AddMisses(const explain::Told& told, Timeline* timeline) {
   for (const explain::Activation& one : told.activations) {
     if (one.LateNs() > 0 && late.size() < kMostMarked) late.push_back(&one);
   }
-  std::ranges::stable_sort(late, {}, [](const auto* one) { return one->release_ns + one->deadline_ns; });
+  std::ranges::stable_sort(late, {},
+                           [](const auto* one) { return one->release_ns + one->deadline_ns; });
   for (const explain::Activation* one : late) {
     const auto row = std::ranges::find(timeline->rows, one->client);
     if (row == timeline->rows.end()) continue;

@@ -101,8 +101,8 @@ Drawing DrawResponses(const std::vector<ResponseGroup>& groups, int width) {
       top += kResponseName;
       frame = {kResponseLeft, top, right, top + kResponsePanel};
       const std::string name = row.system.empty() ? group.client : group.client + ", " + row.system;
-      svg.Text(frame.left, frame.top - 26, Svg::Anchor::kStart,
-               Fitted(name, right - kResponseLeft), "name " + SeriesClass('t', row.colour));
+      svg.Text(frame.left, frame.top - 26, Svg::Anchor::kStart, Fitted(name, right - kResponseLeft),
+               "name " + SeriesClass('t', row.colour));
       svg.Text(frame.left, frame.top - 11, Svg::Anchor::kStart,
                LegendOf(row, right - kResponseLeft), "note");
       DrawRow(&svg, frame, x, scale, row);

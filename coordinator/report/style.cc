@@ -12,9 +12,9 @@ struct Colour {
   std::string_view name, light, dark;
 };
 
-// Any two series differ by at least 0.11 in Oklab, also as people see them who lack one kind of cone,
-// and each has a contrast of 4.5 to the paper, so that it can be a text's colour. Found by search,
-// from the first two of Okabe and Ito's palette.
+// Any two series differ by at least 0.11 in Oklab, also as people see them who lack one kind of
+// cone, and each has a contrast of 4.5 to the paper, so that it can be a text's colour. Found by
+// search, from the first two of Okabe and Ito's palette.
 constexpr Colour kColours[] = {
     {"paper", "#ffffff", "#14171a"}, {"ink", "#1b1f23", "#e4e7ea"},
     {"faint", "#59636e", "#9aa4ae"}, {"grid", "#e6e9ec", "#2a2f35"},

@@ -161,9 +161,8 @@ nlohmann::ordered_json ToJson(const Timeline& timeline) {
       if (is_new) whats.push_back(what);
       parts.push_back(nlohmann::ordered_json::array({time, found->second}));
     }
-    misses.push_back(nlohmann::ordered_json::array({miss.row, miss.released_us, miss.due_us,
-                                                    miss.ended_us, miss.sentence,
-                                                    std::move(parts)}));
+    misses.push_back(nlohmann::ordered_json::array(
+        {miss.row, miss.released_us, miss.due_us, miss.ended_us, miss.sentence, std::move(parts)}));
   }
   return {{"name", timeline.name},
           {"misses", std::move(misses)},

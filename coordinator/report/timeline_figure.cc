@@ -54,8 +54,7 @@ class Picture {
 
   Drawing Draw() {
     for (const Timeline& timeline : timelines_) DrawOne(timeline);
-    DrawHorizontalAxis(&svg_, {left_, kTimelineTop, right_, y_}, x_,
-                       "virtual time [s]");
+    DrawHorizontalAxis(&svg_, {left_, kTimelineTop, right_, y_}, x_, "virtual time [s]");
     return {width_, static_cast<int>(y_ + kTimelineBottom), svg_.Take()};
   }
 

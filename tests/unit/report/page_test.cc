@@ -134,10 +134,10 @@ TEST_F(PageTest, SaysThatAllDeadlinesWereMetOnlyWhereThereAreSome) {
 TEST_F(PageTest, ExplainsWhatWasLateAndMarksIt) {
   WriteRun("one");
   const Page page = Make({"one"});
-  EXPECT_TRUE(Has(page, "<li><p>at 0.000 s r/controller answered 4 us late, after 9 us: r/planner"));
+  EXPECT_TRUE(
+      Has(page, "<li><p>at 0.000 s r/controller answered 4 us late, after 9 us: r/planner"));
   EXPECT_TRUE(Has(page, "\"misses\":[[1,6,11,15,\"at 0.000 s r/controller answered 4 us late"));
 }
-
 
 TEST_F(PageTest, WithoutAWorldItSaysWhyAndDoesNotCarryThreeJs) {
   WriteRun("one");

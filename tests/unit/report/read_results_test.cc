@@ -155,8 +155,9 @@ TEST_F(ReadResultsTest, ARunThatFailedIsShownWithItsCause) {
   const Results results = Read({"killed", "crashed", "stopped"});
   ASSERT_EQ(results.systems.size(), 3u);
   const auto first = [&](std::size_t i) { return results.systems[i].runs.at(0).verdict.at(0); };
-  EXPECT_EQ(first(0), "the run was cut off soon after 1.00\u00a0ms: it was killed, ended by an "
-                      "error, or it still goes on");
+  EXPECT_EQ(first(0),
+            "the run was cut off soon after 1.00\u00a0ms: it was killed, ended by an "
+            "error, or it still goes on");
   EXPECT_EQ(first(1), "r/planner ended at 1.50\u00a0s with signal 11");
   EXPECT_EQ(first(2), "SIGINT stopped the run at 2.000 s of its 9 s");
   for (const System& system : results.systems) EXPECT_FALSE(system.runs[0].is_whole);

@@ -20,23 +20,22 @@ class ResultFolderTest : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(root_); }
 
   static nlohmann::json Summary() {
-    return {
-        {"scenario", "chase"},
-        {"seed", 1},
-        {"accounting", "measured"},
-        {"sync", "consistent"},
-        {"interrupted", false},
-        {"virtual_ns", 2'000'000'000},
-        {"real_ns", 4'000'000'000},
-        {"drift_ns", 1'000'000},
-        {"drift_bound_ns", 1'000'000},
-        {"staleness_ns", 0},
-        {"clients_ns", 3'000'000'000},
-        {"dynamics_ns", 800'000'000},
-        {"coordinating_ns", 100'000'000},
-        {"overhead_percent", 2.5},
-        {"verdict", nlohmann::json::array()},
-        {"clients", {{"r/planner", Client("best-effort")}, {"r/controller", WithDeadline()}}}};
+    return {{"scenario", "chase"},
+            {"seed", 1},
+            {"accounting", "measured"},
+            {"sync", "consistent"},
+            {"interrupted", false},
+            {"virtual_ns", 2'000'000'000},
+            {"real_ns", 4'000'000'000},
+            {"drift_ns", 1'000'000},
+            {"drift_bound_ns", 1'000'000},
+            {"staleness_ns", 0},
+            {"clients_ns", 3'000'000'000},
+            {"dynamics_ns", 800'000'000},
+            {"coordinating_ns", 100'000'000},
+            {"overhead_percent", 2.5},
+            {"verdict", nlohmann::json::array()},
+            {"clients", {{"r/planner", Client("best-effort")}, {"r/controller", WithDeadline()}}}};
   }
   // Of a controller that keeps a period of 5 us but once.
   static nlohmann::json WithDeadline() {
