@@ -70,9 +70,11 @@ def pixels(browser):
 def starts_standing(browser, run):
     browser.open(run.url)
     until(browser, "return document.querySelector('#run .how').textContent.includes('paused at 0.00 of 6.00 s')")
-    assert browser.js("return document.querySelector('#world') === null && document.querySelector('[data-run=stand]').hidden")
+    # Where everything is at the start is to be seen.
+    until(browser, "return tcs.run && tcs.run.end === 0 && document.documentElement.dataset.firstPicture")
+    is_where_it_should_be(browser)
+    assert browser.js("return document.querySelector('[data-run=stand]').hidden")
     click(browser, "step")  # the usual 100 ms
-    # With the first moments there is a world to show.
     until(browser, "return tcs.run && tcs.run.end === 0.1 && document.querySelector('#run .how').textContent.includes('paused at 0.10')")
     assert run.status()["now"] == 100 * MS
     choose(browser, "by", "1000")

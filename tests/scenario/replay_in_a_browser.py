@@ -46,7 +46,7 @@ def the_world(browser):
     browser.open(f"{FOLDER}/rover.html")
     browser.after_pictures()
     assert browser.js("return document.documentElement.dataset.firstPicture"), "there is no picture"
-    assert browser.js("return document.querySelector('#world h2').getBoundingClientRect().top < 300"), "the world comes first"
+    assert browser.js("return document.querySelector('#verdict h2').getBoundingClientRect().top < 300"), "the verdict comes first"
     names = browser.js("return tcs.run.robots.map(robot => robot.name)")
     assert names == ["rover", "crowd"], names
     # The wheels turn, and so are tracks; what is fixed to the base is none.
