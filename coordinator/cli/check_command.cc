@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/expected.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/visible.h"
@@ -26,10 +27,12 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments) {
       ->add_option("--set", arguments->set,
                    "KEY=VALUE: another value for a key of the scenario; repeatable")
       ->allow_extra_args(false);
+  check->add_flag("--strict", arguments->strict, "each warning is an error, too: exit status 2");
   return check;
 }
 
-int SaySound(const Scenario& scenario) {
+int SaySound(const Scenario& scenario, bool strict) {
+  if (strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
   for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
   std::size_t clients = 0;
   for (const RobotSpec& robot : scenario.robots) clients += robot.clients.size();
@@ -47,7 +50,8 @@ int CheckCommand(const CheckArguments& arguments) {
   overrides.set = arguments.set;
   overrides.result_directory = AbsolutePathOf("out");
   const auto checked = CheckScenario(arguments.scenario, overrides);
-  if (const auto* scenario = std::get_if<Scenario>(&checked)) return SaySound(*scenario);
+  if (const auto* scenario = std::get_if<Scenario>(&checked))
+    return SaySound(*scenario, arguments.strict);
   for (const LoadError& mistake : std::get<std::vector<LoadError>>(checked)) Say(mistake.message);
   return kCannotRun;
 }

@@ -16,6 +16,7 @@ struct CheckArguments {
   std::string scenario = "scenario.yaml";
   std::vector<std::string> overlays;  // files
   std::vector<std::string> set;       // KEY=VALUE
+  bool strict = false;                // each warning is an error
 };
 
 // Adds the command, which fills `arguments` in when it is parsed.
@@ -25,7 +26,8 @@ const CLI::App* AddCheck(CLI::App* app, CheckArguments* arguments);
 // is sound. The exit status.
 int CheckCommand(const CheckArguments& arguments);
 
-// That it is sound, and what it has; warnings to stderr. The exit status.
-int SaySound(const Scenario& scenario);
+// That it is sound, and what it has; warnings to stderr, which `strict` makes errors. The exit
+// status.
+int SaySound(const Scenario& scenario, bool strict);
 
 }  // namespace tcs

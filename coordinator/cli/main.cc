@@ -153,6 +153,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   run->add_flag("--check", arguments.check,
                 "only load the scenario, and report whether it is correct");
+  run->add_flag("--strict", arguments.strict,
+                "each warning is an error, of the scenario (exit status 2) and of the run (3)");
+  run->add_option("--junit", arguments.junit,
+                  "FILE: write what the scenario expects, and whether it came to that, as JUnit "
+                  "XML");
   std::string record;
   run->add_flag("--record{sqlite3}", record,
                 "also write all messages and where bodies are into the folder, as the rosbag2 bag "

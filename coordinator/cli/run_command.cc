@@ -14,6 +14,7 @@
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/earlier_run.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/expected.h"
 #include "coordinator/cli/live_line.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/stop_at.h"
@@ -30,6 +31,7 @@ namespace tcs {
 
 namespace {
 
+const std::vector<std::string> kNoWarnings;
 constexpr std::int64_t kNoteEveryNs = 1'000'000'000;  // real time
 
 // What there is to say of a run that goes on.
@@ -121,7 +123,8 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     if (!error.empty()) return Fail(error);
     scenario.duration = *stop_at;
   }
-  if (arguments.check) return SaySound(scenario);
+  if (arguments.check) return SaySound(scenario, arguments.strict);
+  if (arguments.strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
   for (const std::string& error : {TakePace(arguments, scenario, &options),
                                    TakeDebugged(arguments.debugged, scenario, gdb, &options)}) {
     if (!error.empty()) return Fail(error);
@@ -168,11 +171,18 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
   line.Clear();
   if (!report.error.empty()) return Fail(report.error);
   PrintSummary(scenario, report, arguments.out);
-  if (const std::string error =
-          WriteSummary(scenario, options, report, arguments.out + "/summary.json");
+  const std::string summary = SummaryText(scenario, options, report);
+  // Of half a run nobody knows.
+  std::vector<Judgement> judgements;
+  if (!report.interrupted) judgements = JudgeRun(scenario.expectations, summary, report.kept);
+  if (const std::string error = WriteWhole(arguments.out + "/summary.json",
+                                           SummaryText(scenario, options, report, judgements));
       !error.empty()) {
     return Fail(error);
   }
+  PrintJudgements(judgements);
+  const std::vector<std::string> refused = arguments.strict ? report.warnings : kNoWarnings;
+  SayRefused(refused);
   TakeNoteBack();
   if (options.view != nullptr) options.view->Conclude(report.virtual_ns);
   if (stop_at && !report.interrupted) {
@@ -182,7 +192,13 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     Print("the world as it stopped: {}/snapshot.yaml\n", Visible(arguments.out));
   }
   if (report.interrupted) return InterruptedBy(report.stop_signal);
-  return HasFailedClient(report) ? kClientFailed : kSucceeded;
+  if (!arguments.junit.empty()) {
+    const std::string error = WriteWhole(
+        arguments.junit, JunitText({JunitSuiteOf(scenario, report, judgements, refused)}));
+    if (!error.empty()) return Fail(error);
+  }
+  if (HasFailedClient(report)) return kClientFailed;
+  return Failed(judgements).empty() && refused.empty() ? kSucceeded : kExpectationFailed;
 }
 
 }  // namespace tcs

@@ -12,6 +12,7 @@
 #include "coordinator/cli/metrics_text.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/core/failures.h"
+#include "coordinator/expect/expect_json.h"
 #include "coordinator/os/files.h"
 #include "coordinator/os/say.h"
 #include "simbody_bridge/engines.h"
@@ -71,6 +72,11 @@ void PrintPace(const PaceReport& pace) {
 
 }  // namespace
 
+std::string HowItEnded(int wait_status) {
+  if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
+  return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
+}
+
 double OverheadPercent(const RunReport& r) {
   return r.real_ns == 0 ? 0.0 : 100.0 * Seconds(r.coordinating_ns) / Seconds(r.real_ns);
 }
@@ -120,7 +126,8 @@ void PrintSummary(const Scenario& scenario, const RunReport& r, const std::strin
   }
 }
 
-std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r) {
+std::string SummaryText(const Scenario& scenario, const RunOptions& options, const RunReport& r,
+                        const std::vector<Judgement>& judgements) {
   const bool fixed = options.accounting == shm::Accounting::kFixed;
   const bool callback = options.sync == shm::Sync::kCallback;
   using Json = nlohmann::ordered_json;
@@ -153,6 +160,7 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
             {"warnings", r.warnings}};
   const bool answers = !options.output_directory.empty();
   if (answers) json["verdict"] = r.verdict;
+  if (!judgements.empty()) json["expectations"] = ExpectationsJson(judgements);
   if (answers) json["metrics"] = MetricsJson(r.metrics);
   if (r.pace.pace > 0 || r.pace.stood_ns > 0) {
     json["pace"] = {{"wanted", r.pace.pace},
@@ -192,11 +200,6 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
     for (const ChainFigures& chain : r.chains) json["chains"][chain.name] = ChainJson(chain);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string WriteSummary(const Scenario& scenario, const RunOptions& options, const RunReport& r,
-                         const std::string& path) {
-  return WriteWhole(path, SummaryText(scenario, options, r));
 }
 
 }  // namespace tcs

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "coordinator/expect/judge.h"
 #include "coordinator/tasks/coordinator.h"
 
 namespace tcs {
@@ -18,10 +20,9 @@ void PrintSummary(const Scenario& scenario, const RunReport& report, const std::
 
 // As JSON; times are nanoseconds.
 std::string SummaryText(const Scenario& scenario, const RunOptions& options,
-                        const RunReport& report);
+                        const RunReport& report, const std::vector<Judgement>& judgements = {});
 
-// Empty on success, else one sentence.
-[[nodiscard]] std::string WriteSummary(const Scenario& scenario, const RunOptions& options,
-                                       const RunReport& report, const std::string& path);
+// "exit status 1", "signal 11 (Segmentation fault)".
+std::string HowItEnded(int wait_status);
 
 }  // namespace tcs

@@ -14,9 +14,11 @@
 
 #include "coordinator/cli/duration_option.h"
 #include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/expected.h"
 #include "coordinator/cli/preload_library.h"
 #include "coordinator/cli/print.h"
 #include "coordinator/cli/terminal_line.h"
+#include "coordinator/cli/trials_expected.h"
 #include "coordinator/cli/version.h"
 #include "coordinator/os/cpu_claim.h"
 #include "coordinator/os/cpu_places.h"
@@ -306,8 +308,11 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
   Print("{}written to {}: trials.json, and each trial's folder as of tcsim run\n",
         TrialsTable(groups), arguments.out);
   std::fflush(stdout);
+  std::vector<std::string> failures;
   for (const TrialEnd& end : report.ends) {
-    if (!end.outcome.has_value()) Say(Failure(plan, end, folder));
+    if (end.outcome.has_value()) continue;
+    failures.push_back(Failure(plan, end, folder));
+    Say(failures.back());
   }
   if (report.interrupted) {
     return Fail(fmt::format("interrupted; {} of {} trials are done, and the same call goes on from "
@@ -317,7 +322,14 @@ int RunPlan(const TrialsArguments& arguments, const TrialsPlan& plan,
                 InterruptedBy(report.stop_signal));
   }
   if (!report.error.empty()) return Fail(report.error);
-  return failed > 0 ? kClientFailed : kSucceeded;
+  const JudgedTrials judged = JudgeTrials(plan, scenarios, folder, arguments.strict);
+  PrintJudged(judged);
+  if (!arguments.junit.empty()) {
+    const std::string error = WriteJunit(arguments.junit, plan, judged, failures);
+    if (!error.empty()) return Fail(error);
+  }
+  if (failed > 0) return kClientFailed;
+  return judged.IsAsExpected() ? kSucceeded : kExpectationFailed;
 }
 
 }  // namespace
@@ -329,6 +341,9 @@ int TrialsCommand(const TrialsArguments& arguments) {
     if (const std::string error = CheckLauncher(arguments); !error.empty()) return Fail(error);
     if (const std::string error = MakePlan(arguments, &plan, &scenarios); !error.empty()) {
       return Fail(error);
+    }
+    for (const Scenario& scenario : scenarios) {
+      if (arguments.strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
     }
     ResultFolder folder;
     const TrialsRecord record{plan, HashOfFile(plan.scenario), HashPrograms(scenarios.front())};

@@ -16,6 +16,8 @@ struct TrialsArguments {
   int jobs = 0;  // 0: as many as there is room for
   std::optional<std::uint64_t> first_seed;
   bool restart = false, host_network = false, no_wait = false;
+  bool strict = false;                // each warning is an error
+  std::string junit;                  // a file for the judgement; empty: none
   std::vector<std::string> vary;      // KEY=V1,V2
   std::vector<std::string> overlays;  // files
   std::string launcher = "local";     // or "slurm"

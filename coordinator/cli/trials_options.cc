@@ -45,6 +45,11 @@ const CLI::App* AddTrials(CLI::App* app, TrialsArguments* arguments) {
   trials->add_option("--name", arguments->name, "the name of the trials in a report");
   trials->add_flag("--no-wait", arguments->no_wait,
                    "if other runs have all processors, fail at once and name those runs");
+  trials->add_flag("--strict", arguments->strict,
+                   "each warning is an error, of the scenario (exit status 2) and of a trial (3)");
+  trials->add_option("--junit", arguments->junit,
+                     "FILE: write what the scenario expects, and whether the trials came to that, "
+                     "as JUnit XML");
   trials->add_flag("--restart", arguments->restart, "delete the trials in the folder first");
   trials->add_flag("--host-network", arguments->host_network,
                    "run one trial at a time, in this machine's network, instead of each in a "

@@ -427,6 +427,7 @@ RunReport Engine::Run() {
   const std::string error = records_.CloseMetrics(RobotTime(report.virtual_ns));
   if (report.error.empty()) report.error = error;
   report.metrics = records_.Metrics();
+  report.kept = records_.Expected();
   report.warnings = run_.report.warnings;
   return report;
 }

@@ -180,6 +180,62 @@ std::string Instead(std::string_view wanted, const std::vector<std::string>& nam
 
 }  // namespace
 
+const std::vector<FigureName>& FiguresOfClient() {
+  using enum MeasureUnit;
+  static const std::vector<FigureName> all = {{"misses", kCount},
+                                              {"missed", kShare},
+                                              {"misses_in_a_row", kCount},
+                                              {"deadline", kSeconds},
+                                              {"response_p50", kSeconds},
+                                              {"response_p99", kSeconds},
+                                              {"response_max", kSeconds},
+                                              {"start_delay_p50", kSeconds},
+                                              {"start_delay_p99", kSeconds},
+                                              {"start_delay_max", kSeconds},
+                                              {"execution_p50", kSeconds},
+                                              {"execution_p99", kSeconds},
+                                              {"execution_max", kSeconds},
+                                              {"command_age_p50", kSeconds},
+                                              {"command_age_p99", kSeconds},
+                                              {"command_age_max", kSeconds},
+                                              {"sent", kCount},
+                                              {"received", kCount},
+                                              {"lost", kCount},
+                                              {"replaced", kCount},
+                                              {"unread", kCount},
+                                              {"backlog", kCount},
+                                              {"computed", kSeconds},
+                                              {"activations", kCount}};
+  return all;
+}
+
+const std::vector<FigureName>& FiguresOfChain() {
+  using enum MeasureUnit;
+  static const std::vector<FigureName> all = {
+      {"misses", kCount},         {"missed", kShare},         {"deadline", kSeconds},
+      {"age_p50", kSeconds},      {"age_p99", kSeconds},      {"age_max", kSeconds},
+      {"reaction_p50", kSeconds}, {"reaction_p99", kSeconds}, {"reaction_max", kSeconds}};
+  return all;
+}
+
+const std::vector<FigureName>& FiguresOfMetric() {
+  using enum MeasureUnit;
+  static const std::vector<FigureName> all = {
+      {"last", kNumber}, {"min", kNumber},  {"max", kNumber},        {"mean", kNumber},
+      {"rms", kNumber},  {"count", kCount}, {"first_time", kSeconds}};
+  return all;
+}
+
+const std::vector<FigureName>& FiguresOfRun() {
+  using enum MeasureUnit;
+  static const std::vector<FigureName> all = {{"virtual", kSeconds},
+                                              {"real", kSeconds},
+                                              {"drift", kSeconds},
+                                              {"staleness", kSeconds},
+                                              {"overhead", kShare}};
+  return all;
+}
+
 std::optional<Measures> MeasuresFromSummary(const std::string& text) {
   try {
     return MeasureReader().Take(SummaryJson::parse(text));

@@ -22,6 +22,16 @@ struct Measure {
   bool is_compared = false;  // `tcsim compare` looks at it unasked
 };
 
+// A figure of one kind of thing, which each of them may have or lack.
+struct FigureName {
+  std::string_view name;
+  MeasureUnit unit;
+};
+[[nodiscard]] const std::vector<FigureName>& FiguresOfClient();
+[[nodiscard]] const std::vector<FigureName>& FiguresOfChain();
+[[nodiscard]] const std::vector<FigureName>& FiguresOfMetric();
+[[nodiscard]] const std::vector<FigureName>& FiguresOfRun();
+
 using Measures = std::map<std::string, Measure, std::less<>>;
 
 // All that the text of a summary.json has: "CLIENT.misses", ".missed" (their share),

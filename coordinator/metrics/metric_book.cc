@@ -42,11 +42,22 @@ std::string MetricBook::Close() {
 
 MetricsOfRun MetricBook::Figures() const {
   std::map<std::string_view, int> sources;
-  for (const Metric& metric : metrics_) ++sources[metric.name];
+  for (const Metric& metric : metrics_) {
+    if (metric.from != kMetricFromExpectations) ++sources[metric.name];
+  }
   MetricsOfRun figures;
   for (const Metric& metric : metrics_) {
+    if (metric.from == kMetricFromExpectations) continue;
     const bool is_alone = metric.from == kMetricFromScenario || sources[metric.name] == 1;
     figures[is_alone ? metric.name : metric.from + "/" + metric.name] = metric.sums.figures();
+  }
+  return figures;
+}
+
+MetricsOfRun MetricBook::Expected() const {
+  MetricsOfRun figures;
+  for (const Metric& metric : metrics_) {
+    if (metric.from == kMetricFromExpectations) figures[metric.name] = metric.sums.figures();
   }
   return figures;
 }

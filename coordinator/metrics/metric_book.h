@@ -39,6 +39,8 @@ class MetricBook {
   [[nodiscard]] std::string Close();
 
   [[nodiscard]] MetricsOfRun Figures() const;
+  // Of those from kMetricFromExpectations, which are not among the others.
+  [[nodiscard]] MetricsOfRun Expected() const;
 
  private:
   struct Metric {

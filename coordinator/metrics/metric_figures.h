@@ -29,6 +29,8 @@ struct MetricFigures {
 };
 
 inline constexpr std::string_view kMetricFromScenario = "scenario";
+// What the scenario expects to stay within bounds: no figure of the run's for people.
+inline constexpr std::string_view kMetricFromExpectations = "expect";
 
 // By the metrics' names. Where several clients print one name, or the scenario has it, too, theirs
 // are under ROBOT/CLIENT/NAME.

@@ -49,6 +49,7 @@ class RunRecords {
   // Once no client lives any more: what they have printed to their end counts, at `end`.
   [[nodiscard]] std::string CloseMetrics(VirtualTime end);
   [[nodiscard]] MetricsOfRun Metrics() const { return metrics_.Figures(); }
+  [[nodiscard]] MetricsOfRun Expected() const { return metrics_.Expected(); }
 
   // Where a thread is drawn: Task::row.
   int AddRow(const std::string& group, const std::string& name) {

@@ -92,7 +92,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
       ParseYaml(path, ReadFile(path, "a scenario file"), settings, mistakes).AsMap();
   top.AllowOnly({"name", "duration", "drift", "seed", "csv_period", "csv_contacts", "dynamics",
                  "bodies", "models", "robots", "network", "channels", "chains", "clock", "ros",
-                 "metrics"});
+                 "metrics", "expect"});
   Scenario scenario;
   scenario.path = path;
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
@@ -115,6 +115,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   all.Try([&] { LoadChains(top, &scenario); });
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   all.Try([&] { LoadMetrics(top, &scenario); });
+  all.Try([&] { LoadExpect(top, &scenario); });
   return scenario;
 }
 

@@ -39,6 +39,9 @@ struct MetricSpec {
   VirtualDuration from{};
   std::optional<VirtualDuration> until{};  // both included
   VirtualDuration every{};                 // 0: Scenario::csv_period
+  // Of what is expected: between what it is to stay. The first time is that of the first value
+  // that is not.
+  std::optional<double> least{}, most{};
 };
 
 }  // namespace tcs

@@ -17,6 +17,7 @@
 
 #include "coordinator/dds/qos.h"
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/scenario/expectation_spec.h"
 #include "coordinator/scenario/instruments.h"
 #include "coordinator/scenario/metric_spec.h"
 #include "coordinator/scenario/network_spec.h"
@@ -295,7 +296,9 @@ struct Scenario {
       VirtualDuration::Milliseconds(10);  // of the body states written to DIR
   bool csv_contacts = false;              // contact forces are written, too
   std::vector<MetricSpec> metrics;        // what the run is to be measured by
-  std::vector<QuantitySpec> quantities;   // that they are of
+  std::vector<ExpectationSpec> expectations;
+  std::vector<MetricSpec> kept;          // what some of these are of, in the order of their numbers
+  std::vector<QuantitySpec> quantities;  // that metrics and these are of
   // What can be run and is hardly what was meant: a sentence each, with its place.
   std::vector<std::string> warnings;
 };

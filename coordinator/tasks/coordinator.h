@@ -114,6 +114,7 @@ struct RunReport {
   std::vector<ClientReport> clients;
   std::vector<ChainFigures> chains;
   MetricsOfRun metrics;              // of runs whose results are kept
+  MetricsOfRun kept;                 // of Scenario::kept, by their names
   std::vector<std::string> verdict;  // sentences, worst first
   std::vector<std::string> warnings;
 };

@@ -80,13 +80,15 @@ class ScenarioMetrics::HeardOutlet final : public Outlet {
 
 void ScenarioMetrics::Open(const Scenario& scenario) {
   scenario_ = &scenario;
-  for (const MetricSpec& spec : scenario.metrics) {
+  const auto add = [&](const MetricSpec& spec, std::string_view from) {
     const VirtualDuration every = spec.every > VirtualDuration{} ? spec.every : scenario.csv_period;
     // The first multiple within.
     const std::int64_t before = (spec.from.ns() + every.ns() - 1) / every.ns();
     const auto next = VirtualTime::FromNanoseconds(before * every.ns());
-    metrics_.push_back({&spec, spec.expression.Needs(), every, next, next});
-  }
+    metrics_.push_back({&spec, from, spec.expression.Needs(), every, next, next});
+  };
+  for (const MetricSpec& spec : scenario.metrics) add(spec, kMetricFromScenario);
+  for (const MetricSpec& spec : scenario.kept) add(spec, kMetricFromExpectations);
   values_.resize(scenario.quantities.size(), kNotKnown);
   commanded_.resize(scenario.quantities.size());
   for (const QuantitySpec& quantity : scenario.quantities) {
@@ -113,7 +115,7 @@ std::unique_ptr<Outlet> ScenarioMetrics::Wrap(std::size_t sensor, std::unique_pt
 void ScenarioMetrics::WriteInto(MetricBook& book, CommandLog& commands) {
   book_ = &book;
   for (Metric& metric : metrics_) {
-    metric.number = book.NumberOf(kMetricFromScenario, metric.spec->name, metric.spec->asked);
+    metric.number = book.NumberOf(metric.from, metric.spec->name, metric.spec->asked);
   }
   std::erase_if(metrics_, [](const Metric& metric) { return metric.number < 0; });
   if (std::ranges::find(scenario_->quantities, QuantitySpec::Kind::kCommand, &QuantitySpec::kind) ==
@@ -221,6 +223,12 @@ void ScenarioMetrics::Take(Metric& metric, VirtualTime now) {
     return;
   const double value = metric.spec->expression.Evaluate(values_);
   if (!IsMetricValue(value)) return;
+  if (metric.from == kMetricFromExpectations) {
+    const bool is_within =
+        value >= metric.spec->least.value_or(value) && value <= metric.spec->most.value_or(value);
+    book_->Add(metric.number, now.ns(), value, false, !is_within);
+    return;
+  }
   const bool has_line = metric.next_line <= now;
   while (metric.next_line <= now) metric.next_line += scenario_->csv_period;
   const bool may_be_first = metric.spec->asked != MetricFigure::kFirstTimeWhen || value != 0;

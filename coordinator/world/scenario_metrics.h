@@ -50,6 +50,7 @@ class ScenarioMetrics {
   };
   struct Metric {
     const MetricSpec* spec;
+    std::string_view from;  // kMetricFromScenario, or kMetricFromExpectations
     std::vector<std::size_t> needs;
     VirtualDuration every;
     VirtualTime next, next_line;

@@ -56,7 +56,9 @@ std::string ExitStatus() {
          ".TP\n1\nThe run went to its end, but a program of it failed.\n"
          ".TP\n2\nNothing was run, or not to its end; one sentence on the standard error says "
          "why.\n"
-         ".TP\n3\nSomething is worse than it may be, as \\fBtcsim compare\\fR found.\n"
+         ".TP\n3\nSomething is worse than it may be: the scenario expects it otherwise, a warning "
+         "came "
+         "under \\fB\\-\\-strict\\fR, or \\fBtcsim compare\\fR found it.\n"
          ".TP\n128+N\nThe run was ended by the signal N.\n"
          ".P\n.B tcsim exec\nhas its program\\(aqs exit status; 127 if there is no such program.\n";
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace tcs {
 namespace {
 
@@ -53,6 +55,23 @@ TEST(Measures, AreAllThatASummaryHas) {
   EXPECT_EQ(all.at("chain lidar->wheels.deadline").value, 0.025);
   EXPECT_EQ(all.at("run.overhead").value, 0.025);
   EXPECT_EQ(all.at("error.last").value, 0.5);
+}
+
+// What scenarios may expect of a thing is what summaries have of it.
+TEST(Measures, AreNamedByTheirThings) {
+  const auto check = [](const std::string& of, const std::vector<FigureName>& figures) {
+    for (const auto& [name, measure] : Read()) {
+      if (!name.starts_with(of + ".")) continue;
+      const auto found = std::ranges::find(figures, std::string_view(name).substr(of.size() + 1),
+                                           &FigureName::name);
+      ASSERT_NE(found, figures.end()) << name;
+      EXPECT_EQ(found->unit, measure.unit) << name;
+    }
+  };
+  check("r/planner", FiguresOfClient());
+  check("chain lidar->wheels", FiguresOfChain());
+  check("error", FiguresOfMetric());
+  check("run", FiguresOfRun());
 }
 
 TEST(Measures, OfWhatThereIsNothingThereIsNoMeasure) {

@@ -1,0 +1,61 @@
+#include "coordinator/cli/expected.h"
+
+#include <fmt/format.h>
+
+#include "coordinator/cli/exit_status.h"
+#include "coordinator/cli/print.h"
+#include "coordinator/cli/summary.h"
+
+namespace tcs {
+
+namespace {
+
+std::string Warnings(std::size_t count) {
+  return count == 1 ? "a warning" : fmt::format("{} warnings", count);
+}
+
+}  // namespace
+
+void PrintJudgements(const std::vector<Judgement>& judgements) {
+  if (judgements.empty()) return;
+  const std::vector<const Judgement*> failed = Failed(judgements);
+  Print("{} of {} expectations hold\n", judgements.size() - failed.size(), judgements.size());
+  for (const Judgement* judgement : failed) Say("not as expected: " + SentenceOf(*judgement));
+}
+
+int RefuseWarnings(const Scenario& scenario) {
+  for (const std::string& warning : scenario.warnings) Say("warning: " + warning);
+  return Fail(
+      fmt::format("the scenario has {}, and with --strict each is an error; correct it, or "
+                  "leave --strict out",
+                  Warnings(scenario.warnings.size())));
+}
+
+void SayRefused(const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return;
+  Say(fmt::format("the run had {}, and with --strict each is an error; the first: {}",
+                  Warnings(warnings.size()), warnings.front()));
+}
+
+JunitSuite JunitSuiteOf(const Scenario& scenario, const RunReport& report,
+                        const std::vector<Judgement>& judgements,
+                        const std::vector<std::string>& refused) {
+  JunitSuite suite{scenario.name, static_cast<double>(report.real_ns) * 1e-9, {}};
+  for (const ClientReport& client : report.clients) {
+    const bool has_failed = client.ended_at_ns >= 0 && client.wait_status != 0;
+    std::string failure;
+    if (has_failed) {
+      failure = fmt::format("{} ended at {:.3f} s with {}", client.name,
+                            static_cast<double>(client.ended_at_ns) * 1e-9,
+                            HowItEnded(client.wait_status));
+    }
+    suite.cases.push_back({client.name, "does not fail", failure, failure});
+  }
+  for (JunitCase& one : JunitCases(judgements)) suite.cases.push_back(std::move(one));
+  for (const std::string& warning : refused) {
+    suite.cases.push_back({"tcsim", "has no warning", warning, warning});
+  }
+  return suite;
+}
+
+}  // namespace tcs
