@@ -42,8 +42,11 @@ class ResultFolderTest : public ::testing::Test {
     nlohmann::json client = Client("periodic");
     client["counted_after_ns"] = 10;
     client["response_ns"] = {{"count", 2}, {"p50", 4000}, {"p99", 9000}, {"max", 9000}};
-    client["deadline"] = {
-        {"deadline_ns", 5000}, {"period_of", "imu"}, {"judged", 2}, {"missed", 1}, {"most_in_a_row", 1}};
+    client["deadline"] = {{"deadline_ns", 5000},
+                          {"period_of", "imu"},
+                          {"judged", 2},
+                          {"missed", 1},
+                          {"most_in_a_row", 1}};
     return client;
   }
   static nlohmann::json Client(const char* of_class) {
