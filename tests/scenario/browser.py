@@ -22,7 +22,9 @@ class Browser:
                     f"--user-data-dir={folder}/browser", f"--window-size={width},{height}"]
         switches += ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if webgl else \
             ["--disable-gpu", "--disable-3d-apis"]
-        wanted = {"browserName": "chrome", "goog:chromeOptions": {"args": switches, "binary": "/usr/bin/chromium"},
+        # On a busy machine a picture takes long; a graphics process is not to be ended for that.
+        switches.append("--disable-gpu-watchdog")
+        wanted = {"browserName": "chrome", "timeouts": {"script": 95_000}, "goog:chromeOptions": {"args": switches, "binary": "/usr/bin/chromium"},
                   "goog:loggingPrefs": {"browser": "ALL"}}
         self.session = self.base + "/session/" + self.call(
             "/session", {"capabilities": {"alwaysMatch": wanted}}, self.base)["sessionId"]

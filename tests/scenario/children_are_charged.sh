@@ -85,7 +85,7 @@ grep -Eq 'busy/wrapper +1\.[0-9]+ s|busy/wrapper +2\.[0-9]+ s' summary || fail "
 python3 - <<'PY' || fail "the report says otherwise"
 import json, re
 charged = json.load(open("out/summary.json"))["clients"]["busy/wrapper"]["charged_ns"] * 1e-9
-row = re.search(r"busy/wrapper</t[dh]>(.*?)</tr>", open("report.html").read(), re.S).group(1)
-cells = re.findall(r"<td[^>]*>([^<]*)</td>", row)
+rows = re.findall(r"busy/wrapper</t[dh]>(.*?)</tr>", open("report.html").read(), re.S)
+cells = [cell for row in rows for cell in re.findall(r"<td[^>]*>([^<]*)</td>", row)]
 assert any(re.match(rf"{charged:.2f}"[:4], cell) for cell in cells), (charged, cells)
 PY

@@ -62,16 +62,16 @@ def is_where_it_should_be(browser):
 
 
 def pixels(browser):
-    return browser.js("""const copy = document.createElement('canvas'); copy.width = 160; copy.height = 90;
-        const context = copy.getContext('2d'); context.drawImage(document.querySelector('.stage canvas'), 0, 0, 160, 90);
-        return [...context.getImageData(0, 0, 160, 90).data];""")
+    return browser.js("""const copy = document.createElement('canvas'); copy.width = 640; copy.height = 360;
+        const context = copy.getContext('2d'); context.drawImage(document.querySelector('.stage canvas'), 0, 0, 640, 360);
+        return [...context.getImageData(0, 0, 640, 360).data];""")
 
 
 def starts_standing(browser, run):
     browser.open(run.url)
     until(browser, "return document.querySelector('#run .how').textContent.includes('paused at 0.00 of 6.00 s')")
     # Where everything is at the start is to be seen.
-    until(browser, "return tcs.run && tcs.run.end === 0 && document.documentElement.dataset.firstPicture")
+    until(browser, "return tcs.run && tcs.run.count === 1 && document.documentElement.dataset.firstPicture")
     is_where_it_should_be(browser)
     assert browser.js("return document.querySelector('[data-run=stand]').hidden")
     click(browser, "step")  # the usual 100 ms

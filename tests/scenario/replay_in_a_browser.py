@@ -174,8 +174,25 @@ def rays(browser):
     before = browser.after_pictures() or pixels(browser)
     browser.js("document.querySelector('[data-set=rays]').click()")
     browser.after_pictures()
-    assert changed(before, pixels(browser)) > 100, "the lidar's rays are not seen"
+    differ = changed(before, pixels(browser))
+    state = browser.js("""const canvas = document.querySelector('.stage canvas'), gl = canvas.getContext('webgl2') || canvas.getContext('webgl');
+        return [tcs.time, document.querySelector('[data-set=rays]').checked, gl && gl.isContextLost()];""")
+    assert differ > 100, ("the lidar's rays are not seen", differ, state)
     browser.js("document.querySelector('[data-set=rays]').click()")
+
+
+def lost_picture(browser):
+    """A graphics process that dies takes it; it comes again."""
+    before = browser.after_pictures() or pixels(browser)
+    browser.js("""const canvas = document.querySelector('.stage canvas');
+        window.lost = (canvas.getContext('webgl2') || canvas.getContext('webgl')).getExtension('WEBGL_lose_context');
+        window.lost.loseContext();""")
+    browser.after_pictures()
+    assert changed(before, pixels(browser)) > 1000, "the picture was not lost"
+    browser.js("setTimeout(() => window.lost.restoreContext(), 50)")
+    browser.call("/execute/async", {"args": [], "script": """const done = arguments[0];
+        document.querySelector('.stage canvas').addEventListener('webglcontextrestored', () => requestAnimationFrame(() => requestAnimationFrame(done)));"""})
+    assert changed(before, pixels(browser)) < 20, "the picture is not there again"
 
 
 # Where on the stage the colour of forces is: how many pixels, and the least and the most of their places, across
@@ -317,7 +334,7 @@ def main():
     import os
     os.mkdir(FOLDER + "/flat")
     with Browser(FOLDER) as browser:
-        for check in (the_world, the_picture, slider_and_keys, speed, timeline, rays, forces, small_and_touched, dark, in_print, what_was_said):
+        for check in (the_world, the_picture, slider_and_keys, speed, timeline, rays, lost_picture, forces, small_and_touched, dark, in_print, what_was_said):
             check(browser)
             print(check.__name__, flush=True)
         complaints = browser.complaints()

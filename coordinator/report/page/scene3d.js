@@ -663,6 +663,8 @@
   });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', build);
   new ResizeObserver(drawSoon).observe(stage);
+  // A graphics process that dies, or is ended for standing still, takes the picture with it.
+  canvas.addEventListener('webglcontextrestored', drawSoon);
   build();
   lookAt('free');
   // What others may ask, and tests do.
