@@ -16,10 +16,16 @@ std::string Warnings(std::size_t count) {
 
 }  // namespace
 
-void PrintJudgements(const std::vector<Judgement>& judgements) {
-  if (judgements.empty()) return;
+void PrintJudgements(const std::vector<Judgement>& judgements, std::size_t not_judged) {
   const std::vector<const Judgement*> failed = Failed(judgements);
-  Print("{} of {} expectations hold\n", judgements.size() - failed.size(), judgements.size());
+  if (!judgements.empty()) {
+    Print("{} of {} expectations hold\n", judgements.size() - failed.size(), judgements.size());
+  }
+  if (not_judged > 0) {
+    Print("{} only after the end that was asked for: not judged\n",
+          not_judged == 1 ? "1 expectation begins"
+                          : fmt::format("{} expectations begin", not_judged));
+  }
   for (const Judgement* judgement : failed) Say("not as expected: " + SentenceOf(*judgement));
 }
 

@@ -10,8 +10,9 @@
 
 namespace tcs {
 
-// How many hold, to stdout; those that do not, to stderr, the first one first.
-void PrintJudgements(const std::vector<Judgement>& judgements);
+// How many hold, and how many are not judged (Scenario::not_judged), to stdout; those that do not,
+// to stderr, the first one first.
+void PrintJudgements(const std::vector<Judgement>& judgements, std::size_t not_judged);
 
 // Under --strict, before the run: says the scenario's warnings, and returns kCannotRun.
 int RefuseWarnings(const Scenario& scenario);

@@ -23,6 +23,7 @@
 #include "coordinator/os/files.h"
 #include "coordinator/os/guardian.h"
 #include "coordinator/os/visible.h"
+#include "coordinator/scenario/leave_out_later.h"
 #include "coordinator/scenario/load.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/view/view_link.h"
@@ -122,6 +123,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
     const std::string error = WhyNoStopAt(scenario, scenario.duration, *stop_at);
     if (!error.empty()) return Fail(error);
     scenario.duration = *stop_at;
+    LeaveOutLater(&scenario);
   }
   if (arguments.check) return SaySound(scenario, arguments.strict);
   if (arguments.strict && !scenario.warnings.empty()) return RefuseWarnings(scenario);
@@ -180,7 +182,7 @@ int RunCommand(const RunArguments& arguments, RunOptions options, const GdbSessi
       !error.empty()) {
     return Fail(error);
   }
-  PrintJudgements(judgements);
+  PrintJudgements(judgements, scenario.not_judged);
   const std::vector<std::string> refused = arguments.strict ? report.warnings : kNoWarnings;
   SayRefused(refused);
   TakeNoteBack();

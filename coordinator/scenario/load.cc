@@ -98,6 +98,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   for (const Setting& setting : settings) scenario.set.push_back(setting.text);
   scenario.name = fs::path(path).stem().string();
   top.place().Try([&] { LoadHead(top, &scenario); });
+  const bool is_shortened =
+      overrides.duration.has_value() && *overrides.duration < scenario.duration;
   scenario.duration = overrides.duration.value_or(scenario.duration);
   scenario.drift_bound = overrides.drift.value_or(scenario.drift_bound);
   scenario.seed = overrides.seed.value_or(scenario.seed);
@@ -115,7 +117,7 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   all.Try([&] { LoadChains(top, &scenario); });
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   all.Try([&] { LoadMetrics(top, &scenario); });
-  all.Try([&] { LoadExpect(top, &scenario); });
+  all.Try([&] { LoadExpect(top, is_shortened, &scenario); });
   return scenario;
 }
 

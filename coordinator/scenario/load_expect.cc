@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coordinator/measures/measure.h"
+#include "coordinator/scenario/leave_out_later.h"
 #include "coordinator/scenario/metric_names.h"
 #include "coordinator/scenario/nearest.h"
 #include "coordinator/scenario/sections.h"
@@ -62,7 +63,8 @@ double LoadShare(const YamlMap& map) {
 class ExpectLoader {
  public:
   // `is_whole`: nothing before this has a mistake, so that it is known what there is.
-  ExpectLoader(bool is_whole, Scenario* scenario) : is_whole_(is_whole), scenario_(*scenario) {
+  ExpectLoader(bool is_whole, bool is_shortened, Scenario* scenario)
+      : is_whole_(is_whole), is_shortened_(is_shortened), scenario_(*scenario) {
     if (!scenario->world || !is_whole) return;
     quantities_ = scenario->quantities;
     names_ = std::make_unique<MetricNames>(*scenario, &quantities_);
@@ -194,7 +196,7 @@ class ExpectLoader {
       when.until = until->AsDuration();
       if (*when.until < when.from) until->Fail("is before from; correct one of them");
     }
-    if (when.from > scenario_.duration) {
+    if (when.from > scenario_.duration && !is_shortened_) {
       scenario_.warnings.push_back(entry.key_place.Prefix() + entry.value.name() +
                                    " begins after the end of the run, so it cannot hold; correct "
                                    "its from, or the duration");
@@ -251,7 +253,7 @@ class ExpectLoader {
     return std::move(expression);
   }
 
-  bool is_whole_;
+  bool is_whole_, is_shortened_;
   Scenario& scenario_;
   std::vector<QuantitySpec> quantities_;
   std::unique_ptr<MetricNames> names_;
@@ -259,12 +261,19 @@ class ExpectLoader {
 
 }  // namespace
 
-void LoadExpect(const YamlMap& top, Scenario* scenario) {
+void LoadExpect(const YamlMap& top, bool is_shortened, Scenario* scenario) {
   const YamlValue* value = top.Find("expect");
   if (value == nullptr) return;
-  ExpectLoader loader(!value->HasMistakes(), scenario);
+  ExpectLoader loader(!value->HasMistakes(), is_shortened, scenario);
   value->AsMap().ForEach([&](const YamlMap::Entry& entry) { loader.Load(entry); });
   if (loader.HasNames()) scenario->quantities = loader.TakeQuantities();
+  if (is_shortened) LeaveOutLater(scenario);
+}
+
+void LeaveOutLater(Scenario* scenario) {
+  scenario->not_judged += std::erase_if(scenario->expectations, [scenario](const auto& one) {
+    return one.kept && scenario->kept[*one.kept].from > scenario->duration;
+  });
 }
 
 }  // namespace tcs

@@ -297,6 +297,7 @@ struct Scenario {
   bool csv_contacts = false;              // contact forces are written, too
   std::vector<MetricSpec> metrics;        // what the run is to be measured by
   std::vector<ExpectationSpec> expectations;
+  std::size_t not_judged = 0;            // how many more begin after the end that was asked for
   std::vector<MetricSpec> kept;          // what some of these are of, in the order of their numbers
   std::vector<QuantitySpec> quantities;  // that metrics and these are of
   // What can be run and is hardly what was meant: a sentence each, with its place.

@@ -33,7 +33,8 @@ void LoadChains(const YamlMap& top, Scenario* scenario);
 // `metrics`. Reads the world and the channels from `scenario`.
 void LoadMetrics(const YamlMap& top, Scenario* scenario);
 // `expect`. Reads all that the others have loaded from `scenario`.
-void LoadExpect(const YamlMap& top, Scenario* scenario);
+// `is_shortened`: the run ends before its file's `duration`; see LeaveOutLater.
+void LoadExpect(const YamlMap& top, bool is_shortened, Scenario* scenario);
 
 // The seed of the part with this name, made from the scenario's seed: each part has random numbers
 // of its own.

@@ -60,6 +60,14 @@ expect:
 YAML
 run 0 good.yaml --junit good.xml
 says '^14 of 14 expectations hold$'
+# What a shortened run does not come to is not judged.
+for shorter in --duration --stop-at; do
+  run 0 good.yaml --set 'expect.body ball.until=1s' --set 'expect.body ball.from=600ms' \
+    --set 'expect.task={misses: 0}' --set 'expect.run={drift: 1ms}' --set 'expect.metric cycles={max: 19}' \
+    --set 'expect.metric r/worker/cycles={max: 19}' --set 'expect.metric height={min: [5, 10]}' "$shorter" 500ms
+  says '^9 of 9 expectations hold$'
+  says '^2 expectations begin only after the end that was asked for: not judged$'
+done
 cat >bad.yaml <<'YAML'
 expect:
   task: {misses: 0, response_max: 1ms}

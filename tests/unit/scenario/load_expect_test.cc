@@ -112,5 +112,20 @@ TEST_F(LoadExpectTest, WarnsOfWhatCannotHold) {
   EXPECT_THAT(scenario.warnings[0], HasSubstr("begins after the end of the run"));
 }
 
+TEST_F(LoadExpectTest, DoesNotJudgeWhatBeginsAfterTheEndThatWasAskedFor) {
+  const std::string expect = "  body drone: {z: 1, vz: 1, from: 600ms}\n  run: {drift: 1ms}\n";
+  ScenarioOverrides overrides;
+  overrides.duration = VirtualDuration::Milliseconds(500);
+  const Scenario shorter = ScenarioOf(
+      LoadScenario(folder_.Write("s.yaml", std::string(kExpecting) + expect), overrides));
+  EXPECT_EQ(shorter.expectations.size(), 1U);
+  EXPECT_EQ(shorter.not_judged, 2U);
+  EXPECT_THAT(shorter.warnings, testing::IsEmpty());
+  overrides.duration = VirtualDuration::Milliseconds(600);  // there is one value
+  const Scenario until_then = ScenarioOf(LoadScenario(folder_.path() + "/s.yaml", overrides));
+  EXPECT_EQ(until_then.expectations.size(), 3U);
+  EXPECT_EQ(until_then.not_judged, 0U);
+}
+
 }  // namespace
 }  // namespace tcs
