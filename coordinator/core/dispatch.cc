@@ -26,6 +26,8 @@ namespace {
 constexpr HostDuration kBrief = HostDuration::Microseconds(20);
 // Where the kernel does not tell whether a thread is still in its call.
 constexpr int kMostBriefTurns = 100;
+// No program has more charged before it comes to its gate.
+constexpr VirtualDuration kMostUndispatched = VirtualDuration::Milliseconds(1);
 // How often a thread is looked at that has no clock yet.
 constexpr HostDuration kLookTurn = HostDuration::Milliseconds(50);
 constexpr int kStartTurns = 600;
@@ -38,6 +40,15 @@ void Engine::GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const {
   grant.read_safe_ns = (world_stands ? cpu.progress : run_.root.ReadSafe(cpu.leaf)).ns();
   grant.local_read_safe_ns = (world_stands ? cpu.progress : run_.root.LocalReadSafe(cpu.leaf)).ns();
   grant.write_safe_ns = run_.root.WriteSafe(cpu.leaf).ns();
+}
+
+// What has a set cost and was done on the way to its gate by a thread that ran on undispatched,
+// while the kernel held the one whose turn it was (Settle): its next turn begins with that.
+std::int64_t Engine::ChargedUndispatched(const Task& task) const {
+  if (!run_.IsFixed()) return 0;
+  const std::int64_t added_ns =
+      shm::AdjustValue(SlotOf(task).clock.executed_adjust.load()) - task.settled_adjust_ns;
+  return std::clamp<std::int64_t>(added_ns, 0, kMostUndispatched.ns());
 }
 
 void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) {
@@ -77,7 +88,7 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   slot.reply[1] = task.reply[1];
   slot.wake_reason.store(task.reason);
   ++task.dispatches;
-  page.executed_adjust.store(task.DispatchWord());
+  page.executed_adjust.store(shm::PackAdjust(task.DispatchWord(), ChargedUndispatched(task)));
   page.waited_adjust.store(task.DispatchWord());
 }
 
@@ -202,6 +213,7 @@ void Engine::Settle(Task& task) {
   const auto [progress, debt, ours] = SettleRun(run);
   metered.host_origin_ns += metered.OnHost(ours).ns();
   const VirtualDuration charged = VirtualNs(reading.cpu_ns) - ours;
+  task.settled_adjust_ns = shm::AdjustValue(reading.executed_word);
   const VirtualDuration executed = std::max(VirtualDuration(), charged - task.charged);
   const HostDuration host = metered.OnHost(executed);
   run_.report.client_ns += host.ns();

@@ -155,6 +155,7 @@ class Engine {
   void TellOthersOf(Task& task, Moment call, bool looks_again);
   void Answer(Task& task);
   void GrantWhatIsSafe(const VirtualCpu& cpu, ClockGrant& grant) const;
+  std::int64_t ChargedUndispatched(const Task& task) const;
   void WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until);
   void AnswerCall(Task& task);
   void Resume(Task& task);

@@ -80,6 +80,7 @@ struct Task : HostThread {
   VirtualDuration debt;  // executed beyond a horizon, charged first at the next dispatch
   int used_up = 0;       // dispatches in a row that ended at their horizon: it is computing
   VirtualDuration charged;
+  std::int64_t settled_adjust_ns = 0;  // of its clock page, as the last turn ended
   bool is_cut_off = false;  // it has been told that its connection is not there any more
   UniqueFd cpu_clock_fd;    // where its CPU clock is read, if it is not its process's
   int yields = 0;           // since it last looked whether unknown children wait for theirs
