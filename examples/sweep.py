@@ -11,7 +11,10 @@ def run(tcsim, scenario, out, key, values, trials=3, options=()):
     """Runs the scenario with each value of the key. What is done already is not done again."""
     command = [tcsim, "trials", scenario, "--trials", str(trials), "--out", out, *options,
                "--vary", f"{key}={','.join(map(str, values))}"]
-    subprocess.run(list(map(str, command)), check=True)
+    # 3: not all values came to what the scenario expects, which is what the figure shows.
+    ended = subprocess.run(list(map(str, command)))
+    if ended.returncode not in (0, 3):
+        ended.check_returncode()
 
 
 def folders(out, values):

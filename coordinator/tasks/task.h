@@ -81,8 +81,8 @@ struct Task : HostThread {
   int used_up = 0;       // dispatches in a row that ended at their horizon: it is computing
   VirtualDuration charged;
   std::int64_t settled_adjust_ns = 0;  // of its clock page, as the last turn ended
-  bool is_cut_off = false;  // it has been told that its connection is not there any more
-  UniqueFd cpu_clock_fd;    // where its CPU clock is read, if it is not its process's
+  bool is_cut_off = false;             // it has been told that its connection is not there any more
+  UniqueFd cpu_clock_fd;               // where its CPU clock is read, if it is not its process's
   int yields = 0;           // since it last looked whether unknown children wait for theirs
   bool owes_ahead = false;  // has computed ahead what it has not paid yet (computing_ahead.h),
   static constexpr int kComputes = 3;  // `used_up` of a thread that is expected to go on

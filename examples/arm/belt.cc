@@ -64,7 +64,9 @@ struct OnBelt {
 class Line {
  public:
   Line(unsigned seed, int parts, std::string prefix)
-      : prefix_(std::move(prefix)), random_(seed), left_(parts), next_s_(Seconds() + 1) {}
+      : prefix_(std::move(prefix)), random_(seed), left_(parts), next_s_(Seconds() + 1) {
+    TellMissed();
+  }
 
   bool IsOver() const { return left_ == 0 && belt_.empty() && Seconds() > over_s_; }
 
@@ -140,11 +142,18 @@ class Line {
     }
   }
 
+  // A figure that scenario.yaml expects something of.
+  void TellMissed() const {
+    std::printf("tcs-metric missed_parts %zu %.3f\n", missed_.size(), Seconds());
+    std::fflush(stdout);  // it may be ended before it sums up
+  }
+
   void Lose() {
     const OnBelt& part = belt_.front();
     std::printf("%.3f s: part %d is missed; the tool came as near as %.0f mm\n", Seconds(),
                 part.number, 1e3 * part.nearest_m);
     missed_.push_back(part);
+    TellMissed();
     over_s_ = Seconds() + kAfterS;
     belt_.pop_front();
   }

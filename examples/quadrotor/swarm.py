@@ -33,7 +33,7 @@ def main():
     options.add_argument("--hz", type=int, default=1000, help="of the rate loops")
     options = options.parse_args()
     for entry in parts((Path(__file__).parent / "scenario.yaml").read_text()):
-        if entry.startswith("  drone") and "push" not in entry.split(":")[0]:
+        if entry.startswith(("  drone", "  body drone")) and "push" not in entry.split(":")[0]:
             for number in range(options.drones):
                 print(one_of_many(entry, number, options.hz), end="")
         elif not entry.startswith(("  referee", "  drone_push")):

@@ -6,9 +6,11 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+# A slow computer may not come to what is expected (status 3).
 pick() {  # NAME DURATION PARTS OPTIONS
   "$tcsim" run "$build/examples/arm/scenario.yaml" --out "$out/$1" --duration "$2" \
-    --set robots.line.clients.belt.command.2="$3" "${@:4}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+    --set robots.line.clients.belt.command.2="$3" "${@:4}" >"$out/said" 2>&1 ||
+    [[ $1 == slow && $? == 3 ]] || fail "$(cat "$out/said")"
 }
 pick first 9s 1 --accounting fixed
 pick second 9s 1 --accounting fixed

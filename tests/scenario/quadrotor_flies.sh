@@ -6,7 +6,11 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 folder=$build/examples/quadrotor
-fly() { "$tcsim" run "$folder/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"; }
+# A slow computer may not come to what is expected (status 3).
+fly() {
+  "$tcsim" run "$folder/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 ||
+    [[ $1 == slow && $? == 3 ]] || fail "$(cat "$out/said")"
+}
 lost() {  # NAME: how far it falls after the push; one that never took off lost all
   awk -F, '$2 == "drone/base_link" { if ($1 <= 6) before = $5; else if (least == "" || $5 < least) least = $5 }
     END { printf "%.4f", (before > 2 ? before : 2) - least }' "$out/$1/bodies.csv"

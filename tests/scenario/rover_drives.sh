@@ -5,8 +5,10 @@ source "$(dirname -- "${BASH_SOURCE[0]}")/common.sh"
 # Topics: examples, models, cores, determinism.
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
+# A slow computer may not come to what is expected (status 3).
 drive() {
-  "$tcsim" run "$build/examples/rover/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
+  "$tcsim" run "$build/examples/rover/scenario.yaml" --out "$out/$1" "${@:2}" >"$out/said" 2>&1 ||
+    [[ $1 =~ slow|eaten && $? == 3 ]] || fail "$(cat "$out/said")"
 }
 drive first --accounting fixed --duration 3s
 drive second --accounting fixed --duration 3s
