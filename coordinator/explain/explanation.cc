@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -169,6 +170,31 @@ const Activation* QueuedBehind(const Told& told, const Activation& activation) {
   return behind == &activation ? nullptr : behind;
 }
 
+namespace {
+
+// Of each activation the first of the queue that it was in; itself, if it was in none.
+std::map<const Activation*, const Activation*> FirstsOfQueues(const Told& told) {
+  std::map<std::pair<std::string_view, std::int64_t>, const Activation*> before;
+  std::map<const Activation*, const Activation*> firsts;
+  for (const Activation& one : told.activations) {
+    const Activation*& last = before[{one.client, one.thread}];
+    const bool is_queued = one.queued_ns > 0 && last != nullptr && last->end_ns >= one.release_ns;
+    firsts[&one] = is_queued ? firsts[last] : &one;
+    last = &one;
+  }
+  return firsts;
+}
+
+// What waited behind another one that is named tells nothing new: such come last.
+void PutOneOfEachQueueFirst(const Told& told, std::vector<const Activation*>* chosen) {
+  auto firsts = FirstsOfQueues(told);
+  std::set<const Activation*> named;
+  std::ranges::stable_partition(
+      *chosen, [&](const Activation* one) { return named.insert(firsts[one]).second; });
+}
+
+}  // namespace
+
 std::vector<const Activation*> Choose(const Told& told, const Choice& choice) {
   std::vector<const Activation*> chosen;
   for (const Activation& activation : told.activations) {
@@ -185,6 +211,7 @@ std::vector<const Activation*> Choose(const Told& told, const Choice& choice) {
     std::ranges::stable_sort(chosen, std::greater<>{}, [](const Activation* one) {
       return std::pair(std::max<std::int64_t>(0, one->LateNs()), one->TookNs());
     });
+    PutOneOfEachQueueFirst(told, &chosen);
   }
   if (chosen.size() > choice.most) chosen.resize(choice.most);
   return chosen;

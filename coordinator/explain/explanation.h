@@ -40,8 +40,8 @@ struct Choice {
   std::size_t most = 5;
 };
 
-// Those that were most late, or, where none was, that took longest; the worst first, and those at a
-// moment in the order of their releases.
+// Those that were most late, or, where none was, that took longest; the worst of each queue first.
+// Those at a moment are in the order of their releases.
 std::vector<const Activation*> Choose(const Told& told, const Choice& choice);
 
 }  // namespace tcs::explain

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "coordinator/report/expected_words.h"
 #include "coordinator/report/table.h"
 #include "coordinator/report/text.h"
 
@@ -68,6 +69,17 @@ std::string SentencesOf(const Run& run) {
     items += fmt::format("<li>{}.</li>\n", Escaped(sentence));
   return fmt::format("<ol class=\"verdict{}\">\n{}</ol>\n", run.is_whole ? "" : " is-broken",
                      items);
+}
+
+std::string ExpectationsOf(const System& system) {
+  const std::string sentence = ExpectedSentence(system);
+  if (sentence.empty()) return {};
+  std::string items;
+  for (const std::string& one : NotAsExpected(system))
+    items += fmt::format("<li>{}</li>\n", Escaped(one));
+  if (!items.empty()) items = "<ul class=\"unexpected\">\n" + items + "</ul>\n";
+  return fmt::format("<p class=\"expected\">{}{}</p>\n{}", Escaped(sentence),
+                     items.empty() ? "" : " Not as expected:", items);
 }
 
 // Of how many runs there is something to say.
@@ -141,7 +153,7 @@ std::string VerdictHtml(const Results& results) {
     if (results.systems.size() > 1) head = Quoted(system.name);
     if (system.runs.size() > 1) head += (head.empty() ? "" : ": ") + OverRuns(system);
     if (!head.empty()) html += fmt::format("<p class=\"of-system\">{}</p>\n", Escaped(head));
-    html += SentencesOf(system.runs.front());
+    html += SentencesOf(system.runs.front()) + ExpectationsOf(system);
   }
   return html;
 }

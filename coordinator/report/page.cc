@@ -7,6 +7,7 @@
 #include "coordinator/explain/told.h"
 #include "coordinator/report/answer_sections.h"
 #include "coordinator/report/csv.h"
+#include "coordinator/report/expected_words.h"
 #include "coordinator/report/measure_sections.h"
 #include "coordinator/report/metric_sections.h"
 #include "coordinator/report/misses.h"
@@ -125,6 +126,8 @@ class Builder {
     for (const System& system : results_.systems) {
       for (const std::string& sentence : system.runs.front().verdict)
         lines += fmt::format("! {}\n", sentence);
+      for (const std::string& sentence : NotAsExpected(system))
+        lines += fmt::format("not as expected: {}\n", sentence);
     }
     if (!lines.empty()) AddText("The verdict", lines);
   }

@@ -44,6 +44,11 @@ void TakeAnswers(const AnswersJson& summary, Run* run) {
   run->has_answers = summary.contains("verdict");
   run->verdict = summary.value("verdict", std::vector<std::string>());
   run->warnings = summary.value("warnings", std::vector<std::string>());
+  for (const AnswersJson& one : summary.value("expectations", AnswersJson::array())) {
+    run->expectations.push_back({one.at("subject").get<std::string>(),
+                                 one.at("figure").get<std::string>(),
+                                 one.at("what").get<std::string>(), one.at("holds").get<bool>()});
+  }
   for (auto& [name, client] : run->clients) TakeClient(summary.at("clients").at(name), &client);
   const auto chains = summary.value("chains", AnswersJson::object());
   for (const auto& [name, of] : chains.items()) {

@@ -7,8 +7,9 @@
 
 namespace tcs::report {
 
-// Fills the verdict, the warnings, the chains, and of each client of `run` its deadline and times.
-// What is missing stays as it is; throws where something is not what it should be.
+// Fills the verdict, the warnings, the expectations, the chains, and of each client of `run` its
+// deadline and times. What is missing stays as it is; throws where something is not what it should
+// be.
 void TakeAnswers(const nlohmann::json& summary, Run* run);
 
 }  // namespace tcs::report

@@ -50,6 +50,12 @@ struct Client {
   ActivationTimes times;            // where they were asked for
 };
 
+// What the scenario expects of a figure, and what came of it.
+struct Expectation {
+  std::string subject, figure, what;
+  bool holds = false;
+};
+
 // The distance between the two bodies.
 struct Track {
   std::vector<double> time_s, distance_m;
@@ -65,6 +71,7 @@ struct Run {
   bool has_answers = false;
   std::vector<std::string> verdict;  // worst first; why it is not whole before all
   std::vector<std::string> warnings;
+  std::vector<Expectation> expectations;
   std::vector<Chain> chains;
   std::string folder, scenario, sync, accounting;
   std::vector<std::string> bodies;

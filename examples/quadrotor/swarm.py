@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Prints scenario.yaml with N quadrotors in the place of the one, a metre apart, without the push, and with planners
-that plan five times a second:
+"""Prints scenario.yaml with N quadrotors in the place of the one, a metre apart, without the push and what is
+expected, and with planners that plan five times a second:
 
     ./swarm.py 10 >swarm.yaml              rate loops of 1 kHz
     ./swarm.py 30 --hz 250 >swarm.yaml
@@ -32,8 +32,9 @@ def main():
     options.add_argument("drones", type=int)
     options.add_argument("--hz", type=int, default=1000, help="of the rate loops")
     options = options.parse_args()
-    for entry in parts((Path(__file__).parent / "scenario.yaml").read_text()):
-        if entry.startswith(("  drone", "  body drone")) and "push" not in entry.split(":")[0]:
+    text = (Path(__file__).parent / "scenario.yaml").read_text()
+    for entry in parts(text.split("\nexpect:")[0] + "\n"):
+        if entry.startswith("  drone") and "push" not in entry.split(":")[0]:
             for number in range(options.drones):
                 print(one_of_many(entry, number, options.hz), end="")
         elif not entry.startswith(("  referee", "  drone_push")):

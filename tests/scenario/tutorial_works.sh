@@ -23,6 +23,7 @@ near() {  # FOLDER: whether the drone ended within 20 mm of 1, 2, 3
     awk -F, '{exit !(($3-1)^2 + ($4-2)^2 + ($5-3)^2 < 0.02^2)}'
 }
 near out || fail "the DDS controller does not hold the drone"
+(($(grep -c 'not as expected: hover.yaml' "$work/said") == 4)) || fail "not what it is about: $(cat "$work/said")"
 ! near slow || fail "a computer a hundred times slower makes no difference"
 grep -q 'drone/controller' <(grep '/wrench' "$work/said") || fail "nobody wrote /wrench"
 grep -Eq '^planner +0.5 ' "$work/said" || fail "the report lacks the sweep: $(cat "$work/said")"

@@ -1,6 +1,6 @@
 #include "coordinator/explain/explanation.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <numeric>
 
@@ -76,6 +76,25 @@ TEST(ExplanationTest, TheWorstAreThoseThatAreMostLate) {
   EXPECT_EQ(worst[2]->client, "r/planner");
   EXPECT_EQ(Choose(told, {.client = "r/planner"}).size(), 1u);
   EXPECT_EQ(Choose(told, {.at_ns = 30 * kMs}).size(), 2u);
+}
+
+TEST(ExplanationTest, OneOfEachQueueComesBeforeTheOthersOfIt) {
+  // At 0 and at 1000 something is late, and two wait behind it; in between is another client's.
+  Told told{.clients = kClients};
+  for (const std::int64_t at : {0, 1000}) {
+    const std::int64_t more = at / 500;
+    told.activations.push_back({.client = "a", .release_ns = at, .end_ns = at + 50 + more});
+    told.activations.push_back({.client = "b", .release_ns = at + 5, .end_ns = at + 55});
+    told.activations.push_back(
+        {.client = "a", .release_ns = at + 10, .end_ns = at + 58 + more, .queued_ns = 40});
+    told.activations.push_back(
+        {.client = "a", .release_ns = at + 20, .end_ns = at + 66 + more, .queued_ns = 38});
+  }
+  for (Activation& one : told.activations) one.deadline_ns = 10;
+  std::vector<std::int64_t> releases;
+  for (const Activation* one : Choose(told, {.client = "a", .most = 9}))
+    releases.push_back(one->release_ns);
+  EXPECT_THAT(releases, testing::ElementsAre(1000, 0, 1010, 10, 1020, 20));
 }
 
 }  // namespace

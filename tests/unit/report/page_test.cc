@@ -53,6 +53,30 @@ TEST_F(PageTest, SaysWhatItsDataSay) {
   EXPECT_TRUE(page.warnings.empty());
 }
 
+TEST_F(PageTest, SaysWhatIsNotAsExpected) {
+  WriteRun("one");
+  auto summary = Summary();
+  const auto expect = [&](bool holds) {
+    summary["expectations"] = {{{"subject", "body <drone>"},
+                                {"figure", "z"},
+                                {"what", "z was between 0 and 2, expected at least 1"},
+                                {"holds", holds}},
+                               {{"subject", "r/planner"},
+                                {"figure", "misses"},
+                                {"what", "misses was 0, expected at most 0"},
+                                {"holds", true}}};
+    return summary.dump();
+  };
+  EXPECT_FALSE(Has(Make({"one"}), "expectations"));
+  Write("one/summary.json", expect(false));
+  const Page page = Make({"one"});
+  EXPECT_TRUE(Has(page, "1 of 2 expectations hold. Not as expected:"));
+  EXPECT_TRUE(Has(page, "body &lt;drone&gt;: z was between 0 and 2, expected at least 1</li>"));
+  EXPECT_FALSE(Has(page, "misses was 0"));
+  Write("one/summary.json", expect(true));
+  EXPECT_TRUE(Has(Make({"one"}), "2 of 2 expectations hold.</p>"));
+}
+
 TEST_F(PageTest, ThePapersNumbersStandOnlyBesideItsScenario) {
   WriteRun("one");
   EXPECT_FALSE(Has(Make({"one"}), "the paper"));
