@@ -48,7 +48,7 @@ std::string DeadlineText(const DeadlineFigures& deadline) {
 
 // Relative to another client, as the robot's scheduler sees them.
 std::string_view RankOf(const ClientOutcome& other, const ClientOutcome& client) {
-  if (other.name == client.name) return "";
+  if (other.name == client.name || !other.priority || !client.priority) return "";
   if (other.priority == client.priority) return ", of the same priority,";
   return other.priority > client.priority ? ", of higher priority," : ", of lower priority,";
 }

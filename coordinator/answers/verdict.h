@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace tcs {
 
 struct ClientOutcome {
   std::string name;
-  int priority = 0;
+  std::optional<int> priority;  // none where deadlines order threads
   ClientFigures figures;
 };
 

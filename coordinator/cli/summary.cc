@@ -171,6 +171,8 @@ std::string SummaryText(const Scenario& scenario, const RunOptions& options, con
   }
   for (const RobotSpec& robot : scenario.robots) {
     json["robots"][robot.name] = {{"cores", robot.cores}, {"speed", robot.speed}};
+    json["robots"][robot.name]["scheduler"] =
+        robot.scheduler == SchedulerPolicy::kFixedPriority ? "fixed_priority" : "edf";
     if (answers) json["robots"][robot.name]["use"] = UseOfCores(robot, r);
     for (const ClientSpec& client : robot.clients) {
       const bool periodic = client.client_class == ClientClass::kPeriodic;

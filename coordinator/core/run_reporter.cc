@@ -91,7 +91,11 @@ void RunReporter::Answer(VirtualTime end) {
   for (const Launches::Launch& launch : from_.launches.all()) {
     const auto who = from_.answers.WhoIs(*launch.spec);
     ClientReport& client = run_.report.clients[outcomes.size()];
-    ClientOutcome& outcome = outcomes.emplace_back(launch.spec->name, launch.spec->priority);
+    ClientOutcome& outcome = outcomes.emplace_back();
+    outcome.name = launch.spec->name;
+    const RobotSpec& robot = run_.scenario.robots[launch.robot->number - 1];
+    if (robot.scheduler == SchedulerPolicy::kFixedPriority)
+      outcome.priority = launch.spec->priority;
     if (!who.has_value()) continue;
     client.figures = figures[static_cast<std::size_t>(who->client)];
     if (const auto found = inputs.find(who->client); found != inputs.end())

@@ -25,6 +25,7 @@ std::string_view RankOf(const std::string& other, const std::string& client,
                         const std::map<std::string, Client>& clients) {
   const auto a = clients.find(other), b = clients.find(client);
   if (other == client || a == clients.end() || b == clients.end()) return "";
+  if (!a->second.priority || !b->second.priority) return "";
   if (a->second.priority == b->second.priority) return ", of the same priority,";
   return a->second.priority > b->second.priority ? ", of higher priority," : ", of lower priority,";
 }

@@ -91,12 +91,23 @@ std::map<std::string, Chain> ReadChains(const json& summary) {
   return chains;
 }
 
+// Among clients of a robot with `scheduler: edf` it says little.
+std::optional<std::int64_t> PriorityOf(const json& summary, const json& client) {
+  const auto robots = summary.find("robots");
+  if (robots != summary.end() && robots->is_object()) {
+    const auto robot = robots->find(TextOf(client, "robot"));
+    if (robot != robots->end() && robot->is_object() && TextOf(*robot, "scheduler") == "edf")
+      return {};
+  }
+  return ValueOf<std::int64_t>(client, "priority", 0);
+}
+
 std::map<std::string, Client> ReadClients(const json& summary) {
   std::map<std::string, Client> clients;
   if (!summary.is_object() || !summary.contains("clients")) return clients;
   for (const auto& [name, of] : summary["clients"].items()) {
     if (!of.is_object()) continue;
-    clients[name] = {.priority = ValueOf<std::int64_t>(of, "priority", 0),
+    clients[name] = {.priority = PriorityOf(summary, of),
                      .has_deadline = of.contains("deadline") && of["deadline"].is_object(),
                      .counted_after_ns = ValueOf<std::int64_t>(of, "counted_after_ns", -1)};
   }

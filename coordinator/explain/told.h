@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct Activation {
 };
 
 struct Client {
-  std::int64_t priority = 0;
+  std::optional<std::int64_t> priority;  // none where deadlines order threads, or nobody tells
   bool has_deadline = false;
   // What ended until then was its start.
   std::int64_t counted_after_ns = -1;

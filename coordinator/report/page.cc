@@ -210,6 +210,9 @@ class Builder {
     for (const System& system : results_.systems) {
       auto read = ReadTimeline(system.runs.front().folder, system.name);
       if (auto* timeline = std::get_if<Timeline>(&read)) {
+        // Of a run in which nothing happens at its end, too, all of its time is shown.
+        timeline->virtual_end =
+            std::max(timeline->virtual_end, system.runs.front().virtual_ns / 1000);
         const auto of = std::ranges::find(told_, &system, &ToldOf::system);
         if (of->told.has_value()) AddMisses(*of->told, timeline);
         timelines.push_back(std::move(*timeline));

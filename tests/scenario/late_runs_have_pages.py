@@ -79,7 +79,7 @@ def keys_alone(browser):
             break
         assert stop[2], f"a stop without a name: {stop}"
         stops.append(stop)
-    assert 15 < len(stops) <= 36, (len(stops), stops)
+    assert 15 < len(stops) <= 30, (len(stops), stops)
     reached = {stop[0] for stop in stops}
     assert {"why", "world", "about-motion", "said", "about-timeline"} <= reached, stops
     # A toolbar's arrows go on within it; so do those of the list of lines.
