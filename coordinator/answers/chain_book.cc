@@ -33,10 +33,10 @@ void ChainBook::Open(std::vector<std::string> clients, std::vector<Sensor> senso
 
 Lineage ChainBook::Sampled(int sensor, std::int64_t sampled_ns) const {
   auto knowledge = std::make_shared<Knowledge>();
-  (*knowledge)[{.sensor = sensor}] = {.sampled_ns = sampled_ns};
+  knowledge->push_back({{.sensor = sensor}, {.sampled_ns = sampled_ns}});
   for (std::size_t i = 0; i < chains_.size(); ++i) {
     if (chains_[i].sensor != sensor || chains_[i].through.empty()) continue;
-    (*knowledge)[{sensor, static_cast<int>(i), 0}] = {.sampled_ns = sampled_ns};
+    knowledge->push_back({{sensor, static_cast<int>(i), 0}, {.sampled_ns = sampled_ns}});
   }
   return knowledge;
 }
@@ -54,13 +54,15 @@ Lineage ChainBook::Sends(const Who& who, std::int64_t at_ns) {
   const Knows& knows = UsedBy(who, at_ns);
   if (knows.empty()) return nullptr;
   auto knowledge = std::make_shared<Knowledge>();
+  knowledge->reserve(knows.size());
   for (const auto& [of, had] : knows) {
     if (had.sample.steps == kMostSteps) continue;
-    (*knowledge)[of] = {
-        had.sample.sampled_ns,
-        std::make_shared<LineageStep>(LineageStep{who.client, had.arrived_ns, had.took_ns,
-                                                  had.first_ns, at_ns, had.sample.last}),
-        had.sample.steps + 1};
+    knowledge->push_back(
+        {of,
+         {had.sample.sampled_ns,
+          std::make_shared<LineageStep>(LineageStep{who.client, had.arrived_ns, had.took_ns,
+                                                    had.first_ns, at_ns, had.sample.last}),
+          had.sample.steps + 1}});
   }
   return knowledge;
 }
@@ -123,13 +125,17 @@ void ChainBook::Count(const LineageOf& of, const Had& had, int client, int comma
   const Sensor& sensor = sensors_[static_cast<std::size_t>(of.sensor)];
   const Command& to = commands_[static_cast<std::size_t>(command)];
   const std::int64_t acts_ns = at_ns + to.latency_ns, age_ns = acts_ns - had.sample.sampled_ns;
-  std::vector<int> path;
-  for (const LineageStep* step : StepsOf(had.sample)) path.push_back(step->client);
-  path.push_back(client);
+  path_ = {client};
+  for (const LineageStep* step = had.sample.last.get(); step != nullptr; step = step->before.get())
+    path_.push_back(step->client);
+  std::ranges::reverse(path_);
   const auto count = [&](Kept& kept) {
     ChainFigures& figures = kept.figures;
     figures.age.Add(age_ns);
-    ++kept.paths[path];
+    // Most come on the way of the one before.
+    if (kept.newest == nullptr || kept.newest->first != path_)
+      kept.newest = &*kept.paths.try_emplace(path_).first;
+    ++kept.newest->second;
     // Samples that no command before could know of.
     const std::int64_t last_ns =
         std::exchange(kept.last_sampled_ns, std::max(kept.last_sampled_ns, had.sample.sampled_ns));

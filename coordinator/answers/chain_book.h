@@ -68,6 +68,7 @@ class ChainBook {
     ChainFigures figures;
     std::int64_t last_sampled_ns = -1;
     std::map<std::vector<int>, std::int64_t> paths;  // how many commands came on each
+    std::pair<const std::vector<int>, std::int64_t>* newest = nullptr;  // of these; null: none yet
   };
 
   // What it knows, of which it sends something at that time.
@@ -84,6 +85,7 @@ class ChainBook {
   std::map<int, Knows> threads_, of_clients_;
   std::map<std::pair<int, int>, Kept> kept_;  // by sensor and command
   std::vector<Kept> named_;                   // as `chains_`
+  std::vector<int> path_;                     // of the command that is counted
 };
 
 }  // namespace tcs

@@ -15,16 +15,28 @@ constexpr std::size_t kMostNew = 1024;
 }  // namespace
 
 void Distribution::Add(std::int64_t value_ns) {
-  value_ns = std::max<std::int64_t>(0, value_ns);
-  max_ = std::max(max_, value_ns);
-  min_ = count_ == 0 ? value_ns : std::min(min_, value_ns);
-  ++count_;
-  sum_ += static_cast<double>(value_ns);
-  new_values_.push_back(value_ns);
+  new_values_.push_back(std::max<std::int64_t>(0, value_ns));
   if (new_values_.size() == kMostNew) Settle();
 }
 
-double Distribution::Mean() const { return count_ == 0 ? 0 : sum_ / static_cast<double>(count_); }
+std::int64_t Distribution::count() const {
+  return count_ + static_cast<std::int64_t>(new_values_.size());
+}
+
+std::int64_t Distribution::max() const {
+  Settle();
+  return max_;
+}
+
+std::int64_t Distribution::min() const {
+  Settle();
+  return min_;
+}
+
+double Distribution::Mean() const {
+  Settle();
+  return count_ == 0 ? 0 : sum_ / static_cast<double>(count_);
+}
 
 std::int64_t Distribution::Quantile(double share) const {
   Settle();
@@ -42,8 +54,15 @@ std::int64_t Distribution::Quantile(double share) const {
 
 // In order, so that each has its place beside the one before.
 void Distribution::Settle() const {
+  if (new_values_.empty()) return;
   std::ranges::sort(new_values_);
-  for (const std::int64_t value : new_values_) ++counts_[is_rounded_ ? Rounded(value) : value];
+  min_ = count_ == 0 ? new_values_.front() : std::min(min_, new_values_.front());
+  max_ = std::max(max_, new_values_.back());
+  count_ += static_cast<std::int64_t>(new_values_.size());
+  for (const std::int64_t value : new_values_) {
+    sum_ += static_cast<double>(value);
+    ++counts_[is_rounded_ ? Rounded(value) : value];
+  }
   new_values_.clear();
   if (is_rounded_ || counts_.size() <= kMostValues) return;
   is_rounded_ = true;

@@ -18,9 +18,9 @@ class Distribution {
   // A value of less than nothing counts as 0.
   void Add(std::int64_t value_ns);
 
-  std::int64_t count() const { return count_; }
-  std::int64_t max() const { return max_; }  // 0 without a value, as all that follows
-  std::int64_t min() const { return min_; }
+  std::int64_t count() const;
+  std::int64_t max() const;  // 0 without a value, as all that follows
+  std::int64_t min() const;
   double Mean() const;
   // The least value that at least that share of all values do not exceed (nearest rank).
   std::int64_t Quantile(double share) const;
@@ -29,11 +29,12 @@ class Distribution {
   static std::int64_t Rounded(std::int64_t value_ns);
   void Settle() const;
 
-  // What has been added lately is only noted: to find its place among all others takes longer.
+  // What has been added lately is only noted: a run has many of these, none of them at hand.
   mutable std::vector<std::int64_t> new_values_;
+  // Of the others:
   mutable std::map<std::int64_t, std::int64_t> counts_;  // by value
-  std::int64_t count_ = 0, max_ = 0, min_ = 0;
-  double sum_ = 0;
+  mutable std::int64_t count_ = 0, max_ = 0, min_ = 0;
+  mutable double sum_ = 0;
   mutable bool is_rounded_ = false;
 };
 

@@ -4,8 +4,9 @@
 
 #include <compare>
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace tcs {
 
@@ -34,7 +35,8 @@ struct LineageOf {
   auto operator<=>(const LineageOf&) const = default;
 };
 
-using Knowledge = std::map<LineageOf, KnownSample>;
+// In order, each once: many are made, and few looked up.
+using Knowledge = std::vector<std::pair<LineageOf, KnownSample>>;
 // Of a message; null: of none.
 using Lineage = std::shared_ptr<const Knowledge>;
 

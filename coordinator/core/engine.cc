@@ -315,7 +315,7 @@ void Engine::LookAround() {
   LeaveCpuIfClaimed();
   if (run_.options.on_progress) {
     if (shows_++ % (pacing_.IsWatched() ? 1 : kShowsPerFlush) == 0) {
-      records_.Flush();
+      records_.Flush(pacing_.IsWatched());
       dds_.records().Flush();
     }
     run_.options.on_progress(reporter_.Now());

@@ -33,7 +33,7 @@ HostTime Engine::RunningTime() const { return RunClock::Now() - pacing_.held(); 
 void Engine::FlushForWatchers() {
   const HostTime now = RunClock::Now();
   if (!pacing_.IsWatched() || now < next_flush_) return;
-  records_.Flush();
+  records_.Flush(true);
   next_flush_ = now + kFlushEvery;
 }
 

@@ -43,8 +43,10 @@ class RunRecords {
   [[nodiscard]] std::string Follow(AnswerFeed& answers);
   // From when real times count.
   void StartAt(const RunClock& clock);
-  // So that what is left of a run that is killed ends shortly before.
-  void Flush();
+  // So that what is left of a run that is killed ends shortly before. Of a run with set costs the
+  // metrics that programs print follow at its end, in an order that is always the same, unless
+  // somebody watches it.
+  void Flush(bool for_watchers);
   [[nodiscard]] std::string Close();
   // Once no client lives any more: what they have printed to their end counts, at `end`.
   [[nodiscard]] std::string CloseMetrics(VirtualTime end);

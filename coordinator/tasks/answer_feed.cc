@@ -49,9 +49,12 @@ std::vector<std::string> AnswerFeed::NamesOfClients() const {
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const ClientSpec& client) const {
-  const auto found = clients_.find(&client);
-  if (found == clients_.end()) return std::nullopt;
-  return AnswerBook::Who{.client = found->second};
+  if (last_.first != &client) {
+    const auto found = clients_.find(&client);
+    if (found == clients_.end()) return std::nullopt;
+    last_ = *found;
+  }
+  return AnswerBook::Who{.client = last_.second};
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const std::string& client) const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/answers/answer_book.h"
@@ -40,6 +41,8 @@ class AnswerFeed {
   AnswerBook book_;
   ChainBook chains_;
   std::map<const ClientSpec*, int> clients_;
+  // What happens to a thread happens in a row.
+  mutable std::pair<const ClientSpec*, int> last_{};
   std::map<std::string, int> names_;
 };
 

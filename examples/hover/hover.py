@@ -5,8 +5,8 @@ An ordinary program: nothing here knows of tcs. Whoever sends {"goal": [x, y, z]
 import json
 import socket
 
-SENSORS = ("127.0.0.1", 41010)
-COMMANDS = ("127.0.0.1", 41011)
+SENSORS = ("127.0.0.1", 21010)
+COMMANDS = ("127.0.0.1", 21011)
 STIFFNESS, DAMPING = 4.0, 4.0  # N/m, N*s/m: critically damped at 1 kg
 
 goal = [1.0, 2.0, 3.0]

@@ -7,8 +7,8 @@ import random
 import socket
 import sys
 
-SENSORS = ("127.0.0.1", 41020)
-CONTROLLER = ("127.0.0.1", 41010)
+SENSORS = ("127.0.0.1", 21020)
+CONTROLLER = ("127.0.0.1", 21010)
 POINTS = 250_000
 REACH = 4.0  # m
 

@@ -20,9 +20,9 @@ says() { grep -Eq "^tcsim: $1" stderr || fail "no '$1' in: $(cat stderr)"; }
 hover ''
 [[ $status == 0 && ! -s stderr ]] || fail "a robot in reach: status $status, $(cat stderr)"
 
-hover 's/41010/41019/'
-says 'warning: channel sensors: no program listens on 127.0.0.1:41019'
-says 'warning: channel thrusters: nothing came in on 127.0.0.1:41011, so no command moved drone'
+hover 's/21010/21019/'
+says 'warning: channel sensors: no program listens on 127.0.0.1:21019'
+says 'warning: channel thrusters: nothing came in on 127.0.0.1:21011, so no command moved drone'
 [[ $status == 0 ]] || fail "a warning became status $status"
 
 # What is no command is said once, and counted.

@@ -9,7 +9,7 @@ cd "$out"
 "$tcsim" new hover >/dev/null
 cd hover
 # Ports of its own; a program that does not heed SIGTERM is ended all the same.
-sed -i 's/41010/47310/; s/41011/47311/' scenario.yaml controller.py
+sed -i 's/21010/22310/; s/21011/22311/' scenario.yaml controller.py
 sed -i 's/^        body: drone$/&\n      deaf: {command: [python3, deaf.py]}/' scenario.yaml
 cat >deaf.py <<'PY'
 import signal, time

@@ -24,9 +24,9 @@ static int Read3(const char* message, const char* key, double v[3]) {
 
 int main(void) {
   const int sensors = socket(AF_INET, SOCK_DGRAM, 0), thrust = socket(AF_INET, SOCK_DGRAM, 0);
-  const struct sockaddr_in listens = Local(41010), to = Local(41011);
+  const struct sockaddr_in listens = Local(21010), to = Local(21011);
   if (bind(sensors, (const struct sockaddr*)&listens, sizeof listens) != 0) {
-    perror("bind to port 41010");
+    perror("bind to port 21010");
     return 1;
   }
   for (;;) {
