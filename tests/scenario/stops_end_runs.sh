@@ -21,7 +21,8 @@ begun() {  # RUN: until it has begun, and stands if it is to
   for ((i = 0; i < 1200; ++i)); do
     kill -0 "$run" 2>/dev/null || fail "$*: $(cat said)"
     if [[ $* == *--pause* ]]; then
-      [[ -s results/bodies.csv ]] && return  # where everything is at the start
+      # Where everything is at the start. Before, nothing has begun of which there could be a summary.
+      grep -qs drone results/bodies.csv && return
     else
       grep -qs deaf results/hover-deaf.out.log && return
     fi
