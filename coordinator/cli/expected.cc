@@ -4,7 +4,7 @@
 
 #include "coordinator/cli/exit_status.h"
 #include "coordinator/cli/print.h"
-#include "coordinator/cli/summary.h"
+#include "coordinator/core/failures.h"
 
 namespace tcs {
 
@@ -48,13 +48,7 @@ JunitSuite JunitSuiteOf(const Scenario& scenario, const RunReport& report,
                         const std::vector<std::string>& refused) {
   JunitSuite suite{scenario.name, static_cast<double>(report.real_ns) * 1e-9, {}};
   for (const ClientReport& client : report.clients) {
-    const bool has_failed = client.ended_at_ns >= 0 && client.wait_status != 0;
-    std::string failure;
-    if (has_failed) {
-      failure = fmt::format("{} ended at {:.3f} s with {}", client.name,
-                            static_cast<double>(client.ended_at_ns) * 1e-9,
-                            HowItEnded(client.wait_status));
-    }
+    const std::string failure = HasFailed(client) ? HowItEnded(client) : "";
     suite.cases.push_back({client.name, "does not fail", failure, failure});
   }
   for (JunitCase& one : JunitCases(judgements)) suite.cases.push_back(std::move(one));

@@ -72,11 +72,6 @@ void PrintPace(const PaceReport& pace) {
 
 }  // namespace
 
-std::string HowItEnded(int wait_status) {
-  if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
-  return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
-}
-
 double OverheadPercent(const RunReport& r) {
   return r.real_ns == 0 ? 0.0 : 100.0 * Seconds(r.coordinating_ns) / Seconds(r.real_ns);
 }

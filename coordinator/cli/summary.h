@@ -22,7 +22,4 @@ void PrintSummary(const Scenario& scenario, const RunReport& report, const std::
 std::string SummaryText(const Scenario& scenario, const RunOptions& options,
                         const RunReport& report, const std::vector<Judgement>& judgements = {});
 
-// "exit status 1", "signal 11 (Segmentation fault)".
-std::string HowItEnded(int wait_status);
-
 }  // namespace tcs

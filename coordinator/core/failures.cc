@@ -13,12 +13,6 @@ namespace tcs {
 
 namespace {
 
-// "exit status 1", "signal 11 (Segmentation fault)".
-std::string HowItEnded(int wait_status) {
-  if (WIFEXITED(wait_status)) return fmt::format("exit status {}", WEXITSTATUS(wait_status));
-  return fmt::format("signal {} ({})", WTERMSIG(wait_status), strsignal(WTERMSIG(wait_status)));
-}
-
 // "SIGINT".
 std::string NameOfSignal(int signal) {
   const char* name = sigabbrev_np(signal);
@@ -43,11 +37,18 @@ bool HasFailed(const ClientReport& client) {
   return client.ended_at_ns >= 0 && client.wait_status != 0;
 }
 
+std::string HowItEnded(const ClientReport& client) {
+  const int status = client.wait_status;
+  const std::string how = WIFEXITED(status) ? fmt::format("exit status {}", WEXITSTATUS(status))
+                                            : fmt::format("signal {} ({})", WTERMSIG(status),
+                                                          strsignal(WTERMSIG(status)));
+  return fmt::format("{} ended at {:.3f} s with {}", client.name,
+                     static_cast<double>(client.ended_at_ns) / 1e9, how);
+}
+
 std::string FailureOf(const ClientReport& client, const std::string& folder,
                       const std::string& shown) {
-  return fmt::format("{} ended at {:.3f} s with {}: {}", client.name,
-                     static_cast<double>(client.ended_at_ns) / 1e9, HowItEnded(client.wait_status),
-                     LastWordsOf(client.name, folder, shown));
+  return HowItEnded(client) + ": " + LastWordsOf(client.name, folder, shown);
 }
 
 std::vector<std::string> FailuresIn(const RunReport& report, std::int64_t end_ns,

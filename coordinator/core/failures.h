@@ -12,6 +12,9 @@ namespace tcs {
 // Before the run's end, and not as a program that has done its work.
 bool HasFailed(const ClientReport& client);
 
+// "rover/driver ended at 1.350 s with signal 11 (Segmentation fault)", of one that did end.
+std::string HowItEnded(const ClientReport& client);
+
 // "rover/driver ended at 1.350 s with exit status 1: "its last line" (rover-driver.err.log)". Reads
 // the client's logs in `folder`; `shown` is what stands before their names.
 std::string FailureOf(const ClientReport& client, const std::string& folder,

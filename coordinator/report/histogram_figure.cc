@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "coordinator/report/plot.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/style.h"
 #include "coordinator/report/text.h"
@@ -38,7 +37,18 @@ void DrawPanel(Svg* svg, const Frame& frame, const Axis& x, const HistogramPlot&
   }
   svg->Text(frame.right, frame.top - 8, Svg::Anchor::kEnd,
             Legend(panel, spread, plot.unit, plot.what, frame.right - frame.left), "note");
-  const Histogram histogram = HistogramOf(panel.values, x.low(), x.high(), bin_width);
+  DrawHistogram(svg, frame, x, panel.values, bin_width, panel.colour);
+  const double at = x.Pixel(spread.median);
+  svg->Path(fmt::format("M{} {}l-4.5 8h9z", Coordinate(at), Coordinate(frame.bottom)),
+            SeriesClass('f', panel.colour));
+  svg->Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
+}
+
+}  // namespace
+
+void DrawHistogram(Svg* svg, const Frame& frame, const Axis& x, const std::vector<double>& values,
+                   double bin_width, int colour) {
+  const Histogram histogram = HistogramOf(values, x.low(), x.high(), bin_width);
   double most = 0;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     most = std::max(most, 100 * histogram.ShareOf(i));
@@ -53,15 +63,9 @@ void DrawPanel(Svg* svg, const Frame& frame, const Axis& x, const HistogramPlot&
     outline.emplace_back(x.Pixel(from), height);
     outline.emplace_back(std::min(x.Pixel(from + bin_width), frame.right), height);
   }
-  svg->Area(outline, frame.bottom, "fill " + SeriesClass('f', panel.colour));
-  svg->Polyline(outline, "line " + SeriesClass('s', panel.colour));
-  const double at = x.Pixel(spread.median);
-  svg->Path(fmt::format("M{} {}l-4.5 8h9z", Coordinate(at), Coordinate(frame.bottom)),
-            SeriesClass('f', panel.colour));
-  svg->Line(frame.left, frame.bottom, frame.right, frame.bottom, "axis");
+  svg->Area(outline, frame.bottom, "fill " + SeriesClass('f', colour));
+  svg->Polyline(outline, "line " + SeriesClass('s', colour));
 }
-
-}  // namespace
 
 Drawing DrawHistograms(const HistogramPlot& plot, int width) {
   double low = 0, high = 0;

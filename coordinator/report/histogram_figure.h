@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/report/figure.h"
+#include "coordinator/report/plot.h"
 
 namespace tcs::report {
 
@@ -21,6 +22,11 @@ struct HistogramPlot {
   std::vector<double> marks;
   std::vector<HistogramPanel> panels;  // at least one has values
 };
+
+// The shares of the values in percent, in bins of `bin_width` of the axis, which lies in the frame;
+// the axis beside it, too.
+void DrawHistogram(Svg* svg, const Frame& frame, const Axis& x, const std::vector<double>& values,
+                   double bin_width, int colour);
 
 [[nodiscard]] Drawing DrawHistograms(const HistogramPlot& plot, int width);
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "coordinator/report/plot.h"
+#include "coordinator/report/histogram_figure.h"
 #include "coordinator/report/statistics.h"
 #include "coordinator/report/style.h"
 #include "coordinator/report/text.h"
@@ -43,13 +43,12 @@ std::string LegendOf(const ResponseRow& row, double pixels) {
   return WidthOf(all) <= pixels ? all : Fitted(misses, pixels);
 }
 
-// The group's axis, in its unit.
-Axis AxisOf(const ResponseGroup& group, const Scale& scale, int width) {
-  double most = 0;
-  for (const ResponseRow& row : group.rows) {
-    most = std::max({most, row.deadline_s, *std::ranges::max_element(row.values_s)});
-  }
-  return Axis::Linear(0, most > 0 ? most * scale.of_second : 1, width < kWideWidth ? 4 : 8);
+// Of its response times and deadlines.
+double LongestOf(const ResponseGroup& group) {
+  double most_s = 0;
+  for (const ResponseRow& row : group.rows)
+    most_s = std::max({most_s, row.deadline_s, *std::ranges::max_element(row.values_s)});
+  return most_s;
 }
 
 void DrawRow(Svg* svg, const Frame& frame, const Axis& x, const Scale& scale,
@@ -57,22 +56,7 @@ void DrawRow(Svg* svg, const Frame& frame, const Axis& x, const Scale& scale,
   std::vector<double> values = row.values_s;
   for (double& value : values) value *= scale.of_second;
   const double bin_width = NiceStep((x.high() - x.low()) / kResponseBins);
-  const Histogram histogram = HistogramOf(values, x.low(), x.high(), bin_width);
-  double most = 0;
-  for (std::size_t i = 0; i < histogram.counts.size(); ++i)
-    most = std::max(most, 100 * histogram.ShareOf(i));
-  Axis y = Axis::Linear(0, most, 2);
-  y.Place(frame.bottom, frame.top);
-  DrawVerticalAxis(svg, frame, y);
-  Svg::Points outline;
-  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
-    const double from = histogram.low + static_cast<double>(i) * bin_width;
-    const double height = y.Pixel(100 * histogram.ShareOf(i));
-    outline.emplace_back(x.Pixel(from), height);
-    outline.emplace_back(std::min(x.Pixel(from + bin_width), frame.right), height);
-  }
-  svg->Area(outline, frame.bottom, "fill " + SeriesClass('f', row.colour));
-  svg->Polyline(outline, "line " + SeriesClass('s', row.colour));
+  DrawHistogram(svg, frame, x, values, bin_width, row.colour);
   if (row.deadline_s <= 0) return;
   const double at = x.Pixel(row.deadline_s * scale.of_second);
   svg->Line(at, frame.top - 4, at, frame.bottom, "deadline");
@@ -90,11 +74,9 @@ Drawing DrawResponses(const std::vector<ResponseGroup>& groups, int width) {
   const double right = width - kResponseRight;
   double top = kResponseTop;
   for (const ResponseGroup& group : groups) {
-    double most_s = 0;
-    for (const ResponseRow& row : group.rows)
-      most_s = std::max({most_s, row.deadline_s, *std::ranges::max_element(row.values_s)});
+    const double most_s = LongestOf(group);
     const Scale scale = ScaleOf(most_s);
-    Axis x = AxisOf(group, scale, width);
+    Axis x = Axis::Linear(0, most_s > 0 ? most_s * scale.of_second : 1, width < kWideWidth ? 4 : 8);
     x.Place(kResponseLeft, right);
     Frame frame;
     for (const ResponseRow& row : group.rows) {
