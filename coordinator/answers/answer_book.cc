@@ -21,12 +21,12 @@ std::int64_t ToThreeDigits(std::int64_t ns) {
 constexpr std::size_t kMostPeriods = 256;
 // The shortest period is a timer's that is so often that this times as many are all.
 constexpr std::int64_t kOftenEnough = 4;
-constexpr const char* kTimer = "its timer";
 
 }  // namespace
 
-void AnswerBook::Open(std::vector<Client> clients) {
+void AnswerBook::Open(std::vector<Client> clients, std::vector<std::string> sensors) {
   for (Client& client : clients) clients_.push_back({.client = std::move(client)});
+  sensors_ = std::move(sensors);
 }
 
 void AnswerBook::Tell(std::function<void(const Response&)> on_response) {
@@ -37,20 +37,32 @@ void AnswerBook::Tell(std::function<void(const Response&)> on_response) {
 void AnswerBook::HasBegun(int client) {
   Kept& kept = KeptOf(client);
   if (std::exchange(kept.has_begun, true)) return;
-  kept.judged = kept.all = {};
+  kept.judged = kept.others = {};
   kept.in_a_row = 0;
   kept.sources.clear();
   kept.figures.deadline = {};
   kept.figures.late = {};
-  for (auto& [number, thread] : threads_) {
-    if (thread.client != client) continue;
-    kept.figures.after_ns = std::max(kept.figures.after_ns, thread.ended_ns);
-    thread.timed.reset();
+  for (const auto& thread : threads_) {
+    if (thread == nullptr || thread->client != client) continue;
+    kept.figures.after_ns = std::max(kept.figures.after_ns, thread->ended_ns);
+    thread->timed.reset();
   }
 }
 
+const AnswerBook::Thread* AnswerBook::Find(int thread) const {
+  const auto number = static_cast<std::size_t>(thread);
+  return number < threads_.size() ? threads_[number].get() : nullptr;
+}
+
+AnswerBook::Thread* AnswerBook::Find(int thread) {
+  return const_cast<Thread*>(std::as_const(*this).Find(thread));
+}
+
 AnswerBook::Thread& AnswerBook::ThreadOf(const Who& who) {
-  Thread& thread = threads_[who.thread];
+  const auto number = static_cast<std::size_t>(who.thread);
+  if (number >= threads_.size()) threads_.resize(number + 1);
+  if (threads_[number] == nullptr) threads_[number] = std::make_unique<Thread>();
+  Thread& thread = *threads_[number];
   thread.client = who.client;
   thread.is_first = who.is_first;
   return thread;
@@ -68,62 +80,62 @@ void AnswerBook::Took(const Who& who, const Taken& taken) {
     thread.takes_samples = true;
     HasBegun(who.client);
   }
-  if (taken.activation >= thread.releases.size()) return;
-  Release& release = thread.releases[taken.activation];
+  if (taken.activation >= Releases::kMost) return;
+  Release& release = thread.releases.At(taken.activation);
   if (taken.arrived_ns >= release.at_ns) return;
-  release = {taken.arrived_ns, taken.period_ns, std::string(taken.from)};
+  release = {taken.arrived_ns, taken.period_ns, taken.sensor};
 }
 
 void AnswerBook::Commanded(const Who& who, std::int64_t at_ns) {
-  Thread& thread = ThreadOf(who);
-  thread.commands = true;
   HasBegun(who.client);
   Kept& kept = KeptOf(who.client);
   kept.figures.commands = true;
+  if (who.thread < 0) return;
+  Thread& thread = ThreadOf(who);
+  thread.commands = true;
   if (thread.last_sampled_ns >= 0) kept.figures.command_age.Add(at_ns - thread.last_sampled_ns);
 }
 
 std::int64_t AnswerBook::LastSampledOf(int thread) const {
-  const auto found = threads_.find(thread);
-  return found == threads_.end() ? -1 : found->second.last_sampled_ns;
+  const Thread* found = Find(thread);
+  return found == nullptr ? -1 : found->last_sampled_ns;
 }
 
 std::int64_t AnswerBook::ReleaseOf(int thread, unsigned receipt, std::int64_t at_ns) const {
-  const auto found = threads_.find(thread);
-  if (found == threads_.end() || receipt >= found->second.releases.size()) return at_ns;
-  if (receipt == 0 && !found->second.is_by_receipt) return at_ns;
-  return std::min(at_ns, found->second.releases[receipt].at_ns);
+  const Thread* found = Find(thread);
+  if (found == nullptr || receipt >= Releases::kMost) return at_ns;
+  if (receipt == 0 && !found->is_by_receipt) return at_ns;
+  return std::min(at_ns, found->releases[receipt].at_ns);
 }
 
 void AnswerBook::ForgetReceipts(int thread, unsigned receipts) {
-  const auto found = threads_.find(thread);
-  if (found == threads_.end() || receipts == 0) return;
-  auto& releases = found->second.releases;
-  Release goes_on = releases[std::min<std::size_t>(receipts, releases.size() - 1)];
-  releases.fill({});
-  releases.front() = std::move(goes_on);
-  found->second.is_by_receipt = true;
+  Thread* found = Find(thread);
+  if (found == nullptr || receipts == 0) return;
+  const Release goes_on = found->releases[receipts];
+  found->releases.Clear();
+  found->releases.At(0) = goes_on;
+  found->is_by_receipt = true;
 }
 
 void AnswerBook::Dies(int thread) {
   cores_.Stop(thread);
-  const auto found = threads_.find(thread);
-  if (found == threads_.end()) return;
-  JudgeLast(found->second);
-  threads_.erase(found);
+  Thread* found = Find(thread);
+  if (found == nullptr) return;
+  JudgeLast(*found);
+  threads_[static_cast<std::size_t>(thread)].reset();
 }
 
 void AnswerBook::Idles(int thread) {
-  const auto found = threads_.find(thread);
-  if (found == threads_.end()) return;
-  found->second.releases.fill({});
-  found->second.is_by_receipt = false;
+  Thread* found = Find(thread);
+  if (found == nullptr) return;
+  found->releases.Clear();
+  found->is_by_receipt = false;
 }
 
 void AnswerBook::NeverCameTo(const Who& who, const Taken& waiting, std::int64_t end_ns) {
   Thread& thread = ThreadOf(who);
   EndPaused(thread, end_ns);
-  thread.releases.front() = {waiting.arrived_ns, waiting.period_ns, std::string(waiting.from)};
+  thread.releases.At(0) = {waiting.arrived_ns, waiting.period_ns, waiting.sensor};
   Activation activation{
       .cause = ReleaseCause::kInput, .release_ns = waiting.arrived_ns, .start_ns = end_ns};
   Ended(who, activation, 0, end_ns, 0);
@@ -190,9 +202,7 @@ void AnswerBook::Pauses(const Who& who, const Activation& activation, unsigned r
                         std::int64_t at_ns, std::int64_t executed_ns, const Pause& pause) {
   Thread& thread = ThreadOf(who);
   const Release release =
-      thread.begun.has_value()
-          ? thread.begun->release
-          : thread.releases[std::min<std::size_t>(receipt, shm::Receipts::kMost)];
+      thread.begun.has_value() ? thread.begun->release : thread.releases[receipt];
   thread.begun = {UntilNow(thread, who, activation, at_ns, executed_ns), release, pause};
 }
 
@@ -200,9 +210,7 @@ void AnswerBook::Ended(const Who& who, const Activation& activation, unsigned re
                        std::int64_t end_ns, std::int64_t executed_ns) {
   Thread& thread = ThreadOf(who);
   const Release release =
-      thread.begun.has_value()
-          ? thread.begun->release
-          : thread.releases[std::min<std::size_t>(receipt, shm::Receipts::kMost)];
+      thread.begun.has_value() ? thread.begun->release : thread.releases[receipt];
   Response response = UntilNow(thread, who, activation, end_ns, executed_ns);
   thread.begun.reset();
   EndOf(thread, std::move(response), release);
@@ -215,7 +223,7 @@ void AnswerBook::EndOf(Thread& thread, Response response, const Release& release
   if (!IsJudged(response.cause)) return;
   if (!thread.is_first && !thread.takes_samples && !thread.commands) return;
   if (response.cause == ReleaseCause::kInput) {
-    Judge(kept, std::move(response), release.period_ns, release.from);
+    Judge(kept, std::move(response), release.period_ns, release.sensor);
     return;
   }
   const std::int64_t release_ns = response.release_ns;
@@ -226,13 +234,11 @@ void AnswerBook::EndOf(Thread& thread, Response response, const Release& release
 }
 
 void AnswerBook::NoteWait(Kept& kept, const Response& response) const {
-  const std::map<int, std::int64_t>& cores_ns = response.parts.cores_ns;
-  std::int64_t waited_ns = 0;
-  for (const auto& [client, ns] : cores_ns) waited_ns += ns;
+  const ByClient& cores_ns = response.parts.cores_ns;
+  const std::int64_t waited_ns = cores_ns.TotalNs();
   LongestWait& longest = kept.figures.longest_wait;
   if (waited_ns <= longest.waited_ns) return;
-  const auto most =
-      std::ranges::max_element(cores_ns, {}, [](const auto& other) { return other.second; });
+  const auto most = std::ranges::max_element(cores_ns, {}, &ByClient::Entry::second);
   longest = {waited_ns, response.release_ns, response.TookNs(), KeptOf(most->first).client.name};
 }
 
@@ -242,19 +248,16 @@ void AnswerBook::Count(const Response& response, ActivationTimes& times) {
   times.execution.Add(response.charged_ns);
 }
 
-void AnswerBook::Add(const std::map<int, std::int64_t>& part,
-                     std::map<std::string, std::int64_t>& to) const {
+void AnswerBook::Add(const ByClient& part, std::map<std::string, std::int64_t>& to) const {
   for (const auto& [client, ns] : part) to[client < 0 ? "" : KeptOf(client).client.name] += ns;
 }
 
-void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns,
-                       const std::string& source) {
+void AnswerBook::Judge(Kept& kept, Response response, std::int64_t period_ns, int source) {
   const bool has_own = kept.client.deadline_ns > 0;
   response.deadline_ns = has_own ? kept.client.deadline_ns : std::max<std::int64_t>(0, period_ns);
   if (on_response_) on_response_(response);
-  Count(response, kept.all);
+  Count(response, response.deadline_ns == 0 ? kept.others : kept.judged);
   if (response.deadline_ns == 0) return;
-  Count(response, kept.judged);
   DeadlineFigures& figures = kept.figures.deadline;
   ++figures.judged;
   if (!has_own) {
@@ -309,9 +312,10 @@ std::int64_t AnswerBook::PeriodOf(const Source& source) {
 }
 
 std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
-  for (auto& [number, thread] : threads_) {
-    EndPaused(thread, end_ns);
-    JudgeLast(thread);
+  for (const auto& thread : threads_) {
+    if (thread == nullptr) continue;
+    EndPaused(*thread, end_ns);
+    JudgeLast(*thread);
   }
   std::vector<ClientFigures> all;
   for (const Kept& kept : clients_) {
@@ -324,10 +328,12 @@ std::vector<ClientFigures> AnswerBook::Conclude(std::int64_t end_ns) {
     } else if (!kept.sources.empty()) {
       const auto most = std::ranges::max_element(
           kept.sources, {}, [](const auto& source) { return source.second.judged; });
-      figures.deadline.source = most->first;
+      figures.deadline.source =
+          most->first == kTimer ? "its timer" : sensors_[static_cast<std::size_t>(most->first)];
       figures.deadline.deadline_ns = PeriodOf(most->second);
     }
-    figures.times = figures.deadline.judged > 0 ? kept.judged : kept.all;
+    figures.times = kept.judged;
+    if (figures.deadline.judged == 0) figures.times.Add(kept.others);
   }
   return all;
 }

@@ -14,14 +14,15 @@
 // to the next expiry.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "coordinator/answers/client_figures.h"
@@ -43,7 +44,7 @@ class AnswerBook {
   // Whose thread something happens to.
   struct Who {
     int client = 0;        // its place in the list that Open was given
-    int thread = 0;        // another number for each of a run
+    int thread = -1;       // another number for each that lives, none left out; -1: not known which
     bool is_first = true;  // of its process
   };
   // A datagram that a thread takes.
@@ -53,7 +54,7 @@ class AnswerBook {
     // not known.
     std::int64_t sampled_ns = -1;
     std::int64_t period_ns = 0;  // of the sensor whose sample it is; 0: it is none
-    std::string_view from;       // the sensor's channel
+    int sensor = -1;             // its place in the list that Open was given
     // The activation that it belongs to: 0, the one that goes on; n, the one that the n-th receipt
     // since then began (shm/receipts.h).
     unsigned activation = 0;
@@ -66,7 +67,8 @@ class AnswerBook {
     int client = -1;  // whose thread has the lock; -1: not known
   };
 
-  void Open(std::vector<Client> clients);
+  // Sensors by the names of their channels.
+  void Open(std::vector<Client> clients, std::vector<std::string> sensors);
   // Is told of each activation by time or input once its deadline is known. Null: nobody.
   void Tell(std::function<void(const Response&)> on_response);
 
@@ -108,7 +110,28 @@ class AnswerBook {
   struct Release {
     std::int64_t at_ns = INT64_MAX;
     std::int64_t period_ns = 0;
-    std::string from;
+    int sensor = -1;
+  };
+  // Of the activation that goes on (0), and of those that a receipt each has begun.
+  class Releases {
+   public:
+    static constexpr std::size_t kMost = shm::Receipts::kMost + 1;
+    const Release& operator[](std::size_t receipt) const {
+      return by_receipt_[std::min(receipt, kMost - 1)];
+    }
+    // Of a receipt below kMost.
+    Release& At(std::size_t receipt) {
+      used_ = std::max(used_, receipt + 1);
+      return by_receipt_[receipt];
+    }
+    void Clear() {
+      std::fill_n(by_receipt_.begin(), used_, Release());
+      used_ = 0;
+    }
+
+   private:
+    std::array<Release, kMost> by_receipt_;
+    std::size_t used_ = 0;  // none beyond is known
   };
   // An activation that pauses, or has gone on since.
   struct Begun {
@@ -120,9 +143,9 @@ class AnswerBook {
     int client = 0;
     bool is_first = true, takes_samples = false, commands = false;
     std::int64_t last_sampled_ns = -1;
-    std::array<Release, shm::Receipts::kMost + 1> releases;  // by receipt
-    bool is_by_receipt = false;                              // the one that goes on
-    std::int64_t ended_ns = 0;                               // its last activation
+    Releases releases;
+    bool is_by_receipt = false;  // the one that goes on
+    std::int64_t ended_ns = 0;   // its last activation
     std::optional<Begun> begun;
     std::optional<Response> timed;     // to be judged once the next expiry is known
     std::int64_t timer_period_ns = 0;  // between the last two
@@ -136,21 +159,24 @@ class AnswerBook {
   struct Kept {
     Client client;
     ClientFigures figures;
-    ActivationTimes judged, all;
+    ActivationTimes judged, others;
     bool has_begun = false;
     std::int64_t in_a_row = 0;
-    std::map<std::string, Source> sources;
+    std::map<int, Source> sources;  // by sensor; kTimer: its timer
   };
 
   Kept& KeptOf(int client) { return clients_[static_cast<std::size_t>(client)]; }
   const Kept& KeptOf(int client) const { return clients_[static_cast<std::size_t>(client)]; }
   CoreWaits::Of OnCores(const Who& who) const;
   Thread& ThreadOf(const Who& who);
+  // Null: nothing is known of it.
+  Thread* Find(int thread);
+  const Thread* Find(int thread) const;
   Response UntilNow(Thread& thread, const Who& who, const Activation& activation,
                     std::int64_t end_ns, std::int64_t executed_ns);
   static void AddCores(const CoreWaits::Times& times, std::int64_t charged_ns, Response& response);
   static void AddPause(const Pause& pause, std::int64_t ns, TimeParts& parts);
-  void Add(const std::map<int, std::int64_t>& part, std::map<std::string, std::int64_t>& to) const;
+  void Add(const ByClient& part, std::map<std::string, std::int64_t>& to) const;
   void NoteWait(Kept& kept, const Response& response) const;
   void HasBegun(int client);
   static void Count(const Response& response, ActivationTimes& times);
@@ -158,10 +184,13 @@ class AnswerBook {
   void EndPaused(Thread& thread, std::int64_t end_ns);
   static std::int64_t PeriodOf(const Source& source);
   void JudgeLast(Thread& thread);
-  void Judge(Kept& kept, Response response, std::int64_t period_ns, const std::string& source);
+  void Judge(Kept& kept, Response response, std::int64_t period_ns, int source);
+
+  static constexpr int kTimer = -1;
 
   std::vector<Kept> clients_;
-  std::map<int, Thread> threads_;
+  std::vector<std::string> sensors_;
+  std::vector<std::unique_ptr<Thread>> threads_;  // by their numbers; null: nothing is known of it
   CoreWaits cores_;
   std::function<void(const Response&)> on_response_;
 };

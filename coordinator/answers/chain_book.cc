@@ -41,9 +41,26 @@ Lineage ChainBook::Sampled(int sensor, std::int64_t sampled_ns) const {
   return knowledge;
 }
 
+ChainBook::Had& ChainBook::HadOf(Knows& knows, const LineageOf& of) {
+  const auto place = std::ranges::lower_bound(knows, of, {}, &Knows::value_type::first);
+  if (place != knows.end() && place->first == of) return place->second;
+  return knows.insert(place, {of, {}})->second;
+}
+
+ChainBook::Knows& ChainBook::At(std::vector<Knows>& all, int number) {
+  const auto place = static_cast<std::size_t>(number);
+  if (place >= all.size()) all.resize(place + 1);
+  return all[place];
+}
+
+void ChainBook::Dies(int thread) {
+  if (static_cast<std::size_t>(thread) < threads_.size()) At(threads_, thread).clear();
+}
+
 ChainBook::Knows& ChainBook::UsedBy(const Who& who, std::int64_t at_ns) {
-  const auto found = threads_.find(who.thread);
-  Knows& knows = found != threads_.end() ? found->second : of_clients_[who.client];
+  const bool has_taken =
+      static_cast<std::size_t>(who.thread) < threads_.size() && !At(threads_, who.thread).empty();
+  Knows& knows = has_taken ? At(threads_, who.thread) : At(of_clients_, who.client);
   for (auto& [of, had] : knows) {
     if (had.first_ns < 0) had.first_ns = at_ns;
   }
@@ -70,8 +87,8 @@ Lineage ChainBook::Sends(const Who& who, std::int64_t at_ns) {
 void ChainBook::Took(const Who& who, const Lineage& lineage, std::int64_t arrived_ns,
                      std::int64_t at_ns) {
   if (lineage == nullptr) return;
-  Knows& thread = threads_[who.thread];
-  Knows& client = of_clients_[who.client];
+  Knows& thread = At(threads_, who.thread);
+  Knows& client = At(of_clients_, who.client);
   for (const auto& [of, sample] : *lineage) {
     LineageOf reached = of;
     if (of.chain >= 0) {
@@ -80,7 +97,7 @@ void ChainBook::Took(const Who& who, const Lineage& lineage, std::int64_t arrive
       if (stage < through.size() && through[stage] == who.client) ++reached.stage;
     }
     for (Knows* knows : {&thread, &client}) {
-      Had& had = (*knows)[reached];
+      Had& had = HadOf(*knows, reached);
       if (had.took_ns > 0 && had.sample.sampled_ns >= sample.sampled_ns) continue;
       had = {sample, arrived_ns, at_ns};
     }

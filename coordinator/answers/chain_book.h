@@ -34,7 +34,8 @@ class ChainBook {
     std::int64_t deadline_ns = 0;
   };
   struct Who {
-    int thread = 0, client = 0;
+    int thread = -1;  // as AnswerBook::Who has it
+    int client = 0;
   };
 
   // What numbers mean: places in these lists.
@@ -48,6 +49,8 @@ class ChainBook {
   // The thread takes a message, which was there from `arrived_ns` on.
   void Took(const Who& who, const Lineage& lineage, std::int64_t arrived_ns, std::int64_t at_ns);
   void Commanded(const Who& who, int command, std::int64_t at_ns);
+  // What it knew, nobody knows any more, but its client.
+  void Dies(int thread);
 
   // The run is over. Chains on which commands came, and those that the scenario names.
   std::vector<ChainFigures> Conclude() const;
@@ -63,7 +66,8 @@ class ChainBook {
     std::int64_t arrived_ns = 0, took_ns = 0;
     std::int64_t first_ns = -1;  // when it first sent something then; -1: not yet
   };
-  using Knows = std::map<LineageOf, Had>;
+  // In order, each once: few, and looked at for each message.
+  using Knows = std::vector<std::pair<LineageOf, Had>>;
   struct Kept {
     ChainFigures figures;
     std::int64_t last_sampled_ns = -1;
@@ -71,6 +75,8 @@ class ChainBook {
     std::pair<const std::vector<int>, std::int64_t>* newest = nullptr;  // of these; null: none yet
   };
 
+  static Had& HadOf(Knows& knows, const LineageOf& of);
+  static Knows& At(std::vector<Knows>& all, int number);
   // What it knows, of which it sends something at that time.
   Knows& UsedBy(const Who& who, std::int64_t at_ns);
   void Count(const LineageOf& of, const Had& had, int client, int command, std::int64_t at_ns);
@@ -82,7 +88,7 @@ class ChainBook {
   std::vector<Sensor> sensors_;
   std::vector<Command> commands_;
   std::vector<Chain> chains_;
-  std::map<int, Knows> threads_, of_clients_;
+  std::vector<Knows> threads_, of_clients_;
   std::map<std::pair<int, int>, Kept> kept_;  // by sensor and command
   std::vector<Kept> named_;                   // as `chains_`
   std::vector<int> path_;                     // of the command that is counted

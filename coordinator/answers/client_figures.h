@@ -54,6 +54,8 @@ struct ActivationTimes {
   Distribution response;     // from the release to the end
   Distribution start_delay;  // from the release to the beginning
   Distribution execution;    // computing
+
+  void Add(const ActivationTimes& others);
 };
 
 struct ClientFigures {

@@ -1,6 +1,7 @@
 #include "coordinator/answers/core_waits.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace tcs {
@@ -11,39 +12,52 @@ void CoreWaits::Add(int thread, const Slice& slice, Waiting& waiting) {
   (slice.thread == thread ? waiting.times.own_ns : waiting.times.others_ns[slice.client]) += ns;
 }
 
+CoreWaits::Waiting& CoreWaits::WaitingOf(int thread) {
+  const auto number = static_cast<std::size_t>(thread);
+  if (number >= waiting_.size()) waiting_.resize(number + 1);
+  return waiting_[number];
+}
+
+CoreWaits::OfRobot& CoreWaits::RobotOf(int robot) {
+  const auto number = static_cast<std::size_t>(robot);
+  if (number >= robots_.size()) robots_.resize(number + 1);
+  return robots_[number];
+}
+
 void CoreWaits::Ready(const Of& who, std::int64_t at_ns) {
-  Waiting& waiting = waiting_[who.thread] = {who.robot, at_ns, {}};
-  OfRobot& robot = robots_[who.robot];
-  robot.ready.insert(who.thread);
+  Waiting& waiting = WaitingOf(who.thread);
+  OfRobot& robot = RobotOf(who.robot);
+  if (!waiting.is_ready) robot.ready.push_back(who.thread);
+  waiting = {true, who.robot, at_ns, {}};
+  if (robot.latest_end_ns <= at_ns) return;
   for (const Slice& slice : robot.slices) Add(who.thread, slice, waiting);
 }
 
 void CoreWaits::Ran(const Of& who, std::int64_t start_ns, std::int64_t end_ns) {
-  OfRobot& robot = robots_[who.robot];
+  OfRobot& robot = RobotOf(who.robot);
   const Slice slice{who.thread, who.client, start_ns, end_ns};
-  for (const int thread : robot.ready) Add(thread, slice, waiting_[thread]);
+  for (const int thread : robot.ready) Add(thread, slice, WaitingOf(thread));
   if (robot.slices.size() == kMostSlices) robot.slices.pop_front();
   robot.slices.push_back(slice);
+  robot.latest_end_ns = std::max(robot.latest_end_ns, end_ns);
 }
 
 CoreWaits::Times CoreWaits::Stop(int thread) {
-  const auto found = waiting_.find(thread);
-  if (found == waiting_.end()) return {};
-  robots_[found->second.robot].ready.erase(thread);
-  Times times = std::move(found->second.times);
-  waiting_.erase(found);
-  return times;
+  Waiting& waiting = WaitingOf(thread);
+  if (!waiting.is_ready) return {};
+  std::erase(RobotOf(waiting.robot).ready, thread);
+  waiting.is_ready = false;
+  return std::exchange(waiting.times, {});
 }
 
 std::int64_t CoreWaits::ReadySince(int thread) const {
-  const auto found = waiting_.find(thread);
-  return found == waiting_.end() ? -1 : found->second.since_ns;
+  const auto number = static_cast<std::size_t>(thread);
+  return number < waiting_.size() && waiting_[number].is_ready ? waiting_[number].since_ns : -1;
 }
 
-CoreWaits::ByClient CoreWaits::Shares(ByClient times_ns, std::int64_t most_ns) {
+ByClient CoreWaits::Shares(ByClient times_ns, std::int64_t most_ns) {
   most_ns = std::max<std::int64_t>(0, most_ns);
-  std::int64_t left_of_all_ns = 0;
-  for (const auto& [client, ns] : times_ns) left_of_all_ns += ns;
+  std::int64_t left_of_all_ns = times_ns.TotalNs();
   if (left_of_all_ns <= most_ns) return times_ns;
   // Each has its share of what is left, so that no nanosecond is lost.
   for (auto& [client, ns] : times_ns) {
@@ -53,7 +67,7 @@ CoreWaits::ByClient CoreWaits::Shares(ByClient times_ns, std::int64_t most_ns) {
     left_of_all_ns -= std::exchange(ns, left_of_all_ns == ns ? most_ns : share);
     most_ns -= ns;
   }
-  std::erase_if(times_ns, [](const auto& of) { return of.second == 0; });
+  times_ns.DropZeros();
   return times_ns;
 }
 

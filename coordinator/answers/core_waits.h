@@ -1,5 +1,6 @@
 // Which clients had the cores of their robots while threads were ready to run. Pure; all times are
-// virtual nanoseconds. Threads, clients and robots are numbers.
+// virtual nanoseconds. Threads, clients and robots are numbers, each from 0
+// on and none much greater than there are.
 //
 // With several cores, clients that run beside the thread count, too: a share of the time for which
 // it waited in all (Shares).
@@ -8,8 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <map>
-#include <set>
+#include <vector>
+
+#include "coordinator/answers/by_client.h"
 
 namespace tcs {
 
@@ -20,7 +22,6 @@ class CoreWaits {
     int client = 0;
     int robot = 0;
   };
-  using ByClient = std::map<int, std::int64_t>;
 
   // The thread is ready from then on. That may be told when others have run since.
   void Ready(const Of& who, std::int64_t at_ns);
@@ -49,19 +50,23 @@ class CoreWaits {
     std::int64_t start_ns = 0, end_ns = 0;
   };
   struct Waiting {
+    bool is_ready = false;
     int robot = 0;
     std::int64_t since_ns = 0;
     Times times;
   };
   struct OfRobot {
-    std::set<int> ready;       // threads
-    std::deque<Slice> slices;  // the last
+    std::vector<int> ready;          // threads, in any order
+    std::deque<Slice> slices;        // the last
+    std::int64_t latest_end_ns = 0;  // of any slice
   };
 
   static void Add(int thread, const Slice& slice, Waiting& waiting);
+  Waiting& WaitingOf(int thread);
+  OfRobot& RobotOf(int robot);
 
-  std::map<int, Waiting> waiting_;  // by thread
-  std::map<int, OfRobot> robots_;
+  std::vector<Waiting> waiting_;  // by thread
+  std::vector<OfRobot> robots_;
 };
 
 }  // namespace tcs

@@ -19,6 +19,19 @@ void Distribution::Add(std::int64_t value_ns) {
   if (new_values_.size() == kMostNew) Settle();
 }
 
+void Distribution::Add(const Distribution& other) {
+  Settle();
+  other.Settle();
+  if (other.count_ == 0) return;
+  min_ = count_ == 0 ? other.min_ : std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+  count_ += other.count_;
+  sum_ += other.sum_;
+  for (const auto& [value, count] : other.counts_)
+    counts_[is_rounded_ ? Rounded(value) : value] += count;
+  RoundIfMany();
+}
+
 std::int64_t Distribution::count() const {
   return count_ + static_cast<std::int64_t>(new_values_.size());
 }
@@ -64,6 +77,10 @@ void Distribution::Settle() const {
     ++counts_[is_rounded_ ? Rounded(value) : value];
   }
   new_values_.clear();
+  RoundIfMany();
+}
+
+void Distribution::RoundIfMany() const {
   if (is_rounded_ || counts_.size() <= kMostValues) return;
   is_rounded_ = true;
   for (const auto& [value, count] : std::exchange(counts_, {})) counts_[Rounded(value)] += count;

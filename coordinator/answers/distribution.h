@@ -17,6 +17,8 @@ class Distribution {
 
   // A value of less than nothing counts as 0.
   void Add(std::int64_t value_ns);
+  // All that the other one has.
+  void Add(const Distribution& other);
 
   std::int64_t count() const;
   std::int64_t max() const;  // 0 without a value, as all that follows
@@ -28,6 +30,7 @@ class Distribution {
  private:
   static std::int64_t Rounded(std::int64_t value_ns);
   void Settle() const;
+  void RoundIfMany() const;
 
   // What has been added lately is only noted: a run has many of these, none of them at hand.
   mutable std::vector<std::int64_t> new_values_;

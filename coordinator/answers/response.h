@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 
+#include "coordinator/answers/by_client.h"
 #include "coordinator/trace/activation_log.h"
 
 namespace tcs {
@@ -14,9 +14,9 @@ struct TimeParts {
   std::int64_t queued_ns = 0;    // its thread was still at what had come earlier
   std::int64_t away_ns = 0;      // its thread slept, or waited for something else, before it came
   std::int64_t executed_ns = 0;  // it had the core, or computed
-  std::map<int, std::int64_t> cores_ns;  // it was ready, and that client had the core
-  std::map<int, std::int64_t> locks_ns;  // in its midst, for a lock that the client's thread had
-  std::int64_t room_ns = 0;              // in its midst, until others had taken what was sent
+  ByClient cores_ns;             // it was ready, and that client had the core
+  ByClient locks_ns;             // in its midst, for a lock that the client's thread had
+  std::int64_t room_ns = 0;      // in its midst, until others had taken what was sent
 
   std::int64_t TotalNs() const;
 };

@@ -1,7 +1,5 @@
 #include "coordinator/answers/response_log.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,12 +13,6 @@ namespace {
 // As long as a text of a line may be (CsvFile); who had least is left out beyond that.
 constexpr std::size_t kMostWhose = 250;
 
-std::int64_t SumOf(const std::map<int, std::int64_t>& part) {
-  std::int64_t sum_ns = 0;
-  for (const auto& [client, ns] : part) sum_ns += ns;
-  return sum_ns;
-}
-
 }  // namespace
 
 std::string ResponseLog::Open(const std::string& path, std::vector<std::string> clients) {
@@ -33,20 +25,26 @@ std::string ResponseLog::Open(const std::string& path, std::vector<std::string> 
 // "core:CLIENT=NS lock:CLIENT=NS", who had most first.
 std::string ResponseLog::WhoseOf(const TimeParts& parts) const {
   if (parts.cores_ns.empty() && parts.locks_ns.empty()) return {};
-  std::vector<std::pair<std::int64_t, std::string>> shares;
-  const auto add = [&](const std::map<int, std::int64_t>& part, std::string_view of) {
-    for (const auto& [client, ns] : part) {
-      const std::string name = client < 0 ? "" : clients_[static_cast<std::size_t>(client)];
-      shares.emplace_back(ns, fmt::format("{}:{}={}", of, name, ns));
-    }
+  struct Share {
+    std::int64_t ns;
+    std::string_view of;
+    int client;
   };
-  add(parts.cores_ns, "core");
-  add(parts.locks_ns, "lock");
-  std::ranges::stable_sort(shares, std::greater<>{}, &decltype(shares)::value_type::first);
+  std::vector<Share> shares;
+  for (const auto& [client, ns] : parts.cores_ns) shares.push_back({ns, "core:", client});
+  for (const auto& [client, ns] : parts.locks_ns) shares.push_back({ns, "lock:", client});
+  std::ranges::stable_sort(shares, std::greater<>{}, &Share::ns);
   std::string whose;
-  for (const auto& [ns, share] : shares) {
-    if (whose.size() + 1 + share.size() > kMostWhose) break;
-    whose += (whose.empty() ? "" : " ") + share;
+  for (const auto& [ns, of, client] : shares) {
+    const std::size_t before = whose.size();
+    if (before > 0) whose += ' ';
+    whose += of;
+    if (client >= 0) whose += clients_[static_cast<std::size_t>(client)];
+    whose += '=';
+    whose += std::to_string(ns);
+    if (whose.size() <= kMostWhose) continue;
+    whose.resize(before);
+    break;
   }
   return whose;
 }
@@ -57,7 +55,7 @@ void ResponseLog::Write(const Response& response) {
   file_.Line(clients_[static_cast<std::size_t>(response.client)], response.thread,
              NameOf(response.cause), response.release_ns, response.start_ns, response.end_ns,
              response.deadline_ns, parts.queued_ns, parts.away_ns, parts.executed_ns,
-             SumOf(parts.cores_ns), SumOf(parts.locks_ns), parts.room_ns, response.RestNs(),
+             parts.cores_ns.TotalNs(), parts.locks_ns.TotalNs(), parts.room_ns, response.RestNs(),
              WhoseOf(parts));
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "coordinator/answers/unheard.h"
@@ -96,39 +97,59 @@ void DatagramQueues::AddCommandAddress(const shm::ReceiverAddress& address, std:
   commands_.emplace(AddressOf(nullptr, NoteOf(address)), command);
 }
 
-InputFigures* DatagramQueues::InputOf(Queue& queue, const Sent& sent) {
-  InputFigures& input = queue.inputs[{sent.sender, sent.channel}];
-  if (input.from.empty())
-    input.from = sent.period_ns > 0 ? sent.channel : sent.sender + " over " + sent.channel;
-  return &input;
+DatagramQueues::Queue* DatagramQueues::QueueTo(const Address& to) {
+  const auto found = queues_.find(to);
+  if (found != queues_.end()) return &found->second;
+  return queues_.size() < kMostAddresses ? &queues_[to] : nullptr;
+}
+
+DatagramQueues::Flow& DatagramQueues::FlowOf(Queue& queue, const std::string& sender,
+                                             const std::string& channel) {
+  for (Flow& flow : queue.flows) {
+    if (flow.sender == sender && flow.channel == channel) return flow;
+  }
+  Flow& flow = queue.flows.emplace_back(Flow{sender, channel});
+  flow.input.from = sender + " over " + channel;
+  return flow;
+}
+
+DatagramQueues::Flow& DatagramQueues::FlowOfWorld(Queue& queue, const std::string& channel) {
+  static const std::string kWorld = "dynamics";
+  Flow& flow = FlowOf(queue, kWorld, channel);
+  if (flow.sensor >= 0) return flow;
+  const auto found = sensors_.find(channel);
+  if (found == sensors_.end()) return flow;
+  flow.sensor = static_cast<int>(found->second);
+  flow.period_ns = run_.scenario.sensors[found->second].period.ns();
+  flow.input.from = channel;
+  return flow;
 }
 
 AnswerBook::Taken DatagramQueues::TakenOf(const Sent& sent) {
   return {.arrived_ns = sent.at.ns(),
           .sampled_ns = sent.sampled_ns,
-          .period_ns = sent.period_ns,
-          .from = sent.channel};
+          .period_ns = sent.flow->period_ns,
+          .sensor = sent.flow->sensor};
 }
 
-void DatagramQueues::Add(const Address& to, Sent sent) {
-  if (queues_.size() >= kMostAddresses && !queues_.contains(to)) return;
-  Queue& queue = queues_[to];
+void DatagramQueues::Add(Queue& queue, Sent sent) {
   if (queue.waiting.size() == kMostOnTheWay) queue.waiting.pop_front();
-  sent.input = InputOf(queue, sent);
-  ++sent.input->sent;
+  ++sent.flow->input.sent;
   queue.waiting.push_back(std::move(sent));
 }
 
 void DatagramQueues::WorldSent(const std::string& channel, const shm::ReceiverAddress& to,
                                VirtualTime at) {
-  Sent sent{.at = at, .sender = "dynamics", .channel = channel};
-  if (const auto found = sensors_.find(channel); found != sensors_.end()) {
-    const SensorChannelSpec& sensor = run_.scenario.sensors[found->second];
-    sent.sampled_ns = (at - sensor.latency).ns();
-    sent.period_ns = sensor.period.ns();
-    sent.lineage = answers_.chains().Sampled(static_cast<int>(found->second), sent.sampled_ns);
+  Queue* queue = QueueTo(AddressOf(nullptr, NoteOf(to)));
+  if (queue == nullptr) return;
+  Flow& flow = FlowOfWorld(*queue, channel);
+  Sent sent{.at = at, .flow = &flow};
+  if (flow.sensor >= 0) {
+    const auto sensor = static_cast<std::size_t>(flow.sensor);
+    sent.sampled_ns = (at - run_.scenario.sensors[sensor].latency).ns();
+    sent.lineage = answers_.chains().Sampled(flow.sensor, sent.sampled_ns);
   }
-  Add(AddressOf(nullptr, NoteOf(to)), std::move(sent));
+  Add(*queue, std::move(sent));
 }
 
 void DatagramQueues::WorldReceived(std::size_t channel, const CommandSent& sent) {
@@ -146,7 +167,7 @@ void DatagramQueues::DropLost(Queue& queue, std::uint16_t drops, VirtualTime at)
       std::ranges::find_if(queue.waiting, [at](const Sent& sent) { return sent.at > at; });
   const std::ptrdiff_t there = std::distance(queue.waiting.begin(), later);
   if (lost == 0 || lost >= there) return;  // or another socket has the address by now
-  for (auto sent = later - lost; sent != later; ++sent) ++sent->input->lost;
+  for (auto sent = later - lost; sent != later; ++sent) ++sent->flow->input.lost;
   queue.waiting.erase(later - lost, later);
 }
 
@@ -157,15 +178,16 @@ void DatagramQueues::DropNeverThere(Queue& queue, std::uint16_t taken, VirtualTi
   const std::ptrdiff_t there = std::distance(queue.waiting.begin(), later);
   if (there <= taken) return;
   const auto first = queue.waiting.begin() + (there - taken);
-  for (auto sent = queue.waiting.begin(); sent != first; ++sent) --sent->input->sent;
+  for (auto sent = queue.waiting.begin(); sent != first; ++sent) --sent->flow->input.sent;
   queue.waiting.erase(queue.waiting.begin(), first);
 }
 
 void DatagramQueues::TakeBack(Queue& queue, const std::string& sender) {
-  const auto last = std::find_if(queue.waiting.rbegin(), queue.waiting.rend(),
-                                 [&sender](const Sent& sent) { return sent.sender == sender; });
+  const auto last =
+      std::find_if(queue.waiting.rbegin(), queue.waiting.rend(),
+                   [&sender](const Sent& sent) { return sent.flow->sender == sender; });
   if (last == queue.waiting.rend()) return;
-  --last->input->sent;
+  --last->flow->input.sent;
   queue.waiting.erase(std::next(last).base());
 }
 
@@ -182,7 +204,7 @@ void DatagramQueues::Take(const Task& task, const DatagramNotes::Note& note, Que
       std::ranges::count_if(queue.waiting, [at](const Sent& sent) { return sent.at <= at; });
   for (std::uint32_t n = 0; n < note.count && !queue.waiting.empty(); ++n) {
     const Sent& sent = queue.waiting.front();
-    InputFigures& input = *sent.input;
+    InputFigures& input = sent.flow->input;
     ++input.received;
     input.most_waiting = std::max<std::int64_t>(input.most_waiting, waiting);
     input.age.Add((at - VirtualTime()).ns() -
@@ -193,7 +215,7 @@ void DatagramQueues::Take(const Task& task, const DatagramNotes::Note& note, Que
       answers_.book().Took(*who, taken);
       answers_.chains().Took(AnswerFeed::OnChain(*who), sent.lineage, sent.at.ns(), at.ns());
     }
-    log_.Write(sent.at, sent.sender, at, task.process->name, sent.channel);
+    log_.Write(sent.at, sent.flow->sender, at, task.process->name, sent.flow->channel);
     queue.waiting.pop_front();
   }
 }
@@ -233,13 +255,15 @@ const char* DatagramQueues::TakeNotes(const Task& task, VirtualTime until) {
     // Between robots of a network packets may be lost.
     if (run_.scenario.network && InternetOf(note)) continue;
     if (note.what == DatagramNotes::What::kSent) {
-      Add(address,
-          {.at = at,
-           .sampled_ns = answers_.book().LastSampledOf(task.order),
-           .sender = name,
-           .channel = TextOf(note),
-           .lineage = who.has_value() ? answers_.chains().Sends(AnswerFeed::OnChain(*who), at.ns())
-                                      : nullptr});
+      Queue* queue = QueueTo(address);
+      if (queue == nullptr) continue;
+      if (queue->of_programs.empty()) queue->of_programs = TextOf(note);
+      Sent sent{.at = at,
+                .sampled_ns = answers_.book().LastSampledOf(task.order),
+                .flow = &FlowOf(*queue, name, queue->of_programs)};
+      if (who.has_value())
+        sent.lineage = answers_.chains().Sends(AnswerFeed::OnChain(*who), at.ns());
+      Add(*queue, std::move(sent));
       continue;
     }
     const auto found = queues_.find(address);
@@ -261,7 +285,7 @@ std::map<int, std::vector<InputFigures>> DatagramQueues::Conclude(VirtualTime en
         std::ranges::count_if(queue.waiting, [end](const Sent& sent) { return sent.at <= end; });
     for (const Sent& sent : queue.waiting) {
       if (sent.at > end) continue;
-      InputFigures& input = *sent.input;
+      InputFigures& input = sent.flow->input;
       ++input.unread;
       input.most_waiting = std::max<std::int64_t>(input.most_waiting, unread);
       if (input.oldest_unread_ns < 0) input.oldest_unread_ns = sent.at.ns();
@@ -269,7 +293,9 @@ std::map<int, std::vector<InputFigures>> DatagramQueues::Conclude(VirtualTime en
     if (unread > 0 && queue.waiting.front().at < end) {
       answers_.book().NeverCameTo(queue.reader, TakenOf(queue.waiting.front()), end.ns());
     }
-    for (const auto& [from, input] : queue.inputs) all[queue.reader.client].push_back(input);
+    std::ranges::sort(queue.flows, {},
+                      [](const Flow& flow) { return std::tie(flow.sender, flow.channel); });
+    for (const Flow& flow : queue.flows) all[queue.reader.client].push_back(flow.input);
   }
   return all;
 }
@@ -279,15 +305,15 @@ std::vector<std::string> DatagramQueues::WhatNobodyHeard() const {
   std::vector<Heard> heard;
   const std::vector<std::string> names = answers_.NamesOfClients();
   for (const auto& [address, queue] : queues_) {
-    for (const auto& [from, input] : queue.inputs) {
-      const auto& [sender, channel] = from;
+    for (const Flow& flow : queue.flows) {
+      const auto& [sender, channel] = std::tie(flow.sender, flow.channel);
       // What the world sends to nobody is warned of (World::UnheardSensors).
       if (!answers_.WhoIs(sender).has_value()) continue;
       if (queue.has_reader) {
         heard.push_back({names[static_cast<std::size_t>(queue.reader.client)], channel});
         break;
       }
-      if (input.sent > 0) unheard.push_back({sender, channel, input.sent});
+      if (flow.input.sent > 0) unheard.push_back({sender, channel, flow.input.sent});
     }
   }
   return SentencesOn(unheard, heard);

@@ -51,30 +51,39 @@ class DatagramQueues final : public DatagramWatch {
   std::vector<std::string> WhatNobodyHeard() const;
 
  private:
+  // What somebody sends to one address.
+  struct Flow {
+    std::string sender, channel;
+    int sensor = -1;  // as AnswerBook::Taken has it
+    std::int64_t period_ns = 0;
+    InputFigures input{};
+  };
   struct Sent {
     VirtualTime at;
     std::int64_t sampled_ns = -1;  // as AnswerBook::Taken has it
-    std::int64_t period_ns = 0;
-    std::string sender, channel;
-    Lineage lineage{};              // what its sender knew of
-    InputFigures* input = nullptr;  // of its queue
+    Lineage lineage{};             // what its sender knew of
+    Flow* flow = nullptr;          // of its queue
   };
   struct Queue {
     std::deque<Sent> waiting;
     std::uint16_t drops = 0;  // as the kernel last counted them
     AnswerBook::Who reader;   // the last
     bool has_reader = false;
-    std::map<std::pair<std::string, std::string>, InputFigures> inputs;  // by sender and channel
+    std::string of_programs;  // the channel of what they send there; empty: they have sent nothing
+    std::deque<Flow> flows;   // a few
   };
   using Address = std::pair<std::uint64_t, std::uint64_t>;  // the kind, and whose; the rest
 
   Address AddressOf(const Robot* by, const shm::DatagramNotes::Note& note) const;
-  void Add(const Address& to, Sent sent);
+  // Null: there are too many.
+  Queue* QueueTo(const Address& to);
+  static Flow& FlowOf(Queue& queue, const std::string& sender, const std::string& channel);
+  Flow& FlowOfWorld(Queue& queue, const std::string& channel);
+  static void Add(Queue& queue, Sent sent);
   void Take(const Task& task, const shm::DatagramNotes::Note& note, Queue& queue, VirtualTime at);
   static void DropLost(Queue& queue, std::uint16_t drops, VirtualTime at);
   static void DropNeverThere(Queue& queue, std::uint16_t taken, VirtualTime at);
   static void TakeBack(Queue& queue, const std::string& sender);
-  static InputFigures* InputOf(Queue& queue, const Sent& sent);
   static AnswerBook::Taken TakenOf(const Sent& sent);
 
   RunState& run_;

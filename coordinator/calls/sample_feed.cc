@@ -60,6 +60,7 @@ SampleFeed::Sample SampleFeed::SampleOf(const dds::TopicLog::Delivery& delivery)
     sample.sampled_ns = SentAt(delivery);
     sample.lineage = answers_.chains().Sampled(static_cast<int>(i), sample.sampled_ns);
     sample.period_ns = sensor.period.ns();
+    sample.sensor = static_cast<int>(i);
     sample.from = sensor.name;
   }
   return sample;
@@ -127,10 +128,8 @@ void SampleFeed::Taken(const Task& task, const shm::DatagramNotes::Note& note, V
   };
   const auto waiting = std::ranges::count_if(receiver.waiting, is_past);
   AnswerBook::Taken all{.arrived_ns = INT64_MAX, .activation = note.activation};
-  std::string from;
   for (const Sample& sample : receiver.waiting) {
     if (!is_past(sample)) continue;
-    from = sample.from;
     InputFigures& input = receiver.inputs[sample.from];
     input.most_waiting = std::max<std::int64_t>(input.most_waiting, waiting);
     if (sample.source_ns < taken.oldest_ns) {
@@ -143,8 +142,8 @@ void SampleFeed::Taken(const Task& task, const shm::DatagramNotes::Note& note, V
     answers_.chains().Took(AnswerFeed::OnChain(*who), sample.lineage, sample.arrived_ns, at.ns());
     all.sampled_ns = std::max(all.sampled_ns, sample.sampled_ns);
     all.period_ns = sample.period_ns;
+    all.sensor = sample.sensor;
   }
-  all.from = from;
   if (all.arrived_ns != INT64_MAX) answers_.book().Took(*who, all);
   std::erase_if(receiver.waiting, is_past);
 }

@@ -44,6 +44,7 @@ class SampleFeed final : public dds::TopicLog::DeliveryListener {
     Topic topic = 0;
     std::int64_t source_ns = 0;  // its timestamp
     std::int64_t arrived_ns = 0, sampled_ns = -1, period_ns = 0;
+    int sensor = -1;   // as AnswerBook::Taken has it
     std::string from;  // InputFigures::from
     Lineage lineage{};
   };

@@ -152,7 +152,7 @@ void Activations::Idles(Task& task, bool dies) {
   const std::int64_t now = OwnNow(task).ns();
   task.process->expired = VirtualTime::Never();
   if (task.slot < 0) {  // it never began
-    if (answers_ != nullptr) answers_->book().Dies(task.order);
+    if (answers_ != nullptr) answers_->Dies(task);
     return;
   }
   if (task.activation.start_ns < 0) task.activation.start_ns = task.activation.release_ns;
@@ -167,8 +167,7 @@ void Activations::Idles(Task& task, bool dies) {
   const bool pauses = !dies && TellOfPause(task, end_ns, charged);
   if (!dies && !pauses) TellOfEnd(task, 0, end_ns, charged);
   if (answers_ != nullptr && !pauses) {
-    AnswerBook& book = answers_->book();
-    dies ? book.Dies(task.order) : book.Idles(task.order);
+    dies ? answers_->Dies(task) : answers_->book().Idles(task.order);
   }
   task.activation.charged_ns = charged;
   task.activation.work = task.work;

@@ -18,7 +18,9 @@ void AnswerFeed::Open(const Scenario& scenario) {
     }
     ++robot_number;
   }
-  book_.Open(std::move(clients));
+  std::vector<std::string> sensors;
+  for (const SensorChannelSpec& sensor : scenario.sensors) sensors.push_back(sensor.name);
+  book_.Open(std::move(clients), std::move(sensors));
   OpenChains(scenario);
 }
 
@@ -49,18 +51,20 @@ std::vector<std::string> AnswerFeed::NamesOfClients() const {
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const ClientSpec& client) const {
-  if (last_.first != &client) {
-    const auto found = clients_.find(&client);
-    if (found == clients_.end()) return std::nullopt;
-    last_ = *found;
-  }
-  return AnswerBook::Who{.client = last_.second};
+  const auto found = clients_.find(&client);
+  if (found == clients_.end()) return std::nullopt;
+  return AnswerBook::Who{.client = found->second};
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const std::string& client) const {
   const auto found = names_.find(client);
   if (found == names_.end()) return std::nullopt;
   return AnswerBook::Who{.client = found->second};
+}
+
+void AnswerFeed::Dies(const Task& task) {
+  book_.Dies(task.order);
+  chains_.Dies(task.order);
 }
 
 std::optional<AnswerBook::Who> AnswerFeed::WhoIs(const Task& task) const {

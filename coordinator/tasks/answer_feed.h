@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 #include "coordinator/answers/answer_book.h"
@@ -30,6 +30,8 @@ class AnswerFeed {
   // Of a client's first thread, without a number. By its name: ROBOT/CLIENT.
   std::optional<AnswerBook::Who> WhoIs(const std::string& client) const;
   std::optional<AnswerBook::Who> WhoIs(const ClientSpec& client) const;
+  // Its number may be another thread's from now on.
+  void Dies(const Task& task);
   AnswerBook& book() { return book_; }
   ChainBook& chains() { return chains_; }
   static ChainBook::Who OnChain(const AnswerBook::Who& who) { return {who.thread, who.client}; }
@@ -40,9 +42,7 @@ class AnswerFeed {
 
   AnswerBook book_;
   ChainBook chains_;
-  std::map<const ClientSpec*, int> clients_;
-  // What happens to a thread happens in a row.
-  mutable std::pair<const ClientSpec*, int> last_{};
+  std::unordered_map<const ClientSpec*, int> clients_;
   std::map<std::string, int> names_;
 };
 

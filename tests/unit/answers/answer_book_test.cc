@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <map>
 #include <vector>
 
 namespace tcs {
@@ -18,14 +17,15 @@ class AnswerBookTest : public testing::Test {
  protected:
   void Open(std::int64_t deadline_ns = 0, bool is_periodic = true) {
     book_.Open({{.name = "controller", .deadline_ns = deadline_ns, .is_periodic = is_periodic},
-                {.name = "planner"}});
+                {.name = "planner"}},
+               {"sensors"});
   }
   // A sample of a sensor with a period of 10 ms.
   static AnswerBook::Taken SampleOf(std::int64_t at_ns, unsigned activation = 0) {
     return {.arrived_ns = at_ns,
             .sampled_ns = at_ns,
             .period_ns = 10 * kMs,
-            .from = "sensors",
+            .sensor = 0,
             .activation = activation};
   }
   void Ends(const AnswerBook::Who& who, ReleaseCause cause, std::int64_t release_ns,
@@ -212,8 +212,8 @@ TEST_F(AnswerBookTest, AWaitForALockIsInTheMidstOfAnActivation) {
   EXPECT_EQ(told[0].TookNs(), 11 * kMs);
   EXPECT_EQ(told[0].deadline_ns, 10 * kMs);
   EXPECT_EQ(told[0].parts.executed_ns, 5 * kMs);
-  EXPECT_EQ(told[0].parts.locks_ns, (std::map<int, std::int64_t>{{1, 5 * kMs}}));
-  EXPECT_EQ(told[0].parts.cores_ns, (std::map<int, std::int64_t>{{1, kMs}}));
+  EXPECT_EQ(told[0].parts.locks_ns, (ByClient{{1, 5 * kMs}}));
+  EXPECT_EQ(told[0].parts.cores_ns, (ByClient{{1, kMs}}));
   EXPECT_EQ(told[0].RestNs(), 0);
   EXPECT_EQ(figures.deadline.missed, 1);
   EXPECT_EQ(figures.late.locks_ns.at("planner"), 5 * kMs);

@@ -5,8 +5,6 @@
 namespace tcs {
 namespace {
 
-using ByClient = CoreWaits::ByClient;
-
 constexpr CoreWaits::Of kFast{.thread = 1, .client = 0};
 constexpr CoreWaits::Of kSlow{.thread = 2, .client = 1};
 constexpr CoreWaits::Of kElsewhere{.thread = 3, .client = 2, .robot = 1};

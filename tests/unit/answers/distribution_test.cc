@@ -47,5 +47,18 @@ TEST(Distribution, ManyValuesAreRounded) {
   }
 }
 
+TEST(Distribution, OfTwoIsOfAllTheirValues) {
+  Distribution of, odd;
+  for (int value = 2; value <= 100; value += 2) of.Add(value);
+  for (int value = 1; value < 100; value += 2) odd.Add(value);
+  of.Add(odd);
+  of.Add(Distribution());
+  EXPECT_EQ(of.count(), 100);
+  EXPECT_EQ(of.min(), 1);
+  EXPECT_EQ(of.max(), 100);
+  EXPECT_EQ(of.Quantile(0.37), 37);
+  EXPECT_DOUBLE_EQ(of.Mean(), 50.5);
+}
+
 }  // namespace
 }  // namespace tcs
