@@ -84,7 +84,7 @@ bool TimerCalls::Handle(Process& process, Task& task, const shm::Notification& n
     if (note.args[1] == 0) {
       wrote = BringUpToDate(process, task, id);
     } else {
-      timers.AcceptAt(id, task.reached);
+      timers.AcceptAt(id, task.reached, TimerSignals::IsPending(process, id));
     }
     TimerSignals::NoteAccepted(process);
     task.reply[0] = timers.Overruns(id);

@@ -2,6 +2,8 @@
 
 #include <signal.h>
 
+#include <algorithm>
+
 #include "coordinator/os/host.h"
 #include "coordinator/os/signal_bits.h"
 #include "coordinator/tasks/signal_sets.h"
@@ -29,6 +31,13 @@ void Send(Process& process, const TimerSignal& signal, pid_t tid) {
   } else {
     tgkill(process.pid, tid, signal.number);
   }
+}
+
+// One of its number is.
+bool MayBePending(const Process& process, const ProcessTimers::SentSignal& sent) {
+  const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
+  const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
+  return (pending & SignalBit(sent.number)) != 0;
 }
 
 }  // namespace
@@ -91,10 +100,14 @@ void TimerSignals::SendTo(const Task& task) {
 
 void TimerSignals::NoteAccepted(Process& process) {
   for (const ProcessTimers::SentSignal& sent : process.timers.SentSignals()) {
-    const SignalSets sets = ReadSignalSets(sent.to != 0 ? sent.to : process.pid);
-    const std::uint64_t pending = sent.to != 0 ? sets.own_pending : sets.shared_pending;
-    if ((pending & SignalBit(sent.number)) == 0) process.timers.Accept(sent.timer_id);
+    if (!MayBePending(process, sent)) process.timers.Accept(sent.timer_id);
   }
+}
+
+bool TimerSignals::IsPending(const Process& process, std::int64_t timer_id) {
+  return std::ranges::any_of(process.timers.SentSignals(), [&](const auto& sent) {
+    return sent.timer_id == timer_id && MayBePending(process, sent);
+  });
 }
 
 }  // namespace tcs

@@ -5,6 +5,8 @@
 // For the coordinator's thread only.
 #pragma once
 
+#include <cstdint>
+
 #include "coordinator/calls/signal_wakes.h"
 #include "coordinator/tasks/run_state.h"
 #include "coordinator/tasks/waker.h"
@@ -23,6 +25,8 @@ class TimerSignals {
   // Finds out which timers' signals have been accepted. While one of a signal's number is pending
   // where it was sent to it counts as not: whose it is cannot be seen.
   static void NoteAccepted(Process& process);
+  // Whether the timer's signal that was sent last may be pending still.
+  static bool IsPending(const Process& process, std::int64_t timer_id);
 
  private:
   static pid_t AccepterOf(const Process& process, const TimerSignal& signal);

@@ -131,7 +131,7 @@ void ProcessTimers::Set(Id id, Setting setting, VirtualDuration lead) {
   timer->setting.next_ns = std::max<std::int64_t>(0, setting.next_ns);
   timer->setting.interval_ns = std::max<std::int64_t>(0, setting.interval_ns);
   timer->lead = lead;
-  timer->is_signal_underway = timer->rests = false;
+  timer->is_signal_underway = timer->was_seen_accepted = timer->rests = false;
   timer->overruns = timer->accepted_overruns = 0;
   FindNext();
 }
@@ -267,12 +267,16 @@ std::vector<ProcessTimers::SentSignal> ProcessTimers::SentSignals() const {
 
 void ProcessTimers::Accept(Id id) {
   Timer* timer = Find(id);
-  if (timer != nullptr && timer->is_signal_underway) timer->Accept();
+  if (timer == nullptr || !timer->is_signal_underway) return;
+  timer->Accept();
+  timer->was_seen_accepted = true;
 }
 
-void ProcessTimers::AcceptAt(Id id, VirtualTime now) {
+void ProcessTimers::AcceptAt(Id id, VirtualTime now, bool is_pending) {
   Timer* timer = Find(id);
-  if (timer == nullptr || !timer->is_signal_underway) return;
+  if (timer == nullptr) return;
+  const bool is_told_late = std::exchange(timer->was_seen_accepted, false) && is_pending;
+  if (is_told_late || !timer->is_signal_underway) return;
   if (!timer->IsOnCpuTime()) {
     timer->AddOverruns(timer->TakeExpirations(OwnTimeOf(now, timer->lead).ns()));
   }

@@ -128,8 +128,9 @@ class ProcessTimers {
   std::vector<SentSignal> SentSignals() const;
   void Accept(Id id);
   // The same by the thread that has just accepted the signal: the expirations until now belong to
-  // the accepted signal.
-  void AcceptAt(Id id, VirtualTime now);
+  // the accepted signal. Where that one was seen accepted before the thread could say so, and the
+  // next one is pending already, that one is still to be accepted.
+  void AcceptAt(Id id, VirtualTime now, bool is_pending);
   // The overruns of the signal that was accepted last.
   std::int64_t Overruns(Id id) const;
 
@@ -141,6 +142,7 @@ class ProcessTimers {
     bool is_signal_underway = false;  // it was not seen accepted yet
     std::int64_t overruns = 0;        // of that signal
     std::int64_t accepted_overruns = 0;
+    bool was_seen_accepted = false;  // the last one, before its thread has said so
     pid_t sent_to = 0;
     bool rests = false;
     std::int64_t seen_ns = 0;  // when it was last looked at, on its clock

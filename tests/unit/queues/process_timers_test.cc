@@ -133,7 +133,7 @@ TEST_F(ProcessTimersTest, WhatIsNoTimerIsLeftAlone) {
   timers_.Set(kNone, {kMs, kMs}, {});
   timers_.Delete(kNone);
   timers_.Accept(kNone);
-  timers_.AcceptAt(kNone, RobotTime(kMs));
+  timers_.AcceptAt(kNone, RobotTime(kMs), false);
   EXPECT_FALSE(timers_.KindOf(kNone).has_value());
   EXPECT_EQ(timers_.Get(kNone).next_ns, 0);
   EXPECT_EQ(timers_.Overruns(kNone), 0);
@@ -223,13 +223,29 @@ TEST_F(ProcessTimersTest, OnlySentSignalsCanHaveBeenAccepted) {
 
 TEST_F(ProcessTimersTest, WhoAcceptsASignalHasAllThatHasRunOutByNow) {
   const auto id = Armed(kPosix, kMs, kMs);
-  timers_.AcceptAt(id, RobotTime(9 * kMs));  // nothing is underway: nothing happens
+  timers_.AcceptAt(id, RobotTime(9 * kMs), false);  // nothing is underway: nothing happens
   EXPECT_EQ(timers_.NextExpiry(), RobotTime(kMs));
   timers_.Expire(RobotTime(kMs));
   SendAll();
-  timers_.AcceptAt(id, RobotTime(4 * kMs));
+  timers_.AcceptAt(id, RobotTime(4 * kMs), false);
   EXPECT_EQ(timers_.Overruns(id), 3);
   EXPECT_EQ(timers_.NextExpiry(), RobotTime(5 * kMs));
+}
+
+// Between taking a signal and saying so a thread may be kept: the timer runs out, its signal is not
+// pending any more, and the next one is sent.
+TEST_F(ProcessTimersTest, WhoSaysLateWhatItAcceptedDoesNotAcceptTheNextOne) {
+  const auto id = Armed(kPosix, kMs, kMs);
+  timers_.Expire(RobotTime(9 * kMs));
+  SendAll();
+  timers_.Accept(id);
+  timers_.Expire(RobotTime(10 * kMs));
+  SendAll();
+  timers_.AcceptAt(id, RobotTime(10 * kMs), true);
+  EXPECT_EQ(timers_.Overruns(id), 8);
+  // It takes that one, too, and says so at once.
+  timers_.AcceptAt(id, RobotTime(12 * kMs), false);
+  EXPECT_EQ(timers_.Overruns(id), 2);
 }
 
 TEST_F(ProcessTimersTest, OverrunsAreNoMoreThanAnIntHolds) {
@@ -417,7 +433,7 @@ TEST_F(ProcessTimersTest, OnAFrozenClockShortIntervalsRestAndAreAcceptedByItsTim
   timers_.Expire(RobotTime(7 * kMs));
   EXPECT_EQ(timers_.NextLook(), RobotTime(7 * kMs + shm::kShortIntervalNs));
   SendAll();
-  timers_.AcceptAt(id, RobotTime(8 * kMs));
+  timers_.AcceptAt(id, RobotTime(8 * kMs), false);
   EXPECT_EQ(timers_.Overruns(id), 1'000);
 }
 
