@@ -32,7 +32,7 @@ inline bool MoveOwnClock(ClockPage& page, ClockReading r, std::int64_t deadline_
     const std::int64_t waited = shm::AdjustValue(r.waited_word) + (deadline_ns - r.time_ns);
     if (page.waited_adjust.compare_exchange_strong(expected,
                                                    shm::PackAdjust(r.waited_word, waited))) {
-      page.last_shown_ns.store(deadline_ns, std::memory_order_relaxed);
+      page.last_shown_ns.store(deadline_ns > now ? deadline_ns : now, std::memory_order_relaxed);
       return true;
     }
   }
@@ -46,7 +46,8 @@ Now ReadNowSlowly(GuestThread& thread) {
     const ClockReading r = ReadChecked(page);
     // A handler that has interrupted an exchange would end its wait by another one.
     const bool may_ask = thread.depth == 0 || (g_header->gates_only != 0 && !IsAtGate(thread));
-    if (r.time_ns < r.horizon_ns || !may_ask || IsShutDown()) return Show(page, r);
+    const Now now = Show(page, r);
+    if (now.shown_ns < r.horizon_ns || !may_ask || IsShutDown()) return now;
     Exchange(thread, Request{.kind = NotificationKind::kHorizon});
   }
 }

@@ -21,11 +21,8 @@ struct Now {
   std::int64_t shown_ns;
 };
 
-// Remembers what the clock shows for a reading.
 inline Now Show(shm::ClockPage& page, const shm::ClockReading& reading) {
-  const std::int64_t shown = shm::ShownTime(page, reading);
-  page.last_shown_ns.store(shown, std::memory_order_relaxed);
-  return Now{reading, shown};
+  return Now{reading, shm::ShowTime(page, reading)};
 }
 
 // Takes stolen time out, and where the horizon is reached stops the thread, then reads again.
@@ -38,7 +35,8 @@ inline Now ReadNow(GuestThread& thread) {
   const shm::ClockReading reading = shm::ReadClock(page);
   if (__builtin_expect(reading.time_ns < reading.horizon_ns && !shm::IsCheckDue(page, reading),
                        1)) {
-    return Show(page, reading);
+    const Now now = Show(page, reading);
+    if (__builtin_expect(now.shown_ns < reading.horizon_ns, 1)) return now;
   }
   return ReadNowSlowly(thread);
 }

@@ -85,17 +85,36 @@ inline bool IsCheckDue(const ClockPage& page, const ClockReading& r) {
   return r.tsc - page.last_check_tsc.load(std::memory_order_relaxed) > page.check_after_ticks;
 }
 
-// What the clock shows for a reading: at most the horizon, at least what it showed before.
-inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
-  std::int64_t shown = r.time_ns < r.horizon_ns ? r.time_ns : r.horizon_ns;
-  const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
-  return shown < last ? last : shown;
-}
-
 // How long the thread has run, what was stolen meanwhile included. Taking that out of the clock
 // does not turn this back; so it tells apart moments at which the clock shows the same time.
 inline std::int64_t RunTime(const ClockPage& page, const ClockReading& r) {
   return r.cpu_ns + page.stolen_ns.load(std::memory_order_relaxed);
+}
+
+// What the clock shows for a reading: at most the horizon, and more than it showed before, where
+// computing takes time. It may have shown more than the thread has computed: a preemption came a
+// little early, or time was found stolen that it had shown. Until the thread has made up for that
+// its clock goes at half its rate: one that stood still would show the same before work and after.
+inline std::int64_t ShownTime(const ClockPage& page, const ClockReading& r) {
+  const std::int64_t time = r.time_ns < r.horizon_ns ? r.time_ns : r.horizon_ns;
+  const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
+  if (time > last) return time;
+  if (page.ns_per_tick_q32 == 0 || last >= r.horizon_ns) return last;
+  constexpr std::int64_t kLeast = 1, kMost = std::int64_t{1} << 32;  // nobody is behind so far
+  const auto run = static_cast<std::uint64_t>(RunTime(page, r));
+  const auto last_run =
+      static_cast<std::uint64_t>(page.last_shown_run_ns.load(std::memory_order_relaxed));
+  const std::int64_t half = static_cast<std::int64_t>(run - last_run) / 2;
+  const std::int64_t since = half < kLeast ? kLeast : half > kMost ? kMost : half;
+  return since < r.horizon_ns - last ? last + since : r.horizon_ns;
+}
+
+// Remembers what the clock shows for a reading.
+inline std::int64_t ShowTime(ClockPage& page, const ClockReading& r) {
+  const std::int64_t shown = ShownTime(page, r);
+  page.last_shown_run_ns.store(RunTime(page, r), std::memory_order_relaxed);
+  page.last_shown_ns.store(shown, std::memory_order_relaxed);
+  return shown;
 }
 
 // Charged processor time according to the thread's own CPU clock, which others' use of the

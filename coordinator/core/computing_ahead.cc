@@ -243,7 +243,8 @@ void ComputingAhead::Pay(Task& task, VirtualTime horizon) {
   const VirtualTime end = start + paid;
   task.debt -= paid;
   task.cpu->ComeTo(end);
-  task.ComeTo(end);
+  // It may have waited since then, and have been woken where others have come further.
+  task.ComeTo(std::max(task.reached, end));
   parts_.run.latest = end;
   const ProgramClock& clock = task.process->clock;
   parts_.records.Ran(task, {clock.At(start), clock.At(end)}, {start, end}, __rdtsc());

@@ -83,6 +83,8 @@ void Engine::WritePage(Task& task, VirtualTime horizon, VirtualTime idle_until) 
   page.children_cpu_ns = task.process->children_cpu.ns();
   const std::int64_t last = page.last_shown_ns.load(std::memory_order_relaxed);
   page.last_shown_ns.store(std::max(last, now.ns()), std::memory_order_relaxed);
+  page.last_shown_run_ns.store(task.charged.ns() + page.stolen_ns.load(std::memory_order_relaxed),
+                               std::memory_order_relaxed);
   slot.core = cpu.core;
   slot.reply[0] = task.reply[0];
   slot.reply[1] = task.reply[1];
@@ -204,11 +206,12 @@ void Engine::Settle(Task& task) {
       .start = start,
       .horizon = run_.turn.horizon(),
       .reached = on_robot(reading.time_ns),
-      .shown = on_robot(page.last_shown_ns.load()),
+      .shown = on_robot(shm::ShownTime(page, reading)),
       .is_preempted = run_.turn.timed_out && (!run_.turn.notified || run_.turn.is_sent_to_gate),
       .credit = -task.debt};
   if (run_.turn.notified && slot.note.kind != shm::NotificationKind::kYield) {
     run.noted = on_robot(slot.note.time_ns);
+    run.shown = std::max(on_robot(page.last_shown_ns.load()), *run.noted);
   }
   const auto [progress, debt, ours] = SettleRun(run);
   metered.host_origin_ns += metered.OnHost(ours).ns();

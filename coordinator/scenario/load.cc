@@ -118,6 +118,8 @@ Scenario Load(const std::string& path, const ScenarioOverrides& overrides, Mista
   if (!all.HasMistakes()) CheckDdsTransports(top, &scenario);
   all.Try([&] { LoadMetrics(top, &scenario); });
   all.Try([&] { LoadExpect(top, is_shortened, &scenario); });
+  // The world gives the clock, and where nothing else is in it, too.
+  if (scenario.clock && !scenario.world) scenario.world.emplace();
   return scenario;
 }
 

@@ -3,6 +3,9 @@
 #include <sys/time.h>
 #include <sys/times.h>
 
+#include <atomic>
+#include <thread>
+
 #include "tests/conformance/conformance.h"
 
 using namespace conformance;
@@ -33,6 +36,37 @@ void NoClockGoesBack() {
   }
   timespec t;
   EXPECT(clock_gettime(9999, &t) == -1 && errno == EINVAL, "an unknown clock was read");
+}
+
+// While another thread wakes each 200 us, which is when a thread that computes is stopped a little
+// too early, and has that time left: after work its clock shows more than before, and after a sleep
+// more than when that was to end.
+void NoWorkIsDoneInNoTime() {
+  std::atomic<bool> stops{false};
+  std::thread other([&stops] {
+    while (!stops) {
+      const timespec often = ToTimespec(200'000);
+      nanosleep(&often, nullptr);
+    }
+  });
+  volatile unsigned sink = 0;
+  int still = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const std::int64_t before = Now();
+    for (int k = 0; k < 1000; ++k) sink = sink + 1;
+    if (Now() == before) ++still;
+  }
+  EXPECT(still == 0, "in %d of 20,000 pieces of work the clock stood still", still);
+  int at_once = 0;
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t until = Now() + kMs;
+    const timespec deadline = ToTimespec(until);
+    EXPECT(clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == 0, "a sleep");
+    if (Now() == until) ++at_once;
+  }
+  EXPECT(at_once == 0, "after %d of 100 sleeps no time had passed since their end", at_once);
+  stops = true;
+  other.join();
 }
 
 void WallClocksAgree() {
@@ -102,6 +136,7 @@ void ComputingTakesItsTime() {
 int main(int argc, char** argv) {
   Begin(argc, argv);
   NoClockGoesBack();
+  NoWorkIsDoneInNoTime();
   WallClocksAgree();
   SleepingCostsNoProcessorTime();
   ComputingTakesItsTime();

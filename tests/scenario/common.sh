@@ -34,13 +34,21 @@ all_done() {
 }
 # Runs a scenario on one processor of the host, and again on two, where threads compute ahead: into the folders 1 and
 # 2 of the one that is given.
-run_on_one_and_two() {  # SCENARIO FOLDER
-  local cpus
+# With one processor of the host's and with two. FIGURE of the summary says that the second one was used. A second one
+# that others have all the time nobody can use: then the test is left out.
+run_on_one_and_two() {  # SCENARIO FOLDER FIGURE
+  local cpus before began left took
   (($(nproc) > 1)) || { echo "this machine has one processor"; exit 77; }
   for cpus in 1 2; do
+    before=$(idle_centiseconds) began=$(date +%s%N)
     "$tcsim" run "$1" --host-cpus "$cpus" --out "$2/$cpus" >"$2/said" 2>&1 || fail "$(cat "$2/said")"
+    left=$((10 * ($(idle_centiseconds) - before))) took=$((($(date +%s%N) - began) / 1000000))
   done
+  ! grep -q "\"$3\": 0[,}]*$" "$2/2/summary.json" && return
+  ((5 * left <= took)) && { echo "others have this machine's second processor all the time"; exit 77; }
+  fail "$3 is 0, though processors were idle for $left of $took ms: $(cat "$2/said")"
 }
+idle_centiseconds() { awk '/^cpu / { print $5 + $6 }' /proc/stat; }
 # Kills the coordinator of a run in the background once its bag has more messages than that.
 kill_once_recorded() {  # TCSIM_PID BAG MESSAGES
   local _

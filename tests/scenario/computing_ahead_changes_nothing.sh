@@ -18,7 +18,7 @@ trap 'rm -rf "$out"' EXIT
     echo "      controller: {command: [$build/bin/soak_client, periodic, \"2\"], priority: 80}"
   done
 } >"$out/scenario.yaml"
-run_on_one_and_two "$out/scenario.yaml" "$out"
+run_on_one_and_two "$out/scenario.yaml" "$out" ahead_ns
 python3 - "$out" <<'PY' || fail "$(cat "$out/said")"
 import json, sys
 one, two = (json.load(open(f"{sys.argv[1]}/{cpus}/summary.json")) for cpus in (1, 2))

@@ -14,7 +14,7 @@ robots:
       planner: {command: [$build/bin/ending_threads, "20"]}
       controller: {command: [$build/bin/soak_client, periodic, "3"], priority: 80}
 END
-run_on_one_and_two "$out/scenario.yaml" "$out"
+run_on_one_and_two "$out/scenario.yaml" "$out" ahead_ns
 python3 - "$out" <<'PY' || fail "$(cat "$out/said")"
 import json, sys
 one, two = (json.load(open(f"{sys.argv[1]}/{cpus}/summary.json")) for cpus in (1, 2))

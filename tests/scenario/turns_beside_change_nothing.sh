@@ -24,7 +24,7 @@ odds=(none compute raw print write none none none)
     echo "  hands$i: {type: unix_json, commands: {body: b$i, listen: '@\${run}/r$i/hands'}}"
   done
 } >"$out/scenario.yaml"
-run_on_one_and_two "$out/scenario.yaml" "$out"
+run_on_one_and_two "$out/scenario.yaml" "$out" turns_beside
 python3 - "$out" "$ticks" "${odds[@]}" <<'PY' || fail "$(cat "$out/said" "$out"/2/*.log)"
 import csv, json, sys
 out, ticks, odds = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
@@ -81,7 +81,7 @@ PY
 for what in signal datagram; do
   sed -e "s|^robots:|&\n  other: {clients: {c: {command: [python3, disturb.py, $what, '\${run}/r0']}}}|" "$out/scenario.yaml" >"$out/$what.yaml"
   mkdir "$out/$what"
-  run_on_one_and_two "$out/$what.yaml" "$out/$what"
+  run_on_one_and_two "$out/$what.yaml" "$out/$what" turns_beside
   python3 - "$out/$what" "$what" <<'PY' || fail "$what: $(cat "$out/said" "$out/$what"/2/*.log)"
 import json, sys
 out, what = sys.argv[1:]

@@ -45,14 +45,49 @@ TEST(ClockPage, ShowsNeitherMoreThanTheHorizonNorLessThanBefore) {
   Page page(0);
   EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 2'000);
   EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000'000)), 5'000);
-  page.last_shown_ns = 3'000;
-  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 3'000);
+  page.last_shown_ns = page.last_shown_run_ns = 3'000;
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 1'000)), 3'001);
 }
 
 TEST(ClockPage, AClockThatHasNotStartedYetShowsItsBeginning) {
   Page page(1'000);  // the dispatch put its start a context switch into the future
   page.last_shown_ns = page.base_time_ns;
-  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 900)), 1'000);
+  EXPECT_EQ(ShownTime(page, ReadClockAt(page, 900)), 1'001);
+}
+
+// It has shown 400 ns that it has not computed yet.
+TEST(ClockPage, UntilItHasMadeUpForWhatItHasShownItGoesAtHalfItsRate) {
+  Page page(0);
+  page.last_shown_ns = 1'400;
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 100)), 1'450);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 100)), 1'451);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 400)), 1'601);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 900)), 1'900);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 950)), 1'950);
+}
+
+TEST(ClockPage, NeitherDoesItStandStillWhereStolenTimeIsFound) {
+  Page page(0);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'000)), 2'000);
+  ASSERT_TRUE(RemoveStolen(page, ReadClockAt(page, 1'000), 700));
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'100)), 2'050);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'500)), 2'200);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 1'600)), 2'300);
+}
+
+TEST(ClockPage, MakingUpItDoesNotPassItsHorizon) {
+  Page page(0);
+  page.last_shown_ns = 4'990;
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 100)), 5'000);
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 200)), 5'000);
+}
+
+// Where computing takes no time, nothing is made up for by it.
+TEST(ClockPage, UnderSetCostsItStandsStill) {
+  Page page(0);
+  page.ns_per_tick_q32 = 0;
+  page.last_shown_ns = 1'400;
+  EXPECT_EQ(ShowTime(page, ReadClockAt(page, 100)), 1'400);
 }
 
 TEST(ClockPage, StolenTimeIsTakenOutAndCounted) {
