@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace tcs {
 
@@ -97,6 +98,28 @@ void RunQueue::Assign(const std::vector<VirtualTime>& progress) {
     for (const std::size_t core : cores) {
       if (turns_[core].thread == kNobody) Choose(core, progress[core], keep_places);
     }
+  }
+  Displace(progress);
+}
+
+// One that stays where it was may have lost that core to somebody more urgent who runs nowhere
+// else, while somebody less urgent was given another one.
+void RunQueue::Displace(const std::vector<VirtualTime>& progress) {
+  // The most urgent first: whoever is displaced comes later, and may displace others.
+  for (const Ready& ready : ready_) {
+    if (HasTurn(ready.thread)) continue;
+    std::optional<std::size_t> least;
+    auto least_urgent = ready_.end();
+    for (std::size_t core = 0; core < turns_.size(); ++core) {
+      if ((ready.allowed >> (core & 63) & 1) == 0) continue;
+      const auto owner = Find(turns_[core].thread);
+      const bool gives_way = owner != ready_.end() && Precedes(ready, *owner) &&
+                             std::max(progress[core], ready.from) <= turns_[core].start;
+      if (!gives_way || (least.has_value() && !Precedes(*least_urgent, *owner))) continue;
+      least = core;
+      least_urgent = ready_.begin() + (owner - ready_.begin());
+    }
+    if (least.has_value()) turns_[*least] = {ready.thread, std::max(progress[*least], ready.from)};
   }
 }
 

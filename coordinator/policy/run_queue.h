@@ -75,6 +75,7 @@ class RunQueue {
   bool HasTurn(Thread thread) const;
   bool StaysElsewhere(Thread thread, std::size_t core) const;
   void Choose(std::size_t core, VirtualTime progress, bool keep_places);
+  void Displace(const std::vector<VirtualTime>& progress);
 
   std::vector<Ready> ready_;  // most urgent first, equals in the order of their turns
   std::vector<Thread> on_;    // who ran last on each core and has not waited since

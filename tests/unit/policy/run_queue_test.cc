@@ -188,6 +188,32 @@ TEST(RunQueue, TheLeastUrgentMakesRoomWhereAllCoresAreBusy) {
   EXPECT_EQ(robot.Next(1).thread, kPlanner) << "and not the logger";
 }
 
+// The controller may run on core 1 alone, where the planner has run; so that one goes to core 0,
+// before the logger.
+TEST(RunQueue, WhoLosesItsCoreGoesBeforeTheLessUrgentElsewhere) {
+  RunQueue robot(2);
+  robot.Add({kPlanner, 30, RobotTime(0)});
+  robot.Add({kLogger, 20, RobotTime(0)});
+  robot.Ran(1, kPlanner);
+  robot.Ran(0, kLogger);
+  robot.Add({kController, 80, RobotTime(0), 1u << 1});
+  robot.Assign({RobotTime(0), RobotTime(0)});
+  EXPECT_EQ(robot.Next(0).thread, kPlanner);
+  EXPECT_EQ(robot.Next(1).thread, kController);
+  EXPECT_EQ(robot.NextToPrecede(0), VirtualTime::Never());
+}
+
+TEST(RunQueue, NobodyLosesItsCoreToWhoIsReadyLater) {
+  RunQueue robot(2);
+  robot.Add({kPlanner, 30, RobotTime(5)});
+  robot.Add({kLogger, 20, RobotTime(0)});
+  robot.Ran(1, kPlanner);
+  robot.Add({kController, 80, RobotTime(0), 1u << 1});
+  robot.Assign({RobotTime(0), RobotTime(0)});
+  EXPECT_EQ(robot.Next(0).thread, kLogger);
+  EXPECT_EQ(robot.NextToPrecede(0), RobotTime(5));
+}
+
 TEST(RunQueue, AffinityIsKept) {
   RunQueue robot(2);
   robot.Add({kPlanner, 10, RobotTime(0), 2});
