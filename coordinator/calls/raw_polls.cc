@@ -95,7 +95,9 @@ std::int64_t RawPolls::Poll(Task& task, const TrappedCall& call) {
   const auto waited = FdsOf(task, call);
   if (!waited.has_value()) return 0;
   const bool ready = std::any_of(waited->begin(), waited->end(), [&](const shm::WaitFd& fd) {
-    return Borrowed(task, fd.fd).IsReady(static_cast<short>(fd.events));
+    const Borrowed looked_at(task, fd.fd);
+    const bool is_closed = looked_at.fd() < 0 && errno == EBADF;  // which the kernel says at once
+    return is_closed || looked_at.IsReady(static_cast<short>(fd.events));
   });
   if (timeout_ns == 0 || ready) {
     waker_.HoldInCall(task, shm::NotificationKind::kRead);

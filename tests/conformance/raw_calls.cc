@@ -144,6 +144,42 @@ void Timeouts() {
   close(ends[1]);
 }
 
+// What is no descriptor is said at once, whatever else is waited for.
+void ClosedDescriptors() {
+  int ends[2];
+  EXPECT(pipe(ends) == 0, "pipe");
+  const int closed = dup(ends[0]);
+  close(closed);
+  const std::int64_t start = Now();
+  for (const nfds_t count : {1, 2}) {
+    pollfd fds[] = {{closed, POLLIN, 0}, {ends[0], POLLIN, 0}};
+    EXPECT(syscall(SYS_poll, fds, count, 60'000) == 1 && fds[0].revents == POLLNVAL, "poll: %d",
+           fds[0].revents);
+    fds[0].revents = 0;
+    const timespec timeout{60, 0};
+    EXPECT(syscall(SYS_ppoll, fds, count, &timeout, nullptr, 8) == 1 && fds[0].revents == POLLNVAL,
+           "ppoll: %d", fds[0].revents);
+  }
+  for (int of = 0; of < 3; ++of) {
+    fd_set sets[3];
+    for (fd_set& set : sets) FD_ZERO(&set);
+    FD_SET(ends[0], &sets[0]);
+    FD_SET(closed, &sets[of]);
+    timeval tv{60, 0};
+    const timespec timeout{60, 0};
+    EXPECT(
+        syscall(SYS_select, closed + 1, &sets[0], &sets[1], &sets[2], &tv) == -1 && errno == EBADF,
+        "select's set %d", of);
+    EXPECT(
+        syscall(SYS_pselect6, closed + 1, &sets[0], &sets[1], &sets[2], &timeout, nullptr) == -1 &&
+            errno == EBADF,
+        "pselect6's set %d", of);
+  }
+  EXPECT(Now() - start < 30'000 * kMs, "they waited");
+  close(ends[0]);
+  close(ends[1]);
+}
+
 // A child writes in turns; what the parent reads by `next` has come when it was written.
 template <class Next>
 void ReadFromChild(const char* what, Next next) {
@@ -243,6 +279,7 @@ int main(int argc, char** argv) {
   WrongClocks();
   Sleeps();
   Timeouts();
+  ClosedDescriptors();
   ReadFromChild("fgets", [](FILE* stream) {
     char line[16];
     EXPECT(fgets(line, sizeof line, stream) != nullptr, "fgets");
