@@ -1,7 +1,12 @@
 #include "libtcs_preload/environment.h"
 
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
 
+#include <utility>
+
+#include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/user_memory.h"
 #include "shm/attach_protocol.h"
 
@@ -49,62 +54,84 @@ Item TakeItem(const char*& list) {
   return item;
 }
 
-// A list in a buffer. What does not fit makes all of it of no use.
-class List {
+// Copies what it is given, one behind the other.
+class Copy {
  public:
-  List(char* to, std::size_t size) : begin_(to), at_(to), end_(to + size) {}
-
-  void Add(const Item& item) {
-    if (has_items_) Put(":", 1);
-    Put(item.text, item.length);
-    has_items_ = true;
-  }
-  // The items of `list` that are tcs's, or those that are not.
-  void Add(const char* list, bool ours) {
-    for (Item item = TakeItem(list); item.length != 0; item = TakeItem(list)) {
-      if (item.IsOurs() == ours) Add(item);
-    }
-  }
+  explicit Copy(char* to) : at_(to) { *at_ = '\0'; }
   void Put(const char* text, std::size_t length) {
-    fits_ = fits_ && length < static_cast<std::size_t>(end_ - at_);
-    if (!fits_) return;
     memcpy(at_, text, length);
     at_ += length;
     *at_ = '\0';
   }
-  bool fits() const { return fits_; }
-  void Clear() { *(at_ = begin_) = '\0', fits_ = true, has_items_ = false; }
 
  private:
-  char *begin_, *at_, *end_;
-  bool fits_ = true, has_items_ = false;
+  char* at_;
 };
 
-// Writes the entry with which a program is executed whose own is `value` (null: it has none). Its
-// own libraries come first: a sanitizer's runtime must, and of those that define the same function
-// the first one passes it on to ours.
-void WriteEntry(const char* value, char* to, std::size_t size) {
-  List list(to, size);
-  const auto begin = [&] {
-    list.Clear();
-    list.Put(kPreload, sizeof kPreload - 1);
-    list.Put("=", 1);
-  };
-  begin();
-  if (value != nullptr) list.Add(value, false);
-  list.Add(g_own_libraries, true);
-  if (list.fits()) return;
-  begin();  // without the shim it would be lost
-  list.Add(g_own_libraries, true);
+// How much room a copy takes.
+class Count {
+ public:
+  void Put(const char*, std::size_t length) { size_ += length; }
+  std::size_t size() const { return size_ + 1; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+// Whether a copy would be the same as a text.
+class Comparison {
+ public:
+  explicit Comparison(const char* with) : at_(with) {}
+  void Put(const char* text, std::size_t length) {
+    is_same_ = is_same_ && strncmp(at_, text, length) == 0;
+    if (is_same_) at_ += length;
+  }
+  bool IsSame() const { return is_same_ && *at_ == '\0'; }
+
+ private:
+  const char* at_;
+  bool is_same_ = true;
+};
+
+// The items of `list` that are tcs's, or those that are not, behind those that are there already.
+template <class To>
+void PutItems(const char* list, bool ours, bool* has_items, To& to) {
+  for (Item item = TakeItem(list); item.length != 0; item = TakeItem(list)) {
+    if (item.IsOurs() != ours) continue;
+    if (std::exchange(*has_items, true)) to.Put(":", 1);
+    to.Put(item.text, item.length);
+  }
+}
+
+// The entry with which a program is executed whose own is `value` (null: it has none). Its own
+// libraries come first: a sanitizer's runtime must, and of those that define the same function the
+// first one passes it on to ours.
+template <class To>
+void PutEntry(const char* value, To& to) {
+  bool has_items = false;
+  to.Put(kPreload, sizeof kPreload - 1);
+  to.Put("=", 1);
+  if (value != nullptr) PutItems(value, false, &has_items, to);
+  PutItems(g_own_libraries, true, &has_items, to);
+}
+
+std::size_t CountOf(char* const* envp) {
+  std::size_t count = 0;
+  while (envp != nullptr && envp[count] != nullptr) ++count;
+  return count;
 }
 
 }  // namespace
 
 void RememberEnvironment(char** envp) {
   if (const char* preload = Find(envp, kPreload); preload != nullptr) {
-    List own(g_own_libraries, sizeof g_own_libraries);
-    own.Add(preload + sizeof kPreload, true);
-    if (!own.fits()) own.Clear();
+    bool has_items = false;
+    Count room;
+    PutItems(preload + sizeof kPreload, true, &has_items, room);
+    has_items = false;
+    Copy own(g_own_libraries);
+    if (room.size() <= sizeof g_own_libraries)
+      PutItems(preload + sizeof kPreload, true, &has_items, own);
   }
   const char* socket = Find(envp, shm::kSocketVariable);
   if (socket != nullptr && strlen(socket) < sizeof g_socket_entry) strcpy(g_socket_entry, socket);
@@ -125,31 +152,46 @@ const char* SocketName() {
   return g_socket_entry[0] == '\0' ? nullptr : g_socket_entry + sizeof shm::kSocketVariable;
 }
 
-char* const* WithShim(char* const* envp, EnvironmentCopy& storage) {
-  if (g_socket_entry[0] == '\0' || g_own_libraries[0] == '\0') return envp;
-  if (!CanReadStrings(envp)) return envp;  // the kernel says what is wrong with it
+EnvironmentWithShim::EnvironmentWithShim(char* const* envp) : entries_(envp) {
+  if (g_socket_entry[0] == '\0' || g_own_libraries[0] == '\0') return;
+  if (!CanReadStrings(envp)) return;  // the kernel says what is wrong with it
   const char* preload = Find(envp, kPreload);
   const char* socket = Find(envp, shm::kSocketVariable);
   const char* aliases = Find(envp, shm::kAliasesVariable);
+  const char* value = preload == nullptr ? nullptr : preload + sizeof kPreload;
   const bool has_aliases =
       g_aliases_entry[0] == '\0' || (aliases != nullptr && strcmp(aliases, g_aliases_entry) == 0);
-  WriteEntry(preload == nullptr ? nullptr : preload + sizeof kPreload, storage.preload,
-             sizeof storage.preload);
-  if (preload != nullptr && socket != nullptr && strcmp(preload, storage.preload) == 0 &&
-      strcmp(socket, g_socket_entry) == 0 && has_aliases) {
-    return envp;
+  if (preload != nullptr && socket != nullptr && strcmp(socket, g_socket_entry) == 0 &&
+      has_aliases) {
+    Comparison own(preload);
+    PutEntry(value, own);
+    if (own.IsSame()) return;
   }
+  Count room;
+  PutEntry(value, room);
+  const std::size_t entries_size = (CountOf(envp) + 4) * sizeof(char*);
+  mapped_size_ = entries_size + room.size();
+  const long made = RawSyscall(SYS_mmap, 0, static_cast<long>(mapped_size_), PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (made < 0 && made > -4096) return;
+  mapped_ = reinterpret_cast<void*>(made);
+  auto* const entries = static_cast<char**>(mapped_);
+  char* const entry = static_cast<char*>(mapped_) + entries_size;
+  Copy to(entry);
+  PutEntry(value, to);
   std::size_t n = 0;
-  for (; envp != nullptr && envp[0] != nullptr; ++envp) {
-    if (envp[0] == preload || envp[0] == socket || envp[0] == aliases) continue;
-    if (n == EnvironmentCopy::kMaxEntries) break;
-    storage.entries[n++] = envp[0];
+  for (; envp != nullptr && *envp != nullptr; ++envp) {
+    if (*envp != preload && *envp != socket && *envp != aliases) entries[n++] = *envp;
   }
-  storage.entries[n++] = storage.preload;
-  storage.entries[n++] = g_socket_entry;
-  if (g_aliases_entry[0] != '\0') storage.entries[n++] = g_aliases_entry;
-  storage.entries[n] = nullptr;
-  return storage.entries;
+  entries[n++] = entry;
+  entries[n++] = g_socket_entry;
+  if (g_aliases_entry[0] != '\0') entries[n++] = g_aliases_entry;
+  entries[n] = nullptr;
+  entries_ = entries;
+}
+
+EnvironmentWithShim::~EnvironmentWithShim() {
+  if (mapped_ != nullptr) RawSyscall(SYS_munmap, Arg(mapped_), static_cast<long>(mapped_size_));
 }
 
 }  // namespace tcs::preload

@@ -18,14 +18,24 @@ const char* AliasLines();
 // The coordinator's socket (shm/attach_protocol.h), or null where there is none.
 const char* SocketName();
 
-// An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them,
-// in `storage`: what LD_PRELOAD has there is kept, and the shim comes behind it. Async-signal-safe.
-// Entries beyond kMaxEntries are dropped, and libraries that do not fit.
-struct EnvironmentCopy {
-  static constexpr std::size_t kMaxEntries = 2048;
-  char* entries[kMaxEntries + 4];
-  char preload[4096];
+// An environment for exec: `envp` itself if it carries the shim's variables, else a copy with them:
+// what LD_PRELOAD has there is kept, and the shim comes before it. Where there is no memory for a
+// copy it is `envp`, too. Valid while this object lives. Async-signal-safe, and sparing of stack:
+// some programs execute others on 4 KiB.
+//
+// A child that shares its parent's memory and executes a program leaves its copy there.
+class EnvironmentWithShim {
+ public:
+  explicit EnvironmentWithShim(char* const* envp);
+  ~EnvironmentWithShim();
+  EnvironmentWithShim(const EnvironmentWithShim&) = delete;
+  EnvironmentWithShim& operator=(const EnvironmentWithShim&) = delete;
+  char* const* get() const { return entries_; }
+
+ private:
+  char* const* entries_;
+  void* mapped_ = nullptr;
+  std::size_t mapped_size_ = 0;
 };
-char* const* WithShim(char* const* envp, EnvironmentCopy& storage);
 
 }  // namespace tcs::preload

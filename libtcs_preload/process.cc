@@ -74,9 +74,9 @@ int SpawnWithShim(Real real, pid_t* pid, const char* program,
                   const posix_spawn_file_actions_t* actions, const posix_spawnattr_t* attributes,
                   char* const argv[], char* const envp[]) {
   const Entered t;
-  EnvironmentCopy storage;
+  const EnvironmentWithShim environment(envp);
   pid_t child = 0;
-  const int error = real()(&child, program, actions, attributes, argv, WithShim(envp, storage));
+  const int error = real()(&child, program, actions, attributes, argv, environment.get());
   if (pid != nullptr && error == 0) *pid = child;
   if (t != nullptr && error == 0) TellSpawned(*t, child);
   return error;
@@ -137,10 +137,10 @@ TCS_EXPORT int waitid(idtype_t type, id_t id, siginfo_t* info, int options) {
 }
 
 TCS_EXPORT int execve(const char* path, char* const argv[], char* const envp[]) noexcept {
-  EnvironmentCopy storage;
+  const EnvironmentWithShim environment(envp);
   const WithoutPreemption none;
   return static_cast<int>(
-      ToErrno(RawSyscall(SYS_execve, Arg(path), Arg(argv), Arg(WithShim(envp, storage)))));
+      ToErrno(RawSyscall(SYS_execve, Arg(path), Arg(argv), Arg(environment.get()))));
 }
 
 TCS_EXPORT int execv(const char* path, char* const argv[]) noexcept {
@@ -148,9 +148,9 @@ TCS_EXPORT int execv(const char* path, char* const argv[]) noexcept {
 }
 
 TCS_EXPORT int execvpe(const char* file, char* const argv[], char* const envp[]) noexcept {
-  EnvironmentCopy storage;
+  const EnvironmentWithShim environment(envp);
   const WithoutPreemption none;
-  return TCS_REAL(execvpe)(file, argv, WithShim(envp, storage));
+  return TCS_REAL(execvpe)(file, argv, environment.get());
 }
 
 TCS_EXPORT int execvp(const char* file, char* const argv[]) noexcept {
@@ -158,9 +158,9 @@ TCS_EXPORT int execvp(const char* file, char* const argv[]) noexcept {
 }
 
 TCS_EXPORT int fexecve(int fd, char* const argv[], char* const envp[]) noexcept {
-  EnvironmentCopy storage;
+  const EnvironmentWithShim environment(envp);
   const WithoutPreemption none;
-  return TCS_REAL(fexecve)(fd, argv, WithShim(envp, storage));
+  return TCS_REAL(fexecve)(fd, argv, environment.get());
 }
 
 TCS_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,

@@ -56,29 +56,45 @@ SelectSets::SelectSets(int count, fd_set* read, fd_set* write, fd_set* except)
     if (!CanRead(user_[set], size)) error_ = EFAULT;
     if (error_ == 0) memcpy(Set(wanted_, set), user_[set], size);
   }
+  if (error_ == 0 && !MakeRoomForWanted()) error_ = ENOMEM;
 }
 
-SelectSets::~SelectSets() {
-  if (mapped_ != nullptr) {
-    RawSyscall(SYS_munmap, Arg(mapped_), static_cast<long>(mapped_size_));
-  }
+SelectSets::Mapping::~Mapping() {
+  if (memory_ != nullptr) RawSyscall(SYS_munmap, Arg(memory_), static_cast<long>(size_));
+}
+
+void* SelectSets::Mapping::Make(std::size_t size) {
+  if (memory_ != nullptr) return memory_;
+  const long made = RawSyscall(SYS_mmap, 0, static_cast<long>(size), PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (made < 0 && made > -4096) return nullptr;
+  size_ = size;
+  return memory_ = reinterpret_cast<void*>(made);
 }
 
 bool SelectSets::MakeRoom() {
   wanted_ = ordinary_sets_;
-  fds_ = ordinary_fds_;
-  const std::size_t sets = 2 * kSets * words_ * sizeof(std::uint64_t);
   if (count_ > kOrdinary) {
-    mapped_size_ = sets + count_ * sizeof(pollfd);
-    const long made = RawSyscall(SYS_mmap, 0, static_cast<long>(mapped_size_),
-                                 PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (made < 0 && made > -4096) return false;
-    mapped_ = reinterpret_cast<void*>(made);
-    wanted_ = static_cast<std::uint64_t*>(mapped_);
-    fds_ = reinterpret_cast<pollfd*>(static_cast<char*>(mapped_) + sets);
+    wanted_ =
+        static_cast<std::uint64_t*>(mapped_sets_.Make(2 * kSets * words_ * sizeof(std::uint64_t)));
   }
+  if (wanted_ == nullptr) return false;
   found_ = wanted_ + kSets * words_;
   return true;
+}
+
+bool SelectSets::MakeRoomForWanted() {
+  std::size_t count = 0;
+  for (std::size_t word = 0; word < words_; ++word) {
+    std::uint64_t any = 0;
+    for (int set = 0; set < kSets; ++set) {
+      if (user_[set] != nullptr) any |= Set(wanted_, set)[word];
+    }
+    count += static_cast<std::size_t>(__builtin_popcountll(any));
+  }
+  fds_ = count <= kFew ? ordinary_fds_
+                       : static_cast<pollfd*>(mapped_fds_.Make(count * sizeof(pollfd)));
+  return fds_ != nullptr;
 }
 
 bool SelectSets::Wants(int set, std::size_t fd) const {

@@ -15,7 +15,6 @@ class SelectSets {
   // Copies the sets' first `count` descriptors, or as many as the process can have. error() is then
   // 0, or what select says of it.
   SelectSets(int count, fd_set* read, fd_set* write, fd_set* except);
-  ~SelectSets();
   SelectSets(const SelectSets&) = delete;
   SelectSets& operator=(const SelectSets&) = delete;
   int error() const { return error_; }
@@ -32,10 +31,23 @@ class SelectSets {
  private:
   static constexpr int kSets = 3;
   static constexpr std::size_t kWordBits = 64;
-  // Sets of fd_set's size are kept on the stack.
-  static constexpr std::size_t kOrdinary = FD_SETSIZE;
+  // Sets of fd_set's size are kept on the stack, and so many descriptors for poll: threads have
+  // stacks of 16 KiB, and may have used most of it.
+  static constexpr std::size_t kOrdinary = FD_SETSIZE, kFew = 32;
+
+  // Memory that lives as long as this object; null: there is none.
+  class Mapping {
+   public:
+    ~Mapping();
+    void* Make(std::size_t size);
+
+   private:
+    void* memory_ = nullptr;
+    std::size_t size_ = 0;
+  };
 
   bool MakeRoom();
+  bool MakeRoomForWanted();
   std::uint64_t* Set(std::uint64_t* sets, int set) const { return sets + set * words_; }
   bool Wants(int set, std::size_t fd) const;
 
@@ -44,10 +56,9 @@ class SelectSets {
   int error_ = 0;
   std::uint64_t *wanted_ = nullptr, *found_ = nullptr;
   pollfd* fds_ = nullptr;
-  void* mapped_ = nullptr;
-  std::size_t mapped_size_ = 0;
+  Mapping mapped_sets_, mapped_fds_;
   std::uint64_t ordinary_sets_[2 * kSets * kOrdinary / kWordBits];
-  pollfd ordinary_fds_[kOrdinary];
+  pollfd ordinary_fds_[kFew];
 };
 
 }  // namespace tcs::preload

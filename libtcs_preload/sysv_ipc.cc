@@ -78,7 +78,7 @@ long Operate(GuestThread& t, int id, sembuf* operations, std::size_t count, cons
   if (count > kMostOperations) return -E2BIG;
   if (!CanRead(operations, count * sizeof *operations)) return -EFAULT;
   if (!IsValid(timeout)) return -EINVAL;
-  sembuf at_once[kMostOperations];
+  auto* const at_once = static_cast<sembuf*>(__builtin_alloca(count * sizeof(sembuf)));
   bool some = false;  // must not wait
   for (std::size_t i = 0; i < count; ++i) {
     at_once[i] = operations[i];
