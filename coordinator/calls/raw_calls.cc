@@ -28,6 +28,13 @@ void RawCalls::Signal(Task& task) {
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
 }
 
+// The kernel puts the mask in place, and ends the wait once a handler has run: at the virtual time
+// at which the signal was sent, as it does for all who wait.
+void RawCalls::Suspend(Task& task) {
+  task.trap_continues = true;
+  task.expects_kernel = true;
+}
+
 // The kernel keeps the order of those who wait for a lock.
 void RawCalls::Lock(Task& task) {
   task.trap_continues = true;
@@ -83,6 +90,10 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_rt_tgsigqueueinfo:
     case SYS_pidfd_send_signal:
       Signal(task);
+      break;
+    case SYS_rt_sigsuspend:
+    case SYS_pause:
+      Suspend(task);
       break;
     case SYS_sched_yield:
       return yield_(task);

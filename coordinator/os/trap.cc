@@ -43,6 +43,8 @@ constexpr std::uint32_t kTrapped[] = {
     // Signals to others.
     SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo,
     SYS_pidfd_send_signal,
+    // Waits for handlers.
+    SYS_rt_sigsuspend, SYS_pause,
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
