@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sys/syscall.h>
 
+#include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/landlock.h"
 
@@ -124,6 +125,9 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_alarm:
       parts_.timers.Call(task, call);
       return true;  // it may have written to its descriptor
+    case SYS_getrandom:
+      task.trap_result = RawDraws::GetRandom(task, call);
+      break;
     case SYS_flock:
     case SYS_fcntl:
       if (IsOfOwner(call)) {
