@@ -68,12 +68,24 @@ int main(int argc, char** argv) {
   AlarmIn(40 * kMs);
   EXPECT(syscall(SYS_rt_sigsuspend, &before, 8) == -1 && errno == EINTR, "rt_sigsuspend");
   ExpectAbout(start, 40 * kMs, "rt_sigsuspend");
+  EXPECT(g_count == 5, "%d handlers ran", int(g_count));
+  // A signal of somebody else's, at the time at which it is sent.
+  start = Now();
+  if (fork() == 0) {
+    const timespec until = ToTimespec(start + 20 * kMs);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    kill(getppid(), SIGALRM);
+    _exit(0);
+  }
+  EXPECT(syscall(SYS_rt_sigsuspend, &before, 8) == -1 && errno == EINTR, "rt_sigsuspend");
+  ExpectAbout(start, 20 * kMs, "rt_sigsuspend until another process's signal");
+  EXPECT(g_count == 6, "%d handlers ran", int(g_count));
   sigprocmask(SIG_SETMASK, &before, nullptr);
   start = Now();
   AlarmIn(30 * kMs);
   EXPECT(syscall(SYS_pause) == -1 && errno == EINTR, "pause");
   ExpectAbout(start, 30 * kMs, "a raw pause");
-  EXPECT(g_count == 6, "%d handlers ran", int(g_count));
+  EXPECT(g_count == 7, "%d handlers ran", int(g_count));
   sigprocmask(SIG_BLOCK, &blocked, nullptr);
 
   sigset_t now;
