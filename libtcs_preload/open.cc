@@ -15,7 +15,6 @@
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/kernel_wait.h"
 #include "libtcs_preload/keys.h"
-#include "libtcs_preload/random.h"
 #include "libtcs_preload/raw_syscall.h"
 #include "libtcs_preload/real.h"
 #include "libtcs_preload/virtual_clock.h"
@@ -138,28 +137,27 @@ TCS_EXPORT int creat64(const char* path, mode_t mode) { return creat(path, mode)
 
 TCS_EXPORT FILE* fopen(const char* path, const char* mode) {
   if (const char* file = FileOf(path); file != path) return OfDevice(TCS_REAL(fopen)(file, mode));
-  return RepeatDraws(
-      Opening(AT_FDCWD, path, FlagsOf(mode), false, [&] { return TCS_REAL(fopen)(path, mode); }));
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false, [&] { return TCS_REAL(fopen)(path, mode); });
 }
 
 TCS_EXPORT FILE* fopen64(const char* path, const char* mode) {
   if (const char* file = FileOf(path); file != path) return OfDevice(TCS_REAL(fopen64)(file, mode));
-  return RepeatDraws(
-      Opening(AT_FDCWD, path, FlagsOf(mode), false, [&] { return TCS_REAL(fopen64)(path, mode); }));
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
+                 [&] { return TCS_REAL(fopen64)(path, mode); });
 }
 
 TCS_EXPORT FILE* freopen(const char* path, const char* mode, FILE* stream) {
   if (const char* file = FileOf(path); file != path) {
     return OfDevice(TCS_REAL(freopen)(file, mode, stream));
   }
-  return RepeatDraws(Opening(AT_FDCWD, path, FlagsOf(mode), false,
-                             [&] { return TCS_REAL(freopen)(path, mode, stream); }));
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
+                 [&] { return TCS_REAL(freopen)(path, mode, stream); });
 }
 
 TCS_EXPORT FILE* freopen64(const char* path, const char* mode, FILE* stream) {
   if (const char* file = FileOf(path); file != path) {
     return OfDevice(TCS_REAL(freopen64)(file, mode, stream));
   }
-  return RepeatDraws(Opening(AT_FDCWD, path, FlagsOf(mode), false,
-                             [&] { return TCS_REAL(freopen64)(path, mode, stream); }));
+  return Opening(AT_FDCWD, path, FlagsOf(mode), false,
+                 [&] { return TCS_REAL(freopen64)(path, mode, stream); });
 }

@@ -6,6 +6,7 @@
 #include <sys/epoll.h>
 #include <sys/signalfd.h>
 
+#include "libtcs_preload/descriptor_path.h"
 #include "libtcs_preload/errno_result.h"
 #include "libtcs_preload/guest.h"
 #include "libtcs_preload/raw_syscall.h"
@@ -22,14 +23,8 @@ bool g_any = false;  // this program has made one
 class FdInfo {
  public:
   explicit FdInfo(int fd) {
-    char path[40] = "/proc/self/fdinfo/";
-    char digits[12];
-    int n = 0;
-    do digits[n++] = static_cast<char>('0' + fd % 10);
-    while ((fd /= 10) > 0);
-    char* end = path + strlen(path);
-    while (n > 0) *end++ = digits[--n];
-    file_ = RawSyscall(SYS_openat, AT_FDCWD, Arg(path), O_RDONLY | O_CLOEXEC);
+    const DescriptorPath path("/proc/self/fdinfo/", fd);
+    file_ = RawSyscall(SYS_openat, AT_FDCWD, Arg(path.text), O_RDONLY | O_CLOEXEC);
   }
   ~FdInfo() {
     if (file_ >= 0) RawSyscall(SYS_close, file_);

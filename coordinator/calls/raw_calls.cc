@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sys/syscall.h>
 
+#include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/signal_reach.h"
 #include "coordinator/os/landlock.h"
 
@@ -26,6 +27,13 @@ void RawCalls::Signal(Task& task) {
   task.follow_up = FollowUp::kSignals;
   ReachBySignal(run_, task, 0);
   waker_.HoldInCall(task, shm::NotificationKind::kWrite);
+}
+
+// The kernel puts the mask in place, and ends the wait once a handler has run: at the virtual time
+// at which the signal was sent, as it does for all who wait.
+void RawCalls::Suspend(Task& task) {
+  task.trap_continues = true;
+  task.expects_kernel = true;
 }
 
 // The kernel keeps the order of those who wait for a lock.
@@ -84,6 +92,10 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_pidfd_send_signal:
       Signal(task);
       break;
+    case SYS_rt_sigsuspend:
+    case SYS_pause:
+      Suspend(task);
+      break;
     case SYS_sched_yield:
       return yield_(task);
     case SYS_exit:
@@ -113,6 +125,9 @@ bool RawCalls::Handle(Task& task, const TrappedCall& call) {
     case SYS_alarm:
       parts_.timers.Call(task, call);
       return true;  // it may have written to its descriptor
+    case SYS_getrandom:
+      task.trap_result = RawDraws::GetRandom(task, call);
+      break;
     case SYS_flock:
     case SYS_fcntl:
       if (IsOfOwner(call)) {

@@ -45,6 +45,7 @@ class RawCalls {
 
  private:
   void Signal(Task& task);
+  void Suspend(Task& task);
   void Lock(Task& task);
 
   RunState& run_;

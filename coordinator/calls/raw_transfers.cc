@@ -129,8 +129,9 @@ void RawTransfers::Handle(Task& task, const TrappedCall& call) {
   const Transfer transfer = TransferOf(call);
   const short events = transfer.reads ? POLLIN : POLLOUT;
   const auto number = static_cast<int>(call.args[0]);
-  task.trap_continues = true;
   const Borrowed fd(task, number);
+  if (draws_.Read(task, call, fd)) return;
+  task.trap_continues = true;
   if (!fd.CanWait()) return;
   if (transfer.reads) fd.AcknowledgeAtOnce();
   // Those who connect wait for room in the backlog.

@@ -6,6 +6,7 @@
 
 #include "coordinator/calls/descriptor_waits.h"
 #include "coordinator/calls/local_sockets.h"
+#include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/raw_timers.h"
 #include "coordinator/os/trap.h"
 #include "coordinator/tasks/activations.h"
@@ -16,12 +17,13 @@ namespace tcs {
 class RawTransfers {
  public:
   RawTransfers(Waker& waker, Activations& activations, DescriptorWaits& descriptors,
-               RawTimers& timers, LocalSockets& local_sockets)
+               RawTimers& timers, LocalSockets& local_sockets, const RawDraws& draws)
       : waker_(waker),
         activations_(activations),
         descriptors_(descriptors),
         timers_(timers),
-        local_sockets_(local_sockets) {}
+        local_sockets_(local_sockets),
+        draws_(draws) {}
 
   // The call goes on once it is ready, or can find all that was sent until now.
   void Handle(Task& task, const TrappedCall& call);
@@ -33,6 +35,7 @@ class RawTransfers {
   DescriptorWaits& descriptors_;
   RawTimers& timers_;
   LocalSockets& local_sockets_;
+  const RawDraws& draws_;
 };
 
 }  // namespace tcs

@@ -31,6 +31,7 @@
 #include "coordinator/calls/priority_inheritance.h"
 #include "coordinator/calls/raw_calls.h"
 #include "coordinator/calls/raw_child_waits.h"
+#include "coordinator/calls/raw_draws.h"
 #include "coordinator/calls/raw_polls.h"
 #include "coordinator/calls/raw_scheduling.h"
 #include "coordinator/calls/raw_timers.h"
@@ -303,7 +304,9 @@ class Engine {
   // Calls that are made raw.
   RawTimes raw_times_{run_, waker_};
   RawPolls raw_polls_{waker_, descriptors_};
-  RawTransfers raw_transfers_{waker_, activations_, descriptors_, raw_timers_, local_sockets_};
+  RawDraws raw_draws_{run_};
+  RawTransfers raw_transfers_{waker_,      activations_,   descriptors_,
+                              raw_timers_, local_sockets_, raw_draws_};
   RawChildWaits raw_child_waits_{run_, waker_, unknown_children_};
   RawCalls raw_calls_{run_,
                       waker_,

@@ -135,6 +135,10 @@ std::vector<std::byte> EncodeEndpoint(const Endpoint& endpoint) {
   shared.topic = texts.Add(endpoint.topic);
   shared.type = texts.Add(endpoint.type);
   shared.qos = ToShared(endpoint.qos, endpoint.kind);
+  if (!endpoint.user_data.empty()) {
+    shared.qos.present |= shm::kDdsUserData;
+    shared.qos.user_data = texts.Add(endpoint.user_data);
+  }
   return texts.After(shared);
 }
 
@@ -167,6 +171,9 @@ std::optional<Endpoint> DecodeEndpoint(std::span<const std::byte> payload) {
   endpoint.type = std::move(*type);
   endpoint.keyless = shared.keyless != 0;
   endpoint.qos = FromShared(shared.qos, endpoint.kind);
+  if ((shared.qos.present & shm::kDdsUserData) != 0) {
+    endpoint.user_data = TextAt(payload, shared.qos.user_data).value_or("");
+  }
   return endpoint;
 }
 

@@ -19,6 +19,7 @@ struct Endpoint {
   std::string topic, type;
   bool keyless = true;
   Qos qos;
+  std::string user_data = {};  // what ROS 2 says of the type there (type_hash.h)
 };
 
 [[nodiscard]] std::vector<std::byte> EncodeParticipant(std::string_view name,

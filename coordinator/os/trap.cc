@@ -43,6 +43,8 @@ constexpr std::uint32_t kTrapped[] = {
     // Signals to others.
     SYS_kill, SYS_tkill, SYS_tgkill, SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo,
     SYS_pidfd_send_signal,
+    // Waits for handlers.
+    SYS_rt_sigsuspend, SYS_pause,
     // The scheduler: the host's must not hear of it.
     SYS_sched_yield, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr,
     SYS_sched_setaffinity, SYS_sched_getaffinity, SYS_sched_getscheduler, SYS_sched_getparam,
@@ -89,12 +91,17 @@ sock_filter LoadUpper(std::size_t argument) {
               sizeof(std::uint32_t));
 }
 
-// What programs of this architecture call, after the number was loaded. The calls in `unmarked` are
-// trapped whoever makes them.
-std::vector<sock_filter> NativeProgram(const std::vector<std::uint32_t>& unmarked) {
+// What is trapped by its number alone.
+struct Numbers {
+  std::vector<std::uint32_t> others;    // unless the shim made the call
+  std::vector<std::uint32_t> unmarked;  // whoever made it
+};
+
+// What programs of this architecture call, after the number was loaded.
+std::vector<sock_filter> NativeProgram(const Numbers& numbers) {
   const sock_filter allow = Return(SECCOMP_RET_ALLOW), trap = Return(SECCOMP_RET_USER_NOTIF);
-  std::vector<std::uint32_t> trapped(std::begin(kTrapped), std::end(kTrapped));
-  trapped.insert(trapped.end(), unmarked.begin(), unmarked.end());
+  std::vector<std::uint32_t> trapped = numbers.others;
+  trapped.insert(trapped.end(), numbers.unmarked.begin(), numbers.unmarked.end());
   const std::size_t count = trapped.size();
   std::vector<sock_filter> program{
       JumpIfEqual(kNuma, 0, 1),
@@ -135,7 +142,7 @@ std::vector<sock_filter> NativeProgram(const std::vector<std::uint32_t>& unmarke
       allow,
   };
   for (std::size_t i = 0; i < count; ++i) {
-    const bool is_marked = i < std::size(kTrapped);
+    const bool is_marked = i < numbers.others.size();
     program.push_back(JumpIfEqual(trapped[i], count - i + (is_marked ? 0 : 3), 0));
   }
   program.push_back(allow);
@@ -146,8 +153,7 @@ std::vector<sock_filter> NativeProgram(const std::vector<std::uint32_t>& unmarke
   return program;
 }
 
-std::vector<sock_filter> Program(const std::vector<pid_t>& guarded,
-                                 const std::vector<std::uint32_t>& unmarked) {
+std::vector<sock_filter> Program(const std::vector<pid_t>& guarded, const Numbers& numbers) {
   constexpr std::uint32_t kX32 = 0x40000000;  // a third table of numbers, which nobody uses
   const std::vector<sock_filter> of_32_bits = Protection(CallTable::kOf32Bits, guarded);
   std::vector<sock_filter> program{
@@ -165,7 +171,7 @@ std::vector<sock_filter> Program(const std::vector<pid_t>& guarded,
   program.push_back({BPF_JMP | BPF_JGE | BPF_K, 0, 1, kX32});
   program.push_back(Return(SECCOMP_RET_ERRNO | ENOSYS));
   append(Protection(CallTable::kNative, guarded));
-  append(NativeProgram(unmarked));
+  append(NativeProgram(numbers));
   return program;
 }
 
@@ -184,12 +190,13 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
   // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
   // it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
-  std::vector<std::uint32_t> unmarked;
+  Numbers numbers{{std::begin(kTrapped), std::end(kTrapped)}, {}};
+  if (too.draws) numbers.others.push_back(SYS_getrandom);
   if (!has_level || too.executions) {
-    unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
+    numbers.unmarked.assign(std::begin(kExecutions), std::end(kExecutions));
   }
-  if (too.ends) unmarked.push_back(kEnd);
-  std::vector<sock_filter> program = Program(guarded, unmarked);
+  if (too.ends) numbers.unmarked.push_back(kEnd);
+  std::vector<sock_filter> program = Program(guarded, numbers);
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   auto install = [&filter](unsigned more) {
     return static_cast<int>(

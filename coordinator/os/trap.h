@@ -28,10 +28,11 @@ struct TrappedCall {
   }
 };
 
-// What is trapped in some runs only, whoever calls it.
+// What is trapped in some runs only.
 struct TrappedToo {
-  bool executions = false;  // of other programs; always where there are no levels
-  bool ends = false;        // of processes
+  bool executions = false;  // of other programs, the shim's, too; always where there are no levels
+  bool ends = false;        // of processes, the shim's, too
+  bool draws = false;       // of random numbers
 };
 
 // Installs the filter in the calling process, which must be about to exec. It traps all futex

@@ -174,6 +174,8 @@ void Registration::PlaceAtGate(Task& task, VirtualTime at) {
   slot.cores = static_cast<std::uint32_t>(task.process->robot->cpus.size());
   slot.robot = task.process->robot->number;
   slot.seed = run_.scenario.seed * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(task.order);
+  // What it draws by trapped calls is a sequence of its own, which begins with the program, too.
+  if (task.tid == task.process->pid) task.process->draws.Seed(~slot.seed);
   slot.patch_vdso = task.process->patch_vdso ? 1 : 0;
   slot.dds_endpoints = task.process->dds_endpoints ? 1 : 0;
   slot.signals.store(0);

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "coordinator/dds/type_hash.h"
 #include "shm/check.h"
 
 namespace tcs::record {
@@ -83,11 +84,15 @@ std::string Bag::UniqueName(const std::string& name) {
   return unique;
 }
 
-int Bag::AddTopic(std::string_view name, std::string_view type) {
+int Bag::AddTopic(std::string_view name, std::string_view type, std::string_view type_hash) {
   const int next = static_cast<int>(metadata_.topics.size());
   const auto [known, is_new] = topics_.try_emplace({std::string(name), std::string(type)}, next);
   if (!is_new) return known->second;
-  metadata_.topics.push_back({UniqueName(std::string(name)), std::string(type), {}, 0});
+  metadata_.topics.push_back(
+      {.name = UniqueName(std::string(name)),
+       .type = std::string(type),
+       .offered = {},
+       .type_hash = type_hash.empty() ? dds::TypeHashOf(type, release_) : std::string(type_hash)});
   if (failure_.empty()) {
     is_in_batch_ = true;
     Note(storage_->AddTopic(metadata_.topics.back(), types_.emplace(type).second));

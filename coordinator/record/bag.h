@@ -44,8 +44,9 @@ class Bag {
 
   // The number of the topic, for Write. ROS 2's names (dds/ros_names.h); a topic and type that the
   // bag has already keep their number. A topic of another type is another topic, "/odom_2", for
-  // readers of bags go by the name.
-  int AddTopic(std::string_view name, std::string_view type);
+  // readers of bags go by the name. `type_hash` is what the topic's endpoints say; where they say
+  // none it is that of the messages that tcs knows.
+  int AddTopic(std::string_view name, std::string_view type, std::string_view type_hash = {});
   // A writer of the topic offers `qos`.
   void AddOffer(int topic, const dds::Qos& qos);
 

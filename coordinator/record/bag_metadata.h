@@ -15,6 +15,7 @@ struct BagTopic {
   std::string type;               // "nav_msgs/msg/Odometry"
   std::vector<dds::Qos> offered;  // by its writers, each kind once
   std::int64_t messages = 0;
+  std::string type_hash = {};  // "RIHS01_...", as its writers or tcs know it; empty: nobody does
 };
 
 struct BagMetadata {

@@ -81,8 +81,10 @@ std::string McapStorage::DefineNewTopics(const BagMetadata& metadata) {
     {
       McapRecord channel(McapCode::kChannel, &record);
       channel.U16(static_cast<std::uint16_t>(defined_)).U16(schema).Text(topic.name).Text("cdr");
-      channel.List(
-          [&] { channel.Text("offered_qos_profiles").Text(OfferedQosYaml(topic.offered)); });
+      channel.List([&] {
+        channel.Text("offered_qos_profiles").Text(OfferedQosYaml(topic.offered));
+        if (!topic.type_hash.empty()) channel.Text("topic_type_hash").Text(topic.type_hash);
+      });
     }
     channels_ += record;
     definitions += record;

@@ -1,6 +1,7 @@
 #include "coordinator/record/recording.h"
 
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/dds/type_hash.h"
 
 namespace tcs::record {
 
@@ -9,12 +10,12 @@ bool Recording::Keeps(dds::TopicLog::Topic topic) const {
   return log_.reports()[topic].topic != dds::kDiscoveryTopic;
 }
 
-Recording::Topic& Recording::At(dds::TopicLog::Topic topic) {
+Recording::Topic& Recording::At(dds::TopicLog::Topic topic, std::string_view type_hash) {
   if (topics_.size() <= topic) topics_.resize(topic + 1);
   Topic& known = topics_[topic];
   if (known.number < 0) {
     const dds::TopicReport& report = log_.reports()[topic];
-    known.number = bag_.AddTopic(report.topic, report.type);
+    known.number = bag_.AddTopic(report.topic, report.type, type_hash);
   }
   return known;
 }
@@ -23,12 +24,16 @@ Recording::Topic& Recording::At(dds::TopicLog::Topic topic) {
 // late readers only one that asks for it hears.
 void Recording::Opened(dds::TopicLog::Topic topic, int domain, const dds::Endpoint& endpoint) {
   if (!Keeps(topic)) return;
-  Topic& known = At(topic);
+  const std::string hash = dds::TypeHashIn(endpoint.user_data);
+  Topic& known = At(topic, hash);
   if (endpoint.kind == dds::EndpointKind::kWriter) bag_.AddOffer(known.number, endpoint.qos);
   if (known.is_read) return;
   known.is_read = true;
   dds::Endpoint reader = endpoint;
   reader.kind = dds::EndpointKind::kReader;
+  // Nodes see this reader, too.
+  reader.user_data = hash.empty() ? dds::UserDataOf(dds::RosType(endpoint.type), release_)
+                                  : dds::UserDataWith(hash);
   reader.qos = {.reliability = dds::Reliability::kBestEffort, .history = dds::History::kKeepAll};
   if (endpoint.kind == dds::EndpointKind::kWriter &&
       endpoint.qos.durability == dds::Durability::kTransientLocal &&

@@ -22,7 +22,11 @@ class Recording final : public dds::TopicLog::Listener, public MessageSink {
   // The log and the endpoints outlive this.
   Recording(const dds::TopicLog& log, dds::OwnEndpoints& ends, std::int64_t realtime_offset_ns,
             dds::RosRelease release, StorageKind kind = StorageKind::kSqlite3)
-      : log_(log), ends_(ends), realtime_offset_ns_(realtime_offset_ns), bag_(release, kind) {}
+      : log_(log),
+        ends_(ends),
+        realtime_offset_ns_(realtime_offset_ns),
+        release_(release),
+        bag_(release, kind) {}
 
   // Empty on success, else one sentence.
   [[nodiscard]] std::string Open(const std::string& folder) { return bag_.Open(folder); }
@@ -50,11 +54,12 @@ class Recording final : public dds::TopicLog::Listener, public MessageSink {
     bool is_read = false;
   };
   bool Keeps(dds::TopicLog::Topic topic) const;
-  Topic& At(dds::TopicLog::Topic topic);
+  Topic& At(dds::TopicLog::Topic topic, std::string_view type_hash = {});
 
   const dds::TopicLog& log_;
   dds::OwnEndpoints& ends_;
   std::int64_t realtime_offset_ns_;
+  const dds::RosRelease release_;
   Bag bag_;
   std::vector<Topic> topics_;
   std::vector<std::pair<dds::Endpoint, int>> to_read_;  // with their domains

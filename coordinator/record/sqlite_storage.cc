@@ -75,11 +75,11 @@ std::string SqliteStorage::Open(const std::string& path) {
       Run("COMMIT") &&
       Prepare(
           "INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, "
-          "type_description_hash, id) VALUES (?, ?, 'cdr', '', '', ?)",
+          "type_description_hash, id) VALUES (?, ?, 'cdr', '', ?, ?)",
           &insert_topic_) &&
       Prepare(
           "INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, "
-          "type_description_hash) VALUES (?, ?, ?, '')",
+          "type_description_hash) VALUES (?, ?, ?, ?)",
           &insert_definition_) &&
       Prepare("UPDATE topics SET offered_qos_profiles = ? WHERE id = ?", &update_topic_) &&
       Prepare("INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", &insert_message_);
@@ -90,17 +90,19 @@ std::string SqliteStorage::AddTopic(const BagTopic& topic, bool is_new_type) {
   if (!Begin()) return failure_;
   BindText(insert_topic_.get(), 1, topic.name);
   BindText(insert_topic_.get(), 2, topic.type);
-  sqlite3_bind_int64(insert_topic_.get(), 3, IdOf(topics_++));
-  if (Step(insert_topic_.get()) && is_new_type) WriteDefinition(topic.type);
+  BindText(insert_topic_.get(), 3, topic.type_hash);
+  sqlite3_bind_int64(insert_topic_.get(), 4, IdOf(topics_++));
+  if (Step(insert_topic_.get()) && is_new_type) WriteDefinition(topic);
   return failure_;
 }
 
 // Of one that tcs does not know too, as rosbag2 does it where it finds no definition.
-bool SqliteStorage::WriteDefinition(const std::string& type) {
-  const std::string definition = DefinitionOf(type, release_);
-  BindText(insert_definition_.get(), 1, type);
+bool SqliteStorage::WriteDefinition(const BagTopic& topic) {
+  const std::string definition = DefinitionOf(topic.type, release_);
+  BindText(insert_definition_.get(), 1, topic.type);
   BindText(insert_definition_.get(), 2, definition.empty() ? "unknown" : "ros2msg");
   BindText(insert_definition_.get(), 3, definition);
+  BindText(insert_definition_.get(), 4, topic.type_hash);
   return Step(insert_definition_.get());
 }
 

@@ -42,7 +42,7 @@ class SqliteStorage final : public BagStorage {
   bool Prepare(const char* sql, Statement* statement);
   bool Step(sqlite3_stmt* statement);
   bool Begin();
-  bool WriteDefinition(const std::string& type);
+  bool WriteDefinition(const BagTopic& topic);
   void Release();
 
   const dds::RosRelease release_;

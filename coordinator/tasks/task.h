@@ -28,6 +28,7 @@
 #include "coordinator/tasks/wait.h"
 #include "coordinator/trace/activation_log.h"
 #include "shm/check.h"
+#include "shm/draws.h"
 #include "shm/layout.h"
 #include "shm/time_kinds.h"
 
@@ -151,6 +152,7 @@ struct Process {
   VirtualDuration deadline;  // its client's, under scheduler: edf; 0: none
   VirtualDuration call_cost, allocation_cost;
   bool patch_vdso = false, dds_endpoints = false;
+  shm::Draws draws;  // by trapped calls, where they repeat
   ProgramClock clock;
   ProcessTimers timers;
   std::map<std::int64_t, UniqueFd> timer_fds;  // of those that have one, by the timer's id

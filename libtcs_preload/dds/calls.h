@@ -5,8 +5,12 @@
 // not have is libddsc's own function as well.
 #pragma once
 
-// The calls that may be a program's first: DDS by endpoints starts at them.
+// The calls that may be a program's first: DDS by endpoints starts at them. ROS 2's middleware
+// makes guard conditions and waitsets before any domain, and Cyclone seeds its instance numbers
+// there.
 #define TCS_DDS_STARTING_CALLS(X) \
+  X(dds_create_guardcondition)    \
+  X(dds_create_waitset)           \
   X(dds_create_participant)       \
   X(dds_create_domain)            \
   X(dds_create_domain_with_rawconfig)

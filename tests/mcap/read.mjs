@@ -1,5 +1,5 @@
 // Reads an MCAP file with Foxglove's readers, checks what they check, and prints it as lines of JSON:
-//   {"topic", "type", "encoding", "profiles", "definition"}   for each channel
+//   {"topic", "type", "encoding", "profiles", "hash", "definition"}   for each channel
 //   {"of": TOPIC, "stamp": NS, "fields": [...]}               for each message, in the file's order; decoded by its
 //                                                             definition: numbers and texts one after the other, a
 //                                                             sequence is its length and then its elements
@@ -75,7 +75,8 @@ for (let record; (record = stream.nextRecord()); ) {
     channels.set(record.id, record);
     const schema = schemas.get(record.schemaId) ?? fail(`${record.topic} has no schema`);
     say({ topic: record.topic, type: schema.name, encoding: record.messageEncoding,
-          profiles: record.metadata.get("offered_qos_profiles"), definition: text.decode(schema.data) });
+          profiles: record.metadata.get("offered_qos_profiles"),
+          hash: record.metadata.get("topic_type_hash"), definition: text.decode(schema.data) });
   }
   if (record.type !== "Message") continue;
   const channel = channels.get(record.channelId) ?? fail(`a message of the unknown channel ${record.channelId}`);

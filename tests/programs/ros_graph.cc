@@ -1,6 +1,7 @@
 // Shows the graph as ROS 2's middleware makes it out: the nodes of `ros_discovery_info`, and what
 // they publish and subscribe to by the GUIDs of DDS's built-in topics. A line for each:
-//   /hunter/tcsim publishes rt/odom nav_msgs::msg::dds_::Odometry_
+//   /hunter/tcsim publishes rt/odom nav_msgs::msg::dds_::Odometry_ RIHS01_3cc97d…
+// with the hash of the type, if the endpoint has one that ROS 2 can read.
 // Endpoints of no node are named so; so are GUIDs of nodes that no endpoint has. It joins half a
 // second after its start.
 //   ros_graph humble|iron
@@ -10,6 +11,7 @@
 
 #include <functional>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -48,8 +50,21 @@ void TakeAll(dds_entity_t reader, const std::function<void(const Sample&)>& each
   }
 }
 
+// The hash of an endpoint's type, as rmw_dds_common finds it in USER_DATA: with a space before it.
+std::string TypeHash(const dds_qos_t* qos) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_userdata(qos, &data, &size)) return "";
+  const std::string text(static_cast<char*>(data), size);
+  dds_free(data);
+  std::smatch found;
+  if (!std::regex_search(text, found, std::regex("(^|;)typehash=(RIHS01_[0-9a-f]{64});")))
+    return "";
+  return " " + found[2].str();
+}
+
 struct Endpoint {
-  std::string topic, type;
+  std::string topic, type;  // the type with its hash
   Bytes participant;
 };
 
@@ -122,11 +137,15 @@ void Show(const dds_topic_descriptor_t& described) {
     }
     dds_free(data);
   });
-  const auto keep = [](std::map<Bytes, Endpoint>* known) {
-    return [known](const dds_builtintopic_endpoint_t& sample) {
-      if (strncmp(sample.topic_name, "rt/", 3) != 0) return;
-      (*known)[ToBytes(sample.key)] = {sample.topic_name, sample.type_name,
-                                       ToBytes(sample.participant_key)};
+  const auto keep = [&graph](std::map<Bytes, Endpoint>* known) {
+    return [known, &graph](const dds_builtintopic_endpoint_t& sample) {
+      const std::string known_type = sample.type_name + TypeHash(sample.qos);
+      if (strncmp(sample.topic_name, "rt/", 3) == 0) {
+        (*known)[ToBytes(sample.key)] = {sample.topic_name, known_type,
+                                         ToBytes(sample.participant_key)};
+      } else if (known == &graph.writers) {
+        graph.lines.insert("nodes are told of by " + known_type);
+      }
     };
   };
   TakeAll<dds_builtintopic_endpoint_t>(writers, keep(&graph.writers));

@@ -36,6 +36,10 @@ like_native 'python3 pools.py'
 like_native 'tar cf - -C /usr/share/doc/bash . | gzip -n | sha1sum'
 like_native 'seq 100000 | sort -R --random-source=/bin/bash | sort -n --parallel=4 -S 4M | sha1sum'
 like_native 'dd if=/dev/zero bs=64k count=20 status=none | sha1sum; timeout 0.1 sleep 3'
+# Waits for a handler while a signal is pending that nobody handles, and made raw.
+like_native 'perl -MPOSIX -MTime::HiRes=ualarm -e "\$SIG{ALRM} = sub { print qq(rang\n) };
+  sigprocmask(SIG_BLOCK, POSIX::SigSet->new(SIGCHLD)); fork or exit; select undef, undef, undef, 0.05;
+  ualarm 50000; sigsuspend(POSIX::SigSet->new); ualarm 50000; syscall 34"'
 if command -v g++ >/dev/null; then
   like_native 'echo "int main() { return 3; }" >three.cc; g++ -o three three.cc && ./three'
 fi

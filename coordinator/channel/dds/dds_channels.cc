@@ -10,6 +10,7 @@
 
 #include "coordinator/dds/measurement_messages.h"
 #include "coordinator/dds/robot_topics.h"
+#include "coordinator/dds/type_hash.h"
 
 namespace tcs {
 
@@ -199,7 +200,8 @@ dds::OwnEndpoints::Index DdsChannels::Add(dds::EndpointKind kind, const DdsTopic
                                .topic = dds::DdsTopic(end.topic),
                                .type = dds::DdsType(message),
                                .keyless = true,
-                               .qos = end.qos};
+                               .qos = end.qos,
+                               .user_data = dds::UserDataOf(message, scenario_.ros)};
   const dds::OwnEndpoints::Index index = ends_.Add(endpoint, end.domain, 0);
   nodes_.Add(ends_, index, kind, end.domain, body);
   return index;

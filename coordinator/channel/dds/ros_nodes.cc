@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coordinator/dds/ros_names.h"
+#include "coordinator/dds/type_hash.h"
 
 namespace tcs {
 namespace {
@@ -40,11 +41,13 @@ void RosNodes::Add(const dds::OwnEndpoints& ends, dds::OwnEndpoints::Index endpo
 void RosNodes::Announce(dds::OwnEndpoints& ends, std::int64_t timestamp_ns) const {
   const auto form =
       scenario_.ros == dds::RosRelease::kHumble ? dds::GidForm::kHumble : dds::GidForm::kIron;
-  const dds::Endpoint writer{.kind = dds::EndpointKind::kWriter,
-                             .topic = std::string(dds::kDiscoveryTopic),
-                             .type = dds::DdsType(dds::kDiscoveryMessageName),
-                             .keyless = true,
-                             .qos = {.depth = 1, .durability = dds::Durability::kTransientLocal}};
+  const dds::Endpoint writer{
+      .kind = dds::EndpointKind::kWriter,
+      .topic = std::string(dds::kDiscoveryTopic),
+      .type = dds::DdsType(dds::kDiscoveryMessageName),
+      .keyless = true,
+      .qos = {.depth = 1, .durability = dds::Durability::kTransientLocal},
+      .user_data = dds::UserDataOf(dds::kDiscoveryMessageName, scenario_.ros)};
   for (const auto& [domain, participant] : by_domain_) {
     ends.Write(ends.Add(writer, domain, 0), dds::EncodeParticipant(participant, form), timestamp_ns,
                0);

@@ -16,6 +16,7 @@ constexpr auto Ms = VirtualDuration::Milliseconds;
 Endpoint Demanding(EndpointKind kind) {
   Endpoint endpoint{.kind = kind, .topic = "rt/odom", .type = "nav_msgs::msg::dds_::Odometry_"};
   endpoint.keyless = false;
+  endpoint.user_data = "typehash=RIHS01_0;";
   endpoint.qos = {.reliability = Reliability::kBestEffort,
                   .history = History::kKeepAll,
                   .depth = 17,
@@ -34,6 +35,7 @@ void ExpectSame(const std::optional<Endpoint>& got, const Endpoint& endpoint) {
   EXPECT_EQ(got->type, endpoint.type);
   EXPECT_EQ(got->keyless, endpoint.keyless);
   EXPECT_EQ(got->qos, endpoint.qos);
+  EXPECT_EQ(got->user_data, endpoint.user_data);
 }
 
 // What a client may say: `change` is done to an endpoint's structure.

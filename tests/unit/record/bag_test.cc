@@ -177,6 +177,25 @@ TEST_F(BagTest, DefinesEachTypeOnce) {
       ElementsAre("sensor_msgs/msg/Range|ros2msg|" + range + "|", "my_robot/msg/State|unknown||"));
 }
 
+// As of Iron, which has hashes.
+TEST_F(BagTest, SaysTheHashesOfTypes) {
+  Bag bag = NewBag();
+  ASSERT_EQ(bag.Open(Folder()), "");
+  bag.AddTopic("/said", "std_msgs/msg/String");
+  bag.AddTopic("/own", "my_robot/msg/State");
+  bag.AddTopic("/told", "my_robot/msg/Pose", "RIHS01_1");
+  EXPECT_EQ(bag.Close(), "");
+  const std::string hash =
+      "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18";
+  const Reader reader(File());
+  EXPECT_THAT(reader.Rows("SELECT name, type_description_hash FROM topics ORDER BY id"),
+              ElementsAre("/said|" + hash, "/own|", "/told|RIHS01_1"));
+  EXPECT_THAT(
+      reader.Rows("SELECT topic_type, type_description_hash FROM message_definitions ORDER BY id"),
+      ElementsAre("std_msgs/msg/String|" + hash, "my_robot/msg/State|",
+                  "my_robot/msg/Pose|RIHS01_1"));
+}
+
 TEST_F(BagTest, NamesOneTopicOfTwoTypesTwice) {
   Bag bag = NewBag();
   ASSERT_EQ(bag.Open(Folder()), "");

@@ -105,6 +105,8 @@ TEST_F(McapTest, IsReadByOthers) {
   EXPECT_EQ(read.channels[0]["type"], "nav_msgs/msg/Odometry");
   EXPECT_EQ(read.channels[0]["encoding"], "cdr");
   EXPECT_EQ(read.channels[0]["profiles"], OfferedQosYaml(std::vector{dds::Qos()}));
+  EXPECT_EQ(read.channels[0]["hash"],
+            "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0");
   EXPECT_EQ(read.channels[0]["definition"],
             DefinitionOf("nav_msgs/msg/Odometry", dds::RosRelease::kIron));
   EXPECT_EQ(read.end["profile"], "ros2");
@@ -154,6 +156,7 @@ TEST_F(McapTest, KeepsTopicsApartAndThoseWithoutMessages) {
   for (const auto& channel : read.channels) topics.push_back(channel["topic"]);
   EXPECT_THAT(topics, ElementsAre("/clock", "/own", "/range", "/late"));
   EXPECT_EQ(read.channels[1]["type"], "my_robot/msg/State");
+  EXPECT_FALSE(read.channels[1].contains("hash"));
   EXPECT_EQ(read.channels[1]["definition"], "");
   EXPECT_EQ(read.channels[2]["definition"],
             DefinitionOf("sensor_msgs/msg/Range", dds::RosRelease::kHumble));

@@ -10,6 +10,8 @@
 #include <regex>
 #include <sstream>
 
+#include "coordinator/dds/message_fields.h"
+
 namespace tcs::record {
 namespace {
 
@@ -69,7 +71,7 @@ TEST(MessageDefinitions, AreThoseOfWhatIsSent) {
   // What ros_discovery_info is of is not recorded.
   std::erase_if(sent, [](const auto& message) { return message.first.starts_with("rmw_"); });
   std::map<std::string, Fields> defined;
-  for (const MessageFields& message : KnownMessages()) {
+  for (const dds::MessageFields& message : dds::KnownMessages()) {
     EXPECT_TRUE(defined.emplace(message.type, FieldsOf(message.text)).second) << message.type;
   }
   EXPECT_EQ(defined, sent);

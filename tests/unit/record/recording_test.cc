@@ -115,6 +115,23 @@ TEST_F(RecordingTest, AsksForWhatAWriterKeeps) {
   EXPECT_EQ(readers[1].qos.durability, dds::Durability::kVolatile);
 }
 
+// Nodes see the readers, and expect them to say what type they mean.
+TEST_F(RecordingTest, ReadsWithTheHashOfTheType) {
+  Client client(hub_, 0);
+  dds::Endpoint odom = dds::AWriter("rt/odom"), own = dds::AWriter("rt/own");
+  odom.type = "nav_msgs::msg::dds_::Odometry_";
+  const std::string hash = "RIHS01_" + std::string(64, '7');
+  own.user_data = "serviceid=1;typehash=" + hash + ";";
+  client.Announce(1, odom, 10);
+  client.Announce(2, own, 10);
+  Go(10);
+  const auto readers = ReadersFor(client, 10);
+  ASSERT_THAT(readers, SizeIs(2));
+  EXPECT_EQ(readers[0].user_data,
+            "typehash=RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0;");
+  EXPECT_EQ(readers[1].user_data, "typehash=" + hash + ";");
+}
+
 TEST_F(RecordingTest, HasEachSampleOnceAtTheTimeWhenItWasWritten) {
   const auto odom = ends_.Add(dds::AWriter("rt/odom"), 0, 0);
   Go(0);
