@@ -5,8 +5,8 @@
 //   rmw_pair talker COUNT      computes for 3 ms each 10 ms and says a number
 //   rmw_pair listener COUNT    computes for 5 ms on each number; ends when it has heard them all
 //
-// Each says at its end what came when, and from which writer: under set costs that is the same in
-// each run, byte for byte.
+// Each says at its end what came when, from which writer, and what DDS knows it by: under set costs
+// that is the same in each run, byte for byte.
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +15,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -60,6 +61,19 @@ dds_qos_t* Qos(bool is_latched) {
   dds_qset_ignorelocal(qos, is_latched ? DDS_IGNORELOCAL_PARTICIPANT : DDS_IGNORELOCAL_NONE);
   dds_qset_userdata(qos, kType, strlen(kType));
   return qos;
+}
+
+// What DDS knows them by, here and everywhere.
+void TellNames(std::initializer_list<dds_entity_t> entities) {
+  for (const dds_entity_t entity : entities) {
+    dds_guid_t guid;
+    dds_instance_handle_t instance = 0;
+    OrDie(dds_get_guid(entity, &guid), "get its GUID");
+    OrDie(dds_get_instance_handle(entity, &instance), "get its number");
+    printf("handle %d, number %llu, GUID ", entity, (unsigned long long)instance);
+    for (const unsigned char byte : guid.v) printf("%02x", byte);
+    printf("\n");
+  }
 }
 
 class Node {
@@ -165,11 +179,8 @@ void Talk(int count) {
     OrDie(dds_write(writer, &clock), "say it");
   }
   OrDie(dds_wait_for_acks(writer, DDS_SECS(10)), "be heard");
-  dds_guid_t guid;
-  OrDie(dds_get_guid(writer, &guid), "get its GUID");
-  printf("talker %02x%02x%02x%02x%02x%02x%02x%02x%02x%02x%02x%02x at %lld, of the graph %d\n",
-         guid.v[0], guid.v[1], guid.v[2], guid.v[3], guid.v[4], guid.v[5], guid.v[6], guid.v[7],
-         guid.v[8], guid.v[9], guid.v[10], guid.v[11], (long long)Now(), node.seen());
+  TellNames({node.participant(), writer});
+  printf("talker said all at %lld, of the graph %d\n", (long long)Now(), node.seen());
 }
 
 void Listen(int count) {
@@ -204,6 +215,7 @@ void Listen(int count) {
       ddsi_serdata_unref(sample);
     }
   }
+  TellNames({node.participant(), reader});
   printf("%slistener heard all, of the graph %d\n", heard.c_str(), node.seen());
 }
 

@@ -12,11 +12,11 @@ duration: 5s
 robots:
   robot:
     clients:
-      listener: {command: ["$build/bin/rmw_like", listener], dds: $2}
-      talker: {command: ["$build/bin/rmw_like", talker], dds: $2}
+      listener: {command: ["$build/bin/rmw_pair", listener, "20"], dds: $2}
+      talker: {command: ["$build/bin/rmw_pair", talker, "20"], dds: $2}
 YAML
   "$tcsim" run "$out/scenario.yaml" --accounting fixed --out "$out/$1" "${@:3}" >"$out/said" 2>&1 || fail "$(cat "$out/said")"
-  (($(grep -c '^a sample' "$out/$1/robot-listener.out.log") == 20)) || fail "$1: samples are missing"
+  (($(grep -c ' at .* from ' "$out/$1/robot-listener.out.log") == 20)) || fail "$1: samples are missing"
   [[ -z $(guids "$1" | uniq -d) ]] || fail "$1: two entities have one GUID: $(guids "$1" | uniq -d)"
 }
 guids() { grep -ho 'GUID .*' "$out/$1"/robot-*.out.log | sort; }
