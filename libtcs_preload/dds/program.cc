@@ -57,6 +57,7 @@ struct ProgramState {
   std::mutex mutex;
   std::set<std::pair<std::uint32_t, Prefix>> shadows;  // by domain
   std::map<std::uint32_t, Domain> domains;
+  std::set<std::uint32_t> met;  // names of which there have been several at a time
   std::unordered_map<Guid, Writer, GuidHash> writers;
   std::unordered_map<Guid, Reader, GuidHash> readers;
   std::vector<const Tap*> taps;
@@ -91,6 +92,17 @@ std::vector<Guid> LockedWritersOf(const ProgramState& state, std::uint32_t domai
     }
   }
   return guids;
+}
+
+std::vector<ddsi_domaingv*> LockedDomainsCalled(const ProgramState& state,
+                                                std::uint32_t network_domain) {
+  std::vector<ddsi_domaingv*> domains;
+  for (const auto& [id, domain] : state.domains) {
+    if (!domain.participants.empty() && NetworkDomain(*domain.gv) == network_domain) {
+      domains.push_back(domain.gv);
+    }
+  }
+  return domains;
 }
 
 }  // namespace
@@ -133,16 +145,14 @@ ddsi_domaingv* DomainOf(std::uint32_t domain) {
 std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
-  std::vector<ddsi_domaingv*> domains;
-  for (const auto& [id, domain] : state.domains) {
-    if (!domain.participants.empty() && NetworkDomain(*domain.gv) == network_domain) {
-      domains.push_back(domain.gv);
-    }
-  }
-  return domains;
+  return LockedDomainsCalled(state, network_domain);
 }
 
-bool MeetsItself(std::uint32_t network_domain) { return DomainsCalled(network_domain).size() > 1; }
+bool MeetsItself(std::uint32_t network_domain) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  return state.met.contains(network_domain);
+}
 
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
   ProgramState& state = TheProgramState();
@@ -150,6 +160,8 @@ void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
   Domain& domain = state.domains[gv->config.domainId];
   domain.gv = gv;
   domain.participants.push_back(guid);
+  const std::uint32_t name = NetworkDomain(*gv);
+  if (LockedDomainsCalled(state, name).size() > 1) state.met.insert(name);
 }
 
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid) {

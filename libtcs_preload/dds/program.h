@@ -33,7 +33,8 @@ bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity);
 // Domains.
 ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
 std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain);
-// Whether the program has several of that name.
+// Whether the program has several of that name, or has had: then what it told itself of has to be
+// taken back, too.
 bool MeetsItself(std::uint32_t network_domain);
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
