@@ -14,7 +14,7 @@
 // The calls that make, change and end what other processes see. The ones that begin with ddsi_ and
 // rtps_ are libddsc's own inner seams: libddsc calls them through its PLT.
 #define TCS_DDS_CHANGING_CALLS(X)  \
-  X(dds_create_topic_sertype)      \
+  X(dds_create_topic_impl)         \
   X(dds_create_writer)             \
   X(dds_delete)                    \
   X(dds_assert_liveliness)         \

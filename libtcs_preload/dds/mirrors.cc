@@ -76,8 +76,8 @@ void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
 dds_entity_t CreateTopicOf(dds_entity_t participant, const std::string& name, ddsi_sertype* type,
                            const dds_qos_t* qos) {
   ddsi_sertype* consumed = type;
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant, name.c_str(), &consumed, qos, nullptr, nullptr);
+  const dds_entity_t topic = Real().dds_create_topic_impl(participant, name.c_str(), false,
+                                                          &consumed, qos, nullptr, nullptr, false);
   if (topic <= 0) ddsi_sertype_unref(type);
   return topic;
 }

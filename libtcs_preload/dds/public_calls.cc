@@ -55,13 +55,13 @@ dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
   return participant;
 }
 
-dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertype** type,
-                         const dds_qos_t* qos, const dds_listener_t* listener,
-                         const ddsi_plist* discovery) {
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant, name, type, qos, listener, discovery);
+dds_entity_t CreateTopic(dds_entity_t participant, const char* name, bool allow_dcps,
+                         ddsi_sertype** type, const dds_qos_t* qos, const dds_listener_t* listener,
+                         const ddsi_plist* discovery, bool is_builtin) {
+  const dds_entity_t topic = Real().dds_create_topic_impl(participant, name, allow_dcps, type, qos,
+                                                          listener, discovery, is_builtin);
   dds_domainid_t domain = 0;
-  if (topic > 0 && dds_get_domainid(topic, &domain) == DDS_RETCODE_OK) {
+  if (topic > 0 && !is_builtin && dds_get_domainid(topic, &domain) == DDS_RETCODE_OK) {
     AddType(domain, name, *type);
     LookAgain();
   }

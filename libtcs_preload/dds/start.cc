@@ -28,7 +28,7 @@ const Hook* Hooks() {
 #define TCS_DDS_WRITING_HOOK(name) {#name, WritingHook(kCall_##name)},
   static const auto* hooks =
       new std::vector<Hook>{TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
-                            TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
+                            TCS_DDS_HOOK(dds_create_topic_impl, CreateTopic),
                             TCS_DDS_HOOK(dds_create_writer, CreateWriter),
                             TCS_DDS_HOOK(dds_delete, Delete),
                             TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
