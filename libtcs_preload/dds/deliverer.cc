@@ -81,6 +81,7 @@ void StartDeliverer() {
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
+  sigdelset(&all, SIGXCPU);  // at which Cyclone's own threads tell where they are, too
   pthread_sigmask(SIG_SETMASK, &all, &before);
   pthread_t thread;
   if (const int error = pthread_create(&thread, nullptr, Run, nullptr); error != 0) {
