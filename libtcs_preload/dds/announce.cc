@@ -15,8 +15,10 @@ void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
   message.flags |= shm::kDdsLeased;
 }
 
+// One that is of this process only is nobody else's concern (ignored_partitions.h).
 template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
+  if (entity.e.onlylocal) return;
   const dds_qos_t& qos = *entity.xqos;
   shm::DdsMessage message =
       MessageOf(shm::DdsKind::kEndpoint, NetworkDomain(*entity.e.gv), GuidOf(entity.e.guid));
@@ -29,7 +31,7 @@ void SendEndpoint(const Entity& entity, std::uint32_t kind) {
 
 // Readers of other processes that expect what the writer has: it has sent all, or has nothing.
 void EndHistories(const ddsi_writer& writer) {
-  if (writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
+  if (writer.e.onlylocal || writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
   const ddsi_domaingv& gv = *writer.e.gv;
   for (const LateReader& reader : ReadersThatCatchUp(gv.config.domainId, writer.xqos->topic_name)) {
     SendHistoryEnd(gv, GuidOf(writer.e.guid), reader.guid, reader.process);

@@ -55,7 +55,8 @@ constexpr std::size_t kMostInstances = 4096;
 
 struct ProgramState {
   std::mutex mutex;
-  std::set<std::pair<std::uint32_t, Prefix>> shadows;  // by domain
+  std::set<std::pair<std::uint32_t, Prefix>> shadows;                      // by domain
+  std::map<std::pair<std::uint32_t, Guid>, std::string> shadow_endpoints;  // their topics
   std::map<std::uint32_t, Domain> domains;
   std::set<std::uint32_t> met;  // names of which there have been several at a time
   std::unordered_map<Guid, Writer, GuidHash> writers;
@@ -132,6 +133,28 @@ bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   return state.shadows.contains({domain, PrefixOf(entity)});
+}
+
+void AddShadowEndpoint(std::uint32_t domain, const char* topic, const Guid& guid) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  state.shadow_endpoints[{domain, guid}] = topic;
+}
+
+void RemoveShadowEndpoint(std::uint32_t domain, const Guid& guid) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  state.shadow_endpoints.erase({domain, guid});
+}
+
+std::vector<Guid> ShadowEndpointsOf(std::uint32_t domain, const std::string& topic) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  std::vector<Guid> guids;
+  for (const auto& [key, of] : state.shadow_endpoints) {
+    if (key.first == domain && of == topic) guids.push_back(key.second);
+  }
+  return guids;
 }
 
 ddsi_domaingv* DomainOf(std::uint32_t domain) {

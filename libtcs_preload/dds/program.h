@@ -29,6 +29,10 @@ void AddShadow(std::uint32_t domain, const Guid& participant);
 void RemoveShadow(std::uint32_t domain, const Guid& participant);
 bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity);
 bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity);
+// Their endpoints.
+void AddShadowEndpoint(std::uint32_t domain, const char* topic, const Guid& guid);
+void RemoveShadowEndpoint(std::uint32_t domain, const Guid& guid);
+std::vector<Guid> ShadowEndpointsOf(std::uint32_t domain, const std::string& topic);
 
 // Domains.
 ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
