@@ -177,7 +177,8 @@ void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
 void Mirrors::EndTopicIn(std::uint32_t domain, Topic& topic) {
   const auto found = topic.shadows.find(domain);
   if (found == topic.shadows.end()) return;
-  if (ddsi_domaingv* gv = DomainOf(domain)) {
+  const Visit visit(domain);
+  if (ddsi_domaingv* gv = visit.gv()) {
     const Awake awake(gv);
     Real().ddsi_delete_topic(gv, &found->second);
   }
@@ -244,22 +245,29 @@ void Mirrors::Complete() {
 }
 
 void Mirrors::Close(std::uint32_t domain) {
-  if (DomainOf(domain) != nullptr) return;  // the program has made another participant meanwhile
+  // The program may have made another participant meanwhile: in the same domain, or, if that has
+  // been taken down with all shadows, in a new one of its number.
+  const bool goes_on = HasDomain(domain);
   for (auto& [guid, participant] : participants_) {
-    EndShadow(guid, participant, domain);
+    const auto found = participant.shadows.find(domain);
+    if (found == participant.shadows.end()) continue;
+    if (!goes_on || dds_get_participant(found->second.entity) <= 0) {
+      EndShadow(guid, participant, domain);
+    }
   }
-  held_in_.erase(domain);
+  if (!goes_on) held_in_.erase(domain);
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
-  for (ddsi_domaingv* gv : DomainsCalled(participant.domain)) {
-    MakeParticipantIn(gv, guid, participant);
+  for (const std::uint32_t domain : DomainsCalled(participant.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeParticipantIn(visit.gv(), guid, participant);
   }
 }
 
 void Mirrors::MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant& participant) {
   const std::uint32_t domain = gv->config.domainId;
-  if (participant.shadows.contains(domain) || IsParticipant(gv, guid)) return;
+  if (participant.shadows.contains(domain) || IsOrWasParticipant(gv, guid)) return;
   if (participant.process != shm::kDdsCoordinator &&
       participant.tag != shm::DdsTag(gv->config.domainTag)) {
     return;
@@ -278,7 +286,10 @@ void Mirrors::MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant
 
 void Mirrors::MakeEndpoint(const Guid& guid, Endpoint& endpoint) {
   if (endpoint.what.topic.empty()) return;
-  for (ddsi_domaingv* gv : DomainsCalled(endpoint.domain)) MakeEndpointIn(gv, guid, endpoint);
+  for (const std::uint32_t domain : DomainsCalled(endpoint.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeEndpointIn(visit.gv(), guid, endpoint);
+  }
 }
 
 void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint) {
@@ -308,7 +319,10 @@ void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endp
 
 void Mirrors::MakeTopic(const Guid& guid, Topic& topic) {
   if (topic.what.topic.empty()) return;
-  for (ddsi_domaingv* gv : DomainsCalled(topic.domain)) MakeTopicIn(gv, guid, topic);
+  for (const std::uint32_t domain : DomainsCalled(topic.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeTopicIn(visit.gv(), guid, topic);
+  }
 }
 
 // Where the program's configuration asks for others' topics as well.
@@ -423,7 +437,8 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
   const bool was_not_alive = std::exchange(endpoint.not_alive, false);
   // Listeners do not reach in here: no shadow goes meanwhile.
   for (const auto& [domain, shadow] : endpoint.shadows) {
-    ddsi_domaingv* gv = DomainOf(domain);
+    const Visit visit(domain);
+    ddsi_domaingv* gv = visit.gv();
     if (gv == nullptr || shadow.type == nullptr) continue;
     if (was_not_alive) {
       RegainLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
@@ -459,7 +474,9 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
     waiting = {reader};
   }
   for (const Guid& guid : waiting) {
-    while (!StoreIn(gv, guid, shadow.inner, sample)) dds_sleepfor(kTryAgain);
+    while (!IsEnding(gv->config.domainId) && !StoreIn(gv, guid, shadow.inner, sample)) {
+      dds_sleepfor(kTryAgain);
+    }
   }
   ddsi_serdata_unref(sample);
 }
@@ -491,7 +508,8 @@ void Mirrors::HandleHistoryEnd(const shm::DdsMessage& message) {
   const auto found = endpoints_.find(GuidAt(message.subject));
   if (found == endpoints_.end()) return;
   for (const auto& [domain, shadow] : found->second.shadows) {
-    ddsi_domaingv* gv = DomainOf(domain);
+    const Visit visit(domain);
+    const ddsi_domaingv* gv = visit.gv();
     if (gv == nullptr) continue;
     const Awake awake(gv);
     const ddsi_guid_t inner = InnerOf(GuidAt(message.other));
@@ -515,10 +533,12 @@ void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
   for (const auto& [domain, shadow] : endpoint.shadows) {
     if ((message.flags & shm::kDdsGone) == 0) {
       Real().dds_assert_liveliness(shadow.entity);
-    } else if (ddsi_domaingv* gv = DomainOf(domain); gv != nullptr) {
-      endpoint.not_alive = true;
-      LoseLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
+      continue;
     }
+    const Visit visit(domain);
+    if (visit.gv() == nullptr) continue;
+    endpoint.not_alive = true;
+    LoseLiveliness(visit.gv(), shadow.inner, ReadersOf(domain, endpoint.what.topic));
   }
 }
 

@@ -78,9 +78,11 @@ dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* 
 }
 
 // The types are let go before the participant goes, the shadows after it: the program's readers and
-// writers must not see them go.
+// writers must not see them go. The deliverer is out of a domain before that is taken down. On the
+// deliverer itself a listener deletes, as in Cyclone's own threads: it cannot wait for itself.
 dds_return_t Delete(dds_entity_t entity) {
   const std::vector<std::uint32_t> ending = DomainsThatEndWith(entity);
+  for (const std::uint32_t domain : ending) BeginEnd(domain, !IsDeliverer());
   for (const std::uint32_t domain : ending) ReleaseTypes(domain);
   const dds_return_t result = Real().dds_delete(entity);
   for (const std::uint32_t domain : ending) CloseDomain(domain);
