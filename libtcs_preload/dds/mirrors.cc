@@ -72,6 +72,14 @@ void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
   dds_free(data);
 }
 
+void CopyGroupData(const dds_qos_t* from, dds_qos_t* to) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_groupdata(from, &data, &size)) return;
+  dds_qset_groupdata(to, data, size);
+  dds_free(data);
+}
+
 // Takes the type over.
 dds_entity_t CreateTopicOf(dds_entity_t participant, const std::string& name, ddsi_sertype* type,
                            const dds_qos_t* qos) {
@@ -189,13 +197,17 @@ void Mirrors::EndTopic(Topic& topic) {
   while (!topic.shadows.empty()) EndTopicIn(topic.shadows.begin()->first, topic);
 }
 
-// Some policies are the publisher's, the subscriber's or the topic's.
+// Some policies are the publisher's, the subscriber's or the topic's, which would refuse the
+// endpoint's others.
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
   const Qos qos(ShadowQos(endpoint.payload));
+  const Qos of_topic(dds_create_qos()), of_group(dds_create_qos());
+  CopyTopicData(qos.get(), of_topic.get());
+  CopyGroupData(qos.get(), of_group.get());
   for (auto& [domain, shadow] : endpoint.shadows) {
-    dds_set_qos(dds_get_topic(shadow.entity), qos.get());
-    dds_set_qos(dds_get_parent(shadow.entity), qos.get());
+    dds_set_qos(dds_get_topic(shadow.entity), of_topic.get());
+    dds_set_qos(dds_get_parent(shadow.entity), of_group.get());
     dds_set_qos(shadow.entity, qos.get());
   }
 }

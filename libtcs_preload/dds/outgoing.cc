@@ -55,7 +55,10 @@ shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& s
 void Send(shm::DdsMessage& message, const Payload& payload) {
   if (message.to == shm::kDdsEverybody) {
     NoteOwnNews(message, payload);
-    if (MeetsItself(message.domain)) message.flags |= shm::kDdsToSender;
+    if (MeetsItself(message.domain)) {
+      message.flags |= shm::kDdsToSender;
+      NoteToldItself(message);
+    }
   }
   if (!SendParts(message, payload.data(), payload.size())) {
     Say("the QoS of a DDS entity is too large to be announced (%zu bytes), so other programs will "

@@ -49,12 +49,22 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
   news.message.size = shm::DdsMessageSize(news.message.payload_size);
 }
 
+void NoteToldItself(const shm::DdsMessage& message) {
+  const Guid subject = GuidAt(message.subject);
+  KeptNews& state = TheKeptNews();
+  const std::lock_guard lock(state.mutex);
+  for (OwnNews& news : state.news) {
+    if (GuidAt(news.message.subject) == subject) news.message.flags |= shm::kDdsToSender;
+  }
+}
+
 std::vector<OwnNews> NewsForItself() {
   KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);
   std::vector<OwnNews> all;
-  std::ranges::copy_if(state.news, std::back_inserter(all),
-                       [](const OwnNews& news) { return MeetsItself(news.message.domain); });
+  std::ranges::copy_if(state.news, std::back_inserter(all), [](const OwnNews& news) {
+    return (news.message.flags & shm::kDdsToSender) == 0 && MeetsItself(news.message.domain);
+  });
   return all;
 }
 

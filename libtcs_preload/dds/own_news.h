@@ -21,9 +21,12 @@ struct OwnNews {
 
 // Before it is sent.
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
+// What has been noted goes through the coordinator to this process, too.
+void NoteToldItself(const shm::DdsMessage& message);
 
 // The announcements that are there, in the order in which they came, of domains in which the
-// program meets itself.
+// program meets itself, but for those that it is told of through the coordinator: what these say is
+// true when it comes, after what came before it.
 std::vector<OwnNews> NewsForItself();
 
 }  // namespace tcs::dds
