@@ -26,7 +26,7 @@ void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
   }
-  Send(message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
+  Send(*entity.e.gv, message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
 }
 
 // Readers of other processes that expect what the writer has: it has sent all, or has nothing.
@@ -45,7 +45,7 @@ void AnnounceParticipant(const ddsi_participant& participant) {
                                       GuidOf(participant.e.guid));
   SetLease(message, participant.lease_duration);
   message.instance = shm::DdsTag(participant.e.gv->config.domainTag);
-  Send(message, EncodeParticipant(&participant.plist->qos));
+  Send(*participant.e.gv, message, EncodeParticipant(&participant.plist->qos));
 }
 
 void AnnounceWriter(const ddsi_writer& writer) {
@@ -64,7 +64,7 @@ void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type) {
   shm::DdsMessage message =
       MessageOf(shm::DdsKind::kTopic, NetworkDomain(*topic.e.gv), GuidOf(topic.e.guid));
   PutGuid(GuidOf(topic.pp->e.guid), message.other);
-  Send(message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
+  Send(*topic.e.gv, message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
 }
 
 void AnnounceReader(const ddsi_reader& reader) {
@@ -86,10 +86,10 @@ void AnnounceChange(const ddsi_topic& topic) {
   }
 }
 
-void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid) {
-  shm::DdsMessage message = MessageOf(kind, domain, guid);
+void AnnounceGone(shm::DdsKind kind, const ddsi_domaingv& gv, const Guid& guid) {
+  shm::DdsMessage message = MessageOf(kind, NetworkDomain(gv), guid);
   message.flags = shm::kDdsGone;
-  Send(message, {});
+  Send(gv, message, {});
 }
 
 }  // namespace tcs::dds

@@ -38,6 +38,7 @@
   X(ddsi_new_topic)                \
   X(ddsi_update_topic_qos)         \
   X(ddsi_delete_topic)             \
+  X(ddsi_set_deafmute)             \
   X(ddsi_iid_gen)                  \
   X(ddsrt_prng_makeseed)           \
   X(rtps_config_prep)

@@ -20,6 +20,7 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include <dds/ddsi/ddsi_tkmap.h>
 #include <dds/ddsi/ddsi_topic.h>
 #include <dds/ddsi/q_bswap.h>
+#include <dds/ddsi/q_rtps.h>
 #include <dds/ddsrt/random.h>
 #include <dds/version.h>
 

@@ -67,11 +67,10 @@ dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags
 
 dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = GuidOf(*guid);
-  const std::uint32_t domain = NetworkDomain(*gv);
   const bool own = IsParticipant(gv, key);
   if (own) RemoveParticipant(gv, key);
   const dds_return_t result = Real().ddsi_delete_participant(gv, guid);
-  if (own) AnnounceGone(shm::DdsKind::kParticipant, domain, key);
+  if (own) AnnounceGone(shm::DdsKind::kParticipant, *gv, key);
   return result;
 }
 
@@ -108,7 +107,7 @@ dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   if (IsWriter(gv, key)) {
     RemoveWriter(gv, key);
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
+    AnnounceGone(shm::DdsKind::kEndpoint, *gv, key);
   }
   return result;
 }
@@ -155,7 +154,7 @@ dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   RemoveShadowEndpoint(gv->config.domainId, key);
   if (RemoveReader(gv, key)) {
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
+    AnnounceGone(shm::DdsKind::kEndpoint, *gv, key);
   }
   return result;
 }
@@ -189,7 +188,7 @@ void UpdateTopic(ddsi_topic* topic, const dds_qos_t* qos) {
 dds_return_t DeleteTopic(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const dds_return_t result = Real().ddsi_delete_topic(gv, guid);
   if (result >= 0 && MakesTopicsKnown(*gv) && !IsShadow(gv, *guid)) {
-    AnnounceGone(shm::DdsKind::kTopic, NetworkDomain(*gv), GuidOf(*guid));
+    AnnounceGone(shm::DdsKind::kTopic, *gv, GuidOf(*guid));
   }
   return result;
 }

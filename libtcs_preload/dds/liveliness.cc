@@ -69,14 +69,11 @@ dds_return_t AssertLiveliness(dds_entity_t entity) {
   if (result < 0 || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return result;
   dds_domainid_t domain = 0;
   dds_get_domainid(entity, &domain);
-  std::uint32_t name = 0;
-  {
-    const Visit visit(domain);
-    if (visit.gv() == nullptr) return result;
-    name = NetworkDomain(*visit.gv());
-  }
-  shm::DdsMessage message = MessageOf(shm::DdsKind::kLiveliness, name, GuidAt(guid.v));
-  Send(message, {});
+  const Visit visit(domain);
+  if (visit.gv() == nullptr) return result;
+  shm::DdsMessage message =
+      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*visit.gv()), GuidAt(guid.v));
+  Send(*visit.gv(), message, {});
   return result;
 }
 

@@ -58,6 +58,17 @@ void NoteToldItself(const shm::DdsMessage& message) {
   }
 }
 
+std::vector<OwnNews> NewsOf(const ddsi_domaingv& gv) {
+  KeptNews& state = TheKeptNews();
+  const std::lock_guard lock(state.mutex);
+  std::vector<OwnNews> all;
+  std::ranges::copy_if(state.news, std::back_inserter(all), [&gv](const OwnNews& news) {
+    const bool is_participant = news.message.kind == shm::DdsKind::kParticipant;
+    return IsParticipant(&gv, GuidAt(is_participant ? news.message.subject : news.message.other));
+  });
+  return all;
+}
+
 std::vector<OwnNews> NewsForItself() {
   KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);

@@ -29,4 +29,7 @@ void NoteToldItself(const shm::DdsMessage& message);
 // true when it comes, after what came before it.
 std::vector<OwnNews> NewsForItself();
 
+// All announcements that are there of what the program has in this domain.
+std::vector<OwnNews> NewsOf(const ddsi_domaingv& gv);
+
 }  // namespace tcs::dds

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "libtcs_preload/dds/cyclone.h"
+#include "libtcs_preload/dds/deaf_mute.h"
 #include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/entities.h"
 #include "libtcs_preload/dds/identity.h"
@@ -52,6 +53,7 @@ const Hook* Hooks() {
                             TCS_DDS_HOOK(ddsi_new_reader, NewReader),
                             TCS_DDS_HOOK(ddsi_delete_reader, DeleteReader),
                             TCS_DDS_HOOK(ddsi_update_reader_qos, UpdateReader),
+                            TCS_DDS_HOOK(ddsi_set_deafmute, SetDeafMute),
                             TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
                             TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
                             TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),

@@ -40,7 +40,7 @@ void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
   message.source_timestamp_ns = sample.timestamp.v;
   message.status_info = sample.statusinfo;
   message.sample_kind = sample.kind;
-  SendSample(message, sample, tap.topic);
+  SendSample(*tap.gv, message, sample, tap.topic);
 }
 
 bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
@@ -184,7 +184,7 @@ void SendHistoryEnd(const ddsi_domaingv& gv, const Guid& writer, const Guid& rea
   shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, NetworkDomain(gv), writer);
   message.to = process;
   PutGuid(reader, message.other);
-  Send(message, {});
+  Send(gv, message, {});
 }
 
 }  // namespace tcs::dds
