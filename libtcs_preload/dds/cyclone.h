@@ -15,6 +15,7 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include <dds/ddsi/ddsi_entity_index.h>
 #include <dds/ddsi/ddsi_iid.h>
 #include <dds/ddsi/ddsi_participant.h>
+#include <dds/ddsi/ddsi_proxy_participant.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_tkmap.h>

@@ -340,12 +340,13 @@ void Mirrors::EndLeases(const ddsi_domaingv& gv, Deaf& deaf) {
     const Guid guid = place->first;
     Participant& participant = (place++)->second;
     if (!participant.shadows.contains(gv.config.domainId)) continue;
-    if (participant.lease_ns > now_ns - deaf.since_ns) continue;
+    const bool is_over = participant.lease_ns <= now_ns - deaf.since_ns;
+    if (!IsToBeLost(gv.config.domainId, guid) && !is_over) continue;
     deaf.last_lost_ns = now_ns;
-    for (const auto& [key, endpoint] : endpoints_) {
-      if (endpoint.participant == guid && endpoint.shadows.contains(gv.config.domainId)) {
-        deaf.lost.insert(key);
-      }
+    for (auto& [key, endpoint] : endpoints_) {
+      if (endpoint.participant != guid || !endpoint.shadows.contains(gv.config.domainId)) continue;
+      deaf.lost.insert(key);
+      endpoint.lost_at_ns[gv.config.domainId] = ddsrt_time_monotonic().v;
     }
     EndShadow(guid, participant, gv.config.domainId);
     if (participant.gone) RemoveParticipant(guid);
@@ -554,6 +555,8 @@ Mirrors::EndpointShadow Mirrors::MakeReader(ddsi_domaingv* gv, const Guid& guid,
   EndpointShadow shadow;
   Tap* tap = NewTap(gv, gv->config.domainId, endpoint.process, guid, endpoint.what.topic,
                     IsReliable(qos), IsReliable(qos) && IsTransientLocal(qos));
+  const auto lost = endpoint.lost_at_ns.find(gv->config.domainId);
+  if (lost != endpoint.lost_at_ns.end()) tap->lost_at_ns = lost->second;
   {
     const MakingTap making(tap);
     shadow.entity = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);

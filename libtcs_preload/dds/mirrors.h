@@ -71,7 +71,8 @@ class Mirrors {
     Payload payload;
     DecodedEndpoint what;
     std::map<std::uint32_t, EndpointShadow> shadows;
-    bool gone = false;       // only deaf domains still have shadows of it
+    std::map<std::uint32_t, std::int64_t> lost_at_ns;  // by deaf domains, monotonic
+    bool gone = false;                                 // only deaf domains still have shadows of it
     bool not_alive = false;  // its lease is over, and it has not written since
     bool warned = false;
     bool looked_at = false;  // one of its samples, whether the program's type of that name reads it

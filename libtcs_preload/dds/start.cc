@@ -54,6 +54,7 @@ const Hook* Hooks() {
                             TCS_DDS_HOOK(ddsi_delete_reader, DeleteReader),
                             TCS_DDS_HOOK(ddsi_update_reader_qos, UpdateReader),
                             TCS_DDS_HOOK(ddsi_set_deafmute, SetDeafMute),
+                            TCS_DDS_HOOK(ddsi_delete_proxy_participant_by_guid, DeleteProxy),
                             TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
                             TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
                             TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),
