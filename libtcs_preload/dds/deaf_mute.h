@@ -1,5 +1,5 @@
-// Domains that the program has made deaf or mute, or their configuration
-// (Internal/Test/…, dds_domain_set_deafmute): as if the network lost all that comes, or goes.
+// Domains that the program has made deaf or mute (dds_domain_set_deafmute), or their configuration
+// (Internal/ControlTopic): as if the network lost all that comes, or goes.
 //
 // Cyclone's own flags say which domains are; the deliverer looks at them when it is woken.
 #pragma once

@@ -16,30 +16,11 @@
 #include "libtcs_preload/dds/own_news.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
+#include "libtcs_preload/dds/shadow_qos.h"
 #include "libtcs_preload/dds/tap.h"
 
 namespace tcs::dds {
 namespace {
-
-// QoS that a message carries, as long as it lives.
-class Qos {
- public:
-  explicit Qos(dds_qos_t* qos) : qos_(qos) {}
-  ~Qos() { dds_delete_qos(qos_); }
-  Qos(const Qos&) = delete;
-  Qos& operator=(const Qos&) = delete;
-  dds_qos_t* get() const { return qos_; }
-
- private:
-  dds_qos_t* qos_;
-};
-
-// Of an endpoint, as its shadow has them: it is to match what is in this process.
-dds_qos_t* ShadowQos(const Payload& payload) {
-  dds_qos_t* qos = DecodeQos(payload, false);
-  dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_NONE);
-  return qos;
-}
 
 // How often a reader that is full is tried, as by Cyclone's own threads.
 constexpr dds_duration_t kTryAgain = DDS_MSECS(1);
@@ -54,40 +35,11 @@ bool StoreIn(ddsi_domaingv* gv, const Guid& guid, const ddsi_guid_t& shadow_guid
   return reader == nullptr || shadow == nullptr || StoreAddressed(*reader, *shadow, sample);
 }
 
-bool IsReliable(const dds_qos_t* qos) {
-  dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
-  dds_duration_t blocking = 0;
-  dds_qget_reliability(qos, &reliability, &blocking);
-  return reliability == DDS_RELIABILITY_RELIABLE;
-}
-
-bool IsTransientLocal(const dds_qos_t* qos) {
-  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
-  dds_qget_durability(qos, &durability);
-  return durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
-}
-
 template <class Map>
 std::vector<typename Map::key_type> KeysOf(const Map& map) {
   std::vector<typename Map::key_type> keys;
   for (const auto& [key, value] : map) keys.push_back(key);
   return keys;
-}
-
-void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (!dds_qget_topicdata(from, &data, &size)) return;
-  dds_qset_topicdata(to, data, size);
-  dds_free(data);
-}
-
-void CopyGroupData(const dds_qos_t* from, dds_qos_t* to) {
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (!dds_qget_groupdata(from, &data, &size)) return;
-  dds_qset_groupdata(to, data, size);
-  dds_free(data);
 }
 
 // Takes the type over.

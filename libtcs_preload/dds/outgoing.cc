@@ -58,14 +58,16 @@ void Send(const ddsi_domaingv& gv, shm::DdsMessage& message, const Payload& payl
   if (!HoldsBack(gv, message, payload.data(), payload.size())) {
     SendHeld(message, payload);
   } else if (message.to == shm::kDdsEverybody) {
-    NoteToldItself(message);  // it will come, if the program meets itself
+    NoteToldItself(message, true);  // it will come, if the program meets itself then
   }
 }
 
 void SendHeld(shm::DdsMessage& message, const Payload& payload) {
-  if (message.to == shm::kDdsEverybody && MeetsItself(message.domain)) {
-    message.flags |= shm::kDdsToSender;
-    NoteToldItself(message);
+  if (message.to == shm::kDdsEverybody) {
+    const bool is_told = MeetsItself(message.domain);
+    message.flags &= static_cast<std::uint16_t>(~shm::kDdsToSender);
+    if (is_told) message.flags |= shm::kDdsToSender;
+    NoteToldItself(message, is_told);
   }
   if (!SendParts(message, payload.data(), payload.size())) {
     Say("the QoS of a DDS entity is too large to be announced (%zu bytes), so other programs will "

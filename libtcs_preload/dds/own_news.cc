@@ -49,12 +49,14 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
   news.message.size = shm::DdsMessageSize(news.message.payload_size);
 }
 
-void NoteToldItself(const shm::DdsMessage& message) {
+void NoteToldItself(const shm::DdsMessage& message, bool is_told) {
   const Guid subject = GuidAt(message.subject);
   KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);
   for (OwnNews& news : state.news) {
-    if (GuidAt(news.message.subject) == subject) news.message.flags |= shm::kDdsToSender;
+    if (GuidAt(news.message.subject) != subject) continue;
+    news.message.flags &= static_cast<std::uint16_t>(~shm::kDdsToSender);
+    if (is_told) news.message.flags |= shm::kDdsToSender;
   }
 }
 

@@ -21,8 +21,8 @@ struct OwnNews {
 
 // Before it is sent.
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
-// What has been noted goes through the coordinator to this process, too.
-void NoteToldItself(const shm::DdsMessage& message);
+// Whether what has been noted goes through the coordinator to this process, too.
+void NoteToldItself(const shm::DdsMessage& message, bool is_told);
 
 // The announcements that are there, in the order in which they came, of domains in which the
 // program meets itself, but for those that it is told of through the coordinator: what these say is
