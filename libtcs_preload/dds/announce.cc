@@ -15,8 +15,10 @@ void SetLease(shm::DdsMessage& message, std::int64_t lease_ns) {
   message.flags |= shm::kDdsLeased;
 }
 
+// One that is of this process only is nobody else's concern (ignored_partitions.h).
 template <class Entity>
 void SendEndpoint(const Entity& entity, std::uint32_t kind) {
+  if (entity.e.onlylocal) return;
   const dds_qos_t& qos = *entity.xqos;
   shm::DdsMessage message =
       MessageOf(shm::DdsKind::kEndpoint, NetworkDomain(*entity.e.gv), GuidOf(entity.e.guid));
@@ -24,12 +26,12 @@ void SendEndpoint(const Entity& entity, std::uint32_t kind) {
   if (kind == shm::kDdsWriter && qos.liveliness.kind == DDS_LIVELINESS_AUTOMATIC) {
     SetLease(message, qos.liveliness.lease_duration);
   }
-  Send(message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
+  Send(*entity.e.gv, message, EncodeEndpoint(kind, qos.topic_name, entity.type, &qos));
 }
 
 // Readers of other processes that expect what the writer has: it has sent all, or has nothing.
 void EndHistories(const ddsi_writer& writer) {
-  if (writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
+  if (writer.e.onlylocal || writer.xqos->durability.kind < DDS_DURABILITY_TRANSIENT_LOCAL) return;
   const ddsi_domaingv& gv = *writer.e.gv;
   for (const LateReader& reader : ReadersThatCatchUp(gv.config.domainId, writer.xqos->topic_name)) {
     SendHistoryEnd(gv, GuidOf(writer.e.guid), reader.guid, reader.process);
@@ -43,7 +45,7 @@ void AnnounceParticipant(const ddsi_participant& participant) {
                                       GuidOf(participant.e.guid));
   SetLease(message, participant.lease_duration);
   message.instance = shm::DdsTag(participant.e.gv->config.domainTag);
-  Send(message, EncodeParticipant(&participant.plist->qos));
+  Send(*participant.e.gv, message, EncodeParticipant(&participant.plist->qos));
 }
 
 void AnnounceWriter(const ddsi_writer& writer) {
@@ -62,7 +64,7 @@ void AnnounceTopic(const ddsi_topic& topic, const ddsi_sertype* type) {
   shm::DdsMessage message =
       MessageOf(shm::DdsKind::kTopic, NetworkDomain(*topic.e.gv), GuidOf(topic.e.guid));
   PutGuid(GuidOf(topic.pp->e.guid), message.other);
-  Send(message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
+  Send(*topic.e.gv, message, EncodeEndpoint(shm::kDdsTopic, qos.topic_name, type, &qos));
 }
 
 void AnnounceReader(const ddsi_reader& reader) {
@@ -84,10 +86,10 @@ void AnnounceChange(const ddsi_topic& topic) {
   }
 }
 
-void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid) {
-  shm::DdsMessage message = MessageOf(kind, domain, guid);
+void AnnounceGone(shm::DdsKind kind, const ddsi_domaingv& gv, const Guid& guid) {
+  shm::DdsMessage message = MessageOf(kind, NetworkDomain(gv), guid);
   message.flags = shm::kDdsGone;
-  Send(message, {});
+  Send(gv, message, {});
 }
 
 }  // namespace tcs::dds

@@ -23,6 +23,6 @@ void AnnounceReader(const ddsi_reader& reader);
 void AnnounceChange(const ddsi_writer& writer);
 void AnnounceChange(const ddsi_reader& reader);
 
-void AnnounceGone(shm::DdsKind kind, std::uint32_t domain, const Guid& guid);
+void AnnounceGone(shm::DdsKind kind, const ddsi_domaingv& gv, const Guid& guid);
 
 }  // namespace tcs::dds

@@ -17,33 +17,35 @@
 
 // The calls that make, change and end what other processes see. The ones that begin with ddsi_ and
 // rtps_ are libddsc's own inner seams: libddsc calls them through its PLT.
-#define TCS_DDS_CHANGING_CALLS(X)  \
-  X(dds_create_topic_sertype)      \
-  X(dds_create_writer)             \
-  X(dds_delete)                    \
-  X(dds_assert_liveliness)         \
-  X(dds_lookup_participant)        \
-  X(dds_get_children)              \
-  X(dds_find_topic)                \
-  X(dds_find_topic_scoped)         \
-  X(dds_create_topic_descriptor)   \
-  X(dds_get_typeobj)               \
-  X(dds_entity_pin)                \
-  X(dds_reader_data_available_cb)  \
-  X(ddsi_new_participant)          \
-  X(ddsi_delete_participant)       \
-  X(ddsi_update_participant_plist) \
-  X(ddsi_new_writer)               \
-  X(ddsi_delete_writer)            \
-  X(ddsi_update_writer_qos)        \
-  X(ddsi_new_reader)               \
-  X(ddsi_delete_reader)            \
-  X(ddsi_update_reader_qos)        \
-  X(ddsi_new_topic)                \
-  X(ddsi_update_topic_qos)         \
-  X(ddsi_delete_topic)             \
-  X(ddsi_iid_gen)                  \
-  X(ddsrt_prng_makeseed)           \
+#define TCS_DDS_CHANGING_CALLS(X)          \
+  X(dds_create_topic_impl)                 \
+  X(dds_create_writer)                     \
+  X(dds_delete)                            \
+  X(dds_assert_liveliness)                 \
+  X(dds_lookup_participant)                \
+  X(dds_get_children)                      \
+  X(dds_find_topic)                        \
+  X(dds_find_topic_scoped)                 \
+  X(dds_create_topic_descriptor)           \
+  X(dds_get_typeobj)                       \
+  X(dds_entity_pin)                        \
+  X(dds_reader_data_available_cb)          \
+  X(ddsi_new_participant)                  \
+  X(ddsi_delete_participant)               \
+  X(ddsi_update_participant_plist)         \
+  X(ddsi_new_writer)                       \
+  X(ddsi_delete_writer)                    \
+  X(ddsi_update_writer_qos)                \
+  X(ddsi_new_reader)                       \
+  X(ddsi_delete_reader)                    \
+  X(ddsi_update_reader_qos)                \
+  X(ddsi_new_topic)                        \
+  X(ddsi_update_topic_qos)                 \
+  X(ddsi_delete_topic)                     \
+  X(ddsi_set_deafmute)                     \
+  X(ddsi_delete_proxy_participant_by_guid) \
+  X(ddsi_iid_gen)                          \
+  X(ddsrt_prng_makeseed)                   \
   X(rtps_config_prep)
 
 // The calls that look at what has come.

@@ -15,19 +15,29 @@ typedef struct TcsSockWaitset* os_sockWaitset;
 #include <dds/ddsi/ddsi_entity_index.h>
 #include <dds/ddsi/ddsi_iid.h>
 #include <dds/ddsi/ddsi_participant.h>
+#include <dds/ddsi/ddsi_proxy_participant.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/ddsi_tkmap.h>
 #include <dds/ddsi/ddsi_topic.h>
 #include <dds/ddsi/q_bswap.h>
+#include <dds/ddsi/q_rtps.h>
 #include <dds/ddsrt/random.h>
 #include <dds/version.h>
 
 #include "libtcs_preload/dds/calls.h"
 #include "libtcs_preload/dds/link.h"
 
-// In no header of libddsc's: makes sure that an entity stays while it is looked at.
-extern "C" dds_return_t dds_entity_pin(dds_entity_t handle, struct dds_entity** entity);
+// In no header of libddsc's.
+extern "C" {
+// Makes sure that an entity stays while it is looked at.
+dds_return_t dds_entity_pin(dds_entity_t handle, struct dds_entity** entity);
+// What all ways to make a topic come to. With the type that the topic has then, in its place.
+dds_entity_t dds_create_topic_impl(dds_entity_t participant, const char* name, bool allow_dcps,
+                                   ddsi_sertype** type, const dds_qos_t* qos,
+                                   const dds_listener_t* listener, const ddsi_plist* discovery,
+                                   bool is_builtin);
+}
 
 namespace tcs::dds {
 

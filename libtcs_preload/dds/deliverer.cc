@@ -36,6 +36,12 @@ bool IsNudge(const shm::DdsMessage& message) {
   return message.kind == shm::DdsKind::kHistoryEnd && GuidAt(message.subject) == Guid{};
 }
 
+void CloseNow(Deliveries& state, std::uint32_t domain) {
+  state.mirrors.Close(domain);
+  OverEnd(domain);
+  if (HasDomain(domain)) state.mirrors.Complete();
+}
+
 void CloseDomains(Deliveries& state) {
   std::vector<std::uint32_t> closing;
   {
@@ -43,9 +49,11 @@ void CloseDomains(Deliveries& state) {
     closing = state.closing;
   }
   if (closing.empty()) return;
-  for (const std::uint32_t domain : closing) state.mirrors.Close(domain);
+  for (const std::uint32_t domain : closing) CloseNow(state, domain);
   const std::lock_guard lock(state.mutex);
-  for (const std::uint32_t domain : closing) std::erase(state.closing, domain);
+  for (const std::uint32_t domain : closing) {
+    state.closing.erase(std::ranges::find(state.closing, domain));
+  }
   state.done.notify_all();
 }
 
@@ -81,6 +89,7 @@ void StartDeliverer() {
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
+  sigdelset(&all, SIGXCPU);  // at which Cyclone's own threads tell where they are, too
   pthread_sigmask(SIG_SETMASK, &all, &before);
   pthread_t thread;
   if (const int error = pthread_create(&thread, nullptr, Run, nullptr); error != 0) {
@@ -113,10 +122,11 @@ void CloseDomain(std::uint32_t domain) {
     state.done.wait(lock, [&state, domain] {
       return state.ended || std::ranges::count(state.closing, domain) == 0;
     });
-    if (std::ranges::count(state.closing, domain) == 0) return;
-    std::erase(state.closing, domain);
+    const auto left = std::ranges::find(state.closing, domain);
+    if (left == state.closing.end()) return;
+    state.closing.erase(left);
   }
-  state.mirrors.Close(domain);
+  CloseNow(state, domain);
 }
 
 }  // namespace tcs::dds

@@ -15,8 +15,8 @@ bool IsDeliverer();
 // calling thread goes on or next looks at what has come.
 void LookAgain();
 
-// The program's last participant in a domain is gone: so are the shadows when this returns, or, on
-// the deliverer, soon.
+// The program's last participant in a domain is gone, whose end has begun (program.h): so are the
+// shadows when this returns, or, on the deliverer, soon. Its end is over then.
 void CloseDomain(std::uint32_t domain);
 
 }  // namespace tcs::dds

@@ -5,6 +5,7 @@
 #include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
+#include "libtcs_preload/dds/ignored_partitions.h"
 #include "libtcs_preload/dds/listening.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
@@ -35,6 +36,15 @@ class WithTypeInformation {
   dds_qos_t* qos_;
 };
 
+// Of an endpoint of the program's that is about to be made; `others`: those that it may match.
+OwnMatches MatchesOf(ddsi_domaingv* gv, const char* topic, const dds_qos_t& qos,
+                     const std::vector<Guid>& others) {
+  const bool is_ignored = IsIgnored(gv->config, topic, qos);
+  const auto shadows =
+      is_ignored ? ShadowEndpointsOf(gv->config.domainId, topic) : std::vector<Guid>();
+  return OwnMatches(gv, &qos, others, shadows, is_ignored);
+}
+
 }  // namespace
 
 dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags,
@@ -57,11 +67,10 @@ dds_return_t NewParticipant(ddsi_guid_t* guid, ddsi_domaingv* gv, unsigned flags
 
 dds_return_t DeleteParticipant(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = GuidOf(*guid);
-  const std::uint32_t domain = NetworkDomain(*gv);
   const bool own = IsParticipant(gv, key);
   if (own) RemoveParticipant(gv, key);
   const dds_return_t result = Real().ddsi_delete_participant(gv, guid);
-  if (own) AnnounceGone(shm::DdsKind::kParticipant, domain, key);
+  if (own) AnnounceGone(shm::DdsKind::kParticipant, *gv, key);
   return result;
 }
 
@@ -75,11 +84,13 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
                        const dds_qos_t* qos, whc* cache, ddsi_status_cb_t status, void* argument) {
   if (IsShadow(participant->e.gv, participant->e.guid)) {
     const WithTypeInformation all(qos, type);
-    return Real().ddsi_new_writer(writer, guid, group, participant, topic, type, all.get(), cache,
-                                  status, argument);
+    const dds_return_t result = Real().ddsi_new_writer(writer, guid, group, participant, topic,
+                                                       type, all.get(), cache, status, argument);
+    if (result >= 0) AddShadowEndpoint(participant->e.gv->config.domainId, topic, GuidOf(*guid));
+    return result;
   }
   ddsi_domaingv* gv = participant->e.gv;
-  OwnMatches matches(gv, qos, ReadersOf(gv->config.domainId, topic));
+  OwnMatches matches = MatchesOf(gv, topic, *qos, ReadersOf(gv->config.domainId, topic));
   const dds_return_t result =
       Real().ddsi_new_writer(writer, guid, group, participant, topic, type, matches.qos(), cache,
                              ListeningWriterStatus(status), argument);
@@ -92,10 +103,11 @@ dds_return_t NewWriter(ddsi_writer** writer, ddsi_guid_t* guid, const ddsi_guid_
 dds_return_t DeleteWriter(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = GuidOf(*guid);
   const dds_return_t result = Real().ddsi_delete_writer(gv, guid);
+  RemoveShadowEndpoint(gv->config.domainId, key);
   if (IsWriter(gv, key)) {
     RemoveWriter(gv, key);
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
+    AnnounceGone(shm::DdsKind::kEndpoint, *gv, key);
   }
   return result;
 }
@@ -111,14 +123,16 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
                        void* argument) {
   if (IsShadow(participant->e.gv, participant->e.guid)) {
     const WithTypeInformation all(qos, type);
-    return Real().ddsi_new_reader(reader, guid, group, participant, topic, type, all.get(), cache,
-                                  status, argument);
+    const dds_return_t result = Real().ddsi_new_reader(reader, guid, group, participant, topic,
+                                                       type, all.get(), cache, status, argument);
+    if (result >= 0) AddShadowEndpoint(participant->e.gv->config.domainId, topic, GuidOf(*guid));
+    return result;
   }
   ddsi_domaingv* gv = participant->e.gv;
   const bool builtin = IsBuiltin(*participant, type);
   if (!builtin) CoverHistoryCache(cache, gv, *qos);
   if (builtin && LookAround()) LookAgain();
-  OwnMatches matches(gv, qos, WritersOf(gv->config.domainId, topic));
+  OwnMatches matches = MatchesOf(gv, topic, *qos, WritersOf(gv->config.domainId, topic));
   dds_return_t result;
   {
     const MakingReader making;
@@ -137,9 +151,10 @@ dds_return_t NewReader(ddsi_reader** reader, ddsi_guid_t* guid, const ddsi_guid_
 dds_return_t DeleteReader(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const Guid key = GuidOf(*guid);
   const dds_return_t result = Real().ddsi_delete_reader(gv, guid);
+  RemoveShadowEndpoint(gv->config.domainId, key);
   if (RemoveReader(gv, key)) {
     ForgetIgnoring(key);
-    AnnounceGone(shm::DdsKind::kEndpoint, NetworkDomain(*gv), key);
+    AnnounceGone(shm::DdsKind::kEndpoint, *gv, key);
   }
   return result;
 }
@@ -173,7 +188,7 @@ void UpdateTopic(ddsi_topic* topic, const dds_qos_t* qos) {
 dds_return_t DeleteTopic(ddsi_domaingv* gv, const ddsi_guid_t* guid) {
   const dds_return_t result = Real().ddsi_delete_topic(gv, guid);
   if (result >= 0 && MakesTopicsKnown(*gv) && !IsShadow(gv, *guid)) {
-    AnnounceGone(shm::DdsKind::kTopic, NetworkDomain(*gv), GuidOf(*guid));
+    AnnounceGone(shm::DdsKind::kTopic, *gv, GuidOf(*guid));
   }
   return result;
 }

@@ -9,10 +9,17 @@ namespace {
 // Listeners run while it is held, which may wait for a thread that wants it: not for ever.
 constexpr std::chrono::milliseconds kLongestTurn{100};
 
+// An endpoint of the program's that has another policy while a shadow is made.
+struct Ignoring {
+  ddsi_domaingv* gv;
+  Guid guid;
+  dds_ignorelocal_kind_t own, beside_shadow;
+};
+
 struct Ignored {
   std::recursive_timed_mutex turn;
   std::mutex mutex;
-  std::vector<std::pair<ddsi_domaingv*, Guid>> ignoring;  // the program's, with that policy
+  std::vector<Ignoring> ignoring;
 };
 
 Ignored& TheIgnored() {
@@ -54,61 +61,68 @@ dds_ignorelocal_kind_t ExchangePolicy(const ddsi_domaingv* gv, const Guid& guid,
   return kind;
 }
 
-void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t kind) {
-  std::vector<Guid> guids;
+void SetAll(ddsi_domaingv* gv, dds_ignorelocal_kind_t Ignoring::*policy) {
+  std::vector<Ignoring> all;
   {
     Ignored& state = TheIgnored();
     const std::lock_guard lock(state.mutex);
-    for (const auto& [domain, guid] : state.ignoring) {
-      if (domain == gv) guids.push_back(guid);
+    for (const Ignoring& one : state.ignoring) {
+      if (one.gv == gv) all.push_back(one);
     }
   }
-  if (guids.empty()) return;
+  if (all.empty()) return;
   const Awake awake(gv);
-  for (const Guid& guid : guids) ExchangePolicy(gv, guid, kind);
+  for (const Ignoring& one : all) ExchangePolicy(gv, one.guid, one.*policy);
 }
 
 }  // namespace
 
 ShadowMatches::ShadowMatches(ddsi_domaingv* gv) : turn_(Turn()), gv_(gv) {
-  SetAll(gv_, DDS_IGNORELOCAL_PARTICIPANT);
+  SetAll(gv_, &Ignoring::beside_shadow);
 }
-ShadowMatches::~ShadowMatches() { SetAll(gv_, DDS_IGNORELOCAL_PROCESS); }
+ShadowMatches::~ShadowMatches() { SetAll(gv_, &Ignoring::own); }
 
-OwnMatches::OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others)
-    : turn_(Turn()), gv_(gv), given_(qos) {
-  if (Policy(qos) != DDS_IGNORELOCAL_PROCESS) return;
-  milder_ = ddsi_xqos_dup(qos);
-  dds_qset_ignorelocal(milder_, DDS_IGNORELOCAL_PARTICIPANT);
+OwnMatches::OwnMatches(ddsi_domaingv* gv, const dds_qos_t* qos, const std::vector<Guid>& others,
+                       const std::vector<Guid>& shadows, bool no_shadows)
+    : turn_(Turn()), gv_(gv), given_(qos), no_shadows_(no_shadows) {
+  const bool no_others = Policy(qos) == DDS_IGNORELOCAL_PROCESS;
+  if (no_others == no_shadows) return;  // it ignores all, as it is, or none
+  if (no_others) {
+    milder_ = ddsi_xqos_dup(qos);
+    dds_qset_ignorelocal(milder_, DDS_IGNORELOCAL_PARTICIPANT);
+  }
   const Awake awake(gv);
-  for (const Guid& guid : others) {
-    others_.emplace_back(guid, ExchangePolicy(gv, guid, DDS_IGNORELOCAL_PROCESS));
+  for (const Guid& guid : no_others ? others : shadows) {
+    ignoring_it_.emplace_back(guid, ExchangePolicy(gv, guid, DDS_IGNORELOCAL_PROCESS));
   }
 }
 
 OwnMatches::~OwnMatches() {
-  if (milder_ == nullptr) return;
-  dds_delete_qos(milder_);
+  if (milder_ != nullptr) dds_delete_qos(milder_);
+  if (ignoring_it_.empty()) return;
   const Awake awake(gv_);
-  for (const auto& [guid, policy] : others_) ExchangePolicy(gv_, guid, policy);
+  for (const auto& [guid, policy] : ignoring_it_) ExchangePolicy(gv_, guid, policy);
 }
 
 void OwnMatches::Made(const ddsi_guid_t& inner) {
-  if (milder_ == nullptr) return;
-  const Guid guid = GuidOf(inner);
-  {
+  Ignoring made{gv_, GuidOf(inner), Policy(given_), DDS_IGNORELOCAL_PARTICIPANT};
+  if (milder_ != nullptr) {
     const Awake awake(gv_);
-    ExchangePolicy(gv_, guid, DDS_IGNORELOCAL_PROCESS);
+    ExchangePolicy(gv_, made.guid, made.own);
+  } else if (no_shadows_) {
+    made.beside_shadow = DDS_IGNORELOCAL_PROCESS;
+  } else {
+    return;
   }
   Ignored& state = TheIgnored();
   const std::lock_guard lock(state.mutex);
-  state.ignoring.emplace_back(gv_, guid);
+  state.ignoring.push_back(made);
 }
 
 void ForgetIgnoring(const Guid& guid) {
   Ignored& state = TheIgnored();
   const std::lock_guard lock(state.mutex);
-  std::erase_if(state.ignoring, [&guid](const auto& entry) { return entry.second == guid; });
+  std::erase_if(state.ignoring, [&guid](const auto& entry) { return entry.guid == guid; });
 }
 
 }  // namespace tcs::dds

@@ -69,11 +69,11 @@ dds_return_t AssertLiveliness(dds_entity_t entity) {
   if (result < 0 || dds_get_guid(entity, &guid) != DDS_RETCODE_OK) return result;
   dds_domainid_t domain = 0;
   dds_get_domainid(entity, &domain);
-  const ddsi_domaingv* gv = DomainOf(domain);
-  if (gv == nullptr) return result;
+  const Visit visit(domain);
+  if (visit.gv() == nullptr) return result;
   shm::DdsMessage message =
-      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*gv), GuidAt(guid.v));
-  Send(message, {});
+      MessageOf(shm::DdsKind::kLiveliness, NetworkDomain(*visit.gv()), GuidAt(guid.v));
+  Send(*visit.gv(), message, {});
   return result;
 }
 

@@ -6,37 +6,21 @@
 
 #include "libtcs_preload/dds/announce.h"
 #include "libtcs_preload/dds/catch_up.h"
+#include "libtcs_preload/dds/deaf_mute.h"
 #include "libtcs_preload/dds/identity.h"
 #include "libtcs_preload/dds/ignore_local.h"
 #include "libtcs_preload/dds/liveliness.h"
+#include "libtcs_preload/dds/muting.h"
 #include "libtcs_preload/dds/other_type.h"
+#include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/own_news.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
+#include "libtcs_preload/dds/shadow_qos.h"
 #include "libtcs_preload/dds/tap.h"
 
 namespace tcs::dds {
 namespace {
-
-// QoS that a message carries, as long as it lives.
-class Qos {
- public:
-  explicit Qos(dds_qos_t* qos) : qos_(qos) {}
-  ~Qos() { dds_delete_qos(qos_); }
-  Qos(const Qos&) = delete;
-  Qos& operator=(const Qos&) = delete;
-  dds_qos_t* get() const { return qos_; }
-
- private:
-  dds_qos_t* qos_;
-};
-
-// Of an endpoint, as its shadow has them: it is to match what is in this process.
-dds_qos_t* ShadowQos(const Payload& payload) {
-  dds_qos_t* qos = DecodeQos(payload, false);
-  dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_NONE);
-  return qos;
-}
 
 // How often a reader that is full is tried, as by Cyclone's own threads.
 constexpr dds_duration_t kTryAgain = DDS_MSECS(1);
@@ -51,33 +35,19 @@ bool StoreIn(ddsi_domaingv* gv, const Guid& guid, const ddsi_guid_t& shadow_guid
   return reader == nullptr || shadow == nullptr || StoreAddressed(*reader, *shadow, sample);
 }
 
-bool IsReliable(const dds_qos_t* qos) {
-  dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
-  dds_duration_t blocking = 0;
-  dds_qget_reliability(qos, &reliability, &blocking);
-  return reliability == DDS_RELIABILITY_RELIABLE;
-}
-
-bool IsTransientLocal(const dds_qos_t* qos) {
-  dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
-  dds_qget_durability(qos, &durability);
-  return durability >= DDS_DURABILITY_TRANSIENT_LOCAL;
-}
-
-void CopyTopicData(const dds_qos_t* from, dds_qos_t* to) {
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (!dds_qget_topicdata(from, &data, &size)) return;
-  dds_qset_topicdata(to, data, size);
-  dds_free(data);
+template <class Map>
+std::vector<typename Map::key_type> KeysOf(const Map& map) {
+  std::vector<typename Map::key_type> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return keys;
 }
 
 // Takes the type over.
 dds_entity_t CreateTopicOf(dds_entity_t participant, const std::string& name, ddsi_sertype* type,
                            const dds_qos_t* qos) {
   ddsi_sertype* consumed = type;
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant, name.c_str(), &consumed, qos, nullptr, nullptr);
+  const dds_entity_t topic = Real().dds_create_topic_impl(participant, name.c_str(), false,
+                                                          &consumed, qos, nullptr, nullptr, false);
   if (topic <= 0) ddsi_sertype_unref(type);
   return topic;
 }
@@ -127,10 +97,14 @@ void Mirrors::HandleParticipant(const shm::DdsMessage& message, Payload payload)
   participant.domain = message.domain;
   participant.process = message.from;
   participant.tag = message.instance;
+  participant.lease_ns = message.lease_ns;
+  participant.gone = false;
   participant.payload = std::move(payload);
   if (changed) {
     const Qos qos(DecodeQos(participant.payload, true));
-    for (auto& [domain, shadow] : participant.shadows) dds_set_qos(shadow.entity, qos.get());
+    for (auto& [domain, shadow] : participant.shadows) {
+      if (!IsDeaf(domain)) dds_set_qos(shadow.entity, qos.get());
+    }
   }
   MakeParticipant(guid, participant);
 }
@@ -142,6 +116,7 @@ void Mirrors::HandleEndpoint(const shm::DdsMessage& message, Payload payload) {
     return;
   }
   Endpoint& endpoint = endpoints_[guid];
+  endpoint.gone = false;
   if (!endpoint.shadows.empty()) {
     if (endpoint.payload != payload) ChangeQos(endpoint, std::move(payload));
     MakeEndpoint(guid, endpoint);
@@ -177,7 +152,8 @@ void Mirrors::HandleTopic(const shm::DdsMessage& message, Payload payload) {
 void Mirrors::EndTopicIn(std::uint32_t domain, Topic& topic) {
   const auto found = topic.shadows.find(domain);
   if (found == topic.shadows.end()) return;
-  if (ddsi_domaingv* gv = DomainOf(domain)) {
+  const Visit visit(domain);
+  if (ddsi_domaingv* gv = visit.gv()) {
     const Awake awake(gv);
     Real().ddsi_delete_topic(gv, &found->second);
   }
@@ -188,23 +164,34 @@ void Mirrors::EndTopic(Topic& topic) {
   while (!topic.shadows.empty()) EndTopicIn(topic.shadows.begin()->first, topic);
 }
 
-// Some policies are the publisher's, the subscriber's or the topic's.
+// Some policies are the publisher's, the subscriber's or the topic's, which would refuse the
+// endpoint's others.
 void Mirrors::ChangeQos(Endpoint& endpoint, Payload payload) {
   endpoint.payload = std::move(payload);
-  const Qos qos(ShadowQos(endpoint.payload));
-  for (auto& [domain, shadow] : endpoint.shadows) {
-    dds_set_qos(dds_get_topic(shadow.entity), qos.get());
-    dds_set_qos(dds_get_parent(shadow.entity), qos.get());
-    dds_set_qos(shadow.entity, qos.get());
+  for (const auto& [domain, shadow] : endpoint.shadows) {
+    if (!IsDeaf(domain)) SetQos(shadow, endpoint.payload);
   }
+}
+
+void Mirrors::SetQos(const EndpointShadow& shadow, const Payload& payload) {
+  const Qos qos(ShadowQos(payload));
+  const Qos of_topic(dds_create_qos()), of_group(dds_create_qos());
+  CopyTopicData(qos.get(), of_topic.get());
+  CopyGroupData(qos.get(), of_group.get());
+  dds_set_qos(dds_get_topic(shadow.entity), of_topic.get());
+  dds_set_qos(dds_get_parent(shadow.entity), of_group.get());
+  dds_set_qos(shadow.entity, qos.get());
 }
 
 void Mirrors::RemoveParticipant(const Guid& guid) {
   const auto found = participants_.find(guid);
   if (found == participants_.end()) return;
-  while (!found->second.shadows.empty()) {
-    EndShadow(guid, found->second, found->second.shadows.begin()->first);
+  Participant& participant = found->second;
+  for (const std::uint32_t domain : KeysOf(participant.shadows)) {
+    if (!IsDeaf(domain)) EndShadow(guid, participant, domain);
   }
+  participant.gone = true;
+  if (!participant.shadows.empty()) return;
   participants_.erase(found);
   std::erase_if(topics_, [&guid](const auto& topic) { return topic.second.participant == guid; });
   std::erase_if(endpoints_,
@@ -214,9 +201,15 @@ void Mirrors::RemoveParticipant(const Guid& guid) {
 void Mirrors::RemoveEndpoint(const Guid& guid) {
   const auto found = endpoints_.find(guid);
   if (found == endpoints_.end()) return;
-  const auto shadows = std::move(found->second.shadows);
-  endpoints_.erase(found);
-  for (const auto& [domain, shadow] : shadows) Real().dds_delete(shadow.entity);
+  Endpoint& endpoint = found->second;
+  for (const std::uint32_t domain : KeysOf(endpoint.shadows)) {
+    if (IsDeaf(domain)) continue;
+    const dds_entity_t shadow = endpoint.shadows[domain].entity;
+    endpoint.shadows.erase(domain);
+    Real().dds_delete(shadow);
+  }
+  endpoint.gone = true;
+  if (endpoint.shadows.empty()) endpoints_.erase(guid);
 }
 
 void Mirrors::EndShadow(const Guid& guid, Participant& participant, std::uint32_t domain) {
@@ -235,31 +228,135 @@ void Mirrors::EndShadow(const Guid& guid, Participant& participant, std::uint32_
 }
 
 void Mirrors::Complete() {
+  for (const std::uint32_t domain : Domains()) {
+    const Visit visit(domain);
+    if (visit.gv() == nullptr) continue;
+    LookAtMute(*visit.gv());
+    LookAtDeaf(*visit.gv());
+  }
   for (const OwnNews& news : NewsForItself()) {
     Handle(news.message, news.payload.data());
   }
+  MakeAll();
+}
+
+void Mirrors::MakeAll() {
   for (auto& [guid, participant] : participants_) MakeParticipant(guid, participant);
   for (auto& [guid, topic] : topics_) MakeTopic(guid, topic);
   for (auto& [guid, endpoint] : endpoints_) MakeEndpoint(guid, endpoint);
 }
 
 void Mirrors::Close(std::uint32_t domain) {
-  if (DomainOf(domain) != nullptr) return;  // the program has made another participant meanwhile
+  // The program may have made another participant meanwhile: in the same domain, or, if that has
+  // been taken down with all shadows, in a new one of its number.
+  const bool goes_on = HasDomain(domain);
   for (auto& [guid, participant] : participants_) {
-    EndShadow(guid, participant, domain);
+    const auto found = participant.shadows.find(domain);
+    if (found == participant.shadows.end()) continue;
+    if (!goes_on || dds_get_participant(found->second.entity) <= 0) {
+      EndShadow(guid, participant, domain);
+    }
   }
+  if (goes_on) return;
   held_in_.erase(domain);
+  deaf_.erase(domain);
+  EndMute(domain);
+}
+
+void Mirrors::LookAtDeaf(const ddsi_domaingv& gv) {
+  const std::uint32_t domain = gv.config.domainId;
+  const std::int64_t now_ns = TheLink().now();
+  if (gv.deaf != 0) {
+    const auto [place, is_new] = deaf_.try_emplace(domain, Deaf{now_ns, INT64_MIN, {}, {}});
+    if (is_new) {
+      for (const auto& [guid, participant] : participants_) {
+        if (participant.shadows.contains(domain)) WakeAfter(gv, participant.lease_ns);
+      }
+      if (gv.config.initial_deaf != 0) WakeAfter(gv, gv.config.initial_deaf_mute_reset);
+    }
+    return EndLeases(gv, place->second);
+  }
+  const auto found = deaf_.find(domain);
+  if (found == deaf_.end()) return;
+  const std::int64_t last_lost_ns = found->second.last_lost_ns;
+  if (last_lost_ns != INT64_MIN && now_ns - last_lost_ns < kRediscovery) {
+    return WakeAfter(gv, kRediscovery - (now_ns - last_lost_ns));
+  }
+  Hear(domain);
+}
+
+// What has not been heard of for as long as its lease is gone, as far as a deaf domain can tell.
+void Mirrors::EndLeases(const ddsi_domaingv& gv, Deaf& deaf) {
+  const std::int64_t now_ns = TheLink().now();
+  for (auto place = participants_.begin(); place != participants_.end();) {
+    const Guid guid = place->first;
+    Participant& participant = (place++)->second;
+    if (!participant.shadows.contains(gv.config.domainId)) continue;
+    const bool is_over = participant.lease_ns <= now_ns - deaf.since_ns;
+    if (!IsToBeLost(gv.config.domainId, guid) && !is_over) continue;
+    deaf.last_lost_ns = now_ns;
+    for (auto& [key, endpoint] : endpoints_) {
+      if (endpoint.participant != guid || !endpoint.shadows.contains(gv.config.domainId)) continue;
+      deaf.lost.insert(key);
+      endpoint.lost_at_ns[gv.config.domainId] = ddsrt_time_monotonic().v;
+    }
+    EndShadow(guid, participant, gv.config.domainId);
+    if (participant.gone) RemoveParticipant(guid);
+  }
+}
+
+// Catches up with what others have told it, and what reliable writers have written.
+void Mirrors::Hear(std::uint32_t domain) {
+  const Deaf was = std::move(deaf_.extract(domain).mapped());
+  std::vector<Guid> gone_participants, gone_endpoints;
+  for (auto& [guid, endpoint] : endpoints_) {
+    if (endpoint.gone) gone_endpoints.push_back(guid);
+    const auto found = endpoint.shadows.find(domain);
+    if (found != endpoint.shadows.end()) SetQos(found->second, endpoint.payload);
+  }
+  for (auto& [guid, participant] : participants_) {
+    if (participant.gone) gone_participants.push_back(guid);
+    const auto found = participant.shadows.find(domain);
+    if (found == participant.shadows.end()) continue;
+    dds_set_qos(found->second.entity, Qos(DecodeQos(participant.payload, true)).get());
+  }
+  for (const Guid& guid : gone_endpoints) RemoveEndpoint(guid);
+  for (const Guid& guid : gone_participants) RemoveParticipant(guid);
+  MakeAll();
+  for (const HeldMessage& missed : was.missed.all()) {
+    const auto found = endpoints_.find(GuidAt(missed.message.subject));
+    if (found == endpoints_.end()) continue;
+    const auto shadow = found->second.shadows.find(domain);
+    if (shadow == found->second.shadows.end()) continue;
+    if (missed.message.kind == shm::DdsKind::kSample) {
+      HandleSampleIn(domain, found->second, shadow->second, false, missed.message,
+                     missed.payload.data());
+    } else {
+      HandleHistoryEndIn(domain, shadow->second, missed.message);
+    }
+  }
+}
+
+// By deaf domains that have, or had, a shadow of the endpoint.
+void Mirrors::Miss(const Guid& guid, const Endpoint& endpoint, const shm::DdsMessage& message,
+                   const std::byte* payload) {
+  for (auto& [domain, deaf] : deaf_) {
+    if (!endpoint.shadows.contains(domain) && !deaf.lost.contains(guid)) continue;
+    deaf.missed.Add(message, payload, message.payload_size);
+  }
 }
 
 void Mirrors::MakeParticipant(const Guid& guid, Participant& participant) {
-  for (ddsi_domaingv* gv : DomainsCalled(participant.domain)) {
-    MakeParticipantIn(gv, guid, participant);
+  for (const std::uint32_t domain : DomainsCalled(participant.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeParticipantIn(visit.gv(), guid, participant);
   }
 }
 
 void Mirrors::MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant& participant) {
   const std::uint32_t domain = gv->config.domainId;
-  if (participant.shadows.contains(domain) || IsParticipant(gv, guid)) return;
+  if (participant.gone || IsDeaf(domain)) return;
+  if (participant.shadows.contains(domain) || IsOrWasParticipant(gv, guid)) return;
   if (participant.process != shm::kDdsCoordinator &&
       participant.tag != shm::DdsTag(gv->config.domainTag)) {
     return;
@@ -278,12 +375,15 @@ void Mirrors::MakeParticipantIn(ddsi_domaingv* gv, const Guid& guid, Participant
 
 void Mirrors::MakeEndpoint(const Guid& guid, Endpoint& endpoint) {
   if (endpoint.what.topic.empty()) return;
-  for (ddsi_domaingv* gv : DomainsCalled(endpoint.domain)) MakeEndpointIn(gv, guid, endpoint);
+  for (const std::uint32_t domain : DomainsCalled(endpoint.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeEndpointIn(visit.gv(), guid, endpoint);
+  }
 }
 
 void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endpoint) {
   const std::uint32_t domain = gv->config.domainId;
-  if (endpoint.shadows.contains(domain)) return;
+  if (endpoint.gone || IsDeaf(domain) || endpoint.shadows.contains(domain)) return;
   const auto owner = participants_.find(endpoint.participant);
   if (owner == participants_.end() || !owner->second.shadows.contains(domain)) return;
   ParticipantShadow& participant = owner->second.shadows[domain];
@@ -308,14 +408,17 @@ void Mirrors::MakeEndpointIn(ddsi_domaingv* gv, const Guid& guid, Endpoint& endp
 
 void Mirrors::MakeTopic(const Guid& guid, Topic& topic) {
   if (topic.what.topic.empty()) return;
-  for (ddsi_domaingv* gv : DomainsCalled(topic.domain)) MakeTopicIn(gv, guid, topic);
+  for (const std::uint32_t domain : DomainsCalled(topic.domain)) {
+    const Visit visit(domain);
+    if (visit.gv() != nullptr) MakeTopicIn(visit.gv(), guid, topic);
+  }
 }
 
 // Where the program's configuration asks for others' topics as well.
 void Mirrors::MakeTopicIn(ddsi_domaingv* gv, const Guid& guid, Topic& topic) {
   const std::uint32_t domain = gv->config.domainId;
   const auto owner = participants_.find(topic.participant);
-  if (topic.shadows.contains(domain) || !MakesTopicsKnown(*gv)) return;
+  if (IsDeaf(domain) || topic.shadows.contains(domain) || !MakesTopicsKnown(*gv)) return;
   if (owner == participants_.end() || !owner->second.shadows.contains(domain)) return;
   SetNextEntity(gv, topic.participant, guid);
   const Qos qos(DecodeQos(topic.payload, false));
@@ -404,6 +507,8 @@ Mirrors::EndpointShadow Mirrors::MakeReader(ddsi_domaingv* gv, const Guid& guid,
   EndpointShadow shadow;
   Tap* tap = NewTap(gv, gv->config.domainId, endpoint.process, guid, endpoint.what.topic,
                     IsReliable(qos), IsReliable(qos) && IsTransientLocal(qos));
+  const auto lost = endpoint.lost_at_ns.find(gv->config.domainId);
+  if (lost != endpoint.lost_at_ns.end()) tap->lost_at_ns = lost->second;
   {
     const MakingTap making(tap);
     shadow.entity = dds_create_reader_rhc(participant, topic, qos, nullptr, &tap->rhc);
@@ -420,16 +525,25 @@ void Mirrors::HandleSample(const shm::DdsMessage& message, const std::byte* payl
   const auto found = endpoints_.find(GuidAt(message.subject));
   if (found == endpoints_.end()) return;
   Endpoint& endpoint = found->second;
+  Miss(found->first, endpoint, message, payload);
   const bool was_not_alive = std::exchange(endpoint.not_alive, false);
   // Listeners do not reach in here: no shadow goes meanwhile.
   for (const auto& [domain, shadow] : endpoint.shadows) {
-    ddsi_domaingv* gv = DomainOf(domain);
-    if (gv == nullptr || shadow.type == nullptr) continue;
-    if (was_not_alive) {
-      RegainLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
-    }
-    Inject(gv, endpoint, shadow, message, payload);
+    if (IsDeaf(domain)) continue;
+    HandleSampleIn(domain, endpoint, shadow, was_not_alive, message, payload);
   }
+}
+
+void Mirrors::HandleSampleIn(std::uint32_t domain, Endpoint& endpoint, const EndpointShadow& shadow,
+                             bool was_not_alive, const shm::DdsMessage& message,
+                             const std::byte* payload) {
+  const Visit visit(domain);
+  ddsi_domaingv* gv = visit.gv();
+  if (gv == nullptr || shadow.type == nullptr) return;
+  if (was_not_alive) {
+    RegainLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
+  }
+  Inject(gv, endpoint, shadow, message, payload);
 }
 
 void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
@@ -459,7 +573,9 @@ void Mirrors::Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow
     waiting = {reader};
   }
   for (const Guid& guid : waiting) {
-    while (!StoreIn(gv, guid, shadow.inner, sample)) dds_sleepfor(kTryAgain);
+    while (!IsEnding(gv->config.domainId) && !StoreIn(gv, guid, shadow.inner, sample)) {
+      dds_sleepfor(kTryAgain);
+    }
   }
   ddsi_serdata_unref(sample);
 }
@@ -490,14 +606,21 @@ void Mirrors::HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample) {
 void Mirrors::HandleHistoryEnd(const shm::DdsMessage& message) {
   const auto found = endpoints_.find(GuidAt(message.subject));
   if (found == endpoints_.end()) return;
+  Miss(found->first, found->second, message, nullptr);
   for (const auto& [domain, shadow] : found->second.shadows) {
-    ddsi_domaingv* gv = DomainOf(domain);
-    if (gv == nullptr) continue;
-    const Awake awake(gv);
-    const ddsi_guid_t inner = InnerOf(GuidAt(message.other));
-    const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
-    if (reader != nullptr) EndHistory(*reader, shadow.inner);
+    if (!IsDeaf(domain)) HandleHistoryEndIn(domain, shadow, message);
   }
+}
+
+void Mirrors::HandleHistoryEndIn(std::uint32_t domain, const EndpointShadow& shadow,
+                                 const shm::DdsMessage& message) {
+  const Visit visit(domain);
+  const ddsi_domaingv* gv = visit.gv();
+  if (gv == nullptr) return;
+  const Awake awake(gv);
+  const ddsi_guid_t inner = InnerOf(GuidAt(message.other));
+  const ddsi_reader* reader = entidx_lookup_reader_guid(gv->entity_index, &inner);
+  if (reader != nullptr) EndHistory(*reader, shadow.inner);
 }
 
 void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
@@ -505,7 +628,7 @@ void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
   if (const auto found = participants_.find(guid); found != participants_.end()) {
     if ((message.flags & shm::kDdsGone) != 0) return;
     for (const auto& [domain, shadow] : found->second.shadows) {
-      Real().dds_assert_liveliness(shadow.entity);
+      if (!IsDeaf(domain)) Real().dds_assert_liveliness(shadow.entity);
     }
     return;
   }
@@ -513,12 +636,15 @@ void Mirrors::HandleLiveliness(const shm::DdsMessage& message) {
   if (found == endpoints_.end()) return;
   Endpoint& endpoint = found->second;
   for (const auto& [domain, shadow] : endpoint.shadows) {
+    if (IsDeaf(domain)) continue;
     if ((message.flags & shm::kDdsGone) == 0) {
       Real().dds_assert_liveliness(shadow.entity);
-    } else if (ddsi_domaingv* gv = DomainOf(domain); gv != nullptr) {
-      endpoint.not_alive = true;
-      LoseLiveliness(gv, shadow.inner, ReadersOf(domain, endpoint.what.topic));
+      continue;
     }
+    const Visit visit(domain);
+    if (visit.gv() == nullptr) continue;
+    endpoint.not_alive = true;
+    LoseLiveliness(visit.gv(), shadow.inner, ReadersOf(domain, endpoint.what.topic));
   }
 }
 

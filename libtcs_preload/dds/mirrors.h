@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "libtcs_preload/dds/guid.h"
+#include "libtcs_preload/dds/held_messages.h"
 #include "libtcs_preload/dds/qos_code.h"
 #include "shm/dds_exchange.h"
 
@@ -53,6 +54,8 @@ class Mirrors {
     std::uint32_t domain;
     std::uint32_t process;
     std::uint64_t tag;
+    std::int64_t lease_ns;
+    bool gone = false;  // only deaf domains still have shadows of it
     Payload payload;
     std::map<std::uint32_t, ParticipantShadow> shadows;  // by the program's number of the domain
   };
@@ -68,6 +71,8 @@ class Mirrors {
     Payload payload;
     DecodedEndpoint what;
     std::map<std::uint32_t, EndpointShadow> shadows;
+    std::map<std::uint32_t, std::int64_t> lost_at_ns;  // by deaf domains, monotonic
+    bool gone = false;                                 // only deaf domains still have shadows of it
     bool not_alive = false;  // its lease is over, and it has not written since
     bool warned = false;
     bool looked_at = false;  // one of its samples, whether the program's type of that name reads it
@@ -80,6 +85,14 @@ class Mirrors {
     DecodedEndpoint what;
     std::map<std::uint32_t, ddsi_guid_t> shadows;
   };
+  // A domain that hears nothing (deaf_mute.h): its shadows are as they were, until the leases of
+  // what they stand for are over.
+  struct Deaf {
+    std::int64_t since_ns;
+    std::int64_t last_lost_ns = INT64_MIN;
+    std::set<Guid> lost;  // endpoints
+    HeldMessages missed;  // samples, and ends of histories
+  };
   using Participants = std::unordered_map<Guid, Participant, GuidHash>;
   using Endpoints = std::unordered_map<Guid, Endpoint, GuidHash>;
 
@@ -91,6 +104,12 @@ class Mirrors {
   void HandleLiveliness(const shm::DdsMessage& message);
 
   void ChangeQos(Endpoint& endpoint, Payload payload);
+  static void SetQos(const EndpointShadow& shadow, const Payload& payload);
+  bool IsDeaf(std::uint32_t domain) const { return deaf_.contains(domain); }
+  void LookAtDeaf(const ddsi_domaingv& gv);
+  void EndLeases(const ddsi_domaingv& gv, Deaf& deaf);
+  void Hear(std::uint32_t domain);
+
   void RemoveParticipant(const Guid& guid);
   void RemoveEndpoint(const Guid& guid);
   void EndShadow(const Guid& guid, Participant& participant, std::uint32_t domain);
@@ -110,6 +129,13 @@ class Mirrors {
                             const dds_qos_t* qos);
   EndpointShadow MakeReader(ddsi_domaingv* gv, const Guid& guid, const Endpoint& endpoint,
                             dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos);
+  void MakeAll();
+  void Miss(const Guid& guid, const Endpoint& endpoint, const shm::DdsMessage& message,
+            const std::byte* payload);
+  void HandleSampleIn(std::uint32_t domain, Endpoint& endpoint, const EndpointShadow& shadow,
+                      bool was_not_alive, const shm::DdsMessage& message, const std::byte* payload);
+  static void HandleHistoryEndIn(std::uint32_t domain, const EndpointShadow& shadow,
+                                 const shm::DdsMessage& message);
   void Inject(ddsi_domaingv* gv, Endpoint& endpoint, const EndpointShadow& shadow,
               const shm::DdsMessage& message, const std::byte* payload);
 
@@ -117,6 +143,7 @@ class Mirrors {
   void HoldInstance(ddsi_domaingv* gv, ddsi_serdata* sample);
 
   std::set<std::uint32_t> held_in_;  // domains, by the program's numbers
+  std::map<std::uint32_t, Deaf> deaf_;
   Participants participants_;
   Endpoints endpoints_;
   std::unordered_map<Guid, Topic, GuidHash> topics_;

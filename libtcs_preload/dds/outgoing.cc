@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "libtcs_preload/dds/muting.h"
 #include "libtcs_preload/dds/own_news.h"
 #include "libtcs_preload/dds/program.h"
 #include "libtcs_preload/dds/say.h"
@@ -52,10 +53,21 @@ shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& s
   return message;
 }
 
-void Send(shm::DdsMessage& message, const Payload& payload) {
+void Send(const ddsi_domaingv& gv, shm::DdsMessage& message, const Payload& payload) {
+  if (message.to == shm::kDdsEverybody) NoteOwnNews(message, payload);
+  if (!HoldsBack(gv, message, payload.data(), payload.size())) {
+    SendHeld(message, payload);
+  } else if (message.to == shm::kDdsEverybody) {
+    NoteToldItself(message, true);  // it will come, if the program meets itself then
+  }
+}
+
+void SendHeld(shm::DdsMessage& message, const Payload& payload) {
   if (message.to == shm::kDdsEverybody) {
-    NoteOwnNews(message, payload);
-    if (MeetsItself(message.domain)) message.flags |= shm::kDdsToSender;
+    const bool is_told = MeetsItself(message.domain);
+    message.flags &= static_cast<std::uint16_t>(~shm::kDdsToSender);
+    if (is_told) message.flags |= shm::kDdsToSender;
+    NoteToldItself(message, is_told);
   }
   if (!SendParts(message, payload.data(), payload.size())) {
     Say("the QoS of a DDS entity is too large to be announced (%zu bytes), so other programs will "
@@ -64,11 +76,13 @@ void Send(shm::DdsMessage& message, const Payload& payload) {
   }
 }
 
-void SendSample(shm::DdsMessage& message, const ddsi_serdata& sample, std::string_view topic) {
+void SendSample(const ddsi_domaingv& gv, shm::DdsMessage& message, const ddsi_serdata& sample,
+                std::string_view topic) {
   const std::size_t size = (ddsi_serdata_size(&sample) + std::size_t{3}) & ~std::size_t{3};
   ddsrt_iovec_t bytes{};
   ddsi_serdata* held = ddsi_serdata_to_ser_ref(&sample, 0, size, &bytes);
-  const bool sent = SendParts(message, bytes.iov_base, size);
+  const bool sent =
+      HoldsBack(gv, message, bytes.iov_base, size) || SendParts(message, bytes.iov_base, size);
   ddsi_serdata_to_ser_unref(held, &bytes);
   if (sent) return;
   static std::uint64_t lost;
@@ -84,7 +98,7 @@ void SendSample(shm::DdsMessage& message, const ddsi_serdata& sample, std::strin
 void SendNudge() {
   shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, 0, Guid{});
   message.to = g_process;
-  Send(message, {});
+  SendParts(message, nullptr, 0);
 }
 
 }  // namespace tcs::dds

@@ -20,10 +20,15 @@ std::uint32_t OwnProcess();
 
 shm::DdsMessage MessageOf(shm::DdsKind kind, std::uint32_t domain, const Guid& subject);
 
-void Send(shm::DdsMessage& message, const Payload& payload);
+// Of a domain, whose name the message has. It is held back where the domain is mute (muting.h).
+void Send(const ddsi_domaingv& gv, shm::DdsMessage& message, const Payload& payload);
 
 // A sample's bytes as Cyclone has serialised them. One that is too large is counted and named.
-void SendSample(shm::DdsMessage& message, const ddsi_serdata& sample, std::string_view topic);
+void SendSample(const ddsi_domaingv& gv, shm::DdsMessage& message, const ddsi_serdata& sample,
+                std::string_view topic);
+
+// What has been held back.
+void SendHeld(shm::DdsMessage& message, const Payload& payload);
 
 // Has the deliverer look at what other threads of this process have left for it (deliverer.h).
 void SendNudge();

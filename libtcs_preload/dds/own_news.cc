@@ -49,12 +49,35 @@ void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload) {
   news.message.size = shm::DdsMessageSize(news.message.payload_size);
 }
 
+void NoteToldItself(const shm::DdsMessage& message, bool is_told) {
+  const Guid subject = GuidAt(message.subject);
+  KeptNews& state = TheKeptNews();
+  const std::lock_guard lock(state.mutex);
+  for (OwnNews& news : state.news) {
+    if (GuidAt(news.message.subject) != subject) continue;
+    news.message.flags &= static_cast<std::uint16_t>(~shm::kDdsToSender);
+    if (is_told) news.message.flags |= shm::kDdsToSender;
+  }
+}
+
+std::vector<OwnNews> NewsOf(const ddsi_domaingv& gv) {
+  KeptNews& state = TheKeptNews();
+  const std::lock_guard lock(state.mutex);
+  std::vector<OwnNews> all;
+  std::ranges::copy_if(state.news, std::back_inserter(all), [&gv](const OwnNews& news) {
+    const bool is_participant = news.message.kind == shm::DdsKind::kParticipant;
+    return IsParticipant(&gv, GuidAt(is_participant ? news.message.subject : news.message.other));
+  });
+  return all;
+}
+
 std::vector<OwnNews> NewsForItself() {
   KeptNews& state = TheKeptNews();
   const std::lock_guard lock(state.mutex);
   std::vector<OwnNews> all;
-  std::ranges::copy_if(state.news, std::back_inserter(all),
-                       [](const OwnNews& news) { return MeetsItself(news.message.domain); });
+  std::ranges::copy_if(state.news, std::back_inserter(all), [](const OwnNews& news) {
+    return (news.message.flags & shm::kDdsToSender) == 0 && MeetsItself(news.message.domain);
+  });
   return all;
 }
 

@@ -21,9 +21,15 @@ struct OwnNews {
 
 // Before it is sent.
 void NoteOwnNews(const shm::DdsMessage& message, const Payload& payload);
+// Whether what has been noted goes through the coordinator to this process, too.
+void NoteToldItself(const shm::DdsMessage& message, bool is_told);
 
 // The announcements that are there, in the order in which they came, of domains in which the
-// program meets itself.
+// program meets itself, but for those that it is told of through the coordinator: what these say is
+// true when it comes, after what came before it.
 std::vector<OwnNews> NewsForItself();
+
+// All announcements that are there of what the program has in this domain.
+std::vector<OwnNews> NewsOf(const ddsi_domaingv& gv);
 
 }  // namespace tcs::dds

@@ -1,6 +1,7 @@
 #include "libtcs_preload/dds/program.h"
 
 #include <algorithm>
+#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
@@ -14,8 +15,12 @@ namespace tcs::dds {
 namespace {
 
 struct Domain {
-  ddsi_domaingv* gv = nullptr;
+  ddsi_domaingv* gv = nullptr;  // valid while there are participants, and visits
+  std::uint32_t name = 0;       // on the network
   std::vector<Guid> participants;
+  std::set<Guid> past_participants;
+  int visits = 0;
+  int ends = 0;  // threads that are about to end it
   std::map<std::pair<std::string, std::string>, ddsi_sertype*> types;
 };
 
@@ -55,8 +60,11 @@ constexpr std::size_t kMostInstances = 4096;
 
 struct ProgramState {
   std::mutex mutex;
-  std::set<std::pair<std::uint32_t, Prefix>> shadows;  // by domain
+  std::condition_variable left;                                            // by a visitor
+  std::set<std::pair<std::uint32_t, Prefix>> shadows;                      // by domain
+  std::map<std::pair<std::uint32_t, Guid>, std::string> shadow_endpoints;  // their topics
   std::map<std::uint32_t, Domain> domains;
+  std::set<std::uint32_t> met;  // names of which there have been several at a time
   std::unordered_map<Guid, Writer, GuidHash> writers;
   std::unordered_map<Guid, Reader, GuidHash> readers;
   std::vector<const Tap*> taps;
@@ -93,6 +101,15 @@ std::vector<Guid> LockedWritersOf(const ProgramState& state, std::uint32_t domai
   return guids;
 }
 
+std::vector<std::uint32_t> LockedDomainsCalled(const ProgramState& state,
+                                               std::uint32_t network_domain) {
+  std::vector<std::uint32_t> ids;
+  for (const auto& [id, domain] : state.domains) {
+    if (!domain.participants.empty() && domain.name == network_domain) ids.push_back(id);
+  }
+  return ids;
+}
+
 }  // namespace
 
 std::uint32_t NetworkDomain(const ddsi_domaingv& gv) {
@@ -122,40 +139,101 @@ bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity) {
   return state.shadows.contains({domain, PrefixOf(entity)});
 }
 
-ddsi_domaingv* DomainOf(std::uint32_t domain) {
+void AddShadowEndpoint(std::uint32_t domain, const char* topic, const Guid& guid) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  state.shadow_endpoints[{domain, guid}] = topic;
+}
+
+void RemoveShadowEndpoint(std::uint32_t domain, const Guid& guid) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  state.shadow_endpoints.erase({domain, guid});
+}
+
+std::vector<Guid> ShadowEndpointsOf(std::uint32_t domain, const std::string& topic) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  std::vector<Guid> guids;
+  for (const auto& [key, of] : state.shadow_endpoints) {
+    if (key.first == domain && of == topic) guids.push_back(key.second);
+  }
+  return guids;
+}
+
+bool HasDomain(std::uint32_t domain) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   const auto found = state.domains.find(domain);
-  if (found == state.domains.end() || found->second.participants.empty()) return nullptr;
-  return found->second.gv;
+  return found != state.domains.end() && !found->second.participants.empty();
 }
 
-std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain) {
+Visit::Visit(std::uint32_t domain) : domain_(domain), gv_(nullptr) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
-  std::vector<ddsi_domaingv*> domains;
-  for (const auto& [id, domain] : state.domains) {
-    if (!domain.participants.empty() && NetworkDomain(*domain.gv) == network_domain) {
-      domains.push_back(domain.gv);
-    }
-  }
-  return domains;
+  const auto found = state.domains.find(domain);
+  if (found == state.domains.end()) return;
+  Domain& visited = found->second;
+  if (visited.participants.empty() || visited.ends > 0) return;
+  ++visited.visits;
+  gv_ = visited.gv;
 }
 
-bool MeetsItself(std::uint32_t network_domain) { return DomainsCalled(network_domain).size() > 1; }
+Visit::~Visit() {
+  if (gv_ == nullptr) return;
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  if (--state.domains[domain_].visits == 0) state.left.notify_all();
+}
+
+void BeginEnd(std::uint32_t id, bool waits) {
+  ProgramState& state = TheProgramState();
+  std::unique_lock lock(state.mutex);
+  Domain& domain = state.domains[id];
+  ++domain.ends;
+  if (waits) state.left.wait(lock, [&domain] { return domain.visits == 0; });
+}
+
+bool IsEnding(std::uint32_t domain) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  return state.domains[domain].ends > 0;
+}
+
+void OverEnd(std::uint32_t domain) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  --state.domains[domain].ends;
+}
+
+std::vector<std::uint32_t> DomainsCalled(std::uint32_t network_domain) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  return LockedDomainsCalled(state, network_domain);
+}
+
+bool MeetsItself(std::uint32_t network_domain) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  return state.met.contains(network_domain);
+}
 
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   Domain& domain = state.domains[gv->config.domainId];
   domain.gv = gv;
+  domain.name = NetworkDomain(*gv);
   domain.participants.push_back(guid);
+  if (LockedDomainsCalled(state, domain.name).size() > 1) state.met.insert(domain.name);
 }
 
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid) {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
-  std::erase(state.domains[gv->config.domainId].participants, guid);
+  Domain& domain = state.domains[gv->config.domainId];
+  std::erase(domain.participants, guid);
+  domain.past_participants.insert(guid);
 }
 
 bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid) {
@@ -163,6 +241,14 @@ bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid) {
   const std::lock_guard lock(state.mutex);
   const auto found = state.domains.find(gv->config.domainId);
   return found != state.domains.end() && std::ranges::count(found->second.participants, guid) != 0;
+}
+
+bool IsOrWasParticipant(const ddsi_domaingv* gv, const Guid& guid) {
+  ProgramState& state = TheProgramState();
+  const std::lock_guard lock(state.mutex);
+  const Domain& domain = state.domains[gv->config.domainId];
+  return std::ranges::count(domain.participants, guid) != 0 ||
+         domain.past_participants.contains(guid);
 }
 
 bool IsLastParticipant(const Guid& guid) {
@@ -177,7 +263,9 @@ std::vector<std::uint32_t> Domains() {
   ProgramState& state = TheProgramState();
   const std::lock_guard lock(state.mutex);
   std::vector<std::uint32_t> ids;
-  for (const auto& [id, domain] : state.domains) ids.push_back(id);
+  for (const auto& [id, domain] : state.domains) {
+    if (!domain.participants.empty()) ids.push_back(id);
+  }
   return ids;
 }
 

@@ -29,17 +29,48 @@ void AddShadow(std::uint32_t domain, const Guid& participant);
 void RemoveShadow(std::uint32_t domain, const Guid& participant);
 bool IsShadow(const ddsi_domaingv* gv, const ddsi_guid_t& entity);
 bool IsShadow(std::uint32_t domain, const ddsi_guid_t& entity);
+// Their endpoints.
+void AddShadowEndpoint(std::uint32_t domain, const char* topic, const Guid& guid);
+void RemoveShadowEndpoint(std::uint32_t domain, const Guid& guid);
+std::vector<Guid> ShadowEndpointsOf(std::uint32_t domain, const std::string& topic);
 
-// Domains.
-ddsi_domaingv* DomainOf(std::uint32_t domain);  // null: the program has no participant in it
-std::vector<ddsi_domaingv*> DomainsCalled(std::uint32_t network_domain);
-// Whether the program has several of that name.
+// Domains, those in which the program has participants.
+bool HasDomain(std::uint32_t domain);
+std::vector<std::uint32_t> DomainsCalled(std::uint32_t network_domain);
+std::vector<std::uint32_t> Domains();
+// Whether the program has several of that name, or has had: then what it told itself of has to be
+// taken back, too.
 bool MeetsItself(std::uint32_t network_domain);
 void AddParticipant(ddsi_domaingv* gv, const Guid& guid);
 void RemoveParticipant(ddsi_domaingv* gv, const Guid& guid);
 bool IsParticipant(const ddsi_domaingv* gv, const Guid& guid);
+// It is the program's, or was, in this domain: no shadow there is to stand for it. One that is
+// being deleted is in Cyclone's tables for longer than it is here, and GUIDs do not come back.
+bool IsOrWasParticipant(const ddsi_domaingv* gv, const Guid& guid);
 bool IsLastParticipant(const Guid& guid);
-std::vector<std::uint32_t> Domains();
+
+// While it lives, a thread, mostly the deliverer, is in a domain, which stays: what is about to end
+// waits (BeginEnd).
+class Visit {
+ public:
+  explicit Visit(std::uint32_t domain);
+  ~Visit();
+  Visit(const Visit&) = delete;
+  Visit& operator=(const Visit&) = delete;
+
+  // Null: the program has no participant there, or it is about to end.
+  ddsi_domaingv* gv() const { return gv_; }
+
+ private:
+  std::uint32_t domain_;
+  ddsi_domaingv* gv_;
+};
+
+// A domain is about to be taken down, or to lose its last participant: nobody visits it any more.
+// `waits`: returns when whoever does has left. Until OverEnd, as often.
+void BeginEnd(std::uint32_t domain, bool waits);
+bool IsEnding(std::uint32_t domain);
+void OverEnd(std::uint32_t domain);
 
 // The types of its topics. A type is held until the domain's last participant is about to go:
 // Cyclone aborts if it is held any longer.

@@ -55,13 +55,13 @@ dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
   return participant;
 }
 
-dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertype** type,
-                         const dds_qos_t* qos, const dds_listener_t* listener,
-                         const ddsi_plist* discovery) {
-  const dds_entity_t topic =
-      Real().dds_create_topic_sertype(participant, name, type, qos, listener, discovery);
+dds_entity_t CreateTopic(dds_entity_t participant, const char* name, bool allow_dcps,
+                         ddsi_sertype** type, const dds_qos_t* qos, const dds_listener_t* listener,
+                         const ddsi_plist* discovery, bool is_builtin) {
+  const dds_entity_t topic = Real().dds_create_topic_impl(participant, name, allow_dcps, type, qos,
+                                                          listener, discovery, is_builtin);
   dds_domainid_t domain = 0;
-  if (topic > 0 && dds_get_domainid(topic, &domain) == DDS_RETCODE_OK) {
+  if (topic > 0 && !is_builtin && dds_get_domainid(topic, &domain) == DDS_RETCODE_OK) {
     AddType(domain, name, *type);
     LookAgain();
   }
@@ -78,9 +78,11 @@ dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* 
 }
 
 // The types are let go before the participant goes, the shadows after it: the program's readers and
-// writers must not see them go.
+// writers must not see them go. The deliverer is out of a domain before that is taken down. On the
+// deliverer itself a listener deletes, as in Cyclone's own threads: it cannot wait for itself.
 dds_return_t Delete(dds_entity_t entity) {
   const std::vector<std::uint32_t> ending = DomainsThatEndWith(entity);
+  for (const std::uint32_t domain : ending) BeginEnd(domain, !IsDeliverer());
   for (const std::uint32_t domain : ending) ReleaseTypes(domain);
   const dds_return_t result = Real().dds_delete(entity);
   for (const std::uint32_t domain : ending) CloseDomain(domain);

@@ -7,9 +7,9 @@ namespace tcs::dds {
 
 dds_entity_t CreateParticipant(dds_domainid_t domain, const dds_qos_t* qos,
                                const dds_listener_t* listener);
-dds_entity_t CreateTopic(dds_entity_t participant, const char* name, ddsi_sertype** type,
-                         const dds_qos_t* qos, const dds_listener_t* listener,
-                         const ddsi_plist* discovery);
+dds_entity_t CreateTopic(dds_entity_t participant, const char* name, bool allow_dcps,
+                         ddsi_sertype** type, const dds_qos_t* qos, const dds_listener_t* listener,
+                         const ddsi_plist* discovery, bool is_builtin);
 dds_entity_t CreateWriter(dds_entity_t of, dds_entity_t topic, const dds_qos_t* qos,
                           const dds_listener_t* listener);
 dds_return_t Delete(dds_entity_t entity);

@@ -1,5 +1,7 @@
 #include "libtcs_preload/dds/silence.h"
 
+#include "libtcs_preload/dds/say.h"
+
 namespace tcs::dds {
 
 // After the real one, which has taken over what the user's configuration says: it may name
@@ -11,6 +13,11 @@ int PrepareConfiguration(ddsi_domaingv* gv, cfgst* configuration) {
   gv->config.network_interfaces = nullptr;
   gv->config.peers = nullptr;
   gv->config.enable_shm = 0;
+  if (gv->config.xmit_lossiness != 0) {
+    Say("Internal/Test/XmitLossiness of Cyclone's configuration does nothing, because samples do "
+        "not "
+        "go over a network: use dds_domain_set_deafmute, or loss in the scenario's network");
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "libtcs_preload/dds/cyclone.h"
+#include "libtcs_preload/dds/deaf_mute.h"
 #include "libtcs_preload/dds/deliverer.h"
 #include "libtcs_preload/dds/entities.h"
 #include "libtcs_preload/dds/identity.h"
@@ -28,7 +29,7 @@ const Hook* Hooks() {
 #define TCS_DDS_WRITING_HOOK(name) {#name, WritingHook(kCall_##name)},
   static const auto* hooks =
       new std::vector<Hook>{TCS_DDS_HOOK(dds_create_participant, CreateParticipant),
-                            TCS_DDS_HOOK(dds_create_topic_sertype, CreateTopic),
+                            TCS_DDS_HOOK(dds_create_topic_impl, CreateTopic),
                             TCS_DDS_HOOK(dds_create_writer, CreateWriter),
                             TCS_DDS_HOOK(dds_delete, Delete),
                             TCS_DDS_HOOK(dds_assert_liveliness, AssertLiveliness),
@@ -52,6 +53,8 @@ const Hook* Hooks() {
                             TCS_DDS_HOOK(ddsi_new_reader, NewReader),
                             TCS_DDS_HOOK(ddsi_delete_reader, DeleteReader),
                             TCS_DDS_HOOK(ddsi_update_reader_qos, UpdateReader),
+                            TCS_DDS_HOOK(ddsi_set_deafmute, SetDeafMute),
+                            TCS_DDS_HOOK(ddsi_delete_proxy_participant_by_guid, DeleteProxy),
                             TCS_DDS_HOOK(ddsi_iid_gen, GenerateInstance),
                             TCS_DDS_HOOK(ddsrt_prng_makeseed, MakeSeed),
                             TCS_DDS_HOOK(rtps_config_prep, PrepareConfiguration),

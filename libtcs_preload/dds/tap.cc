@@ -40,7 +40,7 @@ void Ship(const Tap& tap, const ddsi_guid_t& writer, const ddsi_serdata& sample,
   message.source_timestamp_ns = sample.timestamp.v;
   message.status_info = sample.statusinfo;
   message.sample_kind = sample.kind;
-  SendSample(message, sample, tap.topic);
+  SendSample(*tap.gv, message, sample, tap.topic);
 }
 
 bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
@@ -48,9 +48,14 @@ bool HasHad(const Tap& tap, const ddsi_serdata* sample) {
       tap.had, [sample](const ddsi_serdata* had) { return IsSameSample(had, sample); });
 }
 
+// One that Cyclone has made of another type does not have the time.
+bool WasBeforeLoss(const Tap& tap, const ddsi_serdata& sample) {
+  return sample.twrite.v != INT64_MIN && sample.twrite.v <= tap.lost_at_ns;
+}
+
 // To the tap's reader alone, unless it has had it.
 void ShipAlone(Tap& tap, const ddsi_guid_t& writer, ddsi_serdata* sample) {
-  if (HasHad(tap, sample)) return;
+  if (WasBeforeLoss(tap, *sample) || HasHad(tap, sample)) return;
   tap.had.push_back(ddsi_serdata_ref(sample));
   if (tap.had.size() > kMostHad) {
     ddsi_serdata_unref(tap.had.front());
@@ -161,8 +166,8 @@ constexpr dds_rhc_ops kOperations = {
 
 Tap* NewTap(ddsi_domaingv* gv, std::uint32_t domain, std::uint32_t process, const Guid& reader,
             const std::string& topic, bool is_reliable, bool catches_up) {
-  Tap* tap = new Tap{{},          gv,         domain, process,    reader, topic,
-                     is_reliable, catches_up, false,  catches_up, {},     {}};
+  Tap* tap =
+      new Tap{{}, gv, domain, process, reader, topic, is_reliable, catches_up, false, catches_up};
   tap->rhc.common.ops = &kOperations;
   AddTap(tap);
   return tap;
@@ -184,7 +189,7 @@ void SendHistoryEnd(const ddsi_domaingv& gv, const Guid& writer, const Guid& rea
   shm::DdsMessage message = MessageOf(shm::DdsKind::kHistoryEnd, NetworkDomain(gv), writer);
   message.to = process;
   PutGuid(reader, message.other);
-  Send(message, {});
+  Send(gv, message, {});
 }
 
 }  // namespace tcs::dds

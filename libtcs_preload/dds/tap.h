@@ -25,6 +25,8 @@ struct Tap {
   bool is_complete;  // CompleteTap has been called
   // Samples of all threads go to this reader alone until its history's end has been sent.
   bool catching_up;
+  // The reader was lost and is found again (deaf_mute.h): it has had what was written before that.
+  std::int64_t lost_at_ns = INT64_MIN;  // monotonic
   // What it has had alone of late, referred to: a thread that is writing while the history is read
   // stores its sample once more. Both under the mutex, and so is what is sent meanwhile, for the
   // reader takes what comes after the history's end, and nothing before.

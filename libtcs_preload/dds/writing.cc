@@ -5,6 +5,7 @@
 
 #include "libtcs_preload/dds/cyclone.h"
 #include "libtcs_preload/dds/deliverer.h"
+#include "libtcs_preload/dds/muting.h"
 #include "libtcs_preload/dds/outgoing.h"
 #include "libtcs_preload/dds/program.h"
 
@@ -22,6 +23,22 @@ std::uint32_t FullReaderOf(const Guid& writer) {
   return 0;
 }
 
+// What a mute domain holds of the writer's nobody has acknowledged. False: still so at the end.
+bool AwaitHearing(dds_entity_t writer, const Guid& guid, std::int64_t end_ns) {
+  dds_domainid_t domain = 0;
+  dds_get_domainid(writer, &domain);
+  const auto is_full = [domain, &guid] {
+    const Visit visit(domain);
+    return visit.gv() != nullptr && IsHeldFull(*visit.gv(), guid);
+  };
+  while (is_full()) {
+    const std::int64_t now = TheLink().now();
+    if (now >= end_ns) return false;
+    dds_sleepfor(std::min(kLookAgainNs, end_ns - now));
+  }
+  return true;
+}
+
 // As Cyclone does it over a network: a reliable writer that has to keep all that others have not
 // taken yet waits before it writes, and gives up after max_blocking_time, having written nothing.
 // The deliverer never waits: others may be waiting for what it takes.
@@ -33,6 +50,7 @@ bool HasRoom(dds_entity_t writer) {
   if (!most.has_value()) return true;
   const std::int64_t start = TheLink().now();
   const std::int64_t end = *most > INT64_MAX - start ? INT64_MAX : start + *most;
+  if (AnyIsMute() && !AwaitHearing(writer, guid, end)) return false;
   while (const std::uint32_t process = FullReaderOf(guid)) {
     const std::int64_t now = TheLink().now();
     if (now >= end) return false;
@@ -52,7 +70,7 @@ struct HookedWrite;
 template <auto RealCalls::*kCall, class... Arguments>
 struct HookedWrite<kCall, dds_return_t (*)(dds_entity_t, Arguments...)> {
   static dds_return_t Do(dds_entity_t writer, Arguments... arguments) {
-    if (!TheLink().any_is_full() || HasRoom(writer)) {
+    if ((!TheLink().any_is_full() && !AnyIsMute()) || HasRoom(writer)) {
       return (Real().*kCall)(writer, arguments...);
     }
     (Release(arguments), ...);

@@ -6,9 +6,23 @@ export CYCLONEDDS_URI='<CycloneDDS><Domain id="any"><General><Interfaces>
   <NetworkInterface name="lo" multicast="true"/></Interfaces></General></Domain></CycloneDDS>'
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-# The version stands in the name of the file, behind the link.
 debians=$(realpath "$(library libddsc.so.0debian)")
-cp "$debians" "$work/libddsc.so.9.9.9"
+
+# The very same library is what it is under any name.
+mkdir "$work/same"
+cp "$debians" "$work/same/libddsc.so.0debian"
+said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work/same" ddsperf -D 0.1 sanity 2>&1)
+grep -q sockets <<<"$said" && fail "a copy of Debian's library is refused: $said"
+
+# Another build has another build id; its version stands in the name of the file, behind the link.
+python3 - "$debians" "$work/libddsc.so.9.9.9" <<'END'
+import re, subprocess, sys
+notes = subprocess.run(["readelf", "-n", sys.argv[1]], capture_output=True, text=True).stdout
+build = bytes.fromhex(re.search("Build ID: ([0-9a-f]+)", notes)[1])
+library = open(sys.argv[1], "rb").read()
+assert library.count(build) == 1
+open(sys.argv[2], "wb").write(library.replace(build, build[::-1]))
+END
 ln -s libddsc.so.9.9.9 "$work/libddsc.so.0debian"
 said=$("$tcsim" exec -- env LD_LIBRARY_PATH="$work" bash -c \
   "ddsperf -D 2 pong & ddsperf -D 2 ping 100Hz; wait" 2>&1)
