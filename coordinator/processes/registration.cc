@@ -113,6 +113,11 @@ bool Registration::TakePlace(int connection, const shm::AttachHello& hello, Proc
     Refuse(connection, "there is no room for more threads");
     return true;
   }
+  // The C library has taken back what an ended thread had there.
+  for (Task& other : run_.table.tasks()) {
+    if (other.process == &process && other.end_word == hello.end_word) other.end_word = 0;
+  }
+  task.end_word = hello.end_word;
   task.slot_memory = &process.link->SlotAt(task.slot);
   task.metered.page = &task.slot_memory->clock;
   if (!run_.turn.IsOf(task)) parts_.cpu.active().HoldUnknown(task);

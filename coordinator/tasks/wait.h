@@ -67,7 +67,7 @@ struct Child {
 
 // A word in memory, at which FutexTable knows it.
 struct Futex {
-  // What the word says, if it says whom: the thread that a join waits for, a robust lock's owner.
+  // The thread that a join waits for, a robust lock's owner; 0: neither.
   pid_t names_tid = 0;
   // Of a lock that lends priority:
   int owner = kNobody;
