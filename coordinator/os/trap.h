@@ -47,6 +47,9 @@ bool TrapsHoldSignals();
 // which the other program would have no handler for.
 bool IsExecution(const TrappedCall& call);
 
+// A program that was executed sets up its first thread, as each does, before it computes anything.
+bool BeginsProgram(const TrappedCall& call);
+
 // It sends a signal, to others or to itself.
 bool SendsSignal(const TrappedCall& call);
 
