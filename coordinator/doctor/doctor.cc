@@ -36,7 +36,7 @@ std::string ReadFile(const char* path) {
 
 Finding TryDescriptors() {
   const pid_t child = fork();
-  if (child < 0) return JudgeDescriptors(errno, errno, TrapsHoldSignals());
+  if (child < 0) return JudgeDescriptors(errno, errno);
   if (child == 0) {
     alarm(5);
     for (;;) pause();
@@ -46,7 +46,7 @@ Finding TryDescriptors() {
   const int descriptor_error = fd ? 0 : errno, memory_error = WhyNoLooksInto(child);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  return JudgeDescriptors(descriptor_error, memory_error, TrapsHoldSignals());
+  return JudgeDescriptors(descriptor_error, memory_error);
 }
 
 Finding TryShim(const std::string& path) {
@@ -114,7 +114,7 @@ const char* Colour(Verdict verdict) {
 
 std::vector<Finding> Examine(const std::string& preload_library) {
   return {
-      JudgeRealTime(AskForRealTime(), TrapsHoldSignals()),
+      JudgeRealTime(AskForRealTime()),
       JudgeThrottling(ReadFile("/proc/sys/kernel/sched_rt_runtime_us"),
                       ReadFile("/proc/sys/kernel/sched_rt_period_us"),
                       ReadFile("/proc/sys/kernel/osrelease")),

@@ -39,7 +39,7 @@ bool HasWord(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates) {
+Finding JudgeRealTime(const RealTimeFacts& facts) {
   constexpr char kName[] = "real-time priority";
   if (facts.error == 0) {
     return {kName, Verdict::kOk,
@@ -50,10 +50,6 @@ Finding JudgeRealTime(const RealTimeFacts& facts, bool has_gates) {
   }
   const std::string refused =
       fmt::format("SCHED_FIFO {} is refused ({})", kRealTimeNeeded, WhyNoRealTime(facts));
-  if (!has_gates) {
-    return {kName, Verdict::kMissing, refused + ", and runs without it need Linux 5.19",
-            MendOfRealTime(facts)};
-  }
   return {
       kName, Verdict::kWarning,
       refused + ": gates and a signal keep the threads of a run apart, with the same results",
@@ -124,7 +120,7 @@ Finding JudgeCpu(int cpu, int allowed, const std::string& isolated) {
           "give it a second processor, so that your terminal goes on"};
 }
 
-Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates) {
+Finding JudgeDescriptors(int descriptor_error, int memory_error) {
   constexpr char kName[] = "descriptors of clients";
   if (memory_error != 0) {
     return {kName, Verdict::kMissing,
@@ -142,9 +138,6 @@ Finding JudgeDescriptors(int descriptor_error, int memory_error, bool has_gates)
   const std::string refused =
       fmt::format("pidfd_getfd is refused ({})", strerror(descriptor_error));
   const std::string how = "docker: --cap-add SYS_PTRACE, or a seccomp profile that allows it";
-  if (!has_gates) {
-    return {kName, Verdict::kMissing, refused + ", and to run without it takes Linux 5.19", how};
-  }
   return {kName, Verdict::kWarning,
           refused +
               ": a process beside each program hands them over, and SCHED_FIFO is not used, "

@@ -193,8 +193,8 @@ bool TrapsHoldSignals() {
 }
 
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
-  // Without a real-time priority nothing else keeps a thread in its call when a signal comes; and
-  // it may be sent one to stop.
+  // Without a real-time priority nothing else keeps a thread in its call when a signal comes, if
+  // the kernel can; and it may be sent one to stop.
   const bool has_level = sched_getscheduler(0) == SCHED_FIFO;
   std::vector<std::uint32_t> unmarked;
   if (!has_level || too.executions) {
@@ -208,7 +208,7 @@ int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too) {
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER,
                 SECCOMP_FILTER_FLAG_NEW_LISTENER | SECCOMP_FILTER_FLAG_SPEC_ALLOW | more, &filter));
   };
-  const unsigned more = has_level ? 0 : kHoldsSignals;
+  const unsigned more = has_level || !TrapsHoldSignals() ? 0 : kHoldsSignals;
   const int listener = install(more);
   if (listener >= 0 || errno != EACCES) return listener;
   // Without rights over others a filter must not outlive a set-uid exec.

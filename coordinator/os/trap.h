@@ -40,7 +40,8 @@ struct TrappedToo {
 // processes (protection.h). The descriptor at which the calls arrive; -1: errno is set.
 int InstallTrap(const std::vector<pid_t>& guarded, TrappedToo too = {});
 
-// A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19).
+// A signal can be kept from a thread in a trapped call until that is answered (Linux 5.19). Where
+// it cannot, a handler runs while the call waits, and the thread makes the call again.
 bool TrapsHoldSignals();
 
 // It executes another program. Trapped only where threads may be sent a signal by the coordinator,
