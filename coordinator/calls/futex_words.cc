@@ -103,7 +103,8 @@ std::int64_t FutexWords::Wait(Task& task, const TrappedCall& call, int command) 
   table_.Wait(task.order, KeyFor(task, call, call.args[0]), command == FUTEX_WAIT ? kAnyBit : bits);
   // The owner of a robust lock that processes share may be in another one.
   if (joined == nullptr) joined = run_.table.Living(static_cast<pid_t>(value & FUTEX_TID_MASK));
-  Enter(task, {.names_tid = joined == nullptr ? 0 : joined->tid}, deadline);
+  const pid_t names = joined == nullptr ? 0 : joined->tid;
+  Enter(task, {.names_tid = names, .address = call.args[0]}, deadline);
   return 0;
 }
 
