@@ -5,10 +5,12 @@
 #include <gnu/libc-version.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,6 +34,12 @@ std::string ReadFile(const char* path) {
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+// As the shim asks it.
+bool TellsEndWords() {
+  std::uint64_t address = 0;
+  return prctl(PR_GET_TID_ADDRESS, &address, 0, 0, 0) == 0;
 }
 
 Finding TryDescriptors() {
@@ -125,7 +133,7 @@ std::vector<Finding> Examine(const std::string& preload_library) {
       TryDescriptors(),
       JudgeLayout(WhyNoFixedLayout()),
       JudgeNetworks(WhyNoComputer(), !MayMakeNamespaces()),
-      JudgeLibc(gnu_get_libc_version()),
+      JudgeLibc(gnu_get_libc_version(), TellsEndWords()),
       TryShim(preload_library),
       JudgeSteal(ReadFile("/proc/stat")),
   };

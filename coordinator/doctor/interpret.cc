@@ -171,14 +171,23 @@ Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_nam
           "only scenarios with `network` take it: " + why_not->Mend()};
 }
 
-Finding JudgeLibc(const std::string& version) {
+Finding JudgeLibc(const std::string& version, bool tells_end_words) {
+  constexpr char kName[] = "C library";
   int major = 0, minor = 0;
   std::sscanf(version.c_str(), "%d.%d", &major, &minor);
-  if (major > 2 || (major == 2 && minor >= 36)) {
-    return {"C library", Verdict::kOk, "glibc " + version, ""};
+  const auto is_since = [&](int of_two) { return major > 2 || (major == 2 && minor >= of_two); };
+  if (is_since(43) && !tells_end_words) {
+    return {kName, Verdict::kMissing,
+            "glibc " + version +
+                ", with which threads are joined at words that this kernel does not tell "
+                "(PR_GET_TID_ADDRESS), so joins may wait for ever",
+            "boot a kernel with CONFIG_CHECKPOINT_RESTORE, or run in a container with an older C "
+            "library"};
   }
-  return {"C library", Verdict::kWarning, "glibc " + version,
-          "tcs is made and tested with glibc 2.36 and 2.41 (Debian 12, 13)"};
+  if (is_since(35)) return {kName, Verdict::kOk, "glibc " + version, ""};
+  return {kName, Verdict::kWarning, "glibc " + version,
+          "tcs is made for glibc 2.35 and newer, and tested with 2.36, 2.41 and 2.43 (Debian 12, "
+          "13 and sid)"};
 }
 
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said) {

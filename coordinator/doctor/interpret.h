@@ -31,8 +31,9 @@ Finding JudgeLayout(int error);
 // `why_not`: of making a robot a computer of its own (WhyNoComputer); `in_user_namespace`: it takes
 // one (MayMakeNamespaces).
 Finding JudgeNetworks(const std::optional<NoComputer>& why_not, bool in_user_namespace);
-// `version`: of the C library, such as "2.36".
-Finding JudgeLibc(const std::string& version);
+// `version`: of the C library, such as "2.36"; `tells_end_words`: the kernel says which word it
+// clears at a thread's end (TellsEndWords).
+Finding JudgeLibc(const std::string& version, bool tells_end_words);
 // `wait_status` of a program run with the shim at `path` preloaded, and what it said on stderr.
 Finding JudgeShim(const std::string& path, int wait_status, const std::string& said);
 // `stat`: /proc/stat, since the machine's start.

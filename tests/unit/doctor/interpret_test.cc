@@ -120,9 +120,17 @@ TEST(Doctor, WhatRobotsWithNetworksLackIsNamedWithItsMend) {
 }
 
 TEST(Doctor, AnOldCLibraryIsAWarning) {
-  EXPECT_EQ(JudgeLibc("2.36").verdict, Verdict::kOk);
-  EXPECT_EQ(JudgeLibc("3.0").verdict, Verdict::kOk);
-  EXPECT_EQ(JudgeLibc("2.31").verdict, Verdict::kWarning);
+  EXPECT_EQ(JudgeLibc("2.35", true).verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeLibc("3.0", true).verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeLibc("2.31", true).verdict, Verdict::kWarning);
+}
+
+TEST(Doctor, WhereJoinsCannotBeSeenToEndIsOfTheLibrarysAge) {
+  EXPECT_EQ(JudgeLibc("2.42", false).verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeLibc("2.43", true).verdict, Verdict::kOk);
+  const Finding blind = JudgeLibc("2.43", false);
+  EXPECT_EQ(blind.verdict, Verdict::kMissing);
+  EXPECT_NE(blind.mend.find("CONFIG_CHECKPOINT_RESTORE"), std::string::npos);
 }
 
 TEST(Doctor, AShimThatSaysSomethingDoesNotLoad) {
